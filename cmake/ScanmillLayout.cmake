@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The build tree is laid out as the installed one, so that the program finds its modules in both the same way:
+# bin/scanmill, lib/libscanmill-*.so, lib/scanmill/plugins/scanmill-<filter>.so with its manifest beside it.
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+set(SCANMILL_PLUGIN_SUBDIR scanmill/plugins)
+set(SCANMILL_PLUGIN_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/${SCANMILL_PLUGIN_SUBDIR})
+# The same place seen from the folder that holds libscanmill-core.so, in both trees.
+set(SCANMILL_INSTALL_PLUGIN_DIR ${CMAKE_INSTALL_LIBDIR}/${SCANMILL_PLUGIN_SUBDIR})

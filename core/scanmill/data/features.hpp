@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// `features`: polylines and corners on a mesh, with the surface normals on both sides of every polyline segment.
+
+#include <vector>
+
+#include "scanmill/data/array.hpp"
+#include "scanmill/data/frame.hpp"
+
+namespace scanmill {
+
+enum class FeatureType : u8 { outer_boundary, hole, crease };
+
+struct FeaturePolyline {
+    FeatureType type;
+    /// A closed polyline does not repeat its first vertex; its last segment leads back to it.
+    bool closed;
+    /// The polyline is vertices[begin] … vertices[end - 1] of the graph.
+    u32 begin, end;
+};
+
+struct FeatureGraph {
+    Frame frame;
+    /// #vertices, relative to frame.origin.
+    Buffer<Vec3> positions;
+    std::vector<FeaturePolyline> polylines;
+    /// Indices into positions, polyline after polyline.
+    Buffer<u32> vertices;
+    /// One row per entry of `vertices`: the unit normals left and right of the segment that starts there; zero where
+    /// there is no surface (beyond a boundary) or no segment (the last vertex of an open polyline).
+    Buffer<Vec3> left_normals, right_normals;
+    /// Indices into positions, ascending.
+    Buffer<u32> corners;
+};
+
+}  // namespace scanmill

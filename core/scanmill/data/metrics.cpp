@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/data/metrics.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace scanmill {
+
+namespace {
+constexpr std::array<std::string_view, 8> unit_names{"count", "length", "area",    "volume",
+                                                     "angle", "ratio",  "seconds", "number"};
+}
+
+std::string_view name_of(Unit unit) { return unit_names[static_cast<std::size_t>(unit)]; }
+
+std::optional<Unit> unit_named(std::string_view name) {
+    const auto found = std::ranges::find(unit_names, name);
+    if (found == unit_names.end()) return std::nullopt;
+    return static_cast<Unit>(found - unit_names.begin());
+}
+
+void Metrics::set(std::string_view name, double value, Unit unit) {
+    for (Metric& metric : values)
+        if (metric.name == name) {
+            metric.value = value;
+            metric.unit = unit;
+            return;
+        }
+    values.push_back({std::string(name), value, unit});
+}
+
+const Metric* Metrics::find(std::string_view name) const {
+    const auto found = std::ranges::find(values, name, &Metric::name);
+    return found == values.end() ? nullptr : &*found;
+}
+
+}  // namespace scanmill

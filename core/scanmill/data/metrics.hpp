@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// `metrics`: named numbers with units, in the order they were reported.
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scanmill {
+
+/// What a metric's number counts or measures. Lengths are in the scan's unit, angles in radians, ratios plain
+/// fractions.
+enum class Unit { count, length, area, volume, angle, ratio, seconds, number, boolean };
+std::string_view name_of(Unit unit);
+std::optional<Unit> unit_named(std::string_view name);
+
+struct Metric {
+    std::string name;
+    double value;
+    Unit unit;
+    bool operator==(const Metric&) const = default;
+};
+
+struct Metrics {
+    std::vector<Metric> values;
+
+    /// Replaces an earlier metric of the same name.
+    void set(std::string_view name, double value, Unit unit);
+    const Metric* find(std::string_view name) const;
+};
+
+}  // namespace scanmill

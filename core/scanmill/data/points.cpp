@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/data/points.hpp"
+
+#include <cmath>
+
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+PointCloud gather(const PointCloud& cloud, std::span<const u32> rows) {
+    return {cloud.frame, gather(cloud.positions, rows), cloud.columns.gather(rows)};
+}
+
+void require_finite(std::span<const Vec3> positions, std::string_view what) {
+    std::size_t bad = 0;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        if (!positions[i].allFinite() && bad++ == 0) first = i;
+    if (bad == 0) return;
+    const Vec3& p = positions[first];
+    throw Error("needs finite coordinates; {} of {} {} have a NaN or an infinity, the first is number {} ({} {} {})",
+                bad, positions.size(), what, first, p.x(), p.y(), p.z())
+        .hint("'scanmill convert --drop-invalid IN OUT' writes a copy without them");
+}
+
+BoundingBox bounding_box(std::span<const Vec3> positions) {
+    BoundingBox box;
+    for (const Vec3& p : positions) {
+        if (!p.allFinite()) continue;
+        box.low = box.low.cwiseMin(p);
+        box.high = box.high.cwiseMax(p);
+    }
+    return box;
+}
+
+Vec3 distant_origin(const BoundingBox& box) {
+    Vec3 origin = Vec3::Zero();
+    const double diagonal = box.diagonal();
+    if (box.empty() || !std::isfinite(diagonal)) return origin;
+    constexpr double far = 16;  // diagonals away from zero; nearer, doubles have bits to spare
+    for (int axis = 0; axis < 3; ++axis) {
+        const double middle = 0.5 * box.low[axis] + 0.5 * box.high[axis];
+        if (!(std::abs(middle) > far * diagonal)) continue;
+        // A multiple of a power of two at least as coarse as any coordinate's last bit: the difference of two such
+        // numbers that lie this close together has a short mantissa, so no bit is lost.
+        const double last_bit = std::ldexp(std::abs(middle), -50);
+        const double step = std::exp2(std::ceil(std::log2(std::max(diagonal, last_bit))));
+        origin[axis] = std::round(middle / step) * step;
+    }
+    return origin;
+}
+
+Buffer<Vec3> translated(const Buffer<Vec3>& positions, const Vec3& shift) {
+    Array<Vec3> moved(positions.size());
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = positions[i] + shift;
+    return moved;
+}
+
+}  // namespace scanmill

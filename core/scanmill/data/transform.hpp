@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// `transform`: a rigid motion from one named frame to another.
+
+#include <Eigen/Core>
+#include <string>
+
+#include "scanmill/data/frame.hpp"
+
+namespace scanmill {
+
+struct RigidTransform {
+    /// Orthonormal with determinant +1.
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    /// In `unit`, between world positions (frame origins included).
+    Vec3 translation = Vec3::Zero();
+    LengthUnit unit = LengthUnit::unknown;
+    std::string from, to;
+
+    Vec3 apply(const Vec3& world) const { return rotation * world + translation; }
+    RigidTransform inverse() const {
+        return {rotation.transpose(), -(rotation.transpose() * translation), unit, to, from};
+    }
+};
+
+}  // namespace scanmill

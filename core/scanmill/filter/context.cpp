@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/filter/context.hpp"
+
+#include <algorithm>
+
+namespace scanmill {
+
+Context::Context(ContextOptions options) : options_(std::move(options)) {
+    options_.threads = std::max(1u, options_.threads);
+}
+
+void Context::progress(double fraction) {
+    if (!options_.on_progress) return;
+    const std::scoped_lock lock(mutex_);
+    options_.on_progress(std::clamp(fraction, 0.0, 1.0));
+}
+
+bool Context::cancelled() const { return options_.is_cancelled && options_.is_cancelled(); }
+
+void Context::check_cancelled() const {
+    if (cancelled()) throw Cancelled{};
+}
+
+void Context::warn(std::string text) {
+    const std::scoped_lock lock(mutex_);
+    if (options_.on_warning) options_.on_warning(text);
+    warnings_.push_back(std::move(text));
+}
+
+void Context::metric(std::string_view name, double value, Unit unit) {
+    const std::scoped_lock lock(mutex_);
+    metrics_.set(name, value, unit);
+}
+
+}  // namespace scanmill

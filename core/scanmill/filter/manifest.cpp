@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/filter/manifest.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int manifest_version = 1;
+
+Json to_json(const PortSpec& port) {
+    Json json{{"name", port.name}, {"kind", name_of(port.kind)}, {"help", port.help}};
+    if (port.list) json["list"] = true;
+    if (port.optional) json["optional"] = true;
+    return json;
+}
+
+Json to_json(const Bound& bound) { return {{"value", bound.value}, {"inclusive", bound.inclusive}}; }
+
+Json to_json(const ParameterSpec& parameter) {
+    Json json{{"name", parameter.name}, {"type", name_of(parameter.type)}, {"help", parameter.help}};
+    if (parameter.list) json["list"] = true;
+    if (parameter.size) json["size"] = *parameter.size;
+    if (parameter.required) json["required"] = true;
+    if (!parameter.word.empty()) json["word"] = parameter.word;
+    if (parameter.low) json["low"] = to_json(*parameter.low);
+    if (parameter.high) json["high"] = to_json(*parameter.high);
+    for (const Choice& choice : parameter.choices)
+        json["choices"].push_back({{"name", choice.name}, {"help", choice.help}});
+    if (!std::holds_alternative<std::monostate>(parameter.default_value)) {
+        const WrittenParameter value = written(parameter.default_value);
+        json["default"] = value.list ? Json(value.items) : Json(value.items.front());
+    }
+    return json;
+}
+
+Json to_json(const MetricSpec& metric) {
+    Json json{{"name", metric.name}, {"unit", name_of(metric.unit)}, {"help", metric.help}};
+    if (metric.headline) json["headline"] = true;
+    return json;
+}
+
+template <class Items>
+Json list_of(const Items& items) {
+    Json json = Json::array();
+    for (const auto& item : items) json.push_back(to_json(item));
+    return json;
+}
+
+template <class T>
+T required_name(const std::optional<T>& named, std::string_view what, const std::string& name) {
+    if (!named) throw Error("'{}' is no {}", name, what);
+    return *named;
+}
+
+PortSpec port_from(const Json& json) {
+    const std::string kind = json.at("kind");
+    return {json.at("name"), required_name(kind_named(kind), "kind", kind), json.at("help"), json.value("list", false),
+            json.value("optional", false)};
+}
+
+std::optional<Bound> bound_from(const Json& json, const char* key) {
+    if (!json.contains(key)) return std::nullopt;
+    return Bound{json[key].at("value"), json[key].at("inclusive")};
+}
+
+ParameterSpec parameter_from(const Json& json) {
+    ParameterSpec parameter;
+    const std::string type = json.at("type");
+    parameter.name = json.at("name");
+    parameter.type = required_name(parameter_type_named(type), "parameter type", type);
+    parameter.help = json.at("help");
+    parameter.list = json.value("list", false);
+    if (json.contains("size")) parameter.size = json["size"].get<std::size_t>();
+    parameter.required = json.value("required", false);
+    parameter.word = json.value("word", "");
+    parameter.low = bound_from(json, "low");
+    parameter.high = bound_from(json, "high");
+    if (json.contains("choices"))
+        for (const Json& choice : json["choices"]) parameter.choices.push_back({choice.at("name"), choice.at("help")});
+    if (json.contains("default")) {
+        const Json& value = json["default"];
+        WrittenParameter default_text;
+        default_text.list = value.is_array();
+        if (value.is_array())
+            default_text.items = value.get<std::vector<std::string>>();
+        else
+            default_text.items = {value.get<std::string>()};
+        parameter.default_value = parse(parameter, default_text);
+    }
+    return parameter;
+}
+
+MetricSpec metric_from(const Json& json) {
+    const std::string unit = json.at("unit");
+    return {json.at("name"), required_name(unit_named(unit), "unit", unit), json.at("help"),
+            json.value("headline", false)};
+}
+
+}  // namespace
+
+std::string to_json_text(const Manifest& manifest) {
+    const FilterSpec& spec = manifest.spec;
+    const Json json{{"scanmill-manifest", manifest_version},
+                    {"abi", manifest.abi},
+                    {"name", spec.name},
+                    {"version", spec.version},
+                    {"summary", spec.summary},
+                    {"source", spec.source},
+                    {"inputs", list_of(spec.inputs)},
+                    {"outputs", list_of(spec.outputs)},
+                    {"parameters", list_of(spec.parameters)},
+                    {"metrics", list_of(spec.metrics)}};
+    return json.dump(2) + "\n";
+}
+
+Manifest parse_manifest(std::string_view text) try {
+    const Json json = Json::parse(text);
+    if (const int version = json.at("scanmill-manifest"); version != manifest_version)
+        throw Error("is a manifest of version {}; this program reads version {}", version, manifest_version);
+    Manifest manifest;
+    manifest.abi = json.at("abi");
+    FilterSpec& spec = manifest.spec;
+    spec.name = json.at("name");
+    spec.version = json.at("version");
+    spec.summary = json.at("summary");
+    spec.source = json.at("source");
+    for (const Json& port : json.at("inputs")) spec.inputs.push_back(port_from(port));
+    for (const Json& port : json.at("outputs")) spec.outputs.push_back(port_from(port));
+    for (const Json& parameter : json.at("parameters")) spec.parameters.push_back(parameter_from(parameter));
+    for (const Json& metric : json.at("metrics")) spec.metrics.push_back(metric_from(metric));
+    return manifest;
+} catch (const Json::exception& error) {
+    throw Error("is no manifest: {}", error.what());
+}
+
+}  // namespace scanmill

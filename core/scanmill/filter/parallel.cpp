@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/filter/parallel.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace scanmill {
+
+void for_each_chunk(unsigned threads, std::size_t count, std::size_t chunk,
+                    const std::function<void(std::size_t begin, std::size_t end)>& body) {
+    assert(chunk > 0);
+    const std::size_t chunks = (count + chunk - 1) / chunk;
+    const auto run = [&](std::size_t index) { body(index * chunk, std::min(count, (index + 1) * chunk)); };
+    if (threads <= 1 || chunks <= 1) {
+        for (std::size_t index = 0; index < chunks; ++index) run(index);
+        return;
+    }
+    within_thread_budget(threads, [&] { tbb::parallel_for(std::size_t(0), chunks, run); });
+}
+
+void within_thread_budget(unsigned threads, const std::function<void()>& body) {
+    tbb::task_arena arena(static_cast<int>(std::max(1u, threads)));
+    arena.execute(body);
+}
+
+}  // namespace scanmill

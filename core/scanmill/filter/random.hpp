@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A small seeded generator whose numbers are the same on every machine and for any number of threads: streams are
+/// cheap to make, so parallel work takes one per chunk or per item (random.stream(i)) instead of sharing a state.
+/// SplitMix64 (Steele, Lea, Flood 2014).
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace scanmill {
+
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : state_(seed) {}
+
+    /// An independent generator for item `index`; does not advance this one.
+    Random stream(std::uint64_t index) const {
+        Random child(state_ ^ mix(index + 0x9e3779b97f4a7c15u));
+        return Random(child.next());
+    }
+    std::uint64_t next() { return mix(state_ += 0x9e3779b97f4a7c15u); }
+    /// Uniform in [0, 1), 53 bits.
+    double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+    double uniform(double low, double high) { return low + (high - low) * uniform(); }
+    /// Uniform in [0, count). Pre: count > 0. Bias below 2^-32 for counts below 2^32.
+    std::uint64_t index(std::uint64_t count) {
+        __extension__ using Wide = unsigned __int128;
+        return static_cast<std::uint64_t>((static_cast<Wide>(next()) * count) >> 64);
+    }
+    /// Standard normal (Marsaglia and Bray's polar method, one of the pair).
+    double normal() {
+        for (;;) {
+            const double x = uniform(-1, 1), y = uniform(-1, 1);
+            const double square = x * x + y * y;
+            if (square > 0 && square < 1) return x * std::sqrt(-2 * logarithm(square) / square);
+        }
+    }
+
+private:
+    /// The C library's log, sin and cos take other roundings on processors with fused multiply-add; this takes none.
+    /// Pre: value > 0. Series of the inverse hyperbolic tangent, error below 1e-15 of the result or 1e-16.
+    static double logarithm(double value) {
+        int exponent = 0;
+        double mantissa = std::frexp(value, &exponent);
+        if (mantissa < 1 / std::numbers::sqrt2) {
+            mantissa *= 2;
+            --exponent;
+        }
+        const double s = (mantissa - 1) / (mantissa + 1);
+        double sum = 0;
+        for (int degree = 23; degree > 0; degree -= 2) sum = sum * (s * s) + 1.0 / degree;
+        return exponent * std::numbers::ln2 + 2 * s * sum;
+    }
+    static std::uint64_t mix(std::uint64_t z) {
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return z ^ (z >> 31);
+    }
+    std::uint64_t state_;
+};
+
+}  // namespace scanmill

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/filter/spec.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+template <class Items>
+auto find_named(const Items& items, std::string_view name) -> const typename Items::value_type* {
+    const auto found = std::ranges::find(items, name, [](const auto& item) -> std::string_view { return item.name; });
+    return found == items.end() ? nullptr : &*found;
+}
+
+bool is_name(std::string_view name) {
+    const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; };
+    return !name.empty() && name.front() >= 'a' && name.front() <= 'z' && name.back() != '-' &&
+           std::ranges::all_of(name, plain);
+}
+
+void require_sentence(std::string_view filter, std::string_view what, std::string_view name, std::string_view help) {
+    if (help.size() < 8 || help.back() != '.' || help.find(' ') == std::string_view::npos)
+        throw Error("filter {}: the help of {} '{}' is no sentence: '{}'", filter, what, name, help);
+}
+
+template <class Items>
+void require_names(std::string_view filter, std::string_view what, const Items& items) {
+    std::set<std::string_view> seen;
+    for (const auto& item : items) {
+        if (!is_name(item.name)) throw Error("filter {}: {} '{}' is not lower-case-with-hyphens", filter, what, item.name);
+        if (!seen.insert(item.name).second) throw Error("filter {}: {} '{}' is declared twice", filter, what, item.name);
+        require_sentence(filter, what, item.name, item.help);
+    }
+}
+
+void require_sound_parameter(std::string_view filter, const ParameterSpec& parameter) {
+    if (parameter.type == ParameterType::choice && parameter.choices.size() < 2)
+        throw Error("filter {}: parameter '{}' has fewer than two choices", filter, parameter.name);
+    if (std::holds_alternative<std::monostate>(parameter.default_value)) return;
+    try {
+        parse(parameter, written(parameter.default_value));
+    } catch (Error& error) {
+        throw Error("filter {}: the default of '{}': {}", filter, parameter.name, error.sentence());
+    }
+}
+
+}  // namespace
+
+const PortSpec* FilterSpec::input(std::string_view port) const { return find_named(inputs, port); }
+const PortSpec* FilterSpec::output(std::string_view port) const { return find_named(outputs, port); }
+const ParameterSpec* FilterSpec::parameter(std::string_view wanted) const { return find_named(parameters, wanted); }
+const MetricSpec* FilterSpec::metric(std::string_view wanted) const { return find_named(metrics, wanted); }
+
+void require_sound(const FilterSpec& spec) {
+    if (!is_name(spec.name)) throw Error("filter '{}': the name is not lower-case-with-hyphens", spec.name);
+    require_sentence(spec.name, "filter", spec.name, spec.summary);
+    if (spec.version < 1) throw Error("filter {}: version {} is below 1", spec.name, spec.version);
+    if (spec.source.empty()) throw Error("filter {}: no source is named", spec.name);
+    if (spec.outputs.empty()) throw Error("filter {}: declares no output", spec.name);
+    require_names(spec.name, "input", spec.inputs);
+    require_names(spec.name, "output", spec.outputs);
+    require_names(spec.name, "parameter", spec.parameters);
+    require_names(spec.name, "metric", spec.metrics);
+    for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec.name, parameter);
+}
+
+}  // namespace scanmill

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What a filter says of itself: name, ports, parameters, metrics. Pure data: help, validation, schema and pages all
+/// derive from it, and it can be read from a manifest without loading the filter.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scanmill/data/value.hpp"
+#include "scanmill/filter/parameter.hpp"
+
+namespace scanmill {
+
+struct PortSpec {
+    std::string name;
+    Kind kind = Kind::points;
+    std::string help;
+    bool list = false;      ///< takes any number of values; inputs only
+    bool optional = false;  ///< may stay unwired; inputs only
+
+    bool operator==(const PortSpec&) const = default;
+};
+
+struct MetricSpec {
+    std::string name;
+    Unit unit = Unit::number;
+    std::string help;
+    bool headline = false;  ///< worth a column in a run's summary
+
+    bool operator==(const MetricSpec&) const = default;
+};
+
+struct FilterSpec {
+    std::string name;
+    int version = 1;  ///< grows when equal inputs and parameters give other bytes
+    std::string summary;
+    std::string source;
+    std::vector<PortSpec> inputs;
+    std::vector<PortSpec> outputs;  ///< the first is the primary one: what the step alone means
+    std::vector<ParameterSpec> parameters;
+    std::vector<MetricSpec> metrics;
+
+    const PortSpec* input(std::string_view port) const;
+    const PortSpec* output(std::string_view port) const;
+    const ParameterSpec* parameter(std::string_view parameter) const;
+    const MetricSpec* metric(std::string_view metric) const;
+    bool operator==(const FilterSpec&) const = default;
+};
+
+/// Throws Error when a declaration is unsound: names that repeat or are not lower-case-with-hyphens, help that is no
+/// sentence or only repeats the name, a default outside its own range, no output.
+void require_sound(const FilterSpec& spec);
+
+}  // namespace scanmill

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/formats/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason_of(int number) { return std::generic_category().message(number); }
+
+fs::path folder_of(const fs::path& target) {
+    return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+/// The rename itself must survive a power cut. Some network file systems cannot sync a folder: then nothing is lost
+/// that could be saved.
+void sync_folder(const fs::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    ::fsync(descriptor);
+    ::close(descriptor);
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
+    const fs::path folder = folder_of(target_);
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored))
+        throw Error("cannot be written: there is no folder '{}'", folder.string()).hint("make the folder first");
+    const fs::file_status status = fs::symlink_status(target_, ignored);
+    if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_symlink(status))
+        throw Error("cannot be written: a {} has this name", fs::is_directory(status) ? "folder" : "pipe or device");
+
+    // O_EXCL instead of mkstemp(): the file gets the permissions that the user's umask gives any new file.
+    for (unsigned attempt = 0;; ++attempt) {
+        temporary_ = folder / fmt::format(".scanmill-{}-{}.part", ::getpid(), attempt);
+        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor_ >= 0) return;
+        if (errno != EEXIST) throw Error("cannot be written in '{}': {}", folder.string(), reason_of(errno));
+    }
+}
+
+AtomicFile::~AtomicFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+}
+
+void AtomicFile::commit() {
+    if (::fsync(descriptor_) != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
+    const int closed = ::close(descriptor_);
+    descriptor_ = -1;
+    if (closed != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0)
+        throw Error("cannot be written: {}", reason_of(errno));
+    temporary_.clear();
+    sync_folder(folder_of(target_));
+}
+
+}  // namespace scanmill

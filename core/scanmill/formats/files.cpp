@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/formats/files.hpp"
+
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/convert.hpp"
+#include "scanmill/formats/format.hpp"
+#include "scanmill/formats/mapped_file.hpp"
+#include "scanmill/formats/output_buffer.hpp"
+#include "scanmill/formats/reading.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// Readers and writers speak of "line 12"; which file that is, is added here, once, to errors and warnings alike.
+template <class Action>
+auto naming(const std::filesystem::path& path, Action&& action) {
+    try {
+        return action();
+    } catch (const Error& error) {
+        Error named("'{}': {}", path.string(), error.sentence());
+        for (const std::string& frame : error.frames()) named.add_frame(frame);
+        named.set_hint(error.hint());
+        throw named;
+    }
+}
+
+std::function<void(std::string)> naming(const std::filesystem::path& path,
+                                        const std::function<void(std::string)>& on_warning) {
+    if (!on_warning) return {};
+    return [path, &on_warning](std::string sentence) { on_warning("'" + path.string() + "': " + sentence); };
+}
+
+LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
+    if (file.bytes.empty()) throw Error("is empty (0 bytes)");
+    return format_of(file).read(file, {naming(file.path, options.on_warning), options.unit});
+}
+
+bool is_empty(const Value& value) {
+    return std::visit(
+        []<class T>(const std::shared_ptr<const T>& object) {
+            if constexpr (requires { object->positions; })
+                return object->positions.empty();
+            else
+                return false;
+        },
+        value);
+}
+
+}  // namespace
+
+LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& options) {
+    return naming(path, [&] {
+        const MappedFile file(path);
+        return read_named({path, file.bytes()}, options);
+    });
+}
+
+LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name, const ReadOptions& options) {
+    return naming(name, [&] { return read_named({name, bytes}, options); });
+}
+
+std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path, const ReadOptions& options) {
+    const LoadedFile loaded = read_file(path, options);
+    if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&loaded.value)) return *points;
+    const auto& mesh = std::get<std::shared_ptr<const TriangleMesh>>(loaded.value);
+    warn(options.on_warning, "'{}': points were asked for; {} left out", path.string(),
+         counted(mesh->triangles.size(), "triangle was", "triangles were"));
+    return std::make_shared<const PointCloud>(points_of(*mesh));
+}
+
+std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
+    const LoadedFile loaded = read_file(path, options);
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&loaded.value)) return *mesh;
+    throw Error("'{}': a mesh is needed; the file holds {} and not a single face", path.string(),
+                counted(std::get<std::shared_ptr<const PointCloud>>(loaded.value)->size(), "point", "points"))
+        .hint("make a surface of the points first, with a workflow that takes points (cocone, region-grow, alpha-solid)");
+}
+
+void write_file(const std::filesystem::path& path, const Value& value, const WriteOptions& options) {
+    naming(path, [&] {
+        const Kind kind = kind_of(value);
+        const std::string extension = path.extension().string();
+        for (const Format& format : formats()) {
+            const Format::Write write = format.has_extension(extension) ? format.writer(kind) : nullptr;
+            if (!write) continue;
+            if (is_empty(value)) throw Error("nothing to write: the {} without a single point", name_of(kind));
+            AtomicFile file(path);
+            OutputBuffer out(file);
+            write(value, out, {naming(path, options.on_warning)});
+            out.flush();
+            file.commit();
+            return;
+        }
+        const std::string choices = writable_extensions(kind);
+        Error error("{} cannot be written with the extension '{}'", name_of(kind), extension);
+        if (choices.empty())
+            error.set_hint("no format here carries this kind");
+        else
+            error.set_hint("extensions for it: " + choices);
+        throw error;
+    });
+}
+
+}  // namespace scanmill

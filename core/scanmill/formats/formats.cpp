@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/off.hpp"
+#include "scanmill/formats/ply.hpp"
+#include "scanmill/formats/reading.hpp"
+#include "scanmill/formats/stl.hpp"
+#include "scanmill/formats/xyz.hpp"
+
+namespace scanmill {
+
+std::span<const Format> formats() {
+    static const std::array<Format, 4> table{{
+        {"PLY", {"ply"}, recognise_ply, read_ply, {{Kind::points, write_ply_points}, {Kind::mesh, write_ply_mesh}}},
+        {"STL", {"stl"}, recognise_stl, read_stl, {{Kind::mesh, write_stl}}},
+        {"OFF", {"off"}, recognise_off, read_off, {{Kind::mesh, write_off}}},
+        {"XYZ", {"xyz", "txt", "pwn", "pts", "csv", "asc"}, recognise_xyz, read_xyz, {{Kind::points, write_xyz}}},
+    }};
+    return table;
+}
+
+std::string plain_extension(std::string_view extension) {
+    if (extension.starts_with('.')) extension.remove_prefix(1);
+    std::string plain(extension);
+    for (char& c : plain) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return plain;
+}
+
+bool Format::has_extension(std::string_view extension) const {
+    return std::ranges::find(extensions, plain_extension(extension)) != extensions.end();
+}
+
+Format::Write Format::writer(Kind kind) const {
+    for (const auto& [written, write] : writers)
+        if (written == kind) return write;
+    return nullptr;
+}
+
+const Format& format_of(const FileBytes& file) {
+    const std::string_view head = file.bytes.substr(0, head_size);
+    const Format* plausible = nullptr;
+    for (const Format& format : formats()) {
+        const Recognition recognition = format.recognises(head, file.bytes.size());
+        if (recognition == Recognition::certain) return format;
+        if (recognition == Recognition::plausible && !plausible) plausible = &format;
+    }
+    const std::string extension = file.path.extension().string();
+    for (const Format& format : formats())
+        if (format.has_extension(extension)) return format;
+    if (plausible) return *plausible;
+
+    std::string known;
+    for (const Format& format : formats()) known.append(known.empty() ? "" : ", ").append(format.name);
+    constexpr std::size_t shown = 16;
+    throw Error("is of no known format: it begins with {} and has {}", quote(head.substr(0, shown)),
+                extension.empty() ? std::string("no extension") : "the extension '" + extension + "'")
+        .hint("formats that are read: " + known);
+}
+
+bool can_write(std::string_view extension, Kind kind) {
+    return std::ranges::any_of(
+        formats(), [&](const Format& format) { return format.has_extension(extension) && format.writer(kind); });
+}
+
+std::string writable_extensions(Kind kind) {
+    std::string list;
+    for (const Format& format : formats())
+        if (format.writer(kind))
+            for (std::string_view extension : format.extensions)
+                list.append(list.empty() ? "" : ", ").append(extension);
+    return list;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/formats/mapped_file.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+struct Descriptor {
+    int number;
+    ~Descriptor() {
+        if (number >= 0) ::close(number);
+    }
+};
+
+[[noreturn]] void throw_unopened(int reason) {
+    if (reason == ENOENT || reason == ENOTDIR) throw Error("there is no such file");
+    if (reason == EACCES || reason == EPERM)
+        throw Error("no permission to read this file").hint("ask its owner for read access (chmod +r)");
+    throw Error("cannot be opened: {}", std::generic_category().message(reason));
+}
+
+}  // namespace
+
+MappedFile::MappedFile(const std::filesystem::path& path) {
+    // Without O_NONBLOCK, opening a named pipe would wait for its writer forever.
+    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    if (file.number < 0) throw_unopened(errno);
+    struct stat facts;
+    if (::fstat(file.number, &facts) != 0) throw_unopened(errno);
+    if (S_ISDIR(facts.st_mode)) throw Error("is a folder, not a file").hint("name one scan, or use a pattern as DIR/*.ply");
+    if (!S_ISREG(facts.st_mode)) throw Error("is not a regular file (a pipe, socket or device); scans are read by mapping")
+            .hint("copy the data into a file first");
+    if (facts.st_size == 0) throw Error("is empty (0 bytes)");
+    size_ = static_cast<std::size_t>(facts.st_size);
+    // Everything will be read, once: one call that maps all pages beats a fault for every few of them.
+    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | MAP_POPULATE, file.number, 0);
+    if (data_ == MAP_FAILED)
+        throw Error("its {} bytes cannot be mapped: {}", size_, std::generic_category().message(errno));
+}
+
+MappedFile::~MappedFile() { ::munmap(data_, size_); }
+
+}  // namespace scanmill

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A file's bytes, read-only, without copying them.
+
+#include <filesystem>
+#include <string_view>
+
+namespace scanmill {
+
+/// Maps a regular, non-empty file for the object's life. Throws Error for what is missing, a folder, another kind of
+/// thing than a regular file, not readable for us, or empty. Whoever shortens the file meanwhile kills the reader with
+/// SIGBUS: scans are written once and read afterwards.
+class MappedFile {
+public:
+    explicit MappedFile(const std::filesystem::path& path);
+    ~MappedFile();
+    MappedFile(const MappedFile&) = delete;
+    MappedFile& operator=(const MappedFile&) = delete;
+
+    std::string_view bytes() const { return {static_cast<const char*>(data_), size_}; }
+
+private:
+    void* data_ = nullptr;
+    std::size_t size_ = 0;
+};
+
+}  // namespace scanmill

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Decodes the rows of one PLY element into memory that the caller prepared: where each property's numbers go is said
+/// by a PlySlot, how they are spelled is settled here.
+
+#include <span>
+#include <string_view>
+
+#include "scanmill/data/points.hpp"
+#include "scanmill/formats/ply_header.hpp"
+#include "scanmill/formats/text_cursor.hpp"
+
+namespace scanmill {
+
+/// One list per row: row r is values[offsets[r]] … values[offsets[r + 1] - 1].
+struct PlyLists {
+    Array<u64> offsets;
+    Array<std::byte> values;
+};
+
+/// Where the numbers of one property go. Without a place and without lists they are passed over.
+struct PlySlot {
+    const PlyProperty* property = nullptr;
+    /// Of a scalar: the number of row r is stored at place + r × stride,
+    std::byte* place = nullptr;
+    std::size_t stride = 0;
+    /// as a double instead of in its own type.
+    bool widened = false;
+    /// Of a list.
+    PlyLists* lists = nullptr;
+};
+
+/// Decodes `element.count` rows from the front of `body`; returns the bytes taken. Throws Error, before anything is
+/// stored, when the body is too short, with the row and byte (counted from `body_offset`) at which it ends.
+/// Pre: require_room() passed; slots in the order of the element's properties.
+std::size_t decode_ply_binary(std::string_view body, std::size_t body_offset, const PlyElement& element,
+                              bool big_endian, std::span<const PlySlot> slots);
+
+/// Rows of text that go on behind their last property; what follows there was passed over.
+struct OverlongRows {
+    u64 count = 0;
+    std::size_t first_line = 0;
+};
+
+/// The same for text, one row per line. Throws Error with the line number: too few values, a value that is no number of
+/// the property's type, a list longer than its line.
+OverlongRows decode_ply_ascii(TextCursor& text, const PlyElement& element, std::span<const PlySlot> slots);
+
+/// The common case, as fast as memory: element rows of fixed size whose x, y and z are `Scalar`s side by side, of the
+/// machine's own byte order, the first at `source`, rows `stride` bytes apart. Returns the bounds of the finite points.
+template <class Scalar>
+BoundingBox widen_positions(const char* source, std::size_t stride, Array<Vec3>& positions);
+
+}  // namespace scanmill

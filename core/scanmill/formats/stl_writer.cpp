@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Geometry>
+
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/output_buffer.hpp"
+#include "scanmill/formats/reading.hpp"
+#include "scanmill/formats/stl.hpp"
+#include "scanmill/formats/writing.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// Unit, or zero for a triangle without area or with coordinates that are no numbers.
+Vec3 facet_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+    Vec3 u = b - a, v = c - a;
+    // Scaled first: the cross product of tiny or huge edges would leave double's range.
+    const double scale = std::max(u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff());
+    if (!(scale > 0) || !std::isfinite(scale)) return Vec3::Zero();
+    u /= scale;
+    v /= scale;
+    const Vec3 normal = u.cross(v);
+    const double length = normal.norm();
+    if (!(length > 0)) return Vec3::Zero();
+    return normal / length;
+}
+
+void put(const Vec3& p, OutputBuffer& out) {
+    for (int axis = 0; axis < 3; ++axis) out.binary(static_cast<float>(p[axis]));
+}
+
+std::size_t unused_vertices(const TriangleMesh& mesh) {
+    std::vector<bool> used(mesh.positions.size());
+    std::size_t count = 0;
+    for (const Triangle& triangle : mesh.triangles)
+        for (u32 vertex : triangle)
+            if (!used[vertex]) {
+                used[vertex] = true;
+                ++count;
+            }
+    return mesh.positions.size() - count;
+}
+
+}  // namespace
+
+void write_stl(const Value& value, OutputBuffer& out, const WriteOptions& options) {
+    const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    if (mesh.triangles.empty()) throw Error("nothing to write: the mesh has no triangles, and STL holds nothing else");
+    require_countable(mesh.triangles.size(), "triangles");
+    tell_lost_precision(mesh.frame, mesh.positions.span(), true, "STL", options);
+    tell_bare_triangles(mesh, "STL", options);
+    if (const std::size_t unused = unused_vertices(mesh); unused > 0)
+        warn(options.on_warning, "STL left out {} that no triangle uses; PLY keeps them",
+             counted(unused, "vertex", "vertices"));
+
+    Frame frame = mesh.frame;
+    frame.name = one_line(frame.name);
+    const std::string header = stl_header(frame);
+    const std::vector<std::string> kept = stl_header_comments(header);
+    if (!frame.name.empty() && (kept.empty() || kept.back() != "frame " + frame.name))
+        warn(options.on_warning, "the frame's name of {} bytes does not fit into STL's header and was cut; PLY keeps it",
+             frame.name.size());
+
+    out.text(header);
+    out.binary(static_cast<u32>(mesh.triangles.size()));
+    for (const Triangle& triangle : mesh.triangles) {
+        const Vec3 &a = mesh.positions[triangle[0]], &b = mesh.positions[triangle[1]], &c = mesh.positions[triangle[2]];
+        put(facet_normal(a, b, c), out);
+        for (const Vec3* corner : {&a, &b, &c}) put(world(mesh.frame, *corner), out);
+        out.binary(std::uint16_t(0));
+    }
+}
+
+}  // namespace scanmill

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/formats/text_cursor.hpp"
+
+#include "scanmill/filter/quantity.hpp"
+
+namespace scanmill {
+
+bool TextCursor::next_row() {
+    if (begun_) {
+        while (more()) token();
+        if (at_ != end_) pass_line_end();
+    }
+    begun_ = true;
+    while (!more()) {
+        if (at_ == end_) return false;
+        pass_line_end();
+    }
+    return true;
+}
+
+std::string_view TextCursor::token() {
+    const char* const begin = at_;
+    while (at_ != end_ && !ends_token(*at_)) ++at_;
+    return {begin, at_};
+}
+
+std::size_t TextCursor::count_tokens() const {
+    TextCursor copy(std::string_view(at_, end_), rules_);
+    std::size_t count = 0;
+    for (; copy.more(); copy.token()) ++count;
+    return count;
+}
+
+void TextCursor::pass_comment() {
+    constexpr std::size_t most_comments = 1000;
+    const char* const begin = ++at_;
+    while (at_ != end_ && !ends_line(*at_)) ++at_;
+    if (comments_.size() < most_comments) comments_.emplace_back(begin, at_);
+}
+
+void TextCursor::pass_line_end() {
+    const bool carriage_return = *at_++ == '\r';
+    if (carriage_return && at_ != end_ && *at_ == '\n') ++at_;
+    ++line_;
+}
+
+bool TextCursor::unusual_number(double& value) {
+    last_token_ = token();
+    return parse_number(last_token_, value);
+}
+
+}  // namespace scanmill

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Walks through a text of numbers, row by row and token by token, and knows the line it is in.
+///
+/// A row is a line that holds at least one token; blank lines and comments are passed over. Lines end with LF, CRLF or
+/// CR. Tokens are separated by blanks and tabs, and, where a format allows it, by commas and semicolons. Numbers are
+/// read without regard to the locale, every spelling of nan and inf that parse_number() knows included. Nothing is
+/// copied and nothing beyond the text is touched.
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace scanmill {
+
+struct TextRules {
+    bool commas = false;     ///< commas and semicolons separate, too
+    char comment = '\0';     ///< begins a comment that lasts until the line's end; none when zero
+    std::size_t line = 1;    ///< number of the first line
+};
+
+class TextCursor {
+public:
+    explicit TextCursor(std::string_view text, TextRules rules = {})
+        : at_(text.data()),
+          end_(text.data() + text.size()),
+          rules_(rules),
+          line_(rules.line) {}
+
+    /// Moves to the next row, passing over what is left of this one; false at the end of the text.
+    bool next_row();
+    /// Whether a token is left in this row.
+    bool more();
+    /// The next token of this row. Pre: more().
+    std::string_view token();
+    /// The next token of this row as a number; false, consuming it, when it is none or does not fit the type. Whole
+    /// numbers may be written as 3.0 or +3. Pre: more().
+    template <class Number>
+    bool number(Number& value);
+    /// The token that number() just refused.
+    std::string_view last_token() const { return last_token_; }
+    /// Makes `tail`, the end of the token just read, the next token.
+    void put_back(std::string_view tail) { at_ = tail.data(); }
+    /// Tokens left in this row; does not move.
+    std::size_t count_tokens() const;
+
+    /// Number of the current line.
+    std::size_t line() const { return line_; }
+    /// The comments passed so far, without their sign; at most the first thousand.
+    const std::vector<std::string>& comments() const { return comments_; }
+
+private:
+    bool separates(char c) const {
+        return c == ' ' || c == '\t' || c == '\v' || c == '\f' || (rules_.commas && (c == ',' || c == ';'));
+    }
+    static bool ends_line(char c) { return c == '\n' || c == '\r'; }
+    bool ends_token(char c) const { return separates(c) || ends_line(c) || (c == rules_.comment && c != '\0'); }
+    bool at_comment() const { return rules_.comment != '\0' && *at_ == rules_.comment; }
+    void pass_comment();
+    void pass_line_end();
+    bool unusual_number(double& value);
+
+    const char* at_;
+    const char* end_;
+    TextRules rules_;
+    std::size_t line_;
+    bool begun_ = false;
+    std::string_view last_token_;
+    std::vector<std::string> comments_;
+};
+
+inline bool TextCursor::more() {
+    while (at_ != end_ && separates(*at_)) ++at_;
+    if (at_ == end_ || ends_line(*at_)) return false;
+    if (!at_comment()) return true;
+    pass_comment();
+    return false;
+}
+
+template <class Number>
+bool TextCursor::number(Number& value) {
+    const auto [rest, error] = std::from_chars(at_, end_, value);
+    if (error == std::errc() && (rest == end_ || ends_token(*rest))) {
+        at_ = rest;
+        return true;
+    }
+    double wide = 0;
+    if (!unusual_number(wide)) return false;
+    if constexpr (std::is_integral_v<Number>) {
+        // The upper limit as a double may be rounded up to one too many: hence < and the successor.
+        constexpr double low = static_cast<double>(std::numeric_limits<Number>::min());
+        const double beyond = std::ldexp(1.0, std::numeric_limits<Number>::digits);
+        if (!(wide >= low && wide < beyond) || wide != std::trunc(wide)) return false;
+    }
+    value = static_cast<Number>(wide);
+    return true;
+}
+
+}  // namespace scanmill

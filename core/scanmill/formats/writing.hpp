@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What every writer needs: world coordinates, what they lose, and the sentences for what a format cannot carry.
+
+#include <string_view>
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/formats/files.hpp"
+
+namespace scanmill {
+
+/// frame.origin + position, rounded once to double.
+inline Vec3 world(const Frame& frame, const Vec3& position) { return frame.origin + position; }
+
+/// Whether every world coordinate is exactly a float. NaN and infinities are.
+bool all_floats(const Frame& frame, std::span<const Vec3> positions);
+
+/// Tells when writing world coordinates, as float or as double, moves some by more than a millionth of the diagonal.
+/// Throws Error when a finite coordinate would become infinite.
+void tell_lost_precision(const Frame& frame, std::span<const Vec3> positions, bool as_float, std::string_view format,
+                         const WriteOptions& options);
+
+/// Tells that the columns of `element` ("vertices") are left out, by name, but those in `kept`.
+void tell_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
+                   const WriteOptions& options, std::string_view kept = {});
+
+/// Tells all of a mesh that a format of bare triangles leaves out: columns, described and sharp edges.
+void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options);
+
+/// A frame's name fit for a comment: control characters, line ends above all, become blanks.
+std::string one_line(std::string_view name);
+
+/// "# unit mm" and "# frame NAME", each on its line, as far as known.
+std::string comment_lines(const Frame& frame);
+
+}  // namespace scanmill

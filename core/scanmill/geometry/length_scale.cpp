@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/length_scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <flann/flann.hpp>
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t most_queries = 100'000;
+
+double median(std::vector<double>& values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+std::span<const Vec3> positions_of(const Value& value) {
+    return std::visit(
+        []<class T>(const std::shared_ptr<const T>& object) -> std::span<const Vec3> {
+            if constexpr (requires { object->positions; })
+                return object->positions.span();
+            else
+                return {};
+        },
+        value);
+}
+
+double spacing_of(const Value& value) {
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value); mesh && !(*mesh)->triangles.empty())
+        return edge_spacing(**mesh);
+    return point_spacing(positions_of(value));
+}
+
+/// Computes at most once, however often it is copied or asked.
+std::function<double()> memoised(std::function<double()> compute) {
+    return [memo = std::make_shared<std::optional<double>>(), compute = std::move(compute)] {
+        if (!*memo) *memo = compute();
+        return **memo;
+    };
+}
+
+}  // namespace
+
+double point_spacing(std::span<const Vec3> positions) {
+    std::vector<Vec3> finite;
+    finite.reserve(positions.size());
+    for (const Vec3& p : positions)
+        if (p.allFinite()) finite.push_back(p);
+    if (finite.size() < 2) return 0;
+
+    flann::Matrix<double> data(finite.front().data(), finite.size(), 3);
+    flann::Index<flann::L2_3D<double>> tree(data, flann::KDTreeSingleIndexParams(10, false));
+    tree.buildIndex();
+    const std::size_t queries = std::min(finite.size(), most_queries);
+    std::vector<double> distances(queries);
+    flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED, 0.0f);
+    for (std::size_t query = 0; query < queries; ++query) {
+        const std::size_t index = query * finite.size() / queries;
+        std::size_t neighbours[2];
+        double squared[2];
+        flann::Matrix<double> point(finite[index].data(), 1, 3);
+        flann::Matrix<std::size_t> found(neighbours, 1, 2);
+        flann::Matrix<double> found_squared(squared, 1, 2);
+        tree.knnSearch(point, found, found_squared, 2, exact);
+        // The point finds itself at distance 0; a duplicate may come first, which is at distance 0 as well.
+        distances[query] = std::sqrt(std::max(squared[0], squared[1]));
+    }
+    return median(distances);
+}
+
+double edge_spacing(const TriangleMesh& mesh) {
+    std::vector<double> lengths;
+    lengths.reserve(3 * mesh.triangles.size());
+    for (const Triangle& triangle : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            lengths.push_back((mesh.positions[triangle[corner]] - mesh.positions[triangle[(corner + 1) % 3]]).norm());
+    return median(lengths);
+}
+
+LengthScale length_scale(const Value& value) {
+    const Frame* frame = frame_of(value);
+    return {frame ? frame->unit : LengthUnit::unknown,
+            memoised([value] { return bounding_box(positions_of(value)).diagonal(); }),
+            memoised([value] { return spacing_of(value); })};
+}
+
+}  // namespace scanmill

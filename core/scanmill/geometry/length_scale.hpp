@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The two lengths that relative parameters refer to: the bounding box's diagonal and the spacing of the samples.
+
+#include "scanmill/data/value.hpp"
+#include "scanmill/filter/quantity.hpp"
+
+namespace scanmill {
+
+/// Median distance from a point to the nearest other point; duplicates are at distance 0. Clouds of more than 100,000
+/// points are asked at 100,000 evenly strided points (the search still sees all of them). 0 for fewer than two points.
+/// Non-finite points are passed over. Cost: one kd-tree, O(n log n).
+double point_spacing(std::span<const Vec3> positions);
+
+/// Median edge length over the mesh's edges, each counted once per triangle that has it; 0 without triangles.
+double edge_spacing(const TriangleMesh& mesh);
+
+/// What `%diag` and `spacing` mean for this value: points by point_spacing, meshes by edge_spacing, everything else by
+/// its positions. Both are computed at most once, on demand.
+LengthScale length_scale(const Value& value);
+
+}  // namespace scanmill

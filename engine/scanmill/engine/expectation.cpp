@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/expectation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scanmill/engine/facts.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/suggestion.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// How a number of this unit is written in a workflow.
+ParameterSpec written_as(Unit unit) {
+    ParameterSpec spec;
+    switch (unit) {
+        case Unit::boolean: spec.type = ParameterType::boolean; break;
+        case Unit::length: spec.type = ParameterType::length; break;
+        case Unit::angle: spec.type = ParameterType::angle; break;
+        case Unit::ratio: spec.type = ParameterType::ratio; break;
+        default: spec.type = ParameterType::number;
+    }
+    return spec;
+}
+
+/// In the metric's own unit: scan units, radians, fractions, 0 or 1.
+double number_of(const ParameterValue& value, const LengthScale& scale) {
+    const ParameterScalar& scalar = std::get<ParameterScalar>(value);
+    if (const auto* flag = std::get_if<bool>(&scalar)) return *flag ? 1 : 0;
+    if (const auto* length = std::get_if<Length>(&scalar)) return length->resolved(scale).value();
+    if (const auto* angle = std::get_if<Angle>(&scalar)) return angle->in_radians();
+    if (const auto* ratio = std::get_if<Ratio>(&scalar)) return ratio->value();
+    return std::get<double>(scalar);
+}
+
+bool is_met(const PlannedExpectation& expectation, double found, const LengthScale& scale) {
+    const double low = number_of(expectation.low, scale);
+    switch (expectation.relation) {
+        case Expectation::Relation::equal: return found == low;
+        case Expectation::Relation::below: return found < low;
+        case Expectation::Relation::above: return found > low;
+        case Expectation::Relation::between: return found >= low && found <= number_of(expectation.high, scale);
+    }
+    return false;
+}
+
+std::string expectation_text(const Expectation& written) {
+    switch (written.relation) {
+        case Expectation::Relation::equal: return fmt::format("{}: {}", written.name, written.value);
+        case Expectation::Relation::below: return fmt::format("{} < {}", written.name, written.value);
+        case Expectation::Relation::above: return fmt::format("{} > {}", written.name, written.value);
+        case Expectation::Relation::between:
+            return fmt::format("{} in [{}, {}]", written.name, written.value, written.high);
+    }
+    return "";
+}
+
+}  // namespace
+
+std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec,
+                                                   Diagnostics& diagnostics) {
+    std::vector<MetricSpec> askable = spec.metrics;
+    for (MetricSpec& fact : fact_specs(spec.outputs.front().kind))
+        if (!spec.metric(fact.name)) askable.push_back(std::move(fact));
+    const auto asked = std::ranges::find(askable, written.name, &MetricSpec::name);
+    if (asked == askable.end()) {
+        std::vector<std::string> names;
+        for (const MetricSpec& metric : askable) names.push_back(metric.name);
+        diagnostics.error(written.position, fmt::format("nothing is known as '{}' of what {} gives; expect takes {}{}", written.name,
+                                                        spec.name, enumerated(names), did_you_mean(written.name, names)));
+        return std::nullopt;
+    }
+    const ParameterSpec form = written_as(asked->unit);
+    PlannedExpectation planned{written.name, written.position, written.relation, asked->unit, {}, {}, expectation_text(written)};
+    try {
+        planned.low = parse(form, {{written.value}, false});
+        if (written.relation == Expectation::Relation::between) planned.high = parse(form, {{written.high}, false});
+    } catch (const Error& error) {
+        diagnostics.error(written.position, fmt::format("expect {}: {}", written.name, error.sentence()));
+        return std::nullopt;
+    }
+    return planned;
+}
+
+void require_met(const std::vector<PlannedExpectation>& expectations, const Metrics& found, const LengthScale& scale) {
+    std::string unmet;
+    for (const PlannedExpectation& expectation : expectations) {
+        const Metric* metric = found.find(expectation.name);
+        if (metric && is_met(expectation, metric->value, scale)) continue;
+        unmet += fmt::format("{}expected {}, found {}", unmet.empty() ? "" : "; ", expectation.text,
+                             metric ? display(*metric) : "that it is not defined");
+    }
+    if (!unmet.empty()) throw Error(unmet);
+}
+
+}  // namespace scanmill

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// `expect` on a step: typed when the workflow is checked, compared when the step has run.
+
+#include "scanmill/engine/plan.hpp"
+
+namespace scanmill {
+
+/// The expectation with its numbers typed by what it asks for: a metric of the filter, or a fact about its primary
+/// output. Reports unknown names and values of the wrong type.
+std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec, Diagnostics& diagnostics);
+
+/// Throws Error naming every expectation that `found` does not meet. Lengths are resolved against `scale`.
+void require_met(const std::vector<PlannedExpectation>& expectations, const Metrics& found, const LengthScale& scale);
+
+}  // namespace scanmill

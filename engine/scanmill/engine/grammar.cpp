@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/grammar.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scanmill/filter/suggestion.hpp"
+
+namespace scanmill {
+
+MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagnostics)
+    : node_(node), what_(std::move(what)), diagnostics_(diagnostics) {}
+
+const YamlEntry* MapReader::find(std::string_view key) {
+    known_.emplace_back(key);
+    const auto found = std::ranges::find(node_.entries, key, &YamlEntry::key);
+    return found == node_.entries.end() ? nullptr : &*found;
+}
+
+std::string MapReader::text(std::string_view key) {
+    const YamlEntry* entry = find(key);
+    if (!entry) return {};
+    return require_text(entry->value, fmt::format("a text for '{}'", key), diagnostics_).value_or("");
+}
+
+void MapReader::complain_of_others() {
+    for (const YamlEntry& entry : node_.entries)
+        if (std::ranges::find(known_, entry.key) == known_.end())
+            diagnostics_.error(entry.position, fmt::format("{} has no key '{}'; it has {}{}", what_, entry.key,
+                                                           enumerated(known_), did_you_mean(entry.key, known_)));
+}
+
+bool require_map(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics) {
+    if (node.is_map()) return true;
+    diagnostics.error(node.position, fmt::format("found {}; expected {}", node.described(), expected));
+    return false;
+}
+
+bool require_list(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics) {
+    if (node.is_sequence()) return true;
+    diagnostics.error(node.position, fmt::format("found {}; expected {}", node.described(), expected));
+    return false;
+}
+
+std::optional<std::string> require_text(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics) {
+    if (node.is_scalar()) return node.text;
+    diagnostics.error(node.position, fmt::format("found {}; expected {}", node.described(), expected));
+    return std::nullopt;
+}
+
+bool require_name(const std::string& name, Position position, std::string_view what, Diagnostics& diagnostics) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const auto plain = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
+    if (!name.empty() && letter(name.front()) && std::ranges::all_of(name, plain)) return true;
+    diagnostics.error(position, fmt::format("'{}' is no name for {}; expected letters, digits, '-' and '_', a letter first",
+                                            name, what));
+    return false;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Names of output files: templates over {scan} (the file's stem), {variant} and {workflow}.
+
+#include <string>
+
+#include "scanmill/engine/diagnostics.hpp"
+
+namespace scanmill {
+
+struct TemplateValues {
+    std::string scan, variant, workflow;
+};
+
+/// Reports unknown placeholders, unbalanced braces, absolute paths and paths that leave the output folder.
+void check_template(const std::string& file, Position position, Diagnostics& diagnostics);
+
+bool mentions(const std::string& file, const std::string& placeholder);
+
+/// The file's name relative to the output folder. Throws Error when a value makes it leave the folder.
+std::string expand_template(const std::string& file, const TemplateValues& values);
+
+}  // namespace scanmill

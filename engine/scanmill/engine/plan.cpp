@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "scanmill/engine/expectation.hpp"
+#include "scanmill/engine/key.hpp"
+#include "scanmill/engine/output_template.hpp"
+#include "scanmill/engine/wiring.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/suggestion.hpp"
+#include "scanmill/formats/files.hpp"
+
+namespace scanmill {
+
+namespace {
+
+class Planner {
+public:
+    Planner(Workflow workflow, const FilterLibrary& library, Diagnostics& diagnostics)
+        : library_(library), diagnostics_(diagnostics) {
+        plan_.workflow = std::move(workflow);
+    }
+
+    Plan plan(const Settings& settings) {
+        complain_of_repeated_inputs();
+        const std::vector<Variant> variants = expand(plan_.workflow, settings, diagnostics_);
+        for (const Variant& variant : variants) plan_.variants.push_back(plan_variant(variant));
+        for (const WorkflowOutput& output : plan_.workflow.outputs) {
+            check_template(output.file, output.position, diagnostics_);
+            complain_of_shared_file(output);
+        }
+        return std::move(plan_);
+    }
+
+private:
+    /// What one variant's names stand for, while it is being planned.
+    struct Names {
+        std::map<std::string, std::size_t> steps;
+        std::map<std::string, std::string> unusable;  // name → why; empty: already reported
+
+        void add(const std::string& name, std::size_t step) {
+            if (unusable.contains(name)) return;
+            if (!steps.emplace(name, step).second && steps[name] != step) {
+                steps.erase(name);
+                unusable[name] = fmt::format("'{}' stands for several steps; give the one you mean an id", name);
+            }
+        }
+    };
+
+    void complain_of_repeated_inputs() {
+        if (plan_.workflow.inputs.empty()) return;
+        if (plan_.workflow.inputs.front().list)
+            diagnostics_.error(plan_.workflow.inputs.front().position,
+                               "the first input is fed one scan at a time and cannot be a list; put another input first");
+    }
+
+    PlannedVariant plan_variant(const Variant& variant) {
+        PlannedVariant planned;
+        planned.name = variant.name;
+        Names names;
+        bool uncertain = false;
+        std::set<std::string> ids;
+        for (const ExpandedStep& step : variant.steps) {
+            complain_of_id(step, ids);
+            const FilterSpec* spec = find_filter(*step.syntax);
+            if (!spec) {
+                uncertain = true;
+                for (const std::string& name : names_of(step)) names.unusable.emplace(name, "");
+                continue;
+            }
+            const WiringScope scope{plan_, library_, planned.steps, names.steps, names.unusable, uncertain};
+            const std::size_t index = add_step(step, *spec, scope);
+            planned.steps.push_back(index);
+            for (const std::string& name : names_of(step)) names.add(name, index);
+        }
+        const WiringScope scope{plan_, library_, planned.steps, names.steps, names.unusable, uncertain};
+        for (const WorkflowOutput& output : plan_.workflow.outputs) plan_output(output, scope, planned);
+        planned.steps_by_name = names.steps;
+        return planned;
+    }
+
+    static std::vector<std::string> names_of(const ExpandedStep& step) {
+        std::vector<std::string> names = step.aliases;
+        names.push_back(step.syntax->id.empty() ? step.syntax->filter : step.syntax->id);
+        return names;
+    }
+
+    void complain_of_id(const ExpandedStep& step, std::set<std::string>& ids) {
+        for (const std::string& name : names_of(step)) {
+            const bool given = name == step.syntax->id || std::ranges::find(step.aliases, name) != step.aliases.end();
+            if (!given) continue;
+            if (!ids.insert(name).second)
+                diagnostics_.error(step.syntax->position, fmt::format("the id '{}' is given twice", name));
+            if (std::ranges::find(plan_.workflow.inputs, name, &WorkflowInput::name) != plan_.workflow.inputs.end())
+                diagnostics_.error(step.syntax->position, fmt::format("the id '{}' is already the name of an input", name));
+        }
+    }
+
+    const FilterSpec* find_filter(const StepSyntax& step) {
+        if (step.filter.empty()) return nullptr;  // reported by the parser
+        if (const FilterSpec* spec = library_.find(step.filter)) return spec;
+        for (const UnusableModule& module : library_.unusable())
+            if (module.name == step.filter) {
+                diagnostics_.error(step.position, fmt::format("the filter '{}' cannot be used: '{}' {}", step.filter,
+                                                              module.manifest.string(), module.reason));
+                return nullptr;
+            }
+        const std::vector<std::string> names = library_.names();
+        diagnostics_.error(step.position, fmt::format("there is no filter '{}'; `scanmill list` shows the {} there are{}", step.filter,
+                                                      names.size(), did_you_mean(step.filter, names)));
+        return nullptr;
+    }
+
+    std::size_t add_step(const ExpandedStep& step, const FilterSpec& spec, const WiringScope& scope) {
+        PlannedStep planned;
+        planned.label = step.syntax->id.empty() ? spec.name : step.syntax->id;
+        planned.position = step.syntax->position;
+        planned.spec = spec;
+        planned.parameters = parameters(step, spec);
+        planned.inputs = wire(*step.syntax, spec, scope, diagnostics_);
+        for (const Expectation& written : step.syntax->expect)
+            if (auto expectation = plan_expectation(written, spec, diagnostics_))
+                planned.expectations.push_back(std::move(*expectation));
+        planned.structure_key = structure_key(planned);
+        const auto [place, is_new] = step_of_key_.emplace(planned.structure_key, plan_.steps.size());
+        if (is_new) {
+            plan_.steps.push_back(std::move(planned));
+            return place->second;
+        }
+        std::vector<PlannedExpectation>& expectations = plan_.steps[place->second].expectations;
+        for (PlannedExpectation& expectation : planned.expectations)
+            if (std::ranges::find(expectations, expectation.position, &PlannedExpectation::position) == expectations.end())
+                expectations.push_back(std::move(expectation));
+        return place->second;
+    }
+
+    ParameterSet parameters(const ExpandedStep& step, const FilterSpec& spec) {
+        std::vector<std::string> known;
+        for (const ParameterSpec& parameter : spec.parameters) known.push_back(parameter.name);
+        for (const WrittenArgument& argument : step.arguments)
+            if (!spec.parameter(argument.name))
+                diagnostics_.error(argument.name_position,
+                                   fmt::format("{} has no parameter '{}'; {}{}", spec.name, argument.name,
+                                               known.empty() ? "it has none" : "it has " + enumerated(known),
+                                               did_you_mean(argument.name, known)));
+        ParameterSet set;
+        for (const ParameterSpec& parameter : spec.parameters) set.values.emplace_back(parameter.name, parameter_value(step, parameter));
+        return set;
+    }
+
+    ParameterValue parameter_value(const ExpandedStep& step, const ParameterSpec& parameter) {
+        const auto argument = std::ranges::find(step.arguments, parameter.name, &WrittenArgument::name);
+        if (argument == step.arguments.end()) {
+            const bool attempted = std::ranges::find(step.syntax->parameters, parameter.name, &NamedExpression::name) !=
+                                   step.syntax->parameters.end();  // its text was wrong, and reported
+            if (parameter.required && !attempted)
+                diagnostics_.error(step.syntax->position, fmt::format("{} needs the parameter '{}': {}", step.syntax->filter,
+                                                                      parameter.name, expectation(parameter)));
+            return parameter.default_value;
+        }
+        try {
+            return parse(parameter, argument->value);
+        } catch (const Error& error) {
+            const std::string through = argument->reference.empty() ? "" : " (from $" + argument->reference + ")";
+            diagnostics_.error(argument->value_position, fmt::format("{}{}: {}", parameter.name, through, error.sentence()));
+            return parameter.default_value;
+        }
+    }
+
+    std::string structure_key(const PlannedStep& step) const {
+        KeyBuilder key;
+        key.field("filter", step.spec.name).field("version", std::to_string(step.spec.version));
+        for (const auto& [name, value] : step.parameters.values) key.field("parameter " + name, canonical_text(value));
+        for (const PlannedInput& input : step.inputs)
+            for (const ValueSource& source : input.sources)
+                key.field("port " + input.port, source.step ? plan_.steps[*source.step].structure_key + "." + source.port
+                                                            : "input " + plan_.workflow.inputs[source.input].name);
+        return key.key();
+    }
+
+    void plan_output(const WorkflowOutput& output, const WiringScope& scope, PlannedVariant& variant) {
+        const std::optional<ValueSource> source = resolve(output.source, scope, diagnostics_);
+        if (!source) return;
+        const Kind kind = kind_of(plan_, *source);
+        const std::string extension = std::filesystem::path(output.file).extension().string();
+        if (!can_write(extension, kind)) {
+            const std::string writable = writable_extensions(kind);
+            diagnostics_.error(output.position,
+                               fmt::format("'{}' is {}, which no '{}' file can hold; {}", output.source.text, name_of(kind), extension,
+                                           writable.empty() ? "this kind cannot be written yet" : "expected " + writable));
+        }
+        variant.outputs.push_back({output.file, output.position, *source});
+    }
+
+    void complain_of_shared_file(const WorkflowOutput& output) {
+        if (mentions(output.file, "variant")) return;
+        const PlannedVariant* first = nullptr;
+        const ValueSource* source = nullptr;
+        for (const PlannedVariant& variant : plan_.variants)
+            for (const PlannedOutput& planned : variant.outputs) {
+                if (planned.file != output.file) continue;
+                if (source && *source != planned.source) {
+                    diagnostics_.error(output.position, fmt::format("the variants '{}' and '{}' would both write '{}'; put "
+                                                                    "{{variant}} into the name",
+                                                                    first->name, variant.name, output.file));
+                    return;
+                }
+                first = &variant;
+                source = &planned.source;
+            }
+    }
+
+    const FilterLibrary& library_;
+    Diagnostics& diagnostics_;
+    Plan plan_;
+    std::map<std::string, std::size_t> step_of_key_;
+};
+
+}  // namespace
+
+Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics) {
+    return Planner(std::move(workflow), library, diagnostics).plan(settings);
+}
+
+Kind kind_of(const Plan& plan, const ValueSource& source) {
+    return source.step ? plan.steps[*source.step].spec.output(source.port)->kind : plan.workflow.inputs[source.input].kind;
+}
+
+std::string describe(const Plan& plan, const ValueSource& source) {
+    if (!source.step) return plan.workflow.inputs[source.input].name;
+    const PlannedStep& step = plan.steps[*source.step];
+    return source.port == step.spec.outputs.front().name ? step.label : step.label + "." + source.port;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/step_runner.hpp"
+
+#include <algorithm>
+
+#include "scanmill/engine/expectation.hpp"
+#include "scanmill/engine/facts.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/length_scale.hpp"
+
+namespace scanmill {
+
+namespace {
+
+const Value* first_geometric(const std::vector<StepInput>& inputs) {
+    const auto found = std::ranges::find_if(inputs, [](const StepInput& input) { return frame_of(input.value) != nullptr; });
+    return found == inputs.end() ? nullptr : &found->value;
+}
+
+/// The frame of `other` brought to the origin of `first`; units must agree.
+Frame common_frame(const Frame& first, const Frame& other, const std::string& port, Context& context) {
+    const bool both_known = first.unit != LengthUnit::unknown && other.unit != LengthUnit::unknown;
+    if (both_known && first.unit != other.unit)
+        throw Error("the inputs have different units: {} at the first port, {} at '{}'", symbol(first.unit), symbol(other.unit), port)
+            .hint("convert one of them: scanmill convert --to-unit mm IN OUT");
+    if (first.unit != other.unit)
+        context.warn(fmt::format("the unit of the value at '{}' was taken to be that of the first input: {}", port,
+                                 symbol(first.unit != LengthUnit::unknown ? first.unit : other.unit)));
+    Frame frame = other;
+    frame.origin = first.origin;
+    return frame;
+}
+
+Inputs rebased(const std::vector<StepInput>& inputs, const Frame* first, Context& context) {
+    Inputs result;
+    for (const StepInput& input : inputs) {
+        const Frame* frame = frame_of(input.value);
+        const bool moves = first && frame && (frame->origin != first->origin || frame->unit != first->unit);
+        result.add(input.port, moves ? reframed(input.value, common_frame(*first, *frame, input.port, context)) : input.value);
+    }
+    return result;
+}
+
+ParameterSet resolved_parameters(const PlannedStep& step, const Value* scale_of) {
+    if (!scale_of) return step.parameters;  // nothing to measure against: the filter resolves against what it makes
+    const LengthScale scale = length_scale(*scale_of);
+    ParameterSet set;
+    for (const auto& [name, value] : step.parameters.values) {
+        try {
+            set.values.emplace_back(name, resolved(value, scale));
+        } catch (Error& error) {
+            error.add_frame(fmt::format("in the parameter '{}'", name));
+            throw;
+        }
+    }
+    return set;
+}
+
+void require_whole(const Outputs& outputs, const FilterSpec& spec) {
+    for (const PortSpec& port : spec.outputs) {
+        const Value* value = outputs.find(port.name);
+        if (!value) throw Error("the filter {} gave no '{}', which it declares", spec.name, port.name);
+        if (kind_of(*value) != port.kind)
+            throw Error("the filter {} gave {} at '{}', which it declares as {}", spec.name, name_of(kind_of(*value)), port.name,
+                        name_of(port.kind));
+        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(value)) {
+            require_consistent(**mesh);
+            if ((*mesh)->triangles.empty()) throw Error("the result has no triangles");
+        }
+        if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(value); points && (*points)->size() == 0)
+            throw Error("the result has no points");
+    }
+}
+
+void require_expectations(const PlannedStep& step, const Outputs& outputs, NodeReport& report) {
+    if (step.expectations.empty()) return;
+    const Value& primary = *outputs.find(step.spec.outputs.front().name);
+    report.facts = facts_of(primary);
+    Metrics known = report.facts;
+    for (const Metric& metric : report.metrics.values) known.set(metric.name, metric.value, metric.unit);
+    require_met(step.expectations, known, length_scale(primary));
+}
+
+}  // namespace
+
+Value read_leaf(const std::filesystem::path& file, const WorkflowInput& declared, LengthUnit unit,
+                const std::function<void(std::string)>& on_warning) {
+    ReadOptions options;
+    options.on_warning = on_warning;
+    options.unit = unit != LengthUnit::unknown ? unit : declared.unit;
+    Value value;
+    if (declared.kind == Kind::mesh)
+        value = read_mesh(file, options);
+    else
+        value = read_points(file, options);
+    if (declared.frame.empty() || frame_of(value)->name == declared.frame) return value;
+    Frame frame = *frame_of(value);
+    if (!frame.name.empty()) on_warning(fmt::format("the frame '{}' of the file is called '{}' by the workflow", frame.name, declared.frame));
+    frame.name = declared.frame;
+    return reframed(value, frame);
+}
+
+Outputs run_step(const PlannedStep& step, const FilterDeclaration& filter, const std::vector<StepInput>& inputs,
+                 ContextOptions options, NodeReport& report) {
+    Context context(std::move(options));
+    const Value* first = first_geometric(inputs);
+    const auto keep_findings = [&] {
+        report.warnings = context.warnings();
+        for (const MetricSpec& declared : step.spec.metrics)
+            if (const Metric* metric = context.metrics().find(declared.name))
+                report.metrics.set(declared.name, metric->value, declared.unit);
+    };
+    try {
+        const Inputs ports = rebased(inputs, first ? frame_of(*first) : nullptr, context);
+        report.resolved = resolved_parameters(step, first);
+        Outputs outputs = filter.run(ports, report.resolved, context);
+        require_whole(outputs, step.spec);
+        keep_findings();
+        require_expectations(step, outputs, report);
+        return outputs;
+    } catch (...) {
+        keep_findings();
+        throw;
+    }
+}
+
+}  // namespace scanmill

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A workflow as its file says it, with the place of everything: the grammar's syntax tree. What the names in it mean is
+/// checked later (plan.hpp), against the filters at hand.
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "scanmill/data/value.hpp"
+#include "scanmill/engine/diagnostics.hpp"
+#include "scanmill/engine/document.hpp"
+#include "scanmill/filter/parameter.hpp"
+
+namespace scanmill {
+
+/// One written value: literal text(s), or a reference `$name` to a workflow parameter.
+struct WrittenValue {
+    Position position;
+    WrittenParameter literal;
+    std::string reference;  ///< without the $; empty: literal
+};
+
+/// A value, or `{sweep: [value, …]}`: then it has several, and everything after it runs once for each.
+struct ValueExpression {
+    Position position;
+    std::vector<WrittenValue> values;
+    bool sweep = false;
+};
+
+struct NamedExpression {
+    std::string name;
+    Position position;
+    ValueExpression value;
+};
+
+/// "step", "step.port" or a workflow input's name.
+struct Reference {
+    std::string text;
+    Position position;
+};
+
+struct InputWiring {
+    std::string port;
+    Position position;
+    std::vector<Reference> sources;  ///< more than one only for list ports
+};
+
+struct Expectation {
+    enum class Relation { equal, below, above, between };
+    std::string name;
+    Position position;
+    Relation relation = Relation::equal;
+    std::string value, high;  ///< as written; `high` only for between
+};
+
+struct StepSyntax {
+    std::string filter;
+    Position position;
+    std::string id;
+    std::vector<NamedExpression> parameters;
+    std::vector<InputWiring> in;
+    std::optional<Reference> in_shorthand;  ///< `in: scan`, for filters with one port
+    std::vector<Expectation> expect;
+};
+
+struct StepItem;
+
+struct AlternativeSyntax {
+    std::string name;
+    Position position;
+    std::vector<StepItem> steps;
+};
+
+struct OneOfSyntax {
+    Position position;
+    std::string id;
+    std::vector<AlternativeSyntax> alternatives;
+};
+
+struct StepItem {
+    std::variant<StepSyntax, OneOfSyntax> item;
+};
+
+struct WorkflowInput {
+    std::string name;
+    Position position;
+    Kind kind = Kind::points;
+    bool list = false;
+    LengthUnit unit = LengthUnit::unknown;
+    std::string frame;
+    std::string help;
+};
+
+struct WorkflowParameter {
+    std::string name;
+    Position position;
+    ValueExpression value;
+    std::string help;
+};
+
+struct WorkflowOutput {
+    std::string file;  ///< a template
+    Position position;
+    Reference source;
+};
+
+struct Workflow {
+    std::string file;
+    std::string name;
+    std::string summary;
+    std::vector<WorkflowInput> inputs;  ///< the first is fed by the scans
+    std::vector<WorkflowParameter> parameters;
+    std::vector<StepItem> steps;
+    std::vector<WorkflowOutput> outputs;
+};
+
+/// The workflow in `text`; what is wrong goes to `diagnostics`, what is right is still returned.
+Workflow parse_workflow(const std::string& text, Diagnostics& diagnostics);
+
+/// A value as a workflow would hold it, from the command line: "0.1 %diag", "[0, 1]", "{sweep: [1, 2]}".
+ValueExpression parse_value_expression(const std::string& text, Diagnostics& diagnostics);
+
+}  // namespace scanmill

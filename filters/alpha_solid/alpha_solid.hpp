@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The alpha-solid: the part of a Delaunay tetrahedralisation that a ball of radius alpha cannot enter from outside, with
+/// alpha chosen automatically.
+///
+/// A facet is a wall at alpha when it belongs to the alpha-shape. The solid is every cell that cannot be reached from
+/// outside without crossing a wall; what walls enclose is solid, so it has no cavities. Growing alpha grows the solid.
+
+#include <optional>
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/tets.hpp"
+#include "scanmill/filter/context.hpp"
+#include "scanmill/filter/quantity.hpp"
+
+namespace scanmill {
+
+enum class AlphaSearch {
+    scan,   ///< the least alpha with a valid solid
+    binary  ///< the paper's bisection: a valid solid, not always the least
+};
+
+enum class AlphaComponents {
+    single,  ///< one solid; with coverage below 100 % the one that holds the most points, the others are left out
+    many     ///< any number of solids
+};
+
+struct AlphaSolidParams {
+    /// The radius; absent: the least that gives a valid solid.
+    std::optional<Length> alpha;
+    AlphaSearch search = AlphaSearch::scan;
+    AlphaComponents components = AlphaComponents::single;
+    /// The share of the points that must be in or on the solid, in (0, 1].
+    Ratio coverage = Ratio::percent(100);
+};
+
+/// How alpha and the solid came about.
+enum class AlphaChoice {
+    scan,      ///< a plain alpha-solid, the first valid one
+    binary,    ///< a plain alpha-solid found by bisection
+    repaired,  ///< cells were added round the non-manifold vertices of a plain alpha-solid
+    hull,      ///< nothing smaller than the whole tetrahedralisation would do
+    given      ///< alpha was given; nothing is promised about the boundary
+};
+
+struct AlphaSolidResult {
+    /// The solid's boundary over only its own vertices (in input order, columns carried), outward, closed. Triangles
+    /// ascend by cell, then by facet.
+    TriangleMesh mesh;
+    /// The input with `inside` labelled.
+    TetMesh tets;
+    /// A radius in the scan's unit; giving it as the parameter gives the same alpha-solid (before any repair).
+    double alpha = 0;
+    /// The least alpha at which the asked share of the points is in or on the alpha-solid.
+    double alpha_cover = 0;
+    std::size_t cells_inside = 0;
+    /// Different alpha-solids from alpha_cover upwards (or from the given alpha, when that is smaller): what the choice
+    /// was among.
+    std::size_t candidates = 0;
+    /// Vertex indices of the input, ascending: inside the solid but not on its boundary; in no cell of the solid.
+    Buffer<u32> interior_points, uncovered_points;
+    /// Pieces of the boundary that share no vertex; for a manifold boundary, the number of separate solids.
+    std::size_t components = 0;
+    /// Cells and points in them alone that `single` left out.
+    std::size_t cells_left_out = 0;
+    AlphaChoice choice = AlphaChoice::scan;
+    /// Only a given alpha can leave any: edges with more than two boundary triangles, and vertices whose boundary
+    /// triangles are not exactly one closed fan.
+    std::size_t nonmanifold_edges = 0, nonmanifold_vertices = 0;
+};
+
+/// Finds the smallest alpha whose solid is valid: the asked share of the points is in or on it, its boundary is a closed
+/// 2-manifold (every vertex's triangles form exactly one closed fan), and for `single` it is connected. When no alpha up
+/// to four times alpha_cover has one, the solid at alpha_cover (for `single` the first connected one above) is repaired
+/// by adding the cheapest cells round every non-manifold vertex.
+///
+/// Pre:  a tetrahedralisation made by delaunay(); alpha above 0; coverage in (0, 1]; size of the scan between 1e-100 and
+///       1e100. Throws Error with numbers, also when the given alpha leaves no cell inside.
+/// Post: see AlphaSolidResult. Facet values are computed from corners sorted by coordinates and compared exactly; equal
+///       values enter together. So the solid depends neither on the order of the points nor on the number of threads.
+///       A point exactly on a facet's smallest circumsphere does not attach the facet.
+/// Cost: O(n log n) in the worst case, about linear in the cells outside the solid for surface scans; about 30 bytes
+///       per cell beside the result.
+/// Metrics: alpha, alpha-cover, cells, interior-points, uncovered-points, triangles. Warns about points left out, about a
+/// repaired or hull solid, and about non-manifold places at a given alpha.
+/// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
+AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
+
+}  // namespace scanmill

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "alpha_solid/growing_solid.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace scanmill::alpha {
+
+GrowingSolid::GrowingSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects)
+    : tets_(tets),
+      labels_(std::move(labels)),
+      suspects_(suspects.begin(), suspects.end()),
+      is_suspect_(tets.positions.size()),
+      covered_(tets.positions.size()),
+      anchor_(tets.positions.size()),
+      place_(tets.cells.size()) {
+    std::ranges::fill(is_suspect_, u8(0));
+    std::ranges::fill(covered_, u8(0));
+    std::ranges::fill(place_, u64(0));
+    for (u32 vertex : suspects_) is_suspect_[vertex] = 1;
+    for (u32 cell = 0; cell < labels_.size(); ++cell)
+        for (u32 vertex : tets_.cells[cell]) {
+            anchor_[vertex] = cell;
+            if (labels_[cell] == solid) covered_count_ += std::exchange(covered_[vertex], u8(1)) == 0;
+        }
+}
+
+void GrowingSolid::solidify(u32 seed) {
+    stack_.assign(1, seed);
+    labels_[seed] = solid;
+    while (!stack_.empty()) {
+        const u32 cell = stack_.back();
+        stack_.pop_back();
+        for (u32 vertex : tets_.cells[cell]) {
+            if (std::exchange(is_suspect_[vertex], u8(1)) == 0) suspects_.push_back(vertex);
+            covered_count_ += std::exchange(covered_[vertex], u8(1)) == 0;
+        }
+        for (u32 across : tets_.neighbours[cell])
+            if (across != TetMesh::outside_hull && labels_[across] == left_out) {
+                labels_[across] = solid;
+                stack_.push_back(across);
+            }
+    }
+}
+
+void GrowingSolid::add(std::span<const u32> cells) {
+    for (u32 cell : cells)
+        if (labels_[cell] != solid) solidify(cell);
+}
+
+void GrowingSolid::add_joined(std::span<const u32> cells) {
+    for (u32 cell : cells)
+        if (labels_[cell] == outside) labels_[cell] = left_out;
+    for (u32 cell : cells) {
+        if (labels_[cell] == solid) continue;
+        const auto is_solid = [&](u32 across) { return across != TetMesh::outside_hull && labels_[across] == solid; };
+        if (std::ranges::any_of(tets_.neighbours[cell], is_solid)) solidify(cell);
+    }
+}
+
+bool GrowingSolid::is_manifold() {
+    while (!suspects_.empty()) {
+        if (!is_manifold_at(suspects_.back())) return false;
+        is_suspect_[suspects_.back()] = 0;
+        suspects_.pop_back();
+    }
+    return true;
+}
+
+void GrowingSolid::collect_star(u32 vertex) {
+    base_ += star_.size();
+    star_.assign(1, anchor_[vertex]);
+    place_[anchor_[vertex]] = base_;
+    for (std::size_t i = 0; i < star_.size(); ++i) {
+        const u32 cell = star_[i];
+        for (int corner = 0; corner < 4; ++corner) {
+            const u32 across = tets_.neighbours[cell][corner];
+            if (tets_.cells[cell][corner] == vertex || across == TetMesh::outside_hull || place_[across] >= base_)
+                continue;
+            place_[across] = base_ + star_.size();
+            star_.push_back(across);
+        }
+    }
+}
+
+/// The boundary triangles are one fan exactly when the solid cells round the vertex hang together across facets, and so do
+/// the others, the unbounded outside included.
+bool GrowingSolid::is_manifold_at(u32 vertex) {
+    collect_star(vertex);
+    const u32 hull = static_cast<u32>(star_.size());
+    parent_.resize(hull + 1);
+    for (u32 i = 0; i <= hull; ++i) parent_[i] = i;
+    const auto find = [&](u32 i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    };
+    int solid_parts = 0, other_parts = 0;
+    bool at_hull = false;
+    for (u32 i = 0; i < hull; ++i) ++(labels_[star_[i]] == solid ? solid_parts : other_parts);
+    for (u32 i = 0; i < hull; ++i) {
+        const u32 cell = star_[i];
+        const bool is_solid = labels_[cell] == solid;
+        for (int corner = 0; corner < 4; ++corner) {
+            if (tets_.cells[cell][corner] == vertex) continue;
+            const u32 across = tets_.neighbours[cell][corner];
+            u32 other = hull;
+            if (across == TetMesh::outside_hull) {
+                if (!std::exchange(at_hull, true)) ++other_parts;
+                if (is_solid) continue;
+            } else {
+                if ((labels_[across] == solid) != is_solid) continue;
+                other = static_cast<u32>(place_[across] - base_);
+            }
+            const u32 a = find(i), b = find(other);
+            if (a == b) continue;
+            parent_[a] = b;
+            --(is_solid ? solid_parts : other_parts);
+        }
+    }
+    return solid_parts == 0 || other_parts == 0 || (solid_parts == 1 && other_parts == 1);
+}
+
+void GrowingSolid::repair(std::span<const double> price) {
+    std::vector<u32> cheapest;
+    while (true) {
+        cheapest.clear();
+        std::vector<u32> still_bad;
+        for (u32 vertex : suspects_) {
+            if (is_manifold_at(vertex)) {
+                is_suspect_[vertex] = 0;
+                continue;
+            }
+            still_bad.push_back(vertex);
+            double least = std::numeric_limits<double>::infinity();
+            for (u32 cell : star_)
+                if (labels_[cell] != solid) least = std::min(least, price[cell]);
+            for (u32 cell : star_)
+                if (labels_[cell] != solid && price[cell] == least) cheapest.push_back(cell);
+        }
+        suspects_ = std::move(still_bad);
+        if (suspects_.empty()) return;
+        add(cheapest);
+    }
+}
+
+}  // namespace scanmill::alpha

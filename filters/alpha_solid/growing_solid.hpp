@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A solid that grows cell by cell and always knows whether its boundary is a 2-manifold.
+///
+/// A new cell changes the boundary only at its four vertices, so only those are suspect afterwards. They are judged
+/// lazily: one non-manifold vertex is enough to reject a solid, and as long as it stays so no other need be looked at.
+
+#include "alpha_solid/boundary.hpp"
+
+namespace scanmill::alpha {
+
+class GrowingSolid {
+public:
+    /// `suspects` are the vertices whose triangles may not be exactly one closed fan; all others are known to be.
+    GrowingSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects);
+
+    /// Makes cells solid, and with each one every left-out cell that it joins to the solid across facets.
+    void add(std::span<const u32> cells);
+    /// Makes those of the cells solid that are joined to the solid across facets, perhaps through each other or through
+    /// left-out cells; the others become left out.
+    void add_joined(std::span<const u32> cells);
+
+    bool is_manifold();
+    /// Adds, round every non-manifold vertex, the cells with the least `price` that are not solid, all vertices at once;
+    /// again until none is left. `price` is per cell. Each round solidifies a cell, so it ends.
+    void repair(std::span<const double> price);
+
+    const Array<u8>& labels() const { return labels_; }
+    /// Vertices of solid cells.
+    std::size_t covered() const { return covered_count_; }
+
+private:
+    void solidify(u32 cell);
+    bool is_manifold_at(u32 vertex);
+    /// Cells round the vertex, into star_.
+    void collect_star(u32 vertex);
+
+    const TetMesh& tets_;
+    Array<u8> labels_;
+    std::vector<u32> suspects_;
+    Array<u8> is_suspect_, covered_;
+    std::size_t covered_count_ = 0;
+    /// Any cell round each vertex.
+    Array<u32> anchor_;
+    /// place_[c] - base_ is the place of cell c in star_, when not negative.
+    Array<u64> place_;
+    u64 base_ = 1;
+    std::vector<u32> star_, stack_;
+    std::vector<u32> parent_;
+};
+
+}  // namespace scanmill::alpha

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Which alpha-solid: the search through the order in which cells enter as alpha grows.
+
+#include "alpha_solid/alpha_solid.hpp"
+#include "alpha_solid/boundary.hpp"
+#include "alpha_solid/flood.hpp"
+
+namespace scanmill::alpha {
+
+struct Selection {
+    /// The alpha-solid is every cell but the flood's first `outside`; `labels` may differ from it by cells left out or added.
+    std::size_t outside = 0;
+    AlphaChoice choice = AlphaChoice::scan;
+    Array<u8> labels;
+    Array<Triangle> triangles;
+    BoundaryDefects defects;
+    /// Sets of boundary triangles that share no vertex.
+    std::size_t components = 0;
+};
+
+class Selector {
+public:
+    Selector(const TetMesh& tets, const Flood& flood, const AlphaSolidParams& params, Context& context);
+
+    /// The alpha-solid at squared radius `value`.
+    Selection given(double value) const;
+    /// The least valid alpha-solid, or a repaired one when none is valid up to four times alpha_cover.
+    Selection scan() const;
+    /// A valid alpha-solid by bisection between alpha_cover and the hull.
+    Selection bisect() const;
+
+private:
+    /// Everything about the alpha-solid without the flood's first `outside` cells; the costly facts only when asked for.
+    Selection solid_without(std::size_t outside) const;
+    Selection described(Array<u8> labels, std::size_t outside) const;
+    bool is_valid(const Selection& selection) const;
+    /// Adds level after level to `start` while `wanted` says so.
+    Selection repaired(Selection start) const;
+    std::size_t covered_points(std::span<const u8> labels) const;
+
+    const TetMesh& tets_;
+    const Flood& flood_;
+    Context& context_;
+    AlphaSearch search_;
+    bool single_;
+    /// `single` with less than full coverage: pieces but the largest are left out.
+    bool keeps_largest_;
+};
+
+/// Keeps of the solid cells those of the piece (joined across facets) with the most points, of equals the one with the
+/// smallest cell; labels the others `left_out`.
+void keep_largest_piece(const TetMesh& tets, std::span<u8> labels);
+
+/// Makes solid what the solid encloses: cells that are not solid and cannot be reached from outside the hull through such.
+void fill_cavities(const TetMesh& tets, std::span<u8> labels);
+
+}  // namespace scanmill::alpha

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "delaunay/delaunay.hpp"
+
+#include <numeric>
+
+#include "delaunay/canonical_cells.hpp"
+#include "delaunay/flatness.hpp"
+#include "delaunay/triangulate.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// Input rows that stay, and for every input row the vertex that it became (only rows that stay are filled).
+struct DistinctRows {
+    Array<u32> kept, vertex_of_row;
+};
+
+DistinctRows distinct_rows(std::size_t count, std::span<const u32> duplicates) {
+    DistinctRows rows;
+    rows.vertex_of_row.resize(count);
+    std::fill(rows.vertex_of_row.begin(), rows.vertex_of_row.end(), 0);
+    for (u32 row : duplicates) rows.vertex_of_row[row] = 1;
+    rows.kept.reserve(count - duplicates.size());
+    for (u32 row = 0; row < count; ++row) {
+        if (rows.vertex_of_row[row] == 1) continue;
+        rows.vertex_of_row[row] = static_cast<u32>(rows.kept.size());
+        rows.kept.push_back(row);
+    }
+    return rows;
+}
+
+}  // namespace
+
+DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams&, Context& context) {
+    const std::span<const Vec3> positions = cloud.positions.span();
+    require_finite(positions);
+    require_spatial(positions, cloud.frame, context.threads());
+
+    RawTriangulation raw = triangulate(positions, context);
+    if (raw.dimension < 3) throw_flat(positions, raw.dimension, raw.duplicates.size(), cloud.frame);
+    context.progress(0.85);
+    context.check_cancelled();
+
+    DelaunayResult result;
+    result.duplicates = raw.duplicates.size();
+    result.tets.frame = cloud.frame;
+    if (raw.duplicates.empty()) {
+        result.tets.positions = cloud.positions;
+        result.tets.vertex_columns = cloud.columns;
+    } else {
+        const DistinctRows rows = distinct_rows(positions.size(), raw.duplicates);
+        result.tets.positions = gather(cloud.positions, rows.kept);
+        result.tets.vertex_columns = cloud.columns.gather(rows.kept);
+        for (Tetrahedron& cell : raw.cells)
+            for (u32& corner : cell) corner = rows.vertex_of_row[corner];
+    }
+
+    CanonicalCells canonical = canonical_cells(std::move(raw.cells), std::move(raw.neighbours),
+                                               result.tets.positions.size(), context.threads());
+    result.tets.cells = std::move(canonical.cells);
+    result.tets.neighbours = std::move(canonical.neighbours);
+
+    context.metric("cells", static_cast<double>(result.tets.cells.size()));
+    context.metric("duplicates", static_cast<double>(result.duplicates));
+    context.metric("hidden", static_cast<double>(result.hidden));
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill

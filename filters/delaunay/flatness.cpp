@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "delaunay/flatness.hpp"
+
+#include <Eigen/Geometry>
+#include <limits>
+
+#include "scanmill/data/array.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/parallel.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t chunk = 1 << 15;
+constexpr std::string_view way_out = "voxel-thin and region-grow accept flat scans";
+
+struct Farthest {
+    double squared = -1;
+    std::size_t row = 0;
+};
+
+/// The first row with the largest `measure(position)`.
+template <class Measure>
+Farthest farthest(std::span<const Vec3> positions, unsigned threads, const Measure& measure) {
+    std::vector<Farthest> per_chunk((positions.size() + chunk - 1) / chunk);
+    for_each_chunk(threads, positions.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        Farthest best;
+        for (std::size_t row = begin; row < end; ++row)
+            if (const double squared = measure(positions[row]); squared > best.squared) best = {squared, row};
+        per_chunk[begin / chunk] = best;
+    });
+    Farthest best;
+    for (const Farthest& candidate : per_chunk)
+        if (candidate.squared > best.squared) best = candidate;
+    return best;
+}
+
+[[noreturn]] void refuse(std::size_t count, int dimension, double distance, const Frame& frame, bool rounding) {
+    const std::string_view shape = dimension == 0 ? "one place" : dimension == 1 ? "one line" : "one plane";
+    throw Error("needs at least 4 points that are not coplanar; the cloud has {}, all within {:.2g} {} of {}{}", count,
+                distance, symbol(frame.unit), shape, rounding ? ", less than their coordinates can express" : "")
+        .hint(std::string(way_out));
+}
+
+}  // namespace
+
+Extents extents(std::span<const Vec3> positions, const Vec3& origin, unsigned threads) {
+    Extents result;
+    const Farthest largest = farthest(positions, threads, [&](const Vec3& p) {
+        return (p.cwiseAbs() + origin.cwiseAbs()).maxCoeff();
+    });
+    constexpr double last_places = 16;
+    result.rounding = last_places * std::numeric_limits<double>::epsilon() * largest.squared;
+
+    const Vec3 a = positions[0];
+    const Farthest second = farthest(positions, threads, [&](const Vec3& p) { return (p - a).stableNorm(); });
+    result.from_point = second.squared;
+    if (!(result.from_point > 0)) return result;
+    const Vec3 direction = (positions[second.row] - a) / result.from_point;
+    const auto off_line = [&](const Vec3& p) -> Vec3 {
+        const Vec3 offset = p - a;
+        return offset - offset.dot(direction) * direction;
+    };
+    const Farthest third = farthest(positions, threads, [&](const Vec3& p) { return off_line(p).stableNorm(); });
+    result.from_line = third.squared;
+    if (!(result.from_line > 0)) return result;
+    const Vec3 normal = direction.cross(off_line(positions[third.row])).stableNormalized();
+    result.from_plane = farthest(positions, threads, [&](const Vec3& p) {
+                            return std::abs((p - a).dot(normal));
+                        }).squared;
+    return result;
+}
+
+void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsigned threads) {
+    if (positions.size() < 4)
+        throw Error("needs at least 4 points that are not coplanar; the cloud has {}", positions.size());
+    const Extents found = extents(positions, frame.origin, threads);
+    if (!std::isfinite(found.from_point))
+        throw Error("needs points whose distances are finite numbers; the cloud has {} points up to {:.2g} {} apart",
+                    positions.size(), found.from_point, symbol(frame.unit));
+    if (found.from_point <= found.rounding) refuse(positions.size(), 0, found.from_point, frame, found.from_point > 0);
+    if (found.from_line <= found.rounding) refuse(positions.size(), 1, found.from_line, frame, found.from_line > 0);
+    if (found.from_plane <= found.rounding) refuse(positions.size(), 2, found.from_plane, frame, found.from_plane > 0);
+}
+
+void throw_flat(std::span<const Vec3> positions, int dimension, std::size_t duplicates, const Frame& frame) {
+    const std::size_t distinct = positions.size() - duplicates;
+    if (distinct < 4)
+        throw Error("needs at least 4 points that are not coplanar; the cloud has {} points at {} distinct places",
+                    positions.size(), distinct);
+    refuse(positions.size(), dimension, 0, frame, false);
+}
+
+}  // namespace scanmill

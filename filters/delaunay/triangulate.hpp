@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// CGAL's Delaunay triangulation as plain arrays, in whatever order CGAL made them.
+
+#include <array>
+#include <span>
+
+#include "scanmill/data/tets.hpp"
+#include "scanmill/filter/context.hpp"
+
+namespace scanmill {
+
+struct RawTriangulation {
+    /// 3, or less when the points span no volume; then there are no cells.
+    int dimension = 0;
+    /// Input rows that lie exactly on an earlier row.
+    Array<u32> duplicates;
+    /// Corners are input rows, of several rows at one place the first; positively oriented.
+    Array<Tetrahedron> cells;
+    /// As TetMesh::neighbours.
+    Array<std::array<u32, 4>> neighbours;
+};
+
+/// Pre: finite positions, at most 2^32 - 2. Throws Cancelled when asked to stop, between insertions.
+RawTriangulation triangulate(std::span<const Vec3> positions, Context& context);
+
+}  // namespace scanmill

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "virtual_scan/virtual_scan.hpp"
+
+#include <cmath>
+
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/parallel.hpp"
+#include "virtual_scan/scene.hpp"
+#include "virtual_scan/seen_points.hpp"
+#include "virtual_scan/view.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Shape = VirtualScanParams::Shape;
+constexpr double most_rays = 1 << 28;
+/// Independent random numbers for each purpose, whatever the others draw.
+enum Stream : std::uint64_t { noise_stream, overlap_stream, outlier_stream };
+
+scan::Scene scene_of(const TriangleMesh* mesh, const VirtualScanParams& params) {
+    if (mesh && params.shape != Shape::none)
+        throw Error("there is a mesh and a shape to scan; only one is possible")
+            .hint("leave out `shape`, or wire no mesh");
+    if (mesh) return scan::scene_of(*mesh);
+    if (params.shape == Shape::none)
+        throw Error("there is nothing to scan: no mesh, and no shape named")
+            .hint("wire a mesh, or say `shape: sphere`");
+    return scan::scene_of(params.shape, params.size);
+}
+
+void require_sound(const VirtualScanParams& params, double resolution, double noise) {
+    if (!(resolution > 0) || !std::isfinite(resolution))
+        throw Error("the resolution is {} u; it must be above 0", resolution);
+    if (!(noise >= 0) || !std::isfinite(noise)) throw Error("the noise is {} u; it must be 0 or more", noise);
+    const double outliers = params.outliers.value(), overlap = params.overlap.value();
+    if (!(outliers >= 0 && outliers <= 10))
+        throw Error("outliers is {}; it must be from 0 % to 1000 %", params.outliers.text());
+    if (!(overlap >= 0 && overlap <= 1))
+        throw Error("overlap is {}; it must be from 0 % to 100 %", params.overlap.text());
+    const double angle = params.max_angle.in_degrees();
+    if (!(angle > 0 && angle <= 90))
+        throw Error("max-angle is {}; it must be above 0 deg and at most 90 deg", params.max_angle.text());
+}
+
+std::vector<scan::View> views_over(const scan::Scene& scene, const std::vector<Vec3>& directions, double resolution,
+                                   std::size_t& rays) {
+    const Vec3 centre = 0.5 * scene.box.low + 0.5 * scene.box.high;
+    std::vector<scan::View> views;
+    double total = 0;
+    for (const Vec3& direction : directions) {
+        views.push_back(scan::view_from(direction, centre, resolution));
+        total += scan::rays_over(views.back(), scene.hull);
+    }
+    if (!(total <= most_rays))
+        throw Error("{} views at a resolution of {:.6g} u take {:.6g} rays; at most {} are possible", views.size(),
+                    resolution, total, most_rays)
+            .hint(fmt::format("a resolution of {:.3g} u or coarser fits",
+                              1.01 * resolution * std::sqrt(total / most_rays)));
+    for (scan::View& view : views) view = scan::covering(view, scene.hull);
+    rays = static_cast<std::size_t>(total);
+    return views;
+}
+
+/// Points and their columns as they grow.
+struct Samples {
+    Array<Vec3> positions;
+    Array<double> normals;
+    Array<std::int32_t> view;
+
+    void add(const Vec3& position, const Vec3& normal, std::int32_t number) {
+        positions.push_back(position);
+        normals.insert(normals.end(), {normal.x(), normal.y(), normal.z()});
+        view.push_back(number);
+    }
+};
+
+/// By its series, because the C library's differs in the last bit between processors, and a face may lie just at the
+/// limit. Pre: 0 ≤ angle ≤ π/2.
+double cosine(double angle) {
+    double value = 1;
+    for (int degree = 24; degree > 0; degree -= 2) value = 1 - value * angle * angle / (degree * (degree - 1));
+    return value;
+}
+
+/// Hits that the sensor can see at its angle, view by view.
+std::vector<std::vector<scan::Hit>> returns_of(const scan::Scene& scene, const std::vector<scan::View>& views,
+                                               Angle max_angle, Context& context) {
+    const double least_cosine = max_angle.in_degrees() < 90 ? cosine(max_angle.in_radians()) : 0;
+    std::vector<std::vector<scan::Hit>> returns(views.size());
+    for_each_chunk(context.threads(), views.size(), 1, [&](std::size_t number, std::size_t) {
+        context.check_cancelled();
+        returns[number] = scene.hits(views[number]);
+        std::erase_if(returns[number],
+                      [&](const scan::Hit& hit) { return -hit.normal.dot(views[number].forward) < least_cosine; });
+    });
+    return returns;
+}
+
+/// Removes, view by view, all but `share` of the hits that lie near an earlier view's kept ones; returns how many.
+std::size_t thin_overlap(std::vector<std::vector<scan::Hit>>& returns, const Vec3& origin, double radius, double share,
+                         const Random& random) {
+    std::size_t dropped = 0;
+    scan::SeenPoints seen(origin, radius);
+    for (std::size_t view = 0; view < returns.size(); ++view) {
+        Random draw = random.stream(view);
+        dropped += std::erase_if(
+            returns[view], [&](const scan::Hit& hit) { return seen.near(hit.position) && draw.uniform() >= share; });
+        std::vector<Vec3> kept;
+        for (const scan::Hit& hit : returns[view]) kept.push_back(hit.position);
+        seen.add(kept);
+    }
+    return dropped;
+}
+
+void add_outliers(Samples& samples, std::size_t count, const BoundingBox& box, Random random) {
+    const Vec3 margin = 0.1 * (box.high - box.low);
+    const Vec3 low = box.low - margin, high = box.high + margin;
+    for (std::size_t i = 0; i < count; ++i) {
+        Vec3 position;
+        for (int axis = 0; axis < 3; ++axis) position[axis] = random.uniform(low[axis], high[axis]);
+        samples.add(position, Vec3::Zero(), -1);
+    }
+}
+
+}  // namespace
+
+VirtualScanResult virtual_scan(const TriangleMesh* mesh, const VirtualScanParams& params, Context& context) {
+    const scan::Scene scene = scene_of(mesh, params);
+    VirtualScanResult result;
+    result.resolution = params.resolution.resolved(scene.scale).value();
+    result.noise = params.noise.resolved(scene.scale).value();
+    require_sound(params, result.resolution, result.noise);
+    result.directions = scan::view_directions(params.views);
+    const std::vector<scan::View> views = views_over(scene, result.directions, result.resolution, result.rays);
+
+    std::vector<std::vector<scan::Hit>> returns = returns_of(scene, views, params.max_angle, context);
+    context.progress(0.8);
+    const Random random = context.random();
+    const double share = params.overlap.value();
+    if (share < 1)
+        result.dropped = thin_overlap(returns, scene.box.low, result.resolution, share, random.stream(overlap_stream));
+
+    Samples samples;
+    for (std::size_t number = 0; number < views.size(); ++number) {
+        Random error = random.stream(noise_stream).stream(number);
+        for (const scan::Hit& hit : returns[number]) {
+            const Vec3 shift =
+                result.noise > 0 ? Vec3(result.noise * error.normal() * views[number].forward) : Vec3::Zero();
+            samples.add(hit.position + shift, hit.normal, static_cast<std::int32_t>(number));
+        }
+    }
+    if (samples.positions.empty())
+        throw Error("none of {} rays in {} views came back from the surface", result.rays, views.size())
+            .hint("use a finer resolution, more views, or a larger max-angle");
+    result.outliers = static_cast<std::size_t>(
+        std::floor(params.outliers.value() * static_cast<double>(samples.positions.size()) + 0.5));
+    add_outliers(samples, result.outliers, scene.box, random.stream(outlier_stream));
+
+    result.points.frame = scene.frame;
+    result.points.positions = std::move(samples.positions);
+    result.points.columns.add(Column("normal", 3, Buffer<double>(std::move(samples.normals))));
+    result.points.columns.add(Column("view", 1, Buffer<std::int32_t>(std::move(samples.view))));
+    context.metric("points", static_cast<double>(result.points.size()));
+    context.metric("outliers", static_cast<double>(result.outliers));
+    context.metric("dropped", static_cast<double>(result.dropped));
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill

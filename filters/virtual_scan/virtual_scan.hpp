@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A scanner without a scanner: points on a known surface, as seen from given views, with the flaws of real scans.
+///
+/// Every view casts parallel rays on a square grid. What a ray meets first gives one point: occlusion is exact. Both
+/// sides of a surface reflect, as in life; on a closed mesh only its outside is ever met first.
+
+#include <vector>
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/context.hpp"
+#include "scanmill/filter/quantity.hpp"
+
+namespace scanmill {
+
+struct VirtualScanParams {
+    enum class Shape { none, sphere, torus, box, cylinder, l_block };
+    /// What is scanned when no mesh is; intersected by formula, not through a mesh.
+    Shape shape = Shape::none;
+    /// The shape's dimensions in the scan's own unit; empty means those in brackets. sphere: radius [1], around 0.
+    /// torus: from the z axis to the tube's centre, tube's radius [1, 0.4], around 0. box: x, y, z [1, 1, 1], around 0.
+    /// cylinder: radius, height along z [0.5, 1], around 0. l_block: size s, thickness t [1, 1]: [0, 2 s]² × [0, t]
+    /// without the quadrant above s in x and y.
+    std::vector<Length> size;
+    /// One whole number n: n directions spread evenly over the sphere (1 looks along the x axis). Else three numbers
+    /// per view: the direction from the object to the sensor, of any length.
+    std::vector<double> views = {12};
+    /// Between neighbouring rays; above 0.
+    Length resolution = Length::percent_of_diagonal(0.5);
+    /// Standard deviation of the normally distributed error along the ray.
+    Length noise;
+    /// How many points lie anywhere in the bounding box grown by a tenth on all sides, as a share of the surface
+    /// points.
+    Ratio outliers = Ratio::percent(0);
+    /// Which share stays of the points that an earlier view has already seen: that have a kept point of an earlier view
+    /// nearer than `resolution`, before noise. 100 %: views do not know of each other; 0 %: no two views overlap.
+    Ratio overlap = Ratio::percent(100);
+    /// Nothing comes back from where ray and surface normal make a larger angle; above 0, at most 90 deg.
+    Angle max_angle = Angle::degrees(80);
+};
+
+struct VirtualScanResult {
+    /// View by view, each row by row; outliers at the end. In the mesh's frame, or in a new one of unknown unit.
+    /// Columns: `normal` (3 × f64): the surface's own, turned to the sensor; 0 0 0 for outliers. `view` (i32): the
+    /// number of the view; −1 for outliers.
+    PointCloud points;
+    /// From the object to the sensor, unit length, one per view.
+    std::vector<Vec3> directions;
+    /// Rays cast, over all views.
+    std::size_t rays = 0;
+    std::size_t outliers = 0;
+    /// Points that an earlier view had already seen and that were left out.
+    std::size_t dropped = 0;
+    /// `resolution` and `noise` in the scan's unit.
+    double resolution = 0;
+    double noise = 0;
+};
+
+/// Scans `mesh`, or `params.shape` when mesh is nullptr. Relative lengths refer to what is scanned: `%diag` to its
+/// bounding box, `spacing` to the mesh's median edge; both may be given resolved.
+///
+/// A mesh needs no topology: soups, holes and pieces inside one another are scanned as they are. Triangles without
+/// area, or seen edge on, are never hit; where two triangles are equally near, the lower row counts; rays through a
+/// shared edge or vertex never slip between triangles. Throws Error: a mesh and a shape, or neither; a mesh without
+/// triangles, with indices out of range, with a NaN or infinite vertex, without extent; a wrong number of sizes or
+/// views, a direction of length 0; a parameter out of its range; more than 2^28 rays; not a single point.
+/// Deterministic: bytes depend on the seed, not on the number of threads; views are scanned in parallel.
+/// Cost: time O(rays + pixels of the triangles' boxes), 12 bytes per ray of a view (shapes: 32) and thread.
+/// Reports the metrics `points`, `outliers` and `dropped`.
+VirtualScanResult virtual_scan(const TriangleMesh* mesh, const VirtualScanParams& params, Context& context);
+
+}  // namespace scanmill

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The commands: each adds itself to the parser and, when it is called, returns the program's exit code.
+/// Results go to stdout, everything else to stderr.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace scanmill::runner {
+
+/// 0 done, 1 some scans failed or an expect was not met, 2 bad arguments or workflow, 3 our own fault, 130 interrupted.
+enum ExitCode { done = 0, some_failed = 1, bad_request = 2, our_fault = 3, interrupted = 130 };
+
+using Action = std::function<int()>;
+
+void add_run(CLI::App& app, Action& chosen);
+void add_check(CLI::App& app, Action& chosen);
+void add_list(CLI::App& app, Action& chosen);
+void add_show(CLI::App& app, Action& chosen);
+void add_info(CLI::App& app, Action& chosen);
+void add_convert(CLI::App& app, Action& chosen);
+
+}  // namespace scanmill::runner

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "load.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill::runner {
+
+namespace {
+
+constexpr std::uintmax_t largest_workflow = 16u << 20;
+
+std::string read_text(const std::string& file) {
+    std::error_code trouble;
+    if (std::filesystem::is_directory(file, trouble)) throw Error("'{}' is a folder; expected a workflow file", file);
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error("'{}' cannot be opened; expected a workflow file", file);
+    const std::uintmax_t size = std::filesystem::file_size(file, trouble);
+    if (!trouble && size > largest_workflow)
+        throw Error("'{}' has {} bytes; a workflow has at most {}", file, size, largest_workflow);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+}  // namespace
+
+FilterLibrary open_library() {
+    std::vector<std::string> ignored;
+    FilterLibrary library(plugin_folders(&ignored));
+    for (const std::string& folder : ignored)
+        fmt::print(stderr, "warning: SCANMILL_PLUGIN_PATH: '{}' is passed over; only absolute folders are searched\n", folder);
+    return library;
+}
+
+CheckedWorkflow check_workflow(const std::string& file, const FilterLibrary& library, const Settings& settings) {
+    Diagnostics diagnostics(file);
+    Workflow workflow = parse_workflow(read_text(file), diagnostics);
+    Plan plan = make_plan(std::move(workflow), library, settings, diagnostics);
+    return {std::move(diagnostics), std::move(plan)};
+}
+
+Settings parse_settings(const std::vector<std::string>& pairs) {
+    Settings settings;
+    for (const std::string& pair : pairs) {
+        const std::size_t equals = pair.find('=');
+        if (equals == 0 || equals == std::string::npos) throw Error("--set {}: expected NAME=VALUE", pair);
+        Diagnostics diagnostics("--set " + pair);
+        ValueExpression value = parse_value_expression(pair.substr(equals + 1), diagnostics);
+        if (value.values.empty() && !diagnostics.has_errors()) diagnostics.error({}, "has no value");
+        for (const WrittenValue& written : value.values)
+            if (!written.reference.empty()) diagnostics.error({}, "cannot refer to another parameter");
+        if (diagnostics.has_errors()) throw Error("--set {}: {}", pair, diagnostics.sorted().front().message);
+        if (!settings.emplace(pair.substr(0, equals), std::move(value)).second)
+            throw Error("--set {} is given twice", pair.substr(0, equals));
+    }
+    return settings;
+}
+
+void print(const Diagnostics& diagnostics) {
+    for (const Diagnostic& diagnostic : diagnostics.sorted())
+        fmt::print(stderr, "{}\n", text(diagnostic, diagnostics.file()));
+    if (diagnostics.has_errors())
+        fmt::print(stderr, "{} error{} in '{}'\n", diagnostics.errors(), diagnostics.errors() == 1 ? "" : "s", diagnostics.file());
+}
+
+LengthUnit parse_unit(const std::string& symbol) {
+    if (symbol.empty()) return LengthUnit::unknown;
+    const std::optional<LengthUnit> unit = length_unit(symbol);
+    if (!unit) throw Error("'{}' is no unit; expected one of {}", symbol, length_unit_symbols());
+    return *unit;
+}
+
+}  // namespace scanmill::runner

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <new>
+
+#include "commands.hpp"
+#include "scanmill/filter/error.hpp"
+
+int main(int argc, char** argv) {
+    using namespace scanmill::runner;
+    CLI::App app("Scanmill turns libraries of 3D scans into surfaces, unattended.", "scanmill");
+    app.set_version_flag("--version", "scanmill " SCANMILL_VERSION);
+    app.require_subcommand(1);
+    app.set_help_all_flag("--help-all", "Help of every command");
+    Action chosen;
+    add_run(app, chosen);
+    add_check(app, chosen);
+    add_list(app, chosen);
+    add_show(app, chosen);
+    add_info(app, chosen);
+    add_convert(app, chosen);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        fmt::print(stderr, "error: {}\nhint: scanmill {}--help\n", error.what(),
+                   app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+        return bad_request;
+    }
+    try {
+        const int code = chosen();
+        if (std::fflush(stdout) != 0) {
+            fmt::print(stderr, "error: the output could not be written\n");
+            return our_fault;
+        }
+        return code;
+    } catch (const scanmill::Error& error) {
+        fmt::print(stderr, "error: {}\n", error.what());
+        return bad_request;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "error: an unexpected error: {}\n", error.what());
+        return our_fault;
+    }
+}

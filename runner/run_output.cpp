@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "scanmill/engine/facts.hpp"
+#include "table.hpp"
+
+namespace scanmill::runner {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string shown_path(const std::filesystem::path& file) {
+    const std::string relative = std::filesystem::proximate(file).string();
+    return relative.starts_with("..") ? file.string() : relative;
+}
+
+std::string node_label(const Plan& plan, const RunNode& node) {
+    return node.step ? plan.steps[*node.step].label : "read";
+}
+
+/// The numbers worth a column, of one cell, in the order of its steps.
+Metrics headline(const Plan& plan, const RunGraph& graph, const RunReport& report, std::size_t cell) {
+    Metrics shown;
+    for (const std::size_t index : graph.cells[cell].nodes) {
+        const RunNode& node = graph.nodes[index];
+        const NodeReport& done = report.nodes[index];
+        if (!node.step) {
+            if (node.input == 0)
+                for (const Metric& fact : done.facts.values) shown.set(fact.name, fact.value, fact.unit);
+            continue;
+        }
+        for (const MetricSpec& metric : plan.steps[*node.step].spec.metrics)
+            if (const Metric* found = done.metrics.find(metric.name); metric.headline && found)
+                shown.set(metric.name, found->value, found->unit);
+    }
+    for (const OutputReport& output : report.cells[cell].outputs)
+        if (output.kind == Kind::mesh && output.outcome == Outcome::done) {
+            for (const std::string_view name : {"triangles", "closed", "genus"})
+                if (const Metric* fact = output.facts.find(name)) shown.set(name, fact->value, fact->unit);
+            break;
+        }
+    return shown;
+}
+
+Json to_json(const Metrics& metrics) {
+    Json json = Json::object();
+    for (const Metric& metric : metrics.values)
+        json[metric.name] = metric.unit == Unit::boolean ? Json(metric.value != 0) : Json(metric.value);
+    return json;
+}
+
+Json to_json(const ParameterSet& parameters) {
+    Json json = Json::object();
+    for (const auto& [name, value] : parameters.values)
+        if (const std::string shown = text(value); !shown.empty()) json[name] = shown;
+    return json;
+}
+
+}  // namespace
+
+std::string graph_text(const Plan& plan, const RunGraph& graph) {
+    std::string text;
+    for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
+        const RunNode& node = graph.nodes[index];
+        text += fmt::format("{:>4}. {} {}{}\n", index + 1, node.key.substr(0, 8), node_label(plan, node),
+                            node.step ? "" : " " + node.file.string());
+        for (const NodeInput& input : node.inputs)
+            text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1, input.from.empty() ? "" : "." + input.from);
+        if (!node.unreadable.empty()) text += fmt::format("        {}\n", node.unreadable);
+    }
+    for (const RunCell& cell : graph.cells)
+        for (const RunOutput& output : cell.outputs)
+            text += fmt::format("{} [{}] -> {}\n", graph.scan_names[cell.scan], plan.variants[cell.variant].name, shown_path(output.file));
+    return text + fmt::format("{} to compute, {} cell{}\n", graph.nodes.size(), graph.cells.size(), graph.cells.size() == 1 ? "" : "s");
+}
+
+std::string graph_json(const Plan& plan, const RunGraph& graph) {
+    Json json{{"scanmill", 1}, {"nodes", Json::array()}, {"cells", Json::array()}};
+    for (const RunNode& node : graph.nodes) {
+        Json entry{{"key", node.key}, {"step", node_label(plan, node)}, {"in", Json::array()}};
+        if (!node.step) entry["file"] = node.file.string();
+        if (!node.unreadable.empty()) entry["unreadable"] = node.unreadable;
+        for (const NodeInput& input : node.inputs)
+            entry["in"].push_back({{"port", input.port}, {"node", input.node}, {"from", input.from}});
+        json["nodes"].push_back(std::move(entry));
+    }
+    for (const RunCell& cell : graph.cells) {
+        Json entry{{"scan", graph.scan_names[cell.scan]}, {"variant", plan.variants[cell.variant].name}, {"nodes", cell.nodes},
+                   {"outputs", Json::array()}};
+        for (const RunOutput& output : cell.outputs) entry["outputs"].push_back(output.file.string());
+        json["cells"].push_back(std::move(entry));
+    }
+    return json.dump(2);
+}
+
+std::string report_text(const Plan& plan, const RunGraph& graph, const RunReport& report) {
+    std::vector<Metrics> numbers;
+    std::vector<std::string> columns;
+    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
+        numbers.push_back(headline(plan, graph, report, cell));
+        for (const Metric& metric : numbers.back().values)
+            if (std::ranges::find(columns, metric.name) == columns.end()) columns.push_back(metric.name);
+    }
+    const bool several_variants = plan.variants.size() > 1;
+    std::vector<std::string> headers{"scan"};
+    if (several_variants) headers.push_back("variant");
+    headers.insert(headers.end(), columns.begin(), columns.end());
+    headers.insert(headers.end(), {"seconds", "result"});
+    Table table(std::move(headers));
+    std::size_t failed = 0;
+    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
+        const CellReport& done = report.cells[cell];
+        if (done.outcome == Outcome::failed) ++failed;
+        std::vector<std::string> row{std::filesystem::path(graph.scan_names[graph.cells[cell].scan]).filename().string()};
+        if (several_variants) row.push_back(plan.variants[graph.cells[cell].variant].name);
+        for (const std::string& column : columns) {
+            const Metric* metric = numbers[cell].find(column);
+            row.push_back(metric ? display(*metric) : "-");
+        }
+        row.push_back(fmt::format("{:.2f}", done.seconds));
+        std::string result = done.outcome == Outcome::done ? "" : std::string(name_of(done.outcome));
+        for (const OutputReport& output : done.outputs)
+            if (output.outcome == Outcome::done) result += (result.empty() ? "" : ", ") + shown_path(output.file);
+        row.push_back(result.empty() ? "done" : result);
+        table.add(std::move(row));
+    }
+    std::string text = table.text();
+    if (failed > 0) text += fmt::format("{} of {} failed; the reasons are on stderr\n", failed, graph.cells.size());
+    return text;
+}
+
+std::string report_json(const Plan& plan, const RunGraph& graph, const RunReport& report) {
+    Json json{{"scanmill", 1}, {"workflow", plan.workflow.name}, {"interrupted", report.interrupted}, {"steps", Json::array()}, {"cells", Json::array()}};
+    for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
+        const RunNode& node = graph.nodes[index];
+        const NodeReport& done = report.nodes[index];
+        Json entry{{"key", node.key}, {"step", node_label(plan, node)}, {"outcome", name_of(done.outcome)}, {"seconds", done.seconds}};
+        if (node.step)
+            entry["filter"] = plan.steps[*node.step].spec.name;
+        else
+            entry["file"] = node.file.string();
+        if (!done.resolved.values.empty()) entry["parameters"] = to_json(done.resolved);
+        if (!done.metrics.values.empty()) entry["metrics"] = to_json(done.metrics);
+        if (!done.facts.values.empty()) entry["facts"] = to_json(done.facts);
+        if (!done.warnings.empty()) entry["warnings"] = done.warnings;
+        if (!done.error.empty()) entry["error"] = done.error;
+        json["steps"].push_back(std::move(entry));
+    }
+    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
+        const CellReport& done = report.cells[cell];
+        Json entry{{"scan", graph.scan_names[graph.cells[cell].scan]}, {"variant", plan.variants[graph.cells[cell].variant].name},
+                   {"outcome", name_of(done.outcome)}, {"seconds", done.seconds}, {"steps", graph.cells[cell].nodes}, {"outputs", Json::array()}};
+        if (!done.error.empty()) entry["error"] = done.error;
+        for (const OutputReport& output : done.outputs) {
+            Json file{{"file", output.file.string()}, {"outcome", name_of(output.outcome)}, {"kind", name_of(output.kind)}, {"facts", to_json(output.facts)}};
+            if (!output.warnings.empty()) file["warnings"] = output.warnings;
+            entry["outputs"].push_back(std::move(file));
+        }
+        json["cells"].push_back(std::move(entry));
+    }
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace scanmill::runner

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "load.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/suggestion.hpp"
+
+namespace scanmill::runner {
+
+namespace {
+
+void print_ports(std::string_view title, const std::vector<PortSpec>& ports) {
+    if (ports.empty()) return;
+    fmt::print("\n{}\n", title);
+    for (const PortSpec& port : ports)
+        fmt::print("  {} ({}{}{})\n      {}\n", port.name, name_of(port.kind), port.list ? ", any number" : "",
+                   port.optional ? ", optional" : "", port.help);
+}
+
+void print_parameter(const ParameterSpec& parameter) {
+    const std::string value = text(parameter.default_value);
+    fmt::print("  {}{}\n      {}\n      {}\n", parameter.name,
+               parameter.required ? " (required)" : value.empty() ? "" : " = " + value, parameter.help,
+               "Takes " + expectation(parameter) + ".");
+    for (const Choice& choice : parameter.choices) fmt::print("      {}: {}\n", choice.name, choice.help);
+}
+
+void print_text(const FilterSpec& spec) {
+    fmt::print("{} (version {})\n  {}\n  Source: {}\n", spec.name, spec.version, spec.summary, spec.source);
+    print_ports("Takes", spec.inputs);
+    print_ports("Gives (the first is what the step's name alone means)", spec.outputs);
+    if (!spec.parameters.empty()) fmt::print("\nParameters\n");
+    for (const ParameterSpec& parameter : spec.parameters) print_parameter(parameter);
+    if (!spec.metrics.empty()) fmt::print("\nMetrics\n");
+    for (const MetricSpec& metric : spec.metrics)
+        fmt::print("  {} ({})\n      {}\n", metric.name, name_of(metric.unit), metric.help);
+}
+
+/// A value that the parameter would take, for examples of required ones.
+std::string sample(const ParameterSpec& parameter) {
+    switch (parameter.type) {
+        case ParameterType::boolean: return "true";
+        case ParameterType::choice: return parameter.choices.front().name;
+        case ParameterType::length: return "1 %diag";
+        case ParameterType::angle: return "40 deg";
+        case ParameterType::ratio: return "5 %";
+        case ParameterType::text: return "text";
+        case ParameterType::path: return "file";
+        case ParameterType::integer:
+        case ParameterType::number: break;
+    }
+    const double low = parameter.low ? parameter.low->value + (parameter.low->inclusive ? 0 : 1) : 1;
+    return number_text(low);
+}
+
+/// A whole workflow with this filter alone, every parameter at its default: passes `scanmill check`.
+void print_example(const FilterSpec& spec) {
+    fmt::print("scanmill: 1\nname: {}-example\n", spec.name);
+    std::string wiring;
+    if (!spec.inputs.empty()) fmt::print("inputs:\n");
+    for (const PortSpec& port : spec.inputs) {
+        const bool readable = port.kind == Kind::points || port.kind == Kind::mesh;
+        fmt::print("  {}{}: {}{}\n", readable ? "" : "# from an earlier step: ", port.name,
+                   port.list ? "[" + std::string(name_of(port.kind)) + "]" : name_of(port.kind), "");
+    }
+    fmt::print("steps:\n  - {}:\n", spec.name);
+    for (const ParameterSpec& parameter : spec.parameters) {
+        const std::string value = text(parameter.default_value);
+        const bool given = !value.empty() || parameter.required;
+        fmt::print("      {}{}: {}\n", given ? "" : "# ", parameter.name, value.empty() ? sample(parameter) : value);
+    }
+    const Kind kind = spec.outputs.front().kind;
+    if (kind == Kind::points || kind == Kind::mesh) fmt::print("outputs:\n  \"{{scan}}.ply\": {}\n", spec.name);
+}
+
+int show(const std::string& name, bool json, bool example) {
+    const FilterLibrary library = open_library();
+    const FilterSpec* spec = library.find(name);
+    if (!spec) {
+        for (const UnusableModule& module : library.unusable())
+            if (module.name == name)
+                throw Error("the filter '{}' cannot be used: '{}' {}", name, module.manifest.string(), module.reason);
+        throw Error("there is no filter '{}'{}", name, did_you_mean(name, library.names())).hint("scanmill list");
+    }
+    if (example) {
+        print_example(*spec);
+    } else if (json) {
+        auto described = nlohmann::ordered_json::parse(to_json_text({"", *spec}));
+        described.erase("scanmill-manifest");
+        described.erase("abi");
+        fmt::print("{}\n", nlohmann::ordered_json{{"scanmill", 1}, {"filter", std::move(described)}}.dump(2));
+    } else {
+        print_text(*spec);
+    }
+    return done;
+}
+
+}  // namespace
+
+void add_show(CLI::App& app, Action& chosen) {
+    struct Options {
+        std::string filter;
+        bool json = false, example = false;
+    };
+    CLI::App* command = app.add_subcommand("show", "Shows what a filter takes, gives and can be told");
+    auto options = std::make_shared<Options>();
+    command->add_option("FILTER", options->filter, "The filter's name")->required();
+    command->add_flag("--json", options->json, "Print the declaration as JSON");
+    command->add_flag("--example", options->example, "Print a workflow with this filter, every parameter at its default");
+    command->callback([&chosen, options] {
+        chosen = [options] { return show(options->filter, options->json, options->example); };
+    });
+}
+
+}  // namespace scanmill::runner

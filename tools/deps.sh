@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs the Debian packages that Scanmill is built from; `deps.sh bench` those of the benches as well.
+# Asks nothing, and touches nothing when all of them are there.
+set -euo pipefail
+
+packages=(
+    build-essential cmake ninja-build ccache clang-format-16
+    libcgal-dev libeigen3-dev libflann-dev libtbb-dev libyaml-cpp-dev libfmt-dev libxxhash-dev
+    libcli11-dev nlohmann-json3-dev libgtest-dev libgmock-dev)
+if [ "${1:-}" = bench ]; then packages+=(libpcl-dev libbenchmark-dev); fi
+if [ "${1:-}" = lint ]; then packages+=(clang-tidy-16); fi
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+    [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+echo "installing ${missing[*]}"
+as_root=()
+if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || { echo "error: not root and no sudo; install as root: ${missing[*]}" >&2; exit 1; }
+    as_root=(sudo)
+fi
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
