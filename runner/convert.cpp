@@ -4,8 +4,85 @@
 #include "commands.hpp"
 #include "load.hpp"
 #include "scanmill/filter/error.hpp"
+#include "scanmill/formats/convert.hpp"
 #include "scanmill/formats/files.hpp"
 
 namespace scanmill::runner {
-void add_convert(CLI::App&, Action&) {}
+
+namespace {
+
+struct Options {
+    std::string from, to, unit, to_unit;
+    bool drop_invalid = false;
+};
+
+/// Positions and origin multiplied, so that the numbers are in `unit`.
+template <class T>
+std::shared_ptr<const T> rescaled(const T& value, LengthUnit unit, double factor) {
+    T scaled = value;
+    Array<Vec3> positions(value.positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = factor * value.positions[i];
+    scaled.positions = std::move(positions);
+    scaled.frame.origin *= factor;
+    scaled.frame.unit = unit;
+    return std::make_shared<const T>(std::move(scaled));
 }
+
+template <class T>
+Value tell_dropped(Cleaned<T> cleaned, const std::function<void(std::string)>& warn) {
+    if (cleaned.points > 0)
+        warn(fmt::format("{} points with a NaN or an infinity were left out, and {} triangles on them", cleaned.points, cleaned.triangles));
+    return std::make_shared<const T>(std::move(cleaned.result));
+}
+
+Value without_invalid(const Value& value, const std::function<void(std::string)>& warn) {
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
+        return tell_dropped(without_invalid_points(**mesh), warn);
+    return tell_dropped(without_invalid_points(*std::get<std::shared_ptr<const PointCloud>>(value)), warn);
+}
+
+Value in_unit(const Value& value, LengthUnit unit) {
+    const LengthUnit from = frame_of(value)->unit;
+    if (from == LengthUnit::unknown)
+        throw Error("--to-unit {}: the unit of the input is not known", symbol(unit)).hint("say it with --unit");
+    const double factor = metres(from) / metres(unit);
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value)) return rescaled(**mesh, unit, factor);
+    return rescaled(*std::get<std::shared_ptr<const PointCloud>>(value), unit, factor);
+}
+
+int convert(const Options& options) {
+    const auto warn = [](const std::string& text) { fmt::print(stderr, "warning: {}\n", text); };
+    const LengthUnit to_unit = parse_unit(options.to_unit);
+    ReadOptions read;
+    read.on_warning = warn;
+    read.unit = parse_unit(options.unit);
+    try {
+        if (std::error_code absent; std::filesystem::equivalent(options.from, options.to, absent))
+            throw Error("'{}' is the input; the output must not replace it", options.to);
+        Value value = read_file(options.from, read).value;
+        if (options.drop_invalid) value = without_invalid(value, warn);
+        if (to_unit != LengthUnit::unknown) value = in_unit(value, to_unit);
+        WriteOptions write;
+        write.on_warning = warn;
+        write_file(options.to, value, write);
+    } catch (const Error& error) {
+        fmt::print(stderr, "error: {}\n", error.what());
+        return some_failed;
+    }
+    return done;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Action& chosen) {
+    CLI::App* command = app.add_subcommand("convert", "Writes a scan or mesh in another format; the extension says which");
+    auto options = std::make_shared<Options>();
+    command->add_option("FROM", options->from, "The file to read")->required();
+    command->add_option("TO", options->to, "The file to write")->required();
+    command->add_option("--unit", options->unit, "The input's unit of length: um, mm, cm, m, in, ft");
+    command->add_option("--to-unit", options->to_unit, "Convert the coordinates to this unit");
+    command->add_flag("--drop-invalid", options->drop_invalid, "Leave out points with a NaN or infinite coordinate, and faces on them");
+    command->callback([&chosen, options] { chosen = [options] { return convert(*options); }; });
+}
+
+}  // namespace scanmill::runner

@@ -33,6 +33,7 @@ void GrowingSolid::solidify(u32 seed) {
         stack_.pop_back();
         for (u32 vertex : tets_.cells[cell]) {
             if (std::exchange(is_suspect_[vertex], u8(1)) == 0) suspects_.push_back(vertex);
+            witness_changed_ |= vertex == witness_;
             covered_count_ += std::exchange(covered_[vertex], u8(1)) == 0;
         }
         for (u32 across : tets_.neighbours[cell])
@@ -59,9 +60,17 @@ void GrowingSolid::add_joined(std::span<const u32> cells) {
 }
 
 bool GrowingSolid::is_manifold() {
+    if (witness_ != no_vertex && !witness_changed_) return false;
     while (!suspects_.empty()) {
-        if (!is_manifold_at(suspects_.back())) return false;
-        is_suspect_[suspects_.back()] = 0;
+        // The witness stays at the end of the list, unless others were added behind it.
+        const u32 vertex = witness_ != no_vertex ? witness_ : suspects_.back();
+        witness_changed_ = false;
+        if (!is_manifold_at(vertex)) {
+            witness_ = vertex;
+            return false;
+        }
+        if (std::exchange(witness_, no_vertex) != no_vertex) continue;
+        is_suspect_[vertex] = 0;
         suspects_.pop_back();
     }
     return true;

@@ -30,6 +30,8 @@ public:
     std::size_t covered() const { return covered_count_; }
 
 private:
+    static constexpr u32 no_vertex = ~u32(0);
+
     void solidify(u32 cell);
     bool is_manifold_at(u32 vertex);
     /// Cells round the vertex, into star_.
@@ -38,6 +40,9 @@ private:
     const TetMesh& tets_;
     Array<u8> labels_;
     std::vector<u32> suspects_;
+    /// A suspect that was not manifold when last looked at, and whether its star has changed since.
+    u32 witness_ = no_vertex;
+    bool witness_changed_ = false;
     Array<u8> is_suspect_, covered_;
     std::size_t covered_count_ = 0;
     /// Any cell round each vertex.

@@ -23,7 +23,7 @@ class Selector {
 public:
     Selector(const TetMesh& tets, const Flood& flood, const AlphaSolidParams& params, Context& context);
 
-    /// The alpha-solid at squared radius `value`.
+    /// The alpha-solid at squared radius `value`, whatever its boundary.
     Selection given(double value) const;
     /// The least valid alpha-solid, or a repaired one when none is valid up to four times alpha_cover.
     Selection scan() const;
@@ -31,20 +31,20 @@ public:
     Selection bisect() const;
 
 private:
-    /// Everything about the alpha-solid without the flood's first `outside` cells; the costly facts only when asked for.
+    class Growth;
+
     Selection solid_without(std::size_t outside) const;
-    Selection described(Array<u8> labels, std::size_t outside) const;
+    Selection described(Array<u8> labels, std::size_t outside, AlphaChoice choice) const;
     bool is_valid(const Selection& selection) const;
-    /// Adds level after level to `start` while `wanted` says so.
-    Selection repaired(Selection start) const;
-    std::size_t covered_points(std::span<const u8> labels) const;
+    Selection repaired(const Selection& start) const;
 
     const TetMesh& tets_;
     const Flood& flood_;
     Context& context_;
     AlphaSearch search_;
-    bool single_;
-    /// `single` with less than full coverage: pieces but the largest are left out.
+    /// `single` with full coverage: only a solid in one piece is valid.
+    bool one_piece_;
+    /// `single` with less: pieces but the largest are left out.
     bool keeps_largest_;
 };
 

@@ -31,7 +31,8 @@ struct Variants {
     }
     void end_row() { ascii += "\n"; }
     static Variants begin() {
-        return {"ply\nformat ascii 1.0\n", "ply\nformat binary_little_endian 1.0\n", "ply\nformat binary_big_endian 1.0\n"};
+        return {"ply\nformat ascii 1.0\n", "ply\nformat binary_little_endian 1.0\n",
+                "ply\nformat binary_big_endian 1.0\n"};
     }
 };
 
@@ -43,7 +44,8 @@ Variants random_file(std::mt19937& random, std::size_t vertices, std::size_t fac
               "property uint b\nproperty float32 y\nproperty int16 c\nproperty list uint8 float64 list_of_double\n"
               "property uint64 d\nproperty float nx\nproperty float ny\nproperty float nz\n"
               "element unknown 3\nproperty list int float stuff\nproperty uchar more\nelement face " +
-              std::to_string(faces) + "\nproperty uchar label\nproperty list int8 uint vertex_indices\nproperty int64 key\nend_header\n");
+              std::to_string(faces) +
+              "\nproperty uchar label\nproperty list int8 uint vertex_indices\nproperty int64 key\nend_header\n");
     const auto real = [&] { return static_cast<float>(static_cast<int>(random() % 20001) - 10000) / 16.0f; };
     for (std::size_t row = 0; row < vertices; ++row) {
         file.number(static_cast<std::int8_t>(random()));
@@ -111,10 +113,11 @@ TEST(PlyReader_Encodings, AreNamed) {
 template <class Scalar>
 std::string points_file(const std::vector<std::array<Scalar, 3>>& points, bool side_by_side, bool big_endian) {
     const std::string type = sizeof(Scalar) == 4 ? "float" : "double";
-    std::string file = "ply\nformat binary_" + std::string(big_endian ? "big" : "little") + "_endian 1.0\nelement vertex " +
-                       std::to_string(points.size()) + "\nproperty uchar before\n";
+    std::string file = "ply\nformat binary_" + std::string(big_endian ? "big" : "little") +
+                       "_endian 1.0\nelement vertex " + std::to_string(points.size()) + "\nproperty uchar before\n";
     for (const char* axis : {"x", "y", "z"})
-        file += "property " + type + " " + axis + "\n" + (side_by_side || *axis == 'z' ? "" : std::string("property uchar after_") + axis + "\n");
+        file += "property " + type + " " + axis + "\n" +
+                (side_by_side || *axis == 'z' ? "" : std::string("property uchar after_") + axis + "\n");
     file += "property short after\nend_header\n";
     for (std::size_t row = 0; row < points.size(); ++row) {
         file += bytes_of(static_cast<u8>(row));
@@ -141,7 +144,8 @@ void expect_all_ways_alike(const std::vector<std::array<Scalar, 3>>& points) {
                     ASSERT_TRUE(found == expected || (std::isnan(found) && std::isnan(expected))) << row << " " << axis;
                 }
             }
-            EXPECT_EQ(numbers_of<std::int16_t>(cloud->columns.find("after")).back(), static_cast<std::int16_t>(points.size() - 1));
+            EXPECT_EQ(numbers_of<std::int16_t>(cloud->columns.find("after")).back(),
+                      static_cast<std::int16_t>(points.size() - 1));
             EXPECT_EQ(numbers_of<u8>(cloud->columns.find("before")).back(), static_cast<u8>(points.size() - 1));
         }
 }
@@ -181,7 +185,9 @@ TEST(PlyReader_Positions, FarPointsAmongInvalidOnes_GetTheOriginOfTheFiniteOnes)
 }
 
 TEST(PlyReader_Positions, IntegerCoordinates_BecomeDouble) {
-    std::string file = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty char x\nproperty ushort y\nproperty int z\nend_header\n";
+    std::string file =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty char x\nproperty ushort y\nproperty int "
+        "z\nend_header\n";
     file += bytes_of(std::int8_t(-5)) + bytes_of(std::uint16_t(65535)) + bytes_of(std::int32_t(-2000000000));
     EXPECT_EQ(world_of(*points_in(file, "a.ply"), 0), Vec3(-5, 65535, -2000000000));
 }

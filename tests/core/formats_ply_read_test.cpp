@@ -27,7 +27,8 @@ TEST(PlyReader_Ascii, NormalsAndColours_BecomeOneColumnEach_OthersKeepNameAndTyp
         "a.ply");
     EXPECT_EQ(cloud->positions[1], Vec3(4, 5, 6));
     EXPECT_EQ(cloud->columns.size(), 4u);
-    EXPECT_THAT(numbers_of<float>(cloud->columns.find("normal")), ElementsAre(0.25f, 0.125f, 0.5f, -0.25f, -0.125f, -0.5f));
+    EXPECT_THAT(numbers_of<float>(cloud->columns.find("normal")),
+                ElementsAre(0.25f, 0.125f, 0.5f, -0.25f, -0.125f, -0.5f));
     EXPECT_THAT(numbers_of<u8>(cloud->columns.find("colour")), ElementsAre(10, 20, 30, 40, 11, 21, 31, 41));
     EXPECT_EQ(cloud->columns.find("colour")->components(), 4u);
     EXPECT_THAT(numbers_of<std::uint16_t>(cloud->columns.find("row")), ElementsAre(65535, 7));
@@ -35,8 +36,10 @@ TEST(PlyReader_Ascii, NormalsAndColours_BecomeOneColumnEach_OthersKeepNameAndTyp
 }
 
 TEST(PlyReader_Ascii, FloatColours_StayColumnsOfTheirOwn) {
-    const auto cloud = points_in(ascii("element vertex 1\n" + xyz + "property float red\nproperty float green\nproperty float blue\n",
-                                       "0 0 0 0 0.5 1\n"), "a.ply");
+    const auto cloud =
+        points_in(ascii("element vertex 1\n" + xyz + "property float red\nproperty float green\nproperty float blue\n",
+                        "0 0 0 0 0.5 1\n"),
+                  "a.ply");
     EXPECT_EQ(cloud->columns.find("colour"), nullptr);
     EXPECT_THAT(numbers_of<float>(cloud->columns.find("green")), ElementsAre(0.5f));
 }
@@ -48,13 +51,15 @@ TEST(PlyReader_Ascii, CoordinatesDeclaredFloat_KeepAllTheirDigits) {
 
 TEST(PlyReader_Ascii, Polygon_BecomesAFan_ItsColumnsRepeated) {
     Told told;
-    const auto mesh = mesh_in(ascii("element vertex 5\n" + xyz + "element face 4\n" + corners + "property short part\n",
-                                    "0 0 0\n2 0 0\n3 1 0\n2 2 0\n0 2 0\n5 0 1 2 3 4 70\n3 0 1 2 71\n2 0 1 72\n4 4 3 2 1 73\n"),
-                              "a.ply", &told);
-    EXPECT_THAT(mesh->triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4}, Triangle{0, 1, 2},
-                                             Triangle{4, 3, 2}, Triangle{4, 2, 1}));
+    const auto mesh =
+        mesh_in(ascii("element vertex 5\n" + xyz + "element face 4\n" + corners + "property short part\n",
+                      "0 0 0\n2 0 0\n3 1 0\n2 2 0\n0 2 0\n5 0 1 2 3 4 70\n3 0 1 2 71\n2 0 1 72\n4 4 3 2 1 73\n"),
+                "a.ply", &told);
+    EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4},
+                                                      Triangle{0, 1, 2}, Triangle{4, 3, 2}, Triangle{4, 2, 1}));
     EXPECT_THAT(numbers_of<std::int16_t>(mesh->face_columns.find("part")), ElementsAre(70, 70, 70, 71, 73, 73));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("2 faces of more than three corners"), HasSubstr("1 face of fewer")));
+    EXPECT_THAT(told.sentences,
+                ElementsAre(HasSubstr("2 faces of more than three corners"), HasSubstr("1 face of fewer")));
 }
 
 TEST(PlyReader_Ascii, CarriageReturnsInHeaderAndBody_AreBlanks) {
@@ -67,13 +72,14 @@ TEST(PlyReader_Ascii, CarriageReturnsInHeaderAndBody_AreBlanks) {
     for (const std::string& variant : {dos, mac}) {
         const auto mesh = mesh_in(variant, "a.ply");
         EXPECT_EQ(mesh->positions[1], Vec3(1, 0, 0));
-        EXPECT_THAT(mesh->triangles, ElementsAre(Triangle{0, 1, 2}));
+        EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}));
     }
 }
 
 TEST(PlyReader_Ascii, NumbersWrittenOddly_AreNumbers) {
     const auto cloud = points_in(ascii("element vertex 2\n" + xyz + "property int count\n",
-                                       "\n  NaN\t+2.5e0 -INF 3.0\n\n nan(7) 1E-400 infinity +4"), "a.ply");
+                                       "\n  NaN\t+2.5e0 -INF 3.0\n\n nan(7) 1E-400 infinity +4"),
+                                 "a.ply");
     EXPECT_TRUE(std::isnan(cloud->positions[0][0]));
     EXPECT_EQ(cloud->positions[0][1], 2.5);
     EXPECT_EQ(cloud->positions[0][2], -std::numeric_limits<double>::infinity());
@@ -87,31 +93,36 @@ TEST(PlyReader_Ascii, IntegerBeyondItsType_IsRefusedWithItsLine) {
     const std::string header = "element vertex 1\n" + xyz + "property char level\n";
     EXPECT_THAT(refusal_of(ascii(header, "0 0 0 128\n"), "a.ply"), HasSubstr("line 9: '128'"));
     EXPECT_THAT(refusal_of(ascii(header, "0 0 0 1.5\n"), "a.ply"), HasSubstr("line 9: '1.5'"));
-    EXPECT_EQ(numbers_of<std::int8_t>(points_in(ascii(header, "0 0 0 -128\n"), "a.ply")->columns.find("level")).at(0), -128);
+    EXPECT_EQ(numbers_of<std::int8_t>(points_in(ascii(header, "0 0 0 -128\n"), "a.ply")->columns.find("level")).at(0),
+              -128);
 }
 
 TEST(PlyReader_Ascii, UnsignedLimits_AreExact) {
     const std::string header = "element vertex 1\n" + xyz + "property uint64 id\nproperty int64 key\n";
     const auto cloud = points_in(ascii(header, "0 0 0 18446744073709551615 -9223372036854775808\n"), "a.ply");
     EXPECT_THAT(numbers_of<u64>(cloud->columns.find("id")), ElementsAre(~u64(0)));
-    EXPECT_THAT(numbers_of<std::int64_t>(cloud->columns.find("key")), ElementsAre(std::numeric_limits<std::int64_t>::min()));
-    EXPECT_THAT(refusal_of(ascii(header, "0 0 0 18446744073709551616 0\n"), "a.ply"), HasSubstr("'18446744073709551616'"));
+    EXPECT_THAT(numbers_of<std::int64_t>(cloud->columns.find("key")),
+                ElementsAre(std::numeric_limits<std::int64_t>::min()));
+    EXPECT_THAT(refusal_of(ascii(header, "0 0 0 18446744073709551616 0\n"), "a.ply"),
+                HasSubstr("'18446744073709551616'"));
 }
 
 TEST(PlyReader_Ascii, ValuesBehindTheLastProperty_ArePassedOverAndTold) {
     Told told;
-    const auto mesh = mesh_in(ascii(three_vertices + "element face 1\n" + corners, "0 0 0 9\n1 0 0\n0 1 0 8 7\n3 0 1 2\n"),
-                              "a.ply", &told);
-    EXPECT_THAT(mesh->triangles, ElementsAre(Triangle{0, 1, 2}));
-    EXPECT_THAT(told.sentences, ElementsAre(testing::AllOf(HasSubstr("2 rows of element 'vertex'"), HasSubstr("line 10"))));
+    const auto mesh = mesh_in(
+        ascii(three_vertices + "element face 1\n" + corners, "0 0 0 9\n1 0 0\n0 1 0 8 7\n3 0 1 2\n"), "a.ply", &told);
+    EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}));
+    EXPECT_THAT(told.sentences,
+                ElementsAre(testing::AllOf(HasSubstr("2 rows of element 'vertex'"), HasSubstr("line 10"))));
 }
 
 TEST(PlyReader_Ascii, ListColumnOfVertices_BecomesAListColumn) {
-    const auto cloud = points_in(ascii("element vertex 3\nproperty list int double near\n" + xyz, "2 0.5 1.5 0 0 0\n0 1 0 0\n1 -1 2 0 0\n"),
-                                 "a.ply");
+    const auto cloud = points_in(
+        ascii("element vertex 3\nproperty list int double near\n" + xyz, "2 0.5 1.5 0 0 0\n0 1 0 0\n1 -1 2 0 0\n"),
+        "a.ply");
     const Column* near = cloud->columns.find("near");
     ASSERT_TRUE(near && near->is_list());
-    EXPECT_THAT(near->offsets(), ElementsAre(0u, 2u, 2u, 3u));
+    EXPECT_THAT(rows_of(near->offsets()), ElementsAre(0u, 2u, 2u, 3u));
     EXPECT_THAT(numbers_of<double>(near), ElementsAre(0.5, 1.5, -1.0));
     EXPECT_EQ(cloud->positions[2], Vec3(2, 0, 0));
 }
@@ -119,47 +130,64 @@ TEST(PlyReader_Ascii, ListColumnOfVertices_BecomesAListColumn) {
 TEST(PlyReader_Ascii, RangeGridWithoutFaces_IsAPointCloudAndTold) {
     Told told;
     const auto cloud = points_in(ascii("obj_info num_cols 2\nelement vertex 1\n" + xyz +
-                                       "element range_grid 3\nproperty list uchar int vertex_indices\n", "5 6 7\n0\n1 0\n0\n"),
+                                           "element range_grid 3\nproperty list uchar int vertex_indices\n",
+                                       "5 6 7\n0\n1 0\n0\n"),
                                  "a.ply", &told);
     EXPECT_EQ(world_of(*cloud, 0), Vec3(5, 6, 7));
     EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("'range_grid' with its 3 rows")));
 }
 
 TEST(PlyReader_Edges, WithColumns_AreKeptSmallerVertexFirst) {
-    const auto mesh = mesh_in(ascii(three_vertices + "element edge 2\nproperty int vertex1\nproperty int vertex2\nproperty float bend\n"
-                                    "element face 1\n" + corners, right_triangle + "2 0 0.5\n1 2 0.25\n3 0 1 2\n"), "a.ply");
-    EXPECT_THAT(mesh->edges, ElementsAre(Edge{0, 2}, Edge{1, 2}));
+    const auto mesh =
+        mesh_in(ascii(three_vertices +
+                          "element edge 2\nproperty int vertex1\nproperty int vertex2\nproperty float bend\n"
+                          "element face 1\n" +
+                          corners,
+                      right_triangle + "2 0 0.5\n1 2 0.25\n3 0 1 2\n"),
+                "a.ply");
+    EXPECT_THAT(rows_of(mesh->edges), ElementsAre(Edge{0, 2}, Edge{1, 2}));
     EXPECT_THAT(numbers_of<float>(mesh->edge_columns.find("bend")), ElementsAre(0.5f, 0.25f));
 }
 
 TEST(PlyReader_Edges, WithoutColumnsOrWithoutFaces_AreTold) {
     Told told;
     const std::string edges = "element edge 1\nproperty int vertex1\nproperty int vertex2\n";
-    EXPECT_TRUE(mesh_in(ascii(three_vertices + edges + "element face 1\n" + corners, right_triangle + "0 1\n3 0 1 2\n"), "a.ply", &told)->edges.empty());
-    EXPECT_EQ(points_in(ascii(three_vertices + edges + "property int a\n", right_triangle + "0 1 5\n"), "a.ply", &told)->size(), 3u);
+    EXPECT_TRUE(mesh_in(ascii(three_vertices + edges + "element face 1\n" + corners, right_triangle + "0 1\n3 0 1 2\n"),
+                        "a.ply", &told)
+                    ->edges.empty());
+    EXPECT_EQ(points_in(ascii(three_vertices + edges + "property int a\n", right_triangle + "0 1 5\n"), "a.ply", &told)
+                  ->size(),
+              3u);
     EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 edge was left out"), HasSubstr("1 edge was left out")));
 }
 
 TEST(PlyReader_Strips, TurnEveryOtherTriangle_RestartAtMinusOne_SkipRepeats) {
-    // Strip 0 1 2 3: (0 1 2)(2 1 3). Strip 4 3 2: one. Strip 0 0 1 2: the first names 0 twice, the second is an odd one.
-    const auto mesh = mesh_in(ascii("element vertex 5\n" + xyz + "element tristrips 1\nproperty list int int vertex_indices\n",
-                                    "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 0\n12 0 1 2 3 -1 4 3 2 -1 0 0 1\n"), "a.ply");
-    EXPECT_THAT(mesh->triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{2, 1, 3}, Triangle{4, 3, 2}));
+    // Strip 0 1 2 3: (0 1 2)(2 1 3). Strip 4 3 2: one. Strip 0 0 1 2: the first names 0 twice, the second is an odd
+    // one.
+    const auto mesh =
+        mesh_in(ascii("element vertex 5\n" + xyz + "element tristrips 1\nproperty list int int vertex_indices\n",
+                      "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 0\n12 0 1 2 3 -1 4 3 2 -1 0 0 1\n"),
+                "a.ply");
+    EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}, Triangle{2, 1, 3}, Triangle{4, 3, 2}));
 }
 
 TEST(PlyReader_Faces, OfAnyIndexType_AndEitherName) {
     for (const char* type : {"char", "uchar", "short", "ushort", "int", "uint", "int64", "uint64", "float", "double"})
         for (const char* name : {"vertex_indices", "vertex_index"}) {
             const std::string list = std::string("property list int ") + type + " " + name + "\n";
-            const auto mesh = mesh_in(ascii(three_vertices + "element face 1\n" + list, right_triangle + "3 2 1 0\n"), "a.ply");
-            EXPECT_THAT(mesh->triangles, ElementsAre(Triangle{2, 1, 0})) << type << " " << name;
+            const auto mesh =
+                mesh_in(ascii(three_vertices + "element face 1\n" + list, right_triangle + "3 2 1 0\n"), "a.ply");
+            EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{2, 1, 0})) << type << " " << name;
         }
-    EXPECT_THAT(refusal_of(ascii(three_vertices + "element face 1\nproperty list int double vertex_index\n", right_triangle + "3 2 1 0.5\n"), "a.ply"),
+    EXPECT_THAT(refusal_of(ascii(three_vertices + "element face 1\nproperty list int double vertex_index\n",
+                                 right_triangle + "3 2 1 0.5\n"),
+                           "a.ply"),
                 HasSubstr("face 0 names vertex 0.5"));
 }
 
 TEST(PlyReader_Frame, CommentsGiveUnitAndName_OptionsOverrule) {
-    const std::string text = ascii("comment unit mm\ncomment frame part\ncomment united we stand\n" + ("element vertex 1\n" + xyz), "1 2 3\n");
+    const std::string text = ascii(
+        "comment unit mm\ncomment frame part\ncomment united we stand\n" + ("element vertex 1\n" + xyz), "1 2 3\n");
     const auto cloud = points_in(text, "a.ply");
     EXPECT_EQ(cloud->frame.unit, LengthUnit::millimetre);
     EXPECT_EQ(cloud->frame.name, "part");
@@ -177,7 +205,8 @@ TEST(PlyReader_Frame, UnknownUnit_IsTold) {
 
 TEST(PlyReader_Frame, FarFromTheOrigin_MicrometresSurvive) {
     const auto cloud = points_in(ascii("element vertex 2\nproperty double x\nproperty double y\nproperty double z\n",
-                                       "4320978.613457 0.000001 -98765432.100001\n4320978.613458 2 -98765432.1\n"), "a.ply");
+                                       "4320978.613457 0.000001 -98765432.100001\n4320978.613458 2 -98765432.1\n"),
+                                 "a.ply");
     EXPECT_NE(cloud->frame.origin, Vec3(0, 0, 0));
     EXPECT_LT(cloud->positions[0].norm(), 4);
     EXPECT_EQ(world_of(*cloud, 0), Vec3(4320978.613457, 0.000001, -98765432.100001));
@@ -185,7 +214,8 @@ TEST(PlyReader_Frame, FarFromTheOrigin_MicrometresSurvive) {
 }
 
 TEST(PlyReader_Errors, BeginWithTheFile) {
-    EXPECT_THAT(refusal_of("ply\nformat ascii 1.0\nend_header\n", "some/where.ply"), testing::StartsWith("'some/where.ply': "));
+    EXPECT_THAT(refusal_of("ply\nformat ascii 1.0\nend_header\n", "some/where.ply"),
+                testing::StartsWith("'some/where.ply': "));
 }
 
 TEST(PlyReader_Trailing, TextOrBytesBehindTheLastElement_AreTold) {

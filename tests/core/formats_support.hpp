@@ -98,6 +98,11 @@ std::vector<T> numbers_of(const Column* column) {
     return {column->values<T>().begin(), column->values<T>().end()};
 }
 
+template <class T>
+std::vector<T> rows_of(const Buffer<T>& buffer) {
+    return {buffer.begin(), buffer.end()};
+}
+
 inline Vec3 world_of(const PointCloud& cloud, std::size_t row) { return cloud.frame.origin + cloud.positions[row]; }
 
 /// Equal up to the origin, which is a reader's choice: frames, world coordinates, columns.

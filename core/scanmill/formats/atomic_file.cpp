@@ -18,9 +18,7 @@ namespace fs = std::filesystem;
 
 std::string reason_of(int number) { return std::generic_category().message(number); }
 
-fs::path folder_of(const fs::path& target) {
-    return target.has_parent_path() ? target.parent_path() : fs::path(".");
-}
+fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
 /// The rename itself must survive a power cut. Some network file systems cannot sync a folder: then nothing is lost
 /// that could be saved.
@@ -70,8 +68,7 @@ void AtomicFile::commit() {
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0)
-        throw Error("cannot be written: {}", reason_of(errno));
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw Error("cannot be written: {}", reason_of(errno));
     temporary_.clear();
     sync_folder(folder_of(target_));
 }

@@ -33,7 +33,7 @@ struct ReadOptions {
 struct LoadedFile {
     /// A PointCloud or a TriangleMesh, whichever the file holds; never null, never without points.
     Value value;
-    std::string format;    ///< "PLY"
+    std::string format;  ///< "PLY"
     std::string encoding;  ///< "binary little-endian", "ascii"
     /// The file's own remarks, in order: comment and obj_info lines, `#` lines, the text of an STL header.
     std::vector<std::string> comments;

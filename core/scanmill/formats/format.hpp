@@ -51,8 +51,8 @@ std::span<const Format> formats();
 /// "PLY" → "ply", ".Stl" → "stl": the form in which Format lists extensions.
 std::string plain_extension(std::string_view extension);
 
-/// The format of a file: the first that is certain of its content, else that of its extension, else the first that finds
-/// the content plausible. Throws Error with what the file begins with.
+/// The format of a file: the first that is certain of its content, else that of its extension, else the first that
+/// finds the content plausible. Throws Error with what the file begins with.
 const Format& format_of(const FileBytes& file);
 
 }  // namespace scanmill

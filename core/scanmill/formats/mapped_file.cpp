@@ -37,8 +37,10 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     if (file.number < 0) throw_unopened(errno);
     struct stat facts;
     if (::fstat(file.number, &facts) != 0) throw_unopened(errno);
-    if (S_ISDIR(facts.st_mode)) throw Error("is a folder, not a file").hint("name one scan, or use a pattern as DIR/*.ply");
-    if (!S_ISREG(facts.st_mode)) throw Error("is not a regular file (a pipe, socket or device); scans are read by mapping")
+    if (S_ISDIR(facts.st_mode))
+        throw Error("is a folder, not a file").hint("name one scan, or use a pattern as DIR/*.ply");
+    if (!S_ISREG(facts.st_mode))
+        throw Error("is not a regular file (a pipe, socket or device); scans are read by mapping")
             .hint("copy the data into a file first");
     if (facts.st_size == 0) throw Error("is empty (0 bytes)");
     size_ = static_cast<std::size_t>(facts.st_size);

@@ -94,8 +94,8 @@ private:
         // A vertex takes at least "0 0 0" and a line end, a face "3 0 0 0"; a face of one corner is "1 0".
         constexpr u64 least_vertex = 6, least_face = 2;
         if (vertices_ > bytes_.size() / least_vertex || faces_ > bytes_.size() / least_face)
-            throw Error("line {} promises {} vertices and {} faces; the file has only {} bytes", text_.line(), vertices_,
-                        faces_, bytes_.size())
+            throw Error("line {} promises {} vertices and {} faces; the file has only {} bytes", text_.line(),
+                        vertices_, faces_, bytes_.size())
                 .hint("the file is truncated or its header is wrong: fetch or export it again");
     }
 
@@ -122,7 +122,8 @@ private:
         for (u64 row = 0; row < vertices_; ++row) {
             next_row(row, vertices_, "vertices");
             for (int axis = 0; axis < 3; ++axis) positions_[row][axis] = number(row, "coordinates");
-            for (std::size_t axis = 0; axis < 3 && keyword_.normal; ++axis) normals[3 * row + axis] = number(row, "normal");
+            for (std::size_t axis = 0; axis < 3 && keyword_.normal; ++axis)
+                normals[3 * row + axis] = number(row, "normal");
             // Texture coordinates come last, behind a colour of unsaid length.
             colours.read_row(text_, keyword_.texture ? 2 : 0);
             for (std::size_t i = 0; i < 2 && keyword_.texture; ++i)
@@ -130,8 +131,8 @@ private:
         }
         if (keyword_.normal) vertex_columns_.add(Column("normal", 3, Buffer(std::move(normals))));
         if (const std::size_t rows = colours.add_columns(vertex_columns_); rows > 0)
-            warn(options_.on_warning, "the colours of {} of {} vertices were left out: not all have one of the same form",
-                 rows, vertices_);
+            warn(options_.on_warning,
+                 "the colours of {} of {} vertices were left out: not all have one of the same form", rows, vertices_);
         if (keyword_.texture) vertex_columns_.add(Column("texture", 2, Buffer(std::move(texture))));
     }
 
@@ -155,8 +156,9 @@ private:
                     throw Error("line {}: face {} has {} of its {} corners", text_.line(), row, i, length);
                 const bool is_number = text_.number(vertex);
                 if (!is_number || vertex >= vertices_)
-                    throw Error("line {}: face {} names vertex {}; there are {} vertices, numbered from 0", text_.line(),
-                                row, is_number ? std::to_string(vertex) : quote(text_.last_token()), vertices_);
+                    throw Error("line {}: face {} names vertex {}; there are {} vertices, numbered from 0",
+                                text_.line(), row, is_number ? std::to_string(vertex) : quote(text_.last_token()),
+                                vertices_);
                 corners.push_back(static_cast<u32>(vertex));
             }
             offsets.push_back(corners.size());

@@ -16,12 +16,24 @@ struct TypeName {
     ScalarType type;
 };
 constexpr std::array<TypeName, 18> type_names{{
-    {"char", ScalarType::int8},     {"int8", ScalarType::int8},     {"uchar", ScalarType::uint8},
-    {"uint8", ScalarType::uint8},    {"short", ScalarType::int16},   {"int16", ScalarType::int16},
-    {"ushort", ScalarType::uint16},  {"uint16", ScalarType::uint16},  {"int", ScalarType::int32},
-    {"int32", ScalarType::int32},   {"uint", ScalarType::uint32},    {"uint32", ScalarType::uint32},
-    {"int64", ScalarType::int64},   {"uint64", ScalarType::uint64},  {"float", ScalarType::float32},
-    {"float32", ScalarType::float32}, {"double", ScalarType::float64},  {"float64", ScalarType::float64},
+    {"char", ScalarType::int8},
+    {"int8", ScalarType::int8},
+    {"uchar", ScalarType::uint8},
+    {"uint8", ScalarType::uint8},
+    {"short", ScalarType::int16},
+    {"int16", ScalarType::int16},
+    {"ushort", ScalarType::uint16},
+    {"uint16", ScalarType::uint16},
+    {"int", ScalarType::int32},
+    {"int32", ScalarType::int32},
+    {"uint", ScalarType::uint32},
+    {"uint32", ScalarType::uint32},
+    {"int64", ScalarType::int64},
+    {"uint64", ScalarType::uint64},
+    {"float", ScalarType::float32},
+    {"float32", ScalarType::float32},
+    {"double", ScalarType::float64},
+    {"float64", ScalarType::float64},
 }};
 
 std::string_view word(std::string_view& line) {
@@ -45,14 +57,19 @@ public:
             line = next_line();
             const std::string_view keyword = word(line);
             if (keyword == "end_header") break;
-            if (keyword == "format") parse_format(line);
-            else if (keyword == "element") parse_element(line);
-            else if (keyword == "property") parse_property(line);
-            else if (keyword == "comment" || keyword == "obj_info") header_.comments.emplace_back(trimmed(line));
+            if (keyword == "format")
+                parse_format(line);
+            else if (keyword == "element")
+                parse_element(line);
+            else if (keyword == "property")
+                parse_property(line);
+            else if (keyword == "comment" || keyword == "obj_info")
+                header_.comments.emplace_back(trimmed(line));
             else if (!keyword.empty())
-                throw Error("line {}: the PLY header has {}; expected format, comment, obj_info, element, property or "
-                            "end_header",
-                            header_.lines, quote(keyword));
+                throw Error(
+                    "line {}: the PLY header has {}; expected format, comment, obj_info, element, property or "
+                    "end_header",
+                    header_.lines, quote(keyword));
         }
         if (!formatted_) throw Error("line {}: the PLY header ends without a format line", header_.lines);
         header_.size = at_;
@@ -86,9 +103,12 @@ private:
 
     void parse_format(std::string_view line) {
         const std::string_view name = word(line);
-        if (name == "ascii") header_.encoding = PlyEncoding::ascii;
-        else if (name == "binary_little_endian") header_.encoding = PlyEncoding::binary_little_endian;
-        else if (name == "binary_big_endian") header_.encoding = PlyEncoding::binary_big_endian;
+        if (name == "ascii")
+            header_.encoding = PlyEncoding::ascii;
+        else if (name == "binary_little_endian")
+            header_.encoding = PlyEncoding::binary_little_endian;
+        else if (name == "binary_big_endian")
+            header_.encoding = PlyEncoding::binary_big_endian;
         else
             throw Error("line {}: the format {} is unknown; PLY has ascii, binary_little_endian and binary_big_endian",
                         header_.lines, quote(name));
@@ -115,9 +135,10 @@ private:
     ScalarType parse_type(std::string_view name) const {
         const auto found = std::ranges::find(type_names, name, &TypeName::name);
         if (found == type_names.end())
-            throw Error("line {}: the property type {} is unknown; PLY has char, uchar, short, ushort, int, uint, "
-                        "float, double, and list",
-                        header_.lines, quote(name));
+            throw Error(
+                "line {}: the property type {} is unknown; PLY has char, uchar, short, ushort, int, uint, "
+                "float, double, and list",
+                header_.lines, quote(name));
         return found->type;
     }
 
@@ -179,9 +200,10 @@ void require_room(const PlyElement& element, PlyEncoding encoding, std::size_t l
     // The last row of a text needs no line end.
     const u64 fitting = (left + (encoding == PlyEncoding::ascii ? 1 : 0)) / row;
     if (element.count > fitting)
-        throw Error("the header promises {} rows of element {}, each at least {} bytes long; the {} bytes that follow "
-                    "hold at most {}",
-                    element.count, quote(element.name), row, left, fitting)
+        throw Error(
+            "the header promises {} rows of element {}, each at least {} bytes long; the {} bytes that follow "
+            "hold at most {}",
+            element.count, quote(element.name), row, left, fitting)
             .hint("the file is truncated or its header is wrong: fetch or export it again");
 }
 

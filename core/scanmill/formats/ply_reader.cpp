@@ -52,11 +52,16 @@ public:
         refuse_without_points();
         for (const PlyElement& element : header_.elements) {
             require_room(element, header_.encoding, bytes_.size() - at_);
-            if (element.name == "vertex") read_vertices(element);
-            else if (element.name == "face") faces_ = read_lists(element);
-            else if (element.name == "tristrips") strips_ = read_lists(element);
-            else if (element.name == "edge" || element.name == "sharp_edge") read_edges(element);
-            else pass_over(element);
+            if (element.name == "vertex")
+                read_vertices(element);
+            else if (element.name == "face")
+                faces_ = read_lists(element);
+            else if (element.name == "tristrips")
+                strips_ = read_lists(element);
+            else if (element.name == "edge" || element.name == "sharp_edge")
+                read_edges(element);
+            else
+                pass_over(element);
         }
         tell_trailing_bytes();
         return assembled();
@@ -94,9 +99,10 @@ private:
         }
         const OverlongRows overlong = decode_ply_ascii(text_, element, slots);
         if (overlong.count > 0)
-            warn(options_.on_warning, "{} of element {} hold more values than the header has properties, first in line "
-                 "{}; the rest of the line was passed over", counted(overlong.count, "row", "rows"),
-                 quote(element.name), overlong.first_line);
+            warn(options_.on_warning,
+                 "{} of element {} hold more values than the header has properties, first in line "
+                 "{}; the rest of the line was passed over",
+                 counted(overlong.count, "row", "rows"), quote(element.name), overlong.first_line);
     }
 
     void read_vertices(const PlyElement& element) {
@@ -106,7 +112,7 @@ private:
         if (const auto packed = packed_positions(element, header_.encoding)) {
             const char* source = bytes_.data() + at_ + packed->offset;
             box_ = packed->type == ScalarType::float32 ? widen_positions<float>(source, packed->row_size, positions_)
-                                                   : widen_positions<double>(source, packed->row_size, positions_);
+                                                       : widen_positions<double>(source, packed->row_size, positions_);
             decode(element, table.slots());
         } else {
             for (PlySlot& slot : table.slots()) {
@@ -132,8 +138,8 @@ private:
             return Lists{std::move(vertices), table.columns()};
         }
         if (element.count > 0)
-            warn(options_.on_warning, "element '{}' has no list vertex_indices: its {} left out",
-                 element.name, counted(element.count, "row was", "rows were"));
+            warn(options_.on_warning, "element '{}' has no list vertex_indices: its {} left out", element.name,
+                 counted(element.count, "row was", "rows were"));
         return std::nullopt;
     }
 
@@ -146,8 +152,8 @@ private:
             (element.name == "edge" ? edges_ : sharp_edges_) =
                 Edges{std::move(*first), std::move(*second), table.columns()};
         } else if (element.count > 0) {
-            warn(options_.on_warning, "element '{}' has no vertex1 and vertex2: its {} left out",
-                 element.name, counted(element.count, "row was", "rows were"));
+            warn(options_.on_warning, "element '{}' has no vertex1 and vertex2: its {} left out", element.name,
+                 counted(element.count, "row was", "rows were"));
         }
     }
 
@@ -156,8 +162,10 @@ private:
         for (const PlyProperty& property : element.properties) slots.push_back({.property = &property});
         decode(element, slots);
         if (element.count > 0)
-            warn(options_.on_warning, "the element {} with its {} was left out: only vertex, face, tristrips and edge "
-                 "have a meaning here", quote(element.name), counted(element.count, "row", "rows"));
+            warn(options_.on_warning,
+                 "the element {} with its {} was left out: only vertex, face, tristrips and edge "
+                 "have a meaning here",
+                 quote(element.name), counted(element.count, "row", "rows"));
     }
 
     void tell_trailing_bytes() {
@@ -182,8 +190,8 @@ private:
     }
 
     void put_triangles(TriangleMesh& mesh) const {
-        if (faces_) put_faces(mesh, triangulated(faces_->vertices, positions_.size()), faces_->columns,
-                              options_.on_warning);
+        if (faces_)
+            put_faces(mesh, triangulated(faces_->vertices, positions_.size()), faces_->columns, options_.on_warning);
         if (!strips_) return;
         Array<Triangle> triangles = triangles_of_strips(strips_->vertices, positions_.size());
         if (mesh.triangles.empty()) {
@@ -225,7 +233,7 @@ private:
 
         LoadedFile loaded;
         loaded.format = "PLY";
-        loaded.encoding = ascii() ? "ascii"
+        loaded.encoding = ascii()                                                 ? "ascii"
                           : header_.encoding == PlyEncoding::binary_little_endian ? "binary little-endian"
                                                                                   : "binary big-endian";
         loaded.comments = header_.comments;
@@ -233,8 +241,8 @@ private:
             if (const std::size_t edges = mesh.edges.size() + mesh.sharp_edges.size(); edges > 0)
                 warn(options_.on_warning, "{} left out: without a face the file is a point cloud",
                      counted(edges, "edge was", "edges were"));
-            loaded.value = std::make_shared<const PointCloud>(
-                PointCloud{mesh.frame, std::move(positions_), std::move(columns_)});
+            loaded.value =
+                std::make_shared<const PointCloud>(PointCloud{mesh.frame, std::move(positions_), std::move(columns_)});
         } else {
             mesh.positions = std::move(positions_);
             mesh.vertex_columns = std::move(columns_);

@@ -57,7 +57,8 @@ std::vector<PlyTable::Group> PlyTable::groups_in(const PlyElement& element, cons
         if (has_all(element, properties) && !element.find(name))
             groups.push_back({std::move(name), std::move(properties)});
     };
-    if (const PlyProperty* nx = element.find("nx"); nx && (nx->type == ScalarType::float32 || nx->type == ScalarType::float64))
+    if (const PlyProperty* nx = element.find("nx");
+        nx && (nx->type == ScalarType::float32 || nx->type == ScalarType::float64))
         add("normal", {"nx", "ny", "nz"});
     if (const PlyProperty* red = element.find("red"); red && red->type == ScalarType::uint8) {
         const PlyProperty* alpha = element.find("alpha");

@@ -37,7 +37,7 @@ Column carried(const Column& column, const WriteOptions& options) {
     if (column.type() != ScalarType::int64 && column.type() != ScalarType::uint64) return column;
     bool exact = true;
     Column wide = column.type() == ScalarType::int64 ? as_double<std::int64_t>(column, exact)
-                                                   : as_double<std::uint64_t>(column, exact);
+                                                     : as_double<std::uint64_t>(column, exact);
     warn(options.on_warning, "the column {} of 64-bit integers is written as double, which PLY has; {}",
          quote(column.name()), exact ? "every number is kept" : "numbers beyond 2^53 were rounded");
     return wide;
@@ -53,8 +53,10 @@ public:
             std::string name = printable(column.name());
             while (is_taken(ply_component_names(column.renamed(name)))) name += "_";
             if (name != column.name())
-                warn(options.on_warning, "the column {} of the {} is written as '{}': PLY needs names without blanks, "
-                     "each only once", quote(column.name()), element, name);
+                warn(options.on_warning,
+                     "the column {} of the {} is written as '{}': PLY needs names without blanks, "
+                     "each only once",
+                     quote(column.name()), element, name);
             columns_.push_back(carried(column, options).renamed(name));
             for (std::string& property : ply_component_names(columns_.back())) taken_.push_back(std::move(property));
         }
@@ -171,6 +173,12 @@ void put_vertices(const Frame& frame, std::span<const Vec3> positions, bool as_f
         put_vertices<double>(frame, positions, properties, out);
 }
 
+/// Tells what the sum with the origin loses on the way.
+bool coordinates_fit_float(const Frame& frame, std::span<const Vec3> positions, const WriteOptions& options) {
+    if (frame.origin != Vec3::Zero()) tell_lost_precision(frame, positions, false, "PLY", options);
+    return all_floats(frame, positions);
+}
+
 void declare_edges(Header& header, std::string_view name, std::size_t count) {
     header.elements += fmt::format("element {} {}\nproperty uint vertex1\nproperty uint vertex2\n", name, count);
 }
@@ -181,8 +189,7 @@ const std::vector<std::string> axes{"x", "y", "z"};
 
 void write_ply_points(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const PointCloud& cloud = *std::get<std::shared_ptr<const PointCloud>>(value);
-    const bool as_float = all_floats(cloud.frame, cloud.positions.span());
-    if (!as_float) tell_lost_precision(cloud.frame, cloud.positions.span(), false, "PLY", options);
+    const bool as_float = coordinates_fit_float(cloud.frame, cloud.positions.span(), options);
     const Properties properties(cloud.columns, axes, "points", options);
     Header header;
     declare_vertices(header, cloud.size(), as_float, properties);
@@ -192,8 +199,7 @@ void write_ply_points(const Value& value, OutputBuffer& out, const WriteOptions&
 
 void write_ply_mesh(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
-    const bool as_float = all_floats(mesh.frame, mesh.positions.span());
-    if (!as_float) tell_lost_precision(mesh.frame, mesh.positions.span(), false, "PLY", options);
+    const bool as_float = coordinates_fit_float(mesh.frame, mesh.positions.span(), options);
     const Properties of_vertices(mesh.vertex_columns, axes, "vertices", options);
     const Properties of_faces(mesh.face_columns, {"vertex_indices", "vertex_index"}, "faces", options);
     const Properties of_edges(mesh.edge_columns, {"vertex1", "vertex2"}, "edges", options);

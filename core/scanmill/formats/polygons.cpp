@@ -102,7 +102,8 @@ void put_faces(TriangleMesh& mesh, Fans fans, const ColumnTable& columns,
                const std::function<void(std::string)>& on_warning) {
     if (fans.polygons > 0)
         warn(on_warning, "{} cut into fans; the mesh has {}",
-             counted(fans.polygons, "face of more than three corners was", "faces of more than three corners were"), counted(fans.triangles.size(), "triangle", "triangles"));
+             counted(fans.polygons, "face of more than three corners was", "faces of more than three corners were"),
+             counted(fans.triangles.size(), "triangle", "triangles"));
     if (fans.left_out > 0)
         warn(on_warning, "{} left out",
              counted(fans.left_out, "face of fewer than three corners was", "faces of fewer than three corners were"));

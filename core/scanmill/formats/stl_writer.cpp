@@ -20,7 +20,7 @@ Vec3 facet_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     u /= scale;
     v /= scale;
     const Vec3 normal = u.cross(v);
-    const double length = normal.norm();
+    const double length = normal.stableNorm();
     if (!(length > 0)) return Vec3::Zero();
     return normal / length;
 }
@@ -58,7 +58,8 @@ void write_stl(const Value& value, OutputBuffer& out, const WriteOptions& option
     const std::string header = stl_header(frame);
     const std::vector<std::string> kept = stl_header_comments(header);
     if (!frame.name.empty() && (kept.empty() || kept.back() != "frame " + frame.name))
-        warn(options.on_warning, "the frame's name of {} bytes does not fit into STL's header and was cut; PLY keeps it",
+        warn(options.on_warning,
+             "the frame's name of {} bytes does not fit into STL's header and was cut; PLY keeps it",
              frame.name.size());
 
     out.text(header);

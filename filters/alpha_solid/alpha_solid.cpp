@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "alpha_solid/alpha_solid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "alpha_solid/pieces.hpp"
+#include "alpha_solid/selection.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using namespace alpha;
+
+void require_usable(const TetMesh& tets, const AlphaSolidParams& params) {
+    if (tets.cells.empty()) throw Error("needs a tetrahedralisation with cells; this one has none");
+    if (tets.neighbours.size() != tets.cells.size())
+        throw Error("needs the neighbours of all {} cells; there are {}", tets.cells.size(), tets.neighbours.size());
+    const double coverage = params.coverage.value();
+    if (!(coverage > 0 && coverage <= 1))
+        throw Error("coverage must be above 0 % and at most 100 %; it is {}", params.coverage.text());
+    if (params.alpha && !(params.alpha->value() > 0 && std::isfinite(params.alpha->value())))
+        throw Error("alpha must be a length above 0; it is {}", params.alpha->text());
+    const double size = bounding_box(tets.positions.span()).diagonal();
+    if (!(size > 1e-100 && size < 1e100))
+        throw Error("needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {:.3g}",
+                    size);
+}
+
+/// A radius whose square is not below `squared`, so that giving it as alpha selects the same cells.
+double radius(double squared) {
+    const double root = std::sqrt(squared);
+    return root * root < squared ? std::nextafter(root, std::numeric_limits<double>::infinity()) : root;
+}
+
+TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles) {
+    TriangleMesh mesh;
+    mesh.frame = tets.frame;
+    mesh.positions = tets.positions;
+    mesh.vertex_columns = tets.vertex_columns;
+    mesh.triangles = std::move(triangles);
+    return without_unused_vertices(mesh);
+}
+
+/// Fills what follows from the labels: inside, counts, interior and uncovered points.
+void describe_cells(AlphaSolidResult& result, Selection& selection, unsigned threads) {
+    const TetMesh& tets = result.tets;
+    Array<u8> state = coverage(tets, selection.labels, threads);
+    constexpr u8 on_boundary = 2;
+    for (const Triangle& triangle : selection.triangles)
+        for (u32 vertex : triangle) state[vertex] = on_boundary;
+    Array<u32> interior, uncovered;
+    for (u32 vertex = 0; vertex < state.size(); ++vertex)
+        if (state[vertex] != on_boundary) (state[vertex] ? interior : uncovered).push_back(vertex);
+    result.interior_points = std::move(interior);
+    result.uncovered_points = std::move(uncovered);
+
+    result.cells_left_out = static_cast<std::size_t>(std::ranges::count(selection.labels, u8(left_out)));
+    for (u8& label : selection.labels) label = label == solid;
+    result.cells_inside = static_cast<std::size_t>(std::ranges::count(selection.labels, u8(1)));
+    result.tets.inside = std::move(selection.labels);
+}
+
+/// Different values among the flood's above `value`, and the solid at it.
+std::size_t candidates_from(const Flood& flood, double value) {
+    std::size_t count = 1;
+    for (std::size_t i = 0; i < flood.values.size() && flood.values[i] > value; ++i)
+        count += i == 0 || flood.values[i] != flood.values[i - 1];
+    return count;
+}
+
+void warn_about(const AlphaSolidResult& result, Context& context) {
+    const std::string_view unit = symbol(result.tets.frame.unit);
+    const std::size_t points = result.tets.positions.size();
+    if (const std::size_t uncovered = result.uncovered_points.size(); uncovered > 0)
+        context.warn(fmt::format("{} of {} points are not in or on the solid{}", uncovered, points,
+                                 result.cells_left_out > 0 ? fmt::format("; {} cells of other solids were left out",
+                                                                         result.cells_left_out)
+                                                           : ""));
+    if (result.choice == AlphaChoice::repaired)
+        context.warn(fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary; the one at {:.4g} {} "
+                                 "was closed round its non-manifold vertices",
+                                 4 * result.alpha_cover, unit, result.alpha, unit));
+    if (result.choice == AlphaChoice::hull)
+        context.warn("no alpha gives a solid with a manifold boundary; the solid is the convex hull");
+    if (result.nonmanifold_vertices > 0)
+        context.warn(fmt::format("the boundary has {} non-manifold vertices and {} edges with more than two triangles; "
+                                 "alpha: auto avoids them",
+                                 result.nonmanifold_vertices, result.nonmanifold_edges));
+}
+
+void report(const AlphaSolidResult& result, Context& context) {
+    context.metric("alpha", result.alpha, Unit::length);
+    context.metric("alpha-cover", result.alpha_cover, Unit::length);
+    context.metric("cells", static_cast<double>(result.cells_inside));
+    context.metric("interior-points", static_cast<double>(result.interior_points.size()));
+    context.metric("uncovered-points", static_cast<double>(result.uncovered_points.size()));
+    context.metric("triangles", static_cast<double>(result.mesh.triangles.size()));
+}
+
+}  // namespace
+
+AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context) {
+    require_usable(tets, params);
+    FloodLimits limits;
+    limits.coverage = params.coverage.value();
+    if (params.alpha) limits.value = params.alpha->value() * params.alpha->value();
+
+    Flood flood;
+    {
+        const FacetValues values = facet_values(tets, context);
+        context.progress(0.35);
+        flood = flood_from_outside(tets, values, limits, context);
+    }
+    context.progress(0.75);
+    if (params.alpha && flood.outside_above(limits.value) == tets.cells.size())
+        throw Error("alpha {} leaves no cell inside; the least that gives one is {:.6g}, and {:.6g} covers {} of {} points",
+                    params.alpha->text(), radius(flood.values.back()), radius(flood.cover), flood.needed, flood.points)
+            .hint("'alpha: auto' finds the least alpha with a closed manifold boundary");
+
+    const Selector selector(tets, flood, params, context);
+    Selection selection = params.alpha                           ? selector.given(limits.value)
+                          : params.search == AlphaSearch::binary ? selector.bisect()
+                                                                 : selector.scan();
+    context.progress(0.9);
+
+    AlphaSolidResult result;
+    result.alpha_cover = radius(flood.cover);
+    result.alpha = params.alpha ? params.alpha->value() : radius(flood.values[selection.outside]);
+    result.candidates = candidates_from(flood, std::min(flood.cover, limits.value));
+    result.choice = selection.choice;
+    result.components = selection.components;
+    result.nonmanifold_vertices = selection.defects.vertices.size();
+    result.nonmanifold_edges = selection.defects.edges;
+    result.tets = tets;
+    describe_cells(result, selection, context.threads());
+    result.mesh = boundary_mesh(tets, std::move(selection.triangles));
+    warn_about(result, context);
+    report(result, context);
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "alpha_solid/selection.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "alpha_solid/growing_solid.hpp"
+#include "alpha_solid/pieces.hpp"
+
+namespace scanmill::alpha {
+
+namespace {
+
+/// How far beyond alpha_cover the scan goes on looking for a valid alpha-solid before it settles for a repaired one.
+constexpr double max_scan = 4;
+
+AlphaChoice choice_of(AlphaSearch search) {
+    return search == AlphaSearch::binary ? AlphaChoice::binary : AlphaChoice::scan;
+}
+
+}  // namespace
+
+Selector::Selector(const TetMesh& tets, const Flood& flood, const AlphaSolidParams& params, Context& context)
+    : tets_(tets),
+      flood_(flood),
+      context_(context),
+      search_(params.search) {
+    const bool single = params.components == AlphaComponents::single;
+    keeps_largest_ = single && params.coverage.value() < 1;
+    one_piece_ = single && !keeps_largest_;
+}
+
+Selection Selector::described(Array<u8> labels, std::size_t outside, AlphaChoice choice) const {
+    Selection selection;
+    selection.outside = outside;
+    selection.choice = choice;
+    selection.triangles = boundary_triangles(tets_, labels, context_.threads());
+    selection.defects = boundary_defects(selection.triangles, tets_.positions.size(), context_.threads());
+    DisjointSets vertices(tets_.positions.size());
+    selection.components = join_vertices(selection.triangles, vertices);
+    selection.labels = std::move(labels);
+    return selection;
+}
+
+Selection Selector::solid_without(std::size_t outside_cells) const {
+    context_.check_cancelled();
+    Array<u8> labels(tets_.cells.size());
+    std::ranges::fill(labels, solid);
+    for (std::size_t i = 0; i < outside_cells; ++i) labels[flood_.cells[i]] = outside;
+    if (keeps_largest_) keep_largest_piece(tets_, labels);
+    return described(std::move(labels), outside_cells, choice_of(search_));
+}
+
+bool Selector::is_valid(const Selection& selection) const {
+    if (!selection.defects.vertices.empty()) return false;
+    if (one_piece_) return selection.components == 1;
+    return !keeps_largest_ || covered_points(tets_, selection.labels) >= flood_.needed;
+}
+
+Selection Selector::given(double value) const {
+    Selection selection = solid_without(flood_.outside_above(value));
+    selection.choice = AlphaChoice::given;
+    return selection;
+}
+
+/// An alpha-solid while alpha grows: cells enter level by level.
+class Selector::Growth {
+public:
+    Growth(const Selector& selector, const Selection& start)
+        : selector_(selector),
+          growing_(selector.tets_, start.labels, start.defects.vertices),
+          outside_(start.outside),
+          vertices_(selector.one_piece_ ? selector.tets_.positions.size() : 0) {
+        if (selector.one_piece_) pieces_ = join_vertices(start.triangles, vertices_);
+    }
+
+    bool at_hull() const { return outside_ == 0; }
+    double next_value() const { return selector_.flood_.values[outside_ - 1]; }
+    std::size_t outside() const { return outside_; }
+
+    void step() {
+        const std::size_t begin = selector_.flood_.group_begin(outside_ - 1);
+        const std::span<const u32> cells(selector_.flood_.cells.data() + begin, outside_ - begin);
+        outside_ = begin;
+        if (selector_.keeps_largest_) {
+            growing_.add_joined(cells);
+            return;
+        }
+        growing_.add(cells);
+        // Every point is covered, so pieces only merge.
+        if (pieces_ > 1)
+            for (u32 cell : cells)
+                for (u32 vertex : selector_.tets_.cells[cell])
+                    pieces_ -= vertices_.unite(selector_.tets_.cells[cell][0], vertex);
+    }
+
+    bool holds_enough() const {
+        return pieces_ == 1 && (!selector_.keeps_largest_ || growing_.covered() >= selector_.flood_.needed);
+    }
+
+    GrowingSolid& solid() { return growing_; }
+
+private:
+    const Selector& selector_;
+    GrowingSolid growing_;
+    std::size_t outside_;
+    DisjointSets vertices_;
+    std::size_t pieces_ = 1;
+};
+
+Selection Selector::scan() const {
+    Selection start = solid_without(flood_.outside_above(flood_.cover));
+    if (is_valid(start)) return start;
+
+    Growth growth(*this, start);
+    const double last = max_scan * max_scan * flood_.cover;
+    for (std::size_t steps = 0; !growth.at_hull() && growth.next_value() <= last; ++steps) {
+        if (steps % 4096 == 0) context_.check_cancelled();
+        growth.step();
+        if (growth.holds_enough() && growth.solid().is_manifold())
+            return described(growth.solid().labels(), growth.outside(), AlphaChoice::scan);
+    }
+    return repaired(start);
+}
+
+Selection Selector::repaired(const Selection& start) const {
+    context_.check_cancelled();
+    Growth growth(*this, start);
+    while (!growth.holds_enough()) growth.step();
+
+    Array<double> price(tets_.cells.size());
+    std::ranges::fill(price, 0.0);
+    for (std::size_t i = 0; i < growth.outside(); ++i) price[flood_.cells[i]] = flood_.values[i];
+    growth.solid().repair(price);
+
+    Array<u8> labels = growth.solid().labels();
+    fill_cavities(tets_, labels);
+    const bool is_hull = std::ranges::all_of(labels, [](u8 label) { return label == solid; });
+    Selection selection =
+        described(std::move(labels), growth.outside(), is_hull ? AlphaChoice::hull : AlphaChoice::repaired);
+    assert(is_valid(selection));
+    return selection;
+}
+
+Selection Selector::bisect() const {
+    // Every different alpha-solid from the hull (nothing outside) down to alpha_cover.
+    const std::size_t cover = flood_.outside_above(flood_.cover);
+    Array<std::size_t> candidates;
+    for (std::size_t i = 0; i <= cover; ++i)
+        if (i == 0 || flood_.values[i] != flood_.values[i - 1]) candidates.push_back(i);
+
+    Selection best = solid_without(cover);
+    if (is_valid(best)) return best;
+    std::size_t valid = 0, invalid = candidates.size() - 1;
+    best = solid_without(candidates[valid]);
+    while (invalid - valid > 1) {
+        const std::size_t middle = valid + (invalid - valid) / 2;
+        Selection selection = solid_without(candidates[middle]);
+        if (is_valid(selection)) {
+            valid = middle;
+            best = std::move(selection);
+        } else {
+            invalid = middle;
+        }
+    }
+    return best;
+}
+
+}  // namespace scanmill::alpha

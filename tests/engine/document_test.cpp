@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/document.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanmill {
+namespace {
+
+using testing::HasSubstr;
+
+struct Parsed {
+    YamlNode root;
+    std::vector<Diagnostic> findings;
+};
+
+Parsed parse(const std::string& text) {
+    Diagnostics diagnostics("f");
+    YamlNode root = parse_yaml(text, diagnostics);
+    return {std::move(root), diagnostics.sorted()};
+}
+
+TEST(YamlDocument, Nodes_CarryTheirPlace) {
+    const Parsed parsed = parse("a: 1\nb:\n  - x\n  - {c: 'two'}\n");
+    EXPECT_TRUE(parsed.findings.empty());
+    ASSERT_EQ(parsed.root.entries.size(), 2u);
+    EXPECT_EQ(parsed.root.entries[1].position, (Position{2, 1}));
+    const YamlNode* list = parsed.root.find("b");
+    ASSERT_NE(list, nullptr);
+    ASSERT_EQ(list->items.size(), 2u);
+    EXPECT_EQ(list->items[0].position, (Position{3, 5}));
+    EXPECT_EQ(list->items[1].find("c")->text, "two");
+    EXPECT_EQ(list->items[1].entries[0].position, (Position{4, 6}));
+}
+
+TEST(YamlDocument, NullAndQuotedNull_Differ) {
+    const Parsed parsed = parse("a: ~\nb: '~'\nc:\nd: ''\ne: null\n");
+    EXPECT_TRUE(parsed.root.find("a")->is_null());
+    EXPECT_TRUE(parsed.root.find("b")->is_scalar());
+    EXPECT_TRUE(parsed.root.find("c")->is_null());
+    EXPECT_TRUE(parsed.root.find("d")->is_scalar());
+    EXPECT_TRUE(parsed.root.find("e")->is_null());
+}
+
+TEST(YamlDocument, RepeatedKey_IsAnErrorAtTheSecondPlace) {
+    const Parsed parsed = parse("a: 1\nb: 2\na: 3\n");
+    ASSERT_EQ(parsed.findings.size(), 1u);
+    EXPECT_EQ(parsed.findings[0].position, (Position{3, 1}));
+    EXPECT_THAT(parsed.findings[0].message, HasSubstr("already at line 1"));
+    EXPECT_EQ(parsed.root.find("a")->text, "1");
+}
+
+TEST(YamlDocument, RepeatedKeyInANestedFlowMap_IsFound) { EXPECT_EQ(parse("a: {b: [{c: 1, c: 2}]}\n").findings.size(), 1u); }
+
+TEST(YamlDocument, Alias_StandsForItsAnchor) {
+    const Parsed parsed = parse("a: &x {n: 1}\nb: *x\n");
+    EXPECT_TRUE(parsed.findings.empty());
+    EXPECT_EQ(parsed.root.find("b")->find("n")->text, "1");
+}
+
+TEST(YamlDocument, AliasesThatUnfoldWithoutEnd_AreRefused) {
+    std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+    for (int level = 1; level <= 9; ++level) {
+        const std::string below = "*a" + std::to_string(level - 1);
+        bomb += "a" + std::to_string(level) + ": &a" + std::to_string(level) + " [";
+        for (int i = 0; i < 10; ++i) bomb += (i ? ", " : "") + below;
+        bomb += "]\n";
+    }
+    const Parsed parsed = parse(bomb);
+    ASSERT_EQ(parsed.findings.size(), 1u);
+    EXPECT_THAT(parsed.findings[0].message, HasSubstr("unfolds to more than 1000000 nodes"));
+}
+
+TEST(YamlDocument, DeepNesting_IsRefusedNotFollowed) {
+    const Parsed parsed = parse(std::string(100'000, '[') + std::string(100'000, ']'));
+    ASSERT_FALSE(parsed.findings.empty());
+}
+
+TEST(YamlDocument, SecondDocument_IsRefused) { EXPECT_EQ(parse("a: 1\n---\nb: 2\n").findings.size(), 1u); }
+
+TEST(YamlDocument, ListAsKey_IsRefused) { EXPECT_FALSE(parse("? [a, b]\n: 1\n").findings.empty()); }
+
+TEST(YamlDocument, BrokenSyntax_NamesItsPlace) {
+    const Parsed parsed = parse("a: [1, 2\nb: 3\n");
+    ASSERT_FALSE(parsed.findings.empty());
+    EXPECT_GE(parsed.findings[0].position.line, 1);
+}
+
+}  // namespace
+}  // namespace scanmill

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Noise, outliers, overlap and views of virtual scans, and everything that is refused.
+#include <gmock/gmock.h>
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <limits>
+
+#include "scanmill/filter/error.hpp"
+#include "support/shapes.hpp"
+#include "virtual_scan/seen_points.hpp"
+#include "virtual_scan/view.hpp"
+#include "virtual_scan/virtual_scan.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using Shape = VirtualScanParams::Shape;
+using ::testing::HasSubstr;
+
+VirtualScanParams sphere(double resolution) {
+    VirtualScanParams params;
+    params.shape = Shape::sphere;
+    params.resolution = resolution;
+    return params;
+}
+
+VirtualScanResult scan(const VirtualScanParams& params, std::uint64_t seed = 0, unsigned threads = 1) {
+    ContextOptions options;
+    options.seed = seed;
+    options.threads = threads;
+    Context context(options);
+    return virtual_scan(nullptr, params, context);
+}
+
+std::string refusal(const VirtualScanParams& params, const TriangleMesh* mesh = nullptr) {
+    try {
+        Context context;
+        virtual_scan(mesh, params, context);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "no refusal";
+}
+
+bool same_bytes(const VirtualScanResult& a, const VirtualScanResult& b) {
+    return std::ranges::equal(a.points.positions, b.points.positions) && a.points.columns == b.points.columns;
+}
+
+TEST(VirtualScanNoise, AlongTheRay_HasTheGivenDeviation) {
+    VirtualScanParams params = sphere(0.01);
+    const VirtualScanResult exact = scan(params);
+    params.noise = 0.002;
+    const VirtualScanResult noisy = scan(params, 3);
+    ASSERT_EQ(noisy.points.size(), exact.points.size());
+    const auto views = noisy.points.columns.find("view")->values<std::int32_t>();
+    const double count = static_cast<double>(noisy.points.size());
+    double sum = 0, squares = 0, fourth = 0;
+    for (std::size_t i = 0; i < noisy.points.size(); ++i) {
+        const Vec3 error = noisy.points.positions[i] - exact.points.positions[i];
+        const double along = error.dot(noisy.directions[static_cast<std::size_t>(views[i])]);
+        ASSERT_NEAR(error.norm(), std::abs(along), 1e-12);
+        const double scaled = along / 0.002;
+        sum += scaled;
+        squares += scaled * scaled;
+        fourth += scaled * scaled * scaled * scaled;
+    }
+    ASSERT_GT(count, 1e5);
+    // Five standard errors each, of a standard normal's first, second and fourth moment.
+    EXPECT_NEAR(sum / count, 0, 5 / std::sqrt(count));
+    EXPECT_NEAR(squares / count, 1, 5 * std::sqrt(2 / count));
+    EXPECT_NEAR(fourth / count, 3, 5 * std::sqrt(96 / count));
+}
+
+TEST(VirtualScanNoise, SameSeed_SameBytes_AnotherSeedOthers) {
+    VirtualScanParams params = sphere(0.05);
+    params.noise = 0.01;
+    params.outliers = Ratio::percent(5);
+    params.overlap = Ratio::percent(50);
+    EXPECT_TRUE(same_bytes(scan(params, 7), scan(params, 7)));
+    EXPECT_TRUE(same_bytes(scan(params, 7), scan(params, 7, 2))) << "threads";
+    EXPECT_FALSE(same_bytes(scan(params, 7), scan(params, 8)));
+}
+
+TEST(VirtualScanNoise, Outliers_DoNotChangeTheSurfacePoints) {
+    VirtualScanParams params = sphere(0.05);
+    params.noise = 0.01;
+    const VirtualScanResult without = scan(params, 1);
+    params.outliers = Ratio::percent(10);
+    const VirtualScanResult with = scan(params, 1);
+    for (std::size_t i = 0; i < without.points.size(); ++i)
+        ASSERT_EQ(with.points.positions[i], without.points.positions[i]);
+}
+
+TEST(VirtualScanOutliers, ExactlyTheShare_AtTheEndInTheGrownBox) {
+    VirtualScanParams params = sphere(0.02);
+    params.outliers = Ratio::percent(7);
+    const VirtualScanResult result = scan(params, 5);
+    const std::size_t surface = result.points.size() - result.outliers;
+    EXPECT_EQ(result.outliers, static_cast<std::size_t>(std::lround(0.07 * static_cast<double>(surface))));
+    const auto views = result.points.columns.find("view")->values<std::int32_t>();
+    BoundingBox box;
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+        ASSERT_EQ(views[i] == -1, i >= surface);
+        if (i < surface) continue;
+        box.low = box.low.cwiseMin(result.points.positions[i]);
+        box.high = box.high.cwiseMax(result.points.positions[i]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GE(box.low[axis], -1.2);
+        EXPECT_LT(box.low[axis], -1.19);
+        EXPECT_LE(box.high[axis], 1.2);
+        EXPECT_GT(box.high[axis], 1.19);
+    }
+}
+
+/// The least distance between points of different views, and the number of points that have such a one nearer than r.
+std::pair<double, std::size_t> between_views(const VirtualScanResult& result, double r) {
+    const auto views = result.points.columns.find("view")->values<std::int32_t>();
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+        bool is_near = false;
+        for (std::size_t j = 0; j < result.points.size(); ++j) {
+            if (views[i] == views[j]) continue;
+            const double distance = (result.points.positions[i] - result.points.positions[j]).norm();
+            least = std::min(least, distance);
+            is_near |= distance < r && views[j] < views[i];
+        }
+        near += is_near;
+    }
+    return {least, near};
+}
+
+TEST(VirtualScanOverlap, None_LeavesNoTwoViewsNearerThanTheResolution) {
+    VirtualScanParams params = sphere(0.08);
+    const VirtualScanResult whole = scan(params);
+    params.overlap = Ratio::percent(0);
+    const VirtualScanResult result = scan(params);
+    EXPECT_GE(between_views(result, 0.08).first, 0.08);
+    EXPECT_EQ(result.points.size() + result.dropped, whole.points.size());
+    EXPECT_GT(result.dropped, whole.points.size() / 2) << "twelve views see a sphere three times over";
+    // The first view loses nothing, and nobody's surface is lost: every dropped point has a kept one nearby.
+    for (const Vec3& p : whole.points.positions) {
+        double least = 9;
+        for (const Vec3& q : result.points.positions) least = std::min(least, (p - q).norm());
+        ASSERT_LT(least, 0.08);
+    }
+}
+
+TEST(VirtualScanOverlap, Half_KeepsAboutHalfOfWhatWasSeenBefore) {
+    VirtualScanParams params = sphere(0.01);
+    params.views = {0, 0, 1, 0, 0, 2};
+    const std::size_t one_view = scan(params).points.size() / 2;
+    params.overlap = Ratio::percent(50);
+    const VirtualScanResult result = scan(params, 2);
+    const double trials = static_cast<double>(one_view);
+    EXPECT_NEAR(static_cast<double>(result.dropped), trials / 2, 5 * std::sqrt(trials) / 2);
+}
+
+TEST(VirtualScanOverlap, SeenPoints_AgreeWithBruteForce) {
+    Random random(4);
+    const double radius = 0.1;
+    scan::SeenPoints seen(Vec3(5, 5, 5), radius);
+    std::vector<Vec3> points;
+    const auto point = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+    EXPECT_FALSE(seen.near(Vec3::Zero()));
+    int hits = 0;
+    for (int round = 0; round < 3; ++round) {
+        std::vector<Vec3> batch(300);
+        for (Vec3& p : batch) p = point();
+        seen.add(batch);
+        points.insert(points.end(), batch.begin(), batch.end());
+        for (int i = 0; i < 1000; ++i) {
+            const Vec3 p = point();
+            const bool expected = std::ranges::any_of(points, [&](const Vec3& q) { return (p - q).norm() < radius; });
+            ASSERT_EQ(seen.near(p), expected);
+            hits += expected;
+        }
+    }
+    EXPECT_GT(hits, 500);
+}
+
+TEST(VirtualScanViews, FibonacciSphere_IsEvenAndBalanced) {
+    const double number[] = {200};
+    const std::vector<Vec3> directions = scan::view_directions(number);
+    ASSERT_EQ(directions.size(), 200u);
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        EXPECT_NEAR(directions[i].norm(), 1, 1e-15);
+        sum += directions[i];
+        double nearest = 9;
+        for (std::size_t j = 0; j < directions.size(); ++j)
+            if (j != i) nearest = std::min(nearest, (directions[i] - directions[j]).norm());
+        // A hexagonal packing of 200 would have 0.269; no neighbour much nearer, none missing.
+        EXPECT_GT(nearest, 0.17);
+        EXPECT_LT(nearest, 0.27);
+    }
+    EXPECT_LT(sum.norm() / 200, 0.01);
+}
+
+TEST(VirtualScanViews, GivenDirections_AreNormalised) {
+    const double numbers[] = {0, 0, 5, 3, -4, 0, 1e-200, 0, 0};
+    EXPECT_THAT(scan::view_directions(numbers),
+                ::testing::ElementsAre(Vec3(0, 0, 1), Vec3(0.6, -0.8, 0), Vec3(1, 0, 0)));
+}
+
+TEST(VirtualScanViews, RaysFrame_IsRightHandedForAnyDirection) {
+    const double number[] = {50};
+    std::vector<Vec3> directions = scan::view_directions(number);
+    directions.insert(directions.end(), {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, -1, 0}});
+    for (const Vec3& direction : directions) {
+        const scan::View view = scan::view_from(direction, Vec3::Zero(), 1);
+        EXPECT_EQ(view.forward, -direction);
+        EXPECT_NEAR(view.right.norm(), 1, 1e-15);
+        EXPECT_NEAR(view.up.norm(), 1, 1e-15);
+        EXPECT_NEAR(view.right.dot(view.up), 0, 1e-15);
+        Eigen::Matrix3d axes;
+        axes << view.right, view.up, direction;
+        EXPECT_NEAR(axes.determinant(), 1, 1e-14);
+    }
+}
+
+TEST(VirtualScanRefusals, NeitherMeshNorShape) {
+    EXPECT_THAT(refusal(VirtualScanParams{}), HasSubstr("nothing to scan"));
+}
+
+TEST(VirtualScanRefusals, MeshAndShape) {
+    const TriangleMesh mesh = cube();
+    EXPECT_THAT(refusal(sphere(0.1), &mesh), HasSubstr("only one is possible"));
+}
+
+TEST(VirtualScanRefusals, MeshWithoutTriangles) {
+    TriangleMesh mesh;
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("no triangles"));
+}
+
+TEST(VirtualScanRefusals, MeshWithoutExtent) {
+    TriangleMesh mesh = cube();
+    mesh.positions = Array<Vec3>(8, Vec3(1, 2, 3));
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("no extent"));
+}
+
+TEST(VirtualScanRefusals, MeshOfSliversOnly) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("none of"));
+}
+
+TEST(VirtualScanRefusals, MeshWithANaN) {
+    TriangleMesh mesh = cube();
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+    positions[3].y() = std::numeric_limits<double>::quiet_NaN();
+    mesh.positions = std::move(positions);
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("vertices"));
+}
+
+TEST(VirtualScanRefusals, MeshWithAnIndexOutOfRange) {
+    TriangleMesh mesh = cube();
+    mesh.triangles = {{0, 1, 8}};
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("names vertex 8"));
+}
+
+TEST(VirtualScanRefusals, ResolutionNotAboveZero) {
+    EXPECT_THAT(refusal(sphere(0)), HasSubstr("resolution is 0 u"));
+    EXPECT_THAT(refusal(sphere(-1)), HasSubstr("resolution is -1 u"));
+}
+
+TEST(VirtualScanRefusals, TooManyRays_WithAResolutionThatFits) {
+    const std::string text = refusal(sphere(1e-5));
+    EXPECT_THAT(text, HasSubstr("12 views"));
+    EXPECT_THAT(text, HasSubstr("at most 268435456"));
+    EXPECT_THAT(refusal(sphere(1e-300)), HasSubstr("rays"));
+}
+
+TEST(VirtualScanRefusals, ParametersOutOfRange) {
+    VirtualScanParams params = sphere(0.1);
+    params.noise = -1;
+    EXPECT_THAT(refusal(params), HasSubstr("noise is -1 u"));
+    params = sphere(0.1);
+    params.outliers = Ratio::percent(-1);
+    EXPECT_THAT(refusal(params), HasSubstr("outliers is -1 %"));
+    params = sphere(0.1);
+    params.overlap = Ratio::percent(101);
+    EXPECT_THAT(refusal(params), HasSubstr("overlap is 101 %"));
+    params = sphere(0.1);
+    params.max_angle = Angle::degrees(0);
+    EXPECT_THAT(refusal(params), HasSubstr("max-angle is 0 deg"));
+    params.max_angle = Angle::degrees(91);
+    EXPECT_THAT(refusal(params), HasSubstr("at most 90 deg"));
+}
+
+TEST(VirtualScanRefusals, ViewsThatAreNone) {
+    VirtualScanParams params = sphere(0.1);
+    for (const std::vector<double>& views :
+         {std::vector<double>{0}, {2.5}, {-3}, {1e9}, {std::numeric_limits<double>::quiet_NaN()}}) {
+        params.views = views;
+        EXPECT_THAT(refusal(params), HasSubstr("one number must be a whole one"));
+    }
+    params.views = {1, 2};
+    EXPECT_THAT(refusal(params), HasSubstr("views has 2 numbers"));
+    params.views = {};
+    EXPECT_THAT(refusal(params), HasSubstr("views has 0 numbers"));
+    params.views = {1, 0, 0, 0, 0, 0};
+    EXPECT_THAT(refusal(params), HasSubstr("view 1 looks from (0 0 0)"));
+}
+
+TEST(VirtualScanRefusals, SizesThatFitNoShape) {
+    VirtualScanParams params = sphere(0.1);
+    params.size = {1.0, 2.0};
+    EXPECT_THAT(refusal(params), HasSubstr("a sphere has 1 dimensions (radius); size has 2"));
+    params.size = {-1.0};
+    EXPECT_THAT(refusal(params), HasSubstr("the radius of the sphere is -1 u"));
+    params.shape = Shape::torus;
+    params.size = {1.0, 1.0};
+    EXPECT_THAT(refusal(params), HasSubstr("does not leave a hole"));
+}
+
+TEST(VirtualScanRefusals, SpacingOfAShape) {
+    VirtualScanParams params = sphere(0.1);
+    params.resolution = Length::spacings(1);
+    EXPECT_THAT(refusal(params), HasSubstr("cannot be resolved"));
+}
+
+TEST(VirtualScan, Metrics_CountPointsAndOutliers) {
+    VirtualScanParams params = sphere(0.1);
+    params.outliers = Ratio::percent(10);
+    Context context;
+    const VirtualScanResult result = virtual_scan(nullptr, params, context);
+    EXPECT_EQ(context.metrics().find("points")->value, static_cast<double>(result.points.size()));
+    EXPECT_EQ(context.metrics().find("outliers")->value, static_cast<double>(result.outliers));
+    EXPECT_EQ(context.metrics().find("dropped")->value, 0);
+}
+
+}  // namespace
+}  // namespace scanmill::test

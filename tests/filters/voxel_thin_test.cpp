@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "voxel_thin/voxel_thin.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/files.hpp"
+#include "support/real_data.hpp"
+#include "support/shapes.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+VoxelThinParams bins_of(double size) {
+    VoxelThinParams params;
+    params.bin_size = size;
+    return params;
+}
+
+VoxelThinResult thin(const PointCloud& cloud, const VoxelThinParams& params, unsigned threads = 1) {
+    ContextOptions options;
+    options.threads = threads;
+    Context context(options);
+    return voxel_thin(cloud, params, context);
+}
+
+std::string refusal(const PointCloud& cloud, const VoxelThinParams& params) {
+    try {
+        thin(cloud, params);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "no refusal";
+}
+
+using Bin = std::array<double, 3>;
+Bin bin_of(const Vec3& p, const Vec3& origin, double size) {
+    return {std::floor((p.x() - origin.x()) / size), std::floor((p.y() - origin.y()) / size),
+            std::floor((p.z() - origin.z()) / size)};
+}
+double distance_to_centre(const Vec3& p, const Vec3& origin, double size) {
+    const Bin bin = bin_of(p, origin, size);
+    return (p - (origin + size * Vec3(bin[0] + 0.5, bin[1] + 0.5, bin[2] + 0.5))).squaredNorm();
+}
+
+/// The definition, the slow way.
+std::vector<u32> nearest_by_definition(const PointCloud& cloud, const Vec3& origin, double size, u32 min_points = 1) {
+    std::map<Bin, std::vector<u32>> members;
+    for (u32 i = 0; i < cloud.size(); ++i) members[bin_of(cloud.positions[i], origin, size)].push_back(i);
+    std::vector<u32> kept;
+    for (const auto& [bin, rows] : members)
+        if (rows.size() >= min_points)
+            kept.push_back(*std::ranges::min_element(rows, {}, [&](u32 row) {
+                return std::pair(distance_to_centre(cloud.positions[row], origin, size), row);
+            }));
+    std::ranges::sort(kept);
+    return kept;
+}
+
+std::set<std::array<double, 3>> positions_in(const PointCloud& cloud) {
+    std::set<std::array<double, 3>> positions;
+    for (const Vec3& p : cloud.positions) positions.insert({p.x(), p.y(), p.z()});
+    return positions;
+}
+
+TEST(VoxelThin, FivePointsByHand_KeepsTheOneNearestEachCentre) {
+    // The grid starts at 0 0 0; bins of 2; centres at 1 1 1 and 3 1 1.
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {1.5, 1, 1}, {0.75, 1, 1}, {2, 0, 0}, {3, 1, 1.25}});
+    const VoxelThinResult result = thin(cloud, bins_of(2));
+    EXPECT_THAT(result.kept, ElementsAre(2u, 4u));
+    EXPECT_EQ(result.points.positions[0], Vec3(0.75, 1, 1));
+    EXPECT_EQ(result.points.positions[1], Vec3(3, 1, 1.25));
+    EXPECT_EQ(result.removed, 3u);
+    EXPECT_EQ(result.noise, 0u);
+    EXPECT_EQ(result.grid_origin, Vec3(0, 0, 0));
+}
+
+TEST(VoxelThin, PointOnABinsLowFace_BelongsToThatBin) {
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {std::nextafter(2.0, 0.0), 0, 0}, {2, 0, 0}});
+    EXPECT_THAT(thin(cloud, bins_of(2)).kept, ElementsAre(1u, 2u)) << "the second beats the first in bin 0 by a hair";
+}
+
+TEST(VoxelThin, TwoEquallyNear_KeepsTheLowerRow) {
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {1.25, 1, 1}, {0.75, 1, 1}, {1, 1.25, 1}});
+    EXPECT_THAT(thin(cloud, bins_of(2)).kept, ElementsAre(1u));
+    const PointCloud turned = cloud_of({{0, 0, 0}, {1, 1.25, 1}, {0.75, 1, 1}, {1.25, 1, 1}});
+    EXPECT_THAT(thin(turned, bins_of(2)).kept, ElementsAre(1u));
+}
+
+TEST(VoxelThin, Duplicates_CountAsPointsAndTheFirstStays) {
+    const PointCloud cloud = cloud_of({{5, 5, 5}, {5, 5, 5}, {5, 5, 5}});
+    VoxelThinParams params = bins_of(1);
+    params.min_points = 3;
+    EXPECT_THAT(thin(cloud, params).kept, ElementsAre(0u));
+}
+
+TEST(VoxelThin, OnePoint_Stays) { EXPECT_THAT(thin(cloud_of({{1, 2, 3}}), bins_of(0.1)).kept, ElementsAre(0u)); }
+
+TEST(VoxelThin, MinPoints_DropsAndCountsPoorBins) {
+    // Three, two and one point in bins 0, 1 and 2.
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {1.5, 0, 0}, {2.5, 0, 0}, {0.5, 0, 0}, {1.25, 0, 0}, {0.75, 0, 0}});
+    VoxelThinParams params = bins_of(1);
+    EXPECT_THAT(thin(cloud, params).kept, ElementsAre(1u, 2u, 3u));
+    params.min_points = 2;
+    VoxelThinResult result = thin(cloud, params);
+    EXPECT_THAT(result.kept, ElementsAre(1u, 3u));
+    EXPECT_EQ(result.noise, 1u);
+    EXPECT_EQ(result.removed, 4u);
+    params.min_points = 3;
+    result = thin(cloud, params);
+    EXPECT_THAT(result.kept, ElementsAre(3u));
+    EXPECT_EQ(result.noise, 3u);
+}
+
+TEST(VoxelThin, Margin_MovesTheGridBelowTheBox) {
+    VoxelThinParams params = bins_of(1);
+    params.margin = 0.5;
+    // With the margin both lie in bin [-0.5, 0.5); without it, in two bins.
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {0.25, 0, 0}, {1.2, 0, 0}});
+    const VoxelThinResult result = thin(cloud, params);
+    EXPECT_EQ(result.grid_origin, Vec3(-0.5, -0.5, -0.5));
+    EXPECT_THAT(result.kept, ElementsAre(0u, 2u));
+    EXPECT_THAT(thin(cloud, bins_of(1)).kept, ElementsAre(1u, 2u));
+}
+
+TEST(VoxelThin, GridOriginInsideTheCloud_RoundsNegativeBinsDown) {
+    VoxelThinParams params = bins_of(1);
+    params.grid_origin = Vec3(0, 0, 0);
+    const PointCloud cloud = cloud_of({{-0.25, 0, 0}, {0.25, 0, 0}, {-1, 0, 0}, {-1.25, 0, 0}});
+    EXPECT_THAT(thin(cloud, params).kept, ElementsAre(0u, 1u, 3u)) << "-0.25 and -1 share the bin [-1, 0)";
+}
+
+TEST(VoxelThin, RandomClouds_AgreeWithTheDefinition) {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        const PointCloud cloud = seed % 2 ? random_sphere(3000, seed) : random_cube(3000, seed);
+        VoxelThinParams params = bins_of(0.03 * static_cast<double>(seed + 1));
+        params.min_points = 1 + static_cast<u32>(seed % 4);
+        const VoxelThinResult result = thin(cloud, params);
+        EXPECT_THAT(result.kept, ::testing::ElementsAreArray(nearest_by_definition(
+                                     cloud, result.grid_origin, params.bin_size.value(), params.min_points)))
+            << seed;
+        EXPECT_EQ(result.kept.size() + result.removed, cloud.size());
+    }
+}
+
+/// So fine a grid that a bin's number takes more than 32 bits, and so many points that tables grow and waves follow.
+TEST(VoxelThin, ManyPointsInAFineGrid_AgreeWithTheDefinition) {
+    const PointCloud cloud = random_cube(1'200'000, 3);
+    for (const double size : {1.0 / 2000, 1.0 / 60}) {
+        const VoxelThinResult result = thin(cloud, bins_of(size));
+        EXPECT_TRUE(std::ranges::equal(result.kept, nearest_by_definition(cloud, result.grid_origin, size))) << size;
+    }
+}
+
+TEST(VoxelThin, TwoThreads_GiveTheSameBytes) {
+    const PointCloud cloud = random_sphere(300'000, 5, 10);
+    const VoxelThinResult one = thin(cloud, bins_of(0.2), 1), two = thin(cloud, bins_of(0.2), 2);
+    EXPECT_EQ(one.kept, two.kept);
+    EXPECT_EQ(one.grid_origin, two.grid_origin);
+}
+
+TEST(VoxelThin, ThinningAgainInTheSameGrid_ChangesNothing) {
+    const VoxelThinResult once = thin(random_cube(20'000, 1), bins_of(0.07));
+    VoxelThinParams params = bins_of(0.07);
+    params.grid_origin = once.grid_origin;
+    const VoxelThinResult twice = thin(once.points, params);
+    EXPECT_EQ(twice.removed, 0u);
+}
+
+TEST(VoxelThin, ReversedInput_KeepsTheSameSet) {
+    const PointCloud cloud = random_cube(20'000, 2);
+    std::vector<u32> backwards(cloud.size());
+    std::iota(backwards.rbegin(), backwards.rend(), u32(0));
+    EXPECT_EQ(positions_in(thin(cloud, bins_of(0.1)).points),
+              positions_in(thin(gather(cloud, backwards), bins_of(0.1)).points));
+}
+
+TEST(VoxelThin, BinLargerThanTheCloud_KeepsOnePoint) {
+    EXPECT_EQ(thin(random_cube(1000, 1), bins_of(2)).kept.size(), 1u);
+}
+
+TEST(VoxelThin, DenseSphere_OccupiesThreeHalvesOfItsAreaInBins) {
+    const double size = 0.05;
+    const double bins = 1.5 * 4 * M_PI / (size * size);
+    const VoxelThinResult result = thin(random_sphere(2'000'000, 1), bins_of(size));
+    EXPECT_NEAR(static_cast<double>(result.kept.size()) / bins, 1, 0.02);
+}
+
+TEST(VoxelThin, Columns_AreCarriedWithTheirRows) {
+    PointCloud cloud = cloud_of({{0, 0, 0}, {0.5, 0.5, 0.5}, {7, 7, 7}});
+    cloud.frame = {LengthUnit::millimetre, Vec3(100, 0, 0), "part"};
+    cloud.columns.add(Column("weight", 1, Buffer<float>{1.f, 2.f, 3.f}));
+    cloud.columns.add(Column("colour", 3, Buffer<u8>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
+    const VoxelThinResult result = thin(cloud, bins_of(1));
+    EXPECT_EQ(result.points.frame, cloud.frame);
+    EXPECT_THAT(result.points.columns.find("weight")->values<float>(), ElementsAre(2.f, 3.f));
+    EXPECT_THAT(result.points.columns.find("colour")->values<u8>(), ElementsAre(4, 5, 6, 7, 8, 9));
+}
+
+TEST(VoxelThin, Metrics_SayWhatHappened) {
+    VoxelThinParams params = bins_of(1);
+    params.min_points = 2;
+    Context context;
+    voxel_thin(cloud_of({{0, 0, 0}, {0.5, 0, 0}, {9, 0, 0}}), params, context);
+    EXPECT_EQ(context.metrics().find("kept")->value, 1);
+    EXPECT_EQ(context.metrics().find("removed")->value, 2);
+    EXPECT_EQ(context.metrics().find("noise")->value, 1);
+}
+
+TEST(VoxelThin, Cancelled_Stops) {
+    ContextOptions options;
+    options.is_cancelled = [] { return true; };
+    Context context(options);
+    EXPECT_THROW(voxel_thin(random_cube(100, 1), bins_of(1), context), Cancelled);
+}
+
+TEST(VoxelThin, EmptyCloud_IsRefused) { EXPECT_THAT(refusal(PointCloud{}, bins_of(1)), HasSubstr("no points")); }
+
+TEST(VoxelThin, NotANumber_IsRefusedWithItsRow) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}, {1, nan, 0}}), bins_of(1)), HasSubstr("1 of 2 points"));
+}
+
+TEST(VoxelThin, InfinityOfEitherSign_IsRefused) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_THAT(refusal(cloud_of({{0, 0, infinity}, {1, 0, 0}}), bins_of(1)), HasSubstr("finite"));
+    EXPECT_THAT(refusal(cloud_of({{0, -infinity, 0}, {1, 0, 0}}), bins_of(1)), HasSubstr("finite"));
+}
+
+TEST(VoxelThin, BinSizeNotAboveZero_IsRefused) {
+    const PointCloud cloud = cloud_of({{0, 0, 0}});
+    EXPECT_THAT(refusal(cloud, VoxelThinParams{}), HasSubstr("bin size is 0"));
+    EXPECT_THAT(refusal(cloud, bins_of(-1)), HasSubstr("bin size is -1"));
+    EXPECT_THAT(refusal(cloud, bins_of(std::numeric_limits<double>::quiet_NaN())), HasSubstr("above 0"));
+    EXPECT_THAT(refusal(cloud, bins_of(std::numeric_limits<double>::infinity())), HasSubstr("above 0"));
+}
+
+TEST(VoxelThin, UnresolvedBinSize_IsRefused) {
+    VoxelThinParams params;
+    params.bin_size = Length::percent_of_diagonal(1);
+    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("not resolved"));
+}
+
+TEST(VoxelThin, NegativeMargin_IsRefused) {
+    VoxelThinParams params = bins_of(1);
+    params.margin = -1;
+    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("margin is -1"));
+}
+
+TEST(VoxelThin, NoMinimumOfPoints_IsRefused) {
+    VoxelThinParams params = bins_of(1);
+    params.min_points = 0;
+    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("min-points is 0"));
+}
+
+TEST(VoxelThin, TwoToThe21BinsAlongAnAxis_AreTheMost) {
+    const double most = 1 << 21;
+    EXPECT_EQ(thin(cloud_of({{0, 0, 0}, {0, most - 1, 0}}), bins_of(1)).kept.size(), 2u);
+    const PointCloud long_cloud = cloud_of({{0, 0, 0}, {0, most, 0}});
+    EXPECT_THAT(refusal(long_cloud, bins_of(1)), HasSubstr("2097153; at most 2097152"));
+    EXPECT_THAT(refusal(long_cloud, bins_of(1)), HasSubstr("along y"));
+}
+
+TEST(VoxelThin, TooFineBins_NamedSmallestSizeFits) {
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {0, 12345.678, 9}});
+    const std::string text = refusal(cloud, bins_of(1e-6));
+    const std::size_t at = text.find("bins of ", text.find("hint"));
+    ASSERT_NE(at, std::string::npos) << text;
+    double smallest = 0;
+    ASSERT_TRUE(parse_number(text.substr(at + 8, text.find(" u", at) - at - 8), smallest)) << text;
+    EXPECT_EQ(thin(cloud, bins_of(smallest)).kept.size(), 2u);
+    EXPECT_NE(refusal(cloud, bins_of(smallest * 0.999)), "no refusal");
+}
+
+TEST(VoxelThin, CornersOfTheLargestGrid_AreToldApart) {
+    const double far = (1 << 21) - 1;
+    const PointCloud corners = cloud_of({{0, 0, 0},
+                                         {far, 0, 0},
+                                         {0, far, 0},
+                                         {0, 0, far},
+                                         {far, far, 0},
+                                         {far, 0, far},
+                                         {0, far, far},
+                                         {far, far, far}});
+    EXPECT_EQ(thin(corners, bins_of(1)).kept.size(), 8u);
+}
+
+TEST(VoxelThin, DistantGridOrigin_IsRefused) {
+    VoxelThinParams params = bins_of(1);
+    params.grid_origin = Vec3(0, 0, 1e10);
+    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("bins of 1 u away"));
+    params.grid_origin = Vec3(0, 0, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("not finite"));
+}
+
+TEST(VoxelThin, NothingButNoise_IsRefused) {
+    VoxelThinParams params = bins_of(1);
+    params.min_points = 2;
+    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}, {5, 0, 0}}), params), HasSubstr("all 2 points lie in 2 bins"));
+}
+
+TEST(VoxelThin, RealScan_AgreesWithTheDefinition) {
+    SCANMILL_REAL_SCAN(path, shared_data, "1-bunny/raw/bun000.ply");
+    const auto cloud = read_points(path);
+    const double size = 0.002;
+    const VoxelThinResult result = thin(*cloud, bins_of(size), 2);
+    EXPECT_GT(result.removed, cloud->size() / 2);
+    EXPECT_TRUE(std::ranges::equal(result.kept, nearest_by_definition(*cloud, result.grid_origin, size)));
+}
+
+}  // namespace
+}  // namespace scanmill::test

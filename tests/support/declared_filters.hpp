@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A library of filters that exist only as declarations: checking a workflow loads no code, so its tests need none.
+
+#include "scanmill/filter/library.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+
+/// thin: points → points (size: length above 0 = 1 %diag; count: integer of at least 1 = 1; rule: nearest, random).
+/// tetrahedralise: points → tets.        solid: tets → mesh*, tets (alpha: length or auto; coverage: ratio up to 100 %).
+/// simplify: mesh → mesh (max-error: length, required).    register: source, target: points → transform.
+/// combine: points… (a list) → points.   pair: points → left*, right: points.    make: mesh? → points.
+class DeclaredFilters {
+public:
+    DeclaredFilters();
+    FilterLibrary library() const { return FilterLibrary({folder_.path()}); }
+    const TemporaryFolder& folder() const { return folder_; }
+
+private:
+    void add(const FilterSpec& spec);
+    TemporaryFolder folder_;
+};
+
+}  // namespace scanmill::test
