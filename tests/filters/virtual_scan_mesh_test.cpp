@@ -89,14 +89,34 @@ TEST(VirtualScanMesh, TwoParallelPlates_OnlyTheNearerIsSeen) {
     for (const Vec3& p : scan(mesh, rays_every(0.05, {0, 0, -1})).points.positions) ASSERT_EQ(p.z(), 0);
 }
 
-TEST(VirtualScanMesh, TwoTrianglesInOnePlace_TheLowerRowCounts) {
-    // The second is the first turned over; a tie everywhere. The normal is the first's, turned to the sensor, so use
-    // slightly different planes that meet at x = 0.5 instead: nearer wins left and right of it.
-    const TriangleMesh mesh =
-        mesh_of({{0, 0, 0}, {1, 0, 1}, {1, 1, 1}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {0, 1, 1}},
-                {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}});
-    const VirtualScanResult result = scan(mesh, rays_every(0.04, {0, 0, 1}));
+/// Square plates over [0, 2]² that cross at x = 1/2: z = x, and z = 1 − x.
+TriangleMesh crossing_plates(bool rising_first) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {2, 0, 2}, {2, 2, 2}, {0, 2, 0}, {0, 0, 1}, {2, 0, -1}, {2, 2, -1}, {0, 2, 1}};
+    if (rising_first)
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    else
+        mesh.triangles = {{4, 5, 6}, {4, 6, 7}, {0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+TEST(VirtualScanMesh, CrossingPlates_TheNearerIsSeenOnEitherSide) {
+    const VirtualScanResult result = scan(crossing_plates(true), rays_every(0.04, {0, 0, 1}));
+    ASSERT_EQ(result.points.size(), 2500u);
     for (const Vec3& p : result.points.positions) ASSERT_NEAR(p.z(), std::max(p.x(), 1 - p.x()), 1e-12);
+}
+
+TEST(VirtualScanMesh, RayThroughACrossing_MeetsTheLowerRow) {
+    // Rays at x = 1/2, where both plates are equally near, and at 3/2.
+    for (const bool rising_first : {true, false}) {
+        const VirtualScanResult result = scan(crossing_plates(rising_first), rays_every(1, {0, 0, 1}));
+        const auto normals = normals_of(result);
+        ASSERT_EQ(result.points.size(), 4u);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const bool rising = rising_first || result.points.positions[i].x() > 1;
+            EXPECT_NEAR(normals[3 * i], rising ? -std::sqrt(0.5) : std::sqrt(0.5), 1e-15) << i;
+        }
+    }
 }
 
 TEST(VirtualScanMesh, GeodesicSphere_PointsLieWithinTheSagitta) {

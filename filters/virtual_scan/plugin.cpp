@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/filter/plugin.hpp"
+#include "virtual_scan/virtual_scan.hpp"
+
+using namespace scanmill;
+
+SCANMILL_FILTER() {
+    using P = VirtualScanParams;
+    return Declare<P>("virtual-scan", 1)
+        .summary("Scans a mesh or a shape as a real scanner would: from views, with noise, outliers and hidden parts.")
+        .source("z-buffer: Catmull 1974; edge functions: Pineda 1988")
+        .in<TriangleMesh>("mesh", "What is scanned, of any topology; leave it out to scan a shape.", optional)
+        .out<PointCloud>("points", "The hits, view by view, with columns `normal` and `view`; outliers at the end.")
+        .choice("shape", &P::shape,
+                {{"none", P::Shape::none, "The mesh is scanned."},
+                 {"sphere", P::Shape::sphere, "Around the origin; size: radius."},
+                 {"torus", P::Shape::torus, "Around the z axis; size: radius of the ring, radius of its tube."},
+                 {"box", P::Shape::box, "Around the origin; size: x, y, z."},
+                 {"cylinder", P::Shape::cylinder, "Around the z axis; size: radius, height."},
+                 {"l-block", P::Shape::l_block, "Three squares in an L; size: edge of a square, thickness."}},
+                "What is scanned when there is no mesh, by formula and not through triangles.")
+        .param("size", &P::size, "The shape's dimensions in the scan's own unit; empty takes those around 1 u.", above(0))
+        .param("views", &P::views,
+               "How many views, evenly spread; or three numbers per view, the direction from the object to the sensor.")
+        .param("resolution", &P::resolution, "Distance between neighbouring rays.", above(0))
+        .param("noise", &P::noise, "Standard deviation of the error along the ray.", at_least(0))
+        .param("outliers", &P::outliers, "Points anywhere in the grown bounding box, as a share of the surface points.",
+               at_least(0), at_most(10))
+        .param("overlap", &P::overlap, "Share that stays of the points that an earlier view has already seen.",
+               at_least(0), at_most(1))
+        .param("max-angle", &P::max_angle, "Nothing comes back where ray and surface normal make a larger angle.", above(0),
+               at_most(90))
+        .metric("points", Unit::count, "Points of the scan, outliers included.", headline)
+        .metric("outliers", Unit::count, "Points that lie on no surface.")
+        .metric("dropped", Unit::count, "Points left out because an earlier view had seen their place.")
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            return Outputs().set("points", virtual_scan(inputs.find<TriangleMesh>("mesh"), params, context).points);
+        });
+}

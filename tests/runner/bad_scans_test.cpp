@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bad scans are everyday: each is one clear sentence that names the file, says what was found and what is needed, and
+// exit code 1. The address space is limited, so that believing a header's promise would show.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::HasSubstr;
+
+struct BadScan {
+    std::string test_name;
+    std::string file;
+    std::string content;
+    std::vector<std::string> said;  ///< all of these, beside the file's name
+};
+
+void PrintTo(const BadScan& scan, std::ostream* stream) { *stream << scan.test_name; }
+
+std::string ply_header(const std::string& count, const std::string& format = "binary_little_endian") {
+    return "ply\nformat " + format + " 1.0\nelement vertex " + count +
+           "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+}
+
+std::string repeated(const std::string& line, int times) {
+    std::string text;
+    for (int i = 0; i < times; ++i) text += line;
+    return text;
+}
+
+const std::vector<BadScan> bad_scans{
+    {"Empty", "scan.ply", "", {"empty"}},
+    {"EmptyText", "scan.xyz", "", {"empty"}},
+    {"HeaderOnly", "scan.ply", ply_header("5"), {"5"}},
+    {"HeaderCutShort", "scan.ply", "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\n", {"end_header"}},
+    {"TruncatedBody", "scan.ply", ply_header("5") + std::string(40, 'a'), {"5", "40"}},
+    {"TruncatedAscii", "scan.ply", ply_header("3", "ascii") + "0 0 0\n1 1 1\n", {"3"}},
+    {"PromisesTwoToTheForty", "scan.ply", ply_header("1099511627776") + std::string(120, 'a'), {"1099511627776"}},
+    {"PromisesTwoToTheFortyAscii", "scan.ply", ply_header("1099511627776", "ascii") + "0 0 0\n", {"1099511627776"}},
+    {"PromisesBeyondSixtyFourBits", "scan.ply", ply_header("99999999999999999999999") + "abc", {"99999999999999999999999"}},
+    {"BinaryStlPromisesMore", "scan.stl", std::string(80, ' ') + "\xff\xff\xff\xff" + std::string(50, 'a'), {"4294967295"}},
+    {"NotANumber", "scan.xyz", "0 0 0\n1 nan 0\n0 1 0\n0 0 1\n1 1 1\n", {"1 of 5", "NaN", "--drop-invalid"}},
+    {"Infinity", "scan.xyz", "0 0 0\n1 0 0\n0 inf 0\n0 0 1\n-inf 1 1\n", {"2 of 5", "infinity"}},
+    {"AllPointsEqual", "scan.xyz", repeated("1 2 3\n", 9), {"9"}},
+    {"Collinear", "scan.xyz", "0 0 0\n1 1 1\n2 2 2\n3 3 3\n5 5 5\n", {"line"}},
+    {"Coplanar", "scan.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 5 0\n", {"plane"}},
+    {"ThreePoints", "scan.xyz", "0 0 0\n1 0 0\n0 1 0\n", {"4", "3"}},
+    {"OnePoint", "scan.xyz", "0 0 0\n", {"1"}},
+    {"WordsInsteadOfNumbers", "scan.xyz", "0 0 0\nzero one two\n", {"line 2"}},
+    {"UnknownFormat", "scan.bin", std::string("\x7f" "ELF\x02\x01\x01", 7) + std::string(99, '\0'), {"format"}},
+};
+
+class BadScanTest : public testing::TestWithParam<BadScan> {};
+
+/// One refusal: the exit code, one error that names the file, nothing written.
+void expect_one_clear_sentence(const ProgramResult& ran, const std::string& file, const std::vector<std::string>& said) {
+    EXPECT_EQ(ran.exit_code, 1) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr(file));
+    for (const std::string& part : said) EXPECT_THAT(ran.err, HasSubstr(part));
+    EXPECT_THAT(ran.err, testing::Not(HasSubstr("bad_alloc")));
+    EXPECT_THAT(ran.err, testing::Not(HasSubstr("memory did not suffice")));
+    std::size_t errors = 0;
+    for (std::size_t at = ran.err.find("error: "); at != std::string::npos; at = ran.err.find("error: ", at + 1)) ++errors;
+    EXPECT_EQ(errors, 1u) << ran.err;
+}
+
+TEST_P(BadScanTest, Run_SaysOneClearSentenceAndEndsWith1) {
+    const BadScan& bad = GetParam();
+    const TemporaryFolder folder;
+    folder.write(bad.file, bad.content);
+    folder.write("w.yaml", "scanmill: 1\ninputs: {scan: points}\nsteps: [{delaunay: }, {alpha-solid: }]\noutputs: {\"{scan}.stl\": alpha-solid}\n");
+    ProgramOptions options{.folder = folder.path(), .environment = {}};
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    options.memory_limit = std::size_t(1) << 31;
+#endif
+    const ProgramResult ran = scanmill_program({"run", "w.yaml", bad.file, "-o", "out"}, options);
+    expect_one_clear_sentence(ran, bad.file, bad.said);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/scan.stl"));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadScanTest, testing::ValuesIn(bad_scans),
+                         [](const auto& info) { return info.param.test_name; });
+
+TEST(BadScan, Folder_IsRefused) {
+    const TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "scan.ply");
+    const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
+    expect_one_clear_sentence(scanmill_program({"run", quickstart, "scan.ply", "-o", "out"}, {.folder = folder.path()}), "scan.ply", {"folder"});
+}
+
+TEST(BadScan, MissingFile_IsRefused) {
+    const TemporaryFolder folder;
+    const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
+    expect_one_clear_sentence(scanmill_program({"run", quickstart, "scan.ply", "-o", "out"}, {.folder = folder.path()}), "scan.ply", {"no such file"});
+}
+
+}  // namespace
+}  // namespace scanmill::test

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Runs the built command as a user would, and says what came of it.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace scanmill::test {
+
+struct ProgramResult {
+    int exit_code = -1;  ///< of a normal end; -signal when a signal ended it
+    std::string out, err;
+};
+
+struct ProgramOptions {
+    std::filesystem::path folder;                 ///< to run in; empty: this one
+    std::vector<std::string> environment;         ///< NAME=VALUE, added
+    std::size_t memory_limit = 0;                 ///< bytes of address space; 0: none
+};
+
+/// Runs SCANMILL_PROGRAM with these arguments and no standard input.
+ProgramResult scanmill_program(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
+
+}  // namespace scanmill::test
