@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# scanmill_add_filter(<folder> [LINK <target>…] [DEFINE <macro>…])
+# scanmill_add_filter(<folder> [LINK <target>…] [DEFINE <macro>…] [NO_INSTALL])
 #
 # Makes, from filters/<folder>, with <name> the folder's name with hyphens:
 #   scanmill-<name>-algorithm   a static library of every .cpp but plugin.cpp: the plain functions, for tests and programs
 #   scanmill-<name>.so          the module, from plugin.cpp
 #   scanmill-<name>.json        the manifest, written by the built module
 # Refuses to configure when the filter has no README.md, or no test file tests/filters/<folder>*_test.cpp (unless tests
-# live elsewhere: set SCANMILL_FILTER_TESTS to their folder).
+# live elsewhere: set SCANMILL_FILTER_TESTS to their folder). NO_INSTALL: for modules that only tests use.
 function(scanmill_add_filter folder)
-  cmake_parse_arguments(FILTER "" "" "LINK;DEFINE" ${ARGN})
+  cmake_parse_arguments(FILTER "NO_INSTALL" "" "LINK;DEFINE" ${ARGN})
   if(FILTER_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "scanmill_add_filter(${folder}): unknown arguments ${FILTER_UNPARSED_ARGUMENTS}")
   endif()
@@ -61,6 +61,8 @@ function(scanmill_add_filter folder)
     VERBATIM)
   add_dependencies(scanmill-${name} scanmill-manifest)
 
-  install(TARGETS scanmill-${name} LIBRARY DESTINATION ${SCANMILL_INSTALL_PLUGIN_DIR})
-  install(FILES ${SCANMILL_PLUGIN_OUTPUT_DIRECTORY}/scanmill-${name}.json DESTINATION ${SCANMILL_INSTALL_PLUGIN_DIR})
+  if(NOT FILTER_NO_INSTALL)
+    install(TARGETS scanmill-${name} LIBRARY DESTINATION ${SCANMILL_INSTALL_PLUGIN_DIR})
+    install(FILES ${SCANMILL_PLUGIN_OUTPUT_DIRECTORY}/scanmill-${name}.json DESTINATION ${SCANMILL_INSTALL_PLUGIN_DIR})
+  endif()
 endfunction()

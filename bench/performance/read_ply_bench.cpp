@@ -32,7 +32,9 @@ public:
             const auto rounded = [](double value) { return static_cast<double>(static_cast<float>(value)); };
             positions[i] = {rounded(std::cos(turn)), rounded(std::sin(turn)), rounded(turn)};
         }
-        write_file(path(), std::make_shared<const PointCloud>(PointCloud{{}, std::move(positions), {}}));
+        PointCloud cloud;
+        cloud.positions = std::move(positions);
+        write_file(path(), std::make_shared<const PointCloud>(std::move(cloud)));
     }
     ~PointFile() {
         std::error_code ignored;

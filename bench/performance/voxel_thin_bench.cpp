@@ -85,7 +85,9 @@ void compare(const std::string& title, const PointCloud& cloud, double bin_size,
     const auto ours = [&](unsigned threads) {
         scanmill::VoxelThinParams params;
         params.bin_size = bin_size;
-        scanmill::Context context({.threads = threads});
+        scanmill::ContextOptions options;
+        options.threads = threads;
+        scanmill::Context context(options);
         return scanmill::voxel_thin(cloud, params, context).points.size();
     };
     std::vector<Contender> contenders;

@@ -6,18 +6,22 @@
 
 namespace scanmill::alpha {
 
+namespace {
+/// Always judged one by one.
+constexpr std::size_t few_suspects = 1024;
+}  // namespace
+
 GrowingSolid::GrowingSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects)
     : tets_(tets),
       labels_(std::move(labels)),
-      suspects_(suspects.begin(), suspects.end()),
+      many_(std::max<std::size_t>(few_suspects, tets.positions.size() / 16)),
       is_suspect_(tets.positions.size()),
       covered_(tets.positions.size()),
       anchor_(tets.positions.size()),
       place_(tets.cells.size()) {
-    std::ranges::fill(is_suspect_, u8(0));
     std::ranges::fill(covered_, u8(0));
     std::ranges::fill(place_, u64(0));
-    for (u32 vertex : suspects_) is_suspect_[vertex] = 1;
+    suspect_only(suspects);
     for (u32 cell = 0; cell < labels_.size(); ++cell)
         for (u32 vertex : tets_.cells[cell]) {
             anchor_[vertex] = cell;
@@ -33,7 +37,7 @@ void GrowingSolid::solidify(u32 seed) {
         stack_.pop_back();
         for (u32 vertex : tets_.cells[cell]) {
             if (std::exchange(is_suspect_[vertex], u8(1)) == 0) suspects_.push_back(vertex);
-            witness_changed_ |= vertex == witness_;
+            next_changed_ |= vertex == suspects_[next_suspect_];
             covered_count_ += std::exchange(covered_[vertex], u8(1)) == 0;
         }
         for (u32 across : tets_.neighbours[cell])
@@ -59,21 +63,23 @@ void GrowingSolid::add_joined(std::span<const u32> cells) {
     }
 }
 
-bool GrowingSolid::is_manifold() {
-    if (witness_ != no_vertex && !witness_changed_) return false;
-    while (!suspects_.empty()) {
-        // The witness stays at the end of the list, unless others were added behind it.
-        const u32 vertex = witness_ != no_vertex ? witness_ : suspects_.back();
-        witness_changed_ = false;
-        if (!is_manifold_at(vertex)) {
-            witness_ = vertex;
-            return false;
-        }
-        if (std::exchange(witness_, no_vertex) != no_vertex) continue;
-        is_suspect_[vertex] = 0;
-        suspects_.pop_back();
+GrowingSolid::Verdict GrowingSolid::verdict() {
+    for (; next_suspect_ < suspects_.size(); ++next_suspect_) {
+        if (!std::exchange(next_changed_, false)) return Verdict::not_manifold;
+        if (!is_manifold_at(suspects_[next_suspect_])) return Verdict::not_manifold;
+        next_changed_ = true;
+        if (suspects_.size() - next_suspect_ > many_) return Verdict::many_suspects;
+        is_suspect_[suspects_[next_suspect_]] = 0;
     }
-    return true;
+    return Verdict::manifold;
+}
+
+void GrowingSolid::suspect_only(std::span<const u32> vertices) {
+    suspects_.assign(vertices.begin(), vertices.end());
+    next_suspect_ = 0;
+    next_changed_ = true;
+    std::ranges::fill(is_suspect_, u8(0));
+    for (u32 vertex : suspects_) is_suspect_[vertex] = 1;
 }
 
 void GrowingSolid::collect_star(u32 vertex) {
@@ -134,7 +140,8 @@ void GrowingSolid::repair(std::span<const double> price) {
     while (true) {
         cheapest.clear();
         std::vector<u32> still_bad;
-        for (u32 vertex : suspects_) {
+        for (; next_suspect_ < suspects_.size(); ++next_suspect_) {
+            const u32 vertex = suspects_[next_suspect_];
             if (is_manifold_at(vertex)) {
                 is_suspect_[vertex] = 0;
                 continue;
@@ -147,6 +154,8 @@ void GrowingSolid::repair(std::span<const double> price) {
                 if (labels_[cell] != solid && price[cell] == least) cheapest.push_back(cell);
         }
         suspects_ = std::move(still_bad);
+        next_suspect_ = 0;
+        next_changed_ = true;
         if (suspects_.empty()) return;
         add(cheapest);
     }

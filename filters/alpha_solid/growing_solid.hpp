@@ -20,7 +20,14 @@ public:
     /// left-out cells; the others become left out.
     void add_joined(std::span<const u32> cells);
 
-    bool is_manifold();
+    enum class Verdict {
+        manifold,
+        not_manifold,
+        many_suspects  ///< so many vertices are suspect that looking at the whole boundary is cheaper: see suspect_only()
+    };
+    Verdict verdict();
+    /// Replaces the suspects, as in the constructor.
+    void suspect_only(std::span<const u32> vertices);
     /// Adds, round every non-manifold vertex, the cells with the least `price` that are not solid, all vertices at once;
     /// again until none is left. `price` is per cell. Each round solidifies a cell, so it ends.
     void repair(std::span<const double> price);
@@ -30,8 +37,6 @@ public:
     std::size_t covered() const { return covered_count_; }
 
 private:
-    static constexpr u32 no_vertex = ~u32(0);
-
     void solidify(u32 cell);
     bool is_manifold_at(u32 vertex);
     /// Cells round the vertex, into star_.
@@ -39,10 +44,12 @@ private:
 
     const TetMesh& tets_;
     Array<u8> labels_;
+    /// Oldest first from `next_suspect_` on: what was bad from the start is likely to stay so for long. That one is not
+    /// manifold unless its star has changed since it was looked at.
     std::vector<u32> suspects_;
-    /// A suspect that was not manifold when last looked at, and whether its star has changed since.
-    u32 witness_ = no_vertex;
-    bool witness_changed_ = false;
+    std::size_t next_suspect_ = 0;
+    bool next_changed_ = true;
+    std::size_t many_;
     Array<u8> is_suspect_, covered_;
     std::size_t covered_count_ = 0;
     /// Any cell round each vertex.

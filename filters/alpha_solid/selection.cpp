@@ -117,8 +117,13 @@ Selection Selector::scan() const {
     for (std::size_t steps = 0; !growth.at_hull() && growth.next_value() <= last; ++steps) {
         if (steps % 4096 == 0) context_.check_cancelled();
         growth.step();
-        if (growth.holds_enough() && growth.solid().is_manifold())
-            return described(growth.solid().labels(), growth.outside(), AlphaChoice::scan);
+        if (!growth.holds_enough()) continue;
+        const GrowingSolid::Verdict verdict = growth.solid().verdict();
+        if (verdict == GrowingSolid::Verdict::not_manifold) continue;
+        Selection selection = described(growth.solid().labels(), growth.outside(), AlphaChoice::scan);
+        if (is_valid(selection)) return selection;
+        assert(verdict == GrowingSolid::Verdict::many_suspects);
+        growth.solid().suspect_only(selection.defects.vertices);
     }
     return repaired(start);
 }

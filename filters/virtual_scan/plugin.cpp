@@ -19,7 +19,8 @@ SCANMILL_FILTER() {
                  {"cylinder", P::Shape::cylinder, "Around the z axis; size: radius, height."},
                  {"l-block", P::Shape::l_block, "Three squares in an L; size: edge of a square, thickness."}},
                 "What is scanned when there is no mesh, by formula and not through triangles.")
-        .param("size", &P::size, "The shape's dimensions in the scan's own unit; empty takes those around 1 u.", above(0))
+        .param("size", &P::size, "The shape's dimensions in the scan's own unit; empty takes those around 1 u.",
+               above(0))
         .param("views", &P::views,
                "How many views, evenly spread; or three numbers per view, the direction from the object to the sensor.")
         .param("resolution", &P::resolution, "Distance between neighbouring rays.", above(0))
@@ -28,8 +29,8 @@ SCANMILL_FILTER() {
                at_least(0), at_most(10))
         .param("overlap", &P::overlap, "Share that stays of the points that an earlier view has already seen.",
                at_least(0), at_most(1))
-        .param("max-angle", &P::max_angle, "Nothing comes back where ray and surface normal make a larger angle.", above(0),
-               at_most(90))
+        .param("max-angle", &P::max_angle, "Nothing comes back where ray and surface normal make a larger angle.",
+               above(0), at_most(90))
         .metric("points", Unit::count, "Points of the scan, outliers included.", headline)
         .metric("outliers", Unit::count, "Points that lie on no surface.")
         .metric("dropped", Unit::count, "Points left out because an earlier view had seen their place.")

@@ -66,7 +66,8 @@ struct VirtualScanResult {
 /// triangles, with indices out of range, with a NaN or infinite vertex, without extent; a wrong number of sizes or
 /// views, a direction of length 0; a parameter out of its range; more than 2^28 rays; not a single point.
 /// Deterministic: bytes depend on the seed, not on the number of threads; views are scanned in parallel.
-/// Cost: time O(rays + pixels of the triangles' boxes), 12 bytes per ray of a view (shapes: 32) and thread.
+/// Cost: time O(rays + pixels of the triangles' boxes), 48 bytes per point and, for
+/// meshes, 12 per ray of the views under way.
 /// Reports the metrics `points`, `outliers` and `dropped`.
 VirtualScanResult virtual_scan(const TriangleMesh* mesh, const VirtualScanParams& params, Context& context);
 

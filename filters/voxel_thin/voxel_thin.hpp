@@ -44,11 +44,11 @@ struct VoxelThinResult {
 ///
 /// Throws Error for an empty cloud, a NaN or infinite coordinate, a bin size not above 0, a negative margin,
 /// min_points 0, more than 2^21 bins along an axis (naming the smallest size that fits), a grid origin more than 2^31
-/// bins away, and when every point was noise. Nothing is kept then.
+/// bins away, and when every point was noise.
 /// Deterministic: the same bytes for any number of threads; without ties, the same set for any order of the input.
-/// Cost: O(n) time; 32 bytes for up to every three slots of two occupied bins (64 to 128 bytes per bin) beside the
-/// result. Reports the metrics `kept`, `removed` and `noise`. Source: Wang 2006, chapter 3 (the rule for keeping); the
-/// bin size is given, not derived from a tolerance.
+/// Cost: O(n) time; beside the result 24 to 72 bytes per occupied bin and at most 50 MB.
+/// Metrics: `kept`, `removed`, `noise`.
+/// Source: Wang 2006, chapter 3, for the rule of keeping; the bin size is given, not derived from a tolerance.
 VoxelThinResult voxel_thin(const PointCloud& cloud, const VoxelThinParams& params, Context& context);
 
 }  // namespace scanmill

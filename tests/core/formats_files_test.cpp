@@ -87,6 +87,7 @@ TEST(CanWrite_Table, KnowsExtensionsInAnyCase_AndKinds) {
     EXPECT_FALSE(can_write("", Kind::mesh));
     EXPECT_FALSE(can_write("ply", Kind::metrics));
     EXPECT_EQ(writable_extensions(Kind::mesh), "ply, stl, off");
+    EXPECT_EQ(writable_extensions(Kind::points), "ply, xyz, txt");
     EXPECT_EQ(writable_extensions(Kind::metrics), "");
 }
 

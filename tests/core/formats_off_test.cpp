@@ -37,6 +37,8 @@ TEST(OffReader_Colours, WholeNumbersAreBytes_OthersAreDoubles_OneIsAnIndex) {
     EXPECT_EQ(reals->face_columns.find("colour"), nullptr);
     EXPECT_THAT(numbers_of<double>(reals->face_columns.find("green")), ElementsAre(0.5));
     EXPECT_THAT(numbers_of<double>(reals->face_columns.find("alpha")), ElementsAre(1.0));
+    const auto beyond = mesh_in("OFF\n3 1 0\n" + right_triangle + "3 0 1 2 256 255 0\n", "a.off");
+    EXPECT_THAT(numbers_of<double>(beyond->face_columns.find("red")), ElementsAre(256.0));
     const auto index = mesh_in("OFF\n3 1 0\n" + right_triangle + "3 0 1 2 7\n", "a.off");
     EXPECT_THAT(numbers_of<double>(index->face_columns.find("colour_index")), ElementsAre(7.0));
 }

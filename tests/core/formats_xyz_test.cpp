@@ -53,6 +53,11 @@ TEST(XyzReader_Invalid, NanAndInfinity_AreRead) {
     EXPECT_LT(cloud->positions[0].z(), -1e308);
 }
 
+TEST(XyzReader_Coordinates, BelowTheNormalNumbers_AreKept) {
+    const auto cloud = points_in("1e-310 -1e-320 5e-324\n", "a.xyz");
+    EXPECT_EQ(world_of(*cloud, 0), Vec3(1e-310, -1e-320, 5e-324));
+}
+
 TEST(XyzReader_Content, OfUnknownExtension_IsATableWhenItLooksLikeOne) {
     EXPECT_EQ(read_bytes("1 2 3\n", "scan.dat").format, "XYZ");
     EXPECT_THAT(refusal_of("1 2\n", "scan.dat"), HasSubstr("no known format: it begins with '1 2?'"));

@@ -7,8 +7,8 @@
 namespace scanmill {
 
 namespace {
-constexpr std::array<std::string_view, 8> unit_names{"count", "length", "area",    "volume",
-                                                     "angle", "ratio",  "seconds", "number"};
+constexpr std::array<std::string_view, 9> unit_names{"count", "length",  "area",   "volume", "angle",
+                                                     "ratio", "seconds", "number", "boolean"};
 }
 
 std::string_view name_of(Unit unit) { return unit_names[static_cast<std::size_t>(unit)]; }

@@ -7,6 +7,18 @@
 
 namespace scanmill {
 
+namespace {
+
+/// The smallest power of two that is not below `value`, a positive number. Exact, unlike the C library's log2, whose
+/// last bit depends on the processor.
+double power_of_two_from(double value) {
+    int exponent = 0;
+    const double fraction = std::frexp(value, &exponent);
+    return std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
+}
+
+}  // namespace
+
 PointCloud gather(const PointCloud& cloud, std::span<const u32> rows) {
     return {cloud.frame, gather(cloud.positions, rows), cloud.columns.gather(rows)};
 }
@@ -43,8 +55,9 @@ Vec3 distant_origin(const BoundingBox& box) {
         if (!(std::abs(middle) > far * diagonal)) continue;
         // A multiple of a power of two at least as coarse as any coordinate's last bit: the difference of two such
         // numbers that lie this close together has a short mantissa, so no bit is lost.
-        const double last_bit = std::ldexp(std::abs(middle), -50);
-        const double step = std::exp2(std::ceil(std::log2(std::max(diagonal, last_bit))));
+        // Not below the normal numbers: a step of zero would make the origin NaN.
+        const double last_bit = std::max(std::ldexp(std::abs(middle), -50), std::numeric_limits<double>::min());
+        const double step = power_of_two_from(std::max(diagonal, last_bit));
         origin[axis] = std::round(middle / step) * step;
     }
     return origin;

@@ -12,7 +12,7 @@ Context::Context(ContextOptions options) : options_(std::move(options)) {
 void Context::progress(double fraction) {
     if (!options_.on_progress) return;
     const std::scoped_lock lock(mutex_);
-    options_.on_progress(std::clamp(fraction, 0.0, 1.0));
+    options_.on_progress(fraction > 0 ? std::min(fraction, 1.0) : 0.0);  // NaN, nothing of nothing done, is 0
 }
 
 bool Context::cancelled() const { return options_.is_cancelled && options_.is_cancelled(); }

@@ -13,12 +13,14 @@
 #include <concepts>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scanmill/filter/context.hpp"
+#include "scanmill/filter/error.hpp"
 #include "scanmill/filter/ports.hpp"
 #include "scanmill/filter/spec.hpp"
 
@@ -72,8 +74,8 @@ inline constexpr constraint::Required required{};
 /// A list of exactly this many values.
 inline constraint::Size size(std::size_t count) { return {count}; }
 
-/// Port options: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points", "…", list)`.
-enum class PortOption { single, optional, list };
+/// Port options, none, one or both: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points", "…", list)`.
+enum class PortOption { optional, list };
 inline constexpr PortOption optional = PortOption::optional;
 inline constexpr PortOption list = PortOption::list;
 
@@ -142,7 +144,14 @@ struct Convert {
         spec.type = Member<T>::type;
         spec.default_value = ParameterScalar(typename Member<T>::Stored(value));
     }
-    static T from(const ParameterScalar& value) { return static_cast<T>(std::get<typename Member<T>::Stored>(value)); }
+    static T from(const ParameterScalar& value) {
+        const auto& stored = std::get<typename Member<T>::Stored>(value);
+        if constexpr (Member<T>::type == ParameterType::integer)
+            if (!std::in_range<T>(stored))
+                throw Error("{} is out of range; expected a whole number from {} to {}", stored,
+                            std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
+        return static_cast<T>(stored);
+    }
     static T from(const ParameterValue& value) { return from(std::get<ParameterScalar>(value)); }
 };
 template <>
@@ -198,10 +207,11 @@ public:
         declaration_.spec.source = std::move(text);
         return *this;
     }
-    template <class T>
-    Declare& in(std::string port, std::string help, PortOption option = PortOption::single) {
-        declaration_.spec.inputs.push_back({std::move(port), kind_of<T>(), std::move(help), option == PortOption::list,
-                                            option == PortOption::optional});
+    template <class T, std::same_as<PortOption>... Options>
+    Declare& in(std::string port, std::string help, Options... options) {
+        declaration_.spec.inputs.push_back({std::move(port), kind_of<T>(), std::move(help),
+                                            ((options == PortOption::list) || ...),
+                                            ((options == PortOption::optional) || ...)});
         return *this;
     }
     /// The first output is the primary one.

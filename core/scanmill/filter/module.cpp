@@ -2,6 +2,7 @@
 #include "scanmill/filter/module.hpp"
 
 #include <dlfcn.h>
+#include <link.h>
 #include <xxhash.h>
 
 #include <cstring>
@@ -14,9 +15,36 @@
 
 namespace scanmill {
 
+namespace {
+
+/// The loader maps what a library's header promises; where the file ends earlier, the first touch ends the program. So
+/// a file that was cut short is refused before the loader sees it. What is no library at all is left to the loader.
+void require_whole(const std::filesystem::path& module) {
+    std::ifstream stream(module, std::ios::binary);
+    ElfW(Ehdr) header{};
+    if (!stream.read(reinterpret_cast<char*>(&header), sizeof header)) return;
+    if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 || header.e_phentsize != sizeof(ElfW(Phdr))) return;
+    std::error_code unknown;
+    const std::uintmax_t size = std::filesystem::file_size(module, unknown);
+    const auto require = [&](std::uintmax_t begin, std::uintmax_t length) {
+        if (unknown || begin > size || length > size - begin)
+            throw Error("module '{}' was cut short: it has {} bytes and promises {}", module.string(), size,
+                        begin + length);
+    };
+    require(header.e_phoff, header.e_phnum * sizeof(ElfW(Phdr)));
+    stream.seekg(static_cast<std::streamoff>(header.e_phoff));
+    std::vector<ElfW(Phdr)> segments(header.e_phnum);
+    stream.read(reinterpret_cast<char*>(segments.data()),
+                static_cast<std::streamsize>(segments.size() * sizeof(ElfW(Phdr))));
+    for (const ElfW(Phdr) & segment : segments) require(segment.p_offset, segment.p_filesz);
+}
+
+}  // namespace
+
 std::string abi_text() { return SCANMILL_ABI_TEXT; }
 
 FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name) {
+    require_whole(module);
     // Local: two modules may define the same symbol without meeting.
     void* handle = ::dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) throw Error("module '{}' cannot be loaded: {}", module.string(), ::dlerror());
@@ -36,7 +64,8 @@ FilterDeclaration load_module(const std::filesystem::path& module, const std::st
         throw Error("module '{}' fails while it declares itself: {}", module.string(), error.what());
     }
     if (declaration.spec.name != expected_name)
-        throw Error("module '{}' declares the filter '{}', not '{}'", module.string(), declaration.spec.name, expected_name);
+        throw Error("module '{}' declares the filter '{}', not '{}'", module.string(), declaration.spec.name,
+                    expected_name);
     if (!declaration.run) throw Error("module '{}' declares nothing to run", module.string());
     return declaration;
 }

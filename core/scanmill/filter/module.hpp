@@ -8,8 +8,8 @@
 
 namespace scanmill {
 
-/// Loads the module and returns what it declares. Throws Error naming the file: not a module, another ABI (both texts),
-/// another name than `expected_name`, or whatever its declaration threw.
+/// Loads the module and returns what it declares. Throws Error naming the file: not a module, one cut short, another
+/// ABI (both texts), another name than `expected_name`, or whatever its declaration threw.
 FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name);
 
 /// The ABI text that this program was built with.

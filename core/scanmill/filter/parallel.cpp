@@ -12,8 +12,11 @@ namespace scanmill {
 void for_each_chunk(unsigned threads, std::size_t count, std::size_t chunk,
                     const std::function<void(std::size_t begin, std::size_t end)>& body) {
     assert(chunk > 0);
-    const std::size_t chunks = (count + chunk - 1) / chunk;
-    const auto run = [&](std::size_t index) { body(index * chunk, std::min(count, (index + 1) * chunk)); };
+    const std::size_t chunks = count / chunk + (count % chunk == 0 ? 0 : 1);
+    const auto run = [&](std::size_t index) {
+        const std::size_t begin = index * chunk;
+        body(begin, begin + std::min(chunk, count - begin));
+    };
     if (threads <= 1 || chunks <= 1) {
         for (std::size_t index = 0; index < chunks; ++index) run(index);
         return;

@@ -173,7 +173,7 @@ ParameterValue parse(const ParameterSpec& spec, const WrittenParameter& written)
             return value;
         } catch (Error& error) {
             std::string sentence = error.sentence();
-            if (sentence.find("expected") == std::string::npos && spec.type != ParameterType::choice)
+            if (sentence.find("; expected ") == std::string::npos && spec.type != ParameterType::choice)
                 sentence += "; expected " + expectation(spec);
             if (!spec.word.empty()) {
                 const std::vector<std::string> words{spec.word};
@@ -198,7 +198,14 @@ void require_in_range(const ParameterSpec& spec, const ParameterValue& value) {
 
 std::string text(const ParameterValue& value) { return joined(value, scalar_text); }
 
-std::string canonical_text(const ParameterValue& value) { return joined(value, canonical_scalar); }
+std::string canonical_text(const ParameterValue& value) {
+    if (!std::holds_alternative<std::vector<ParameterScalar>>(value)) return joined(value, canonical_scalar);
+    // With its length before it, a text that holds ", " is not taken for two.
+    return joined(value, [](const ParameterScalar& item) {
+        const std::string one = canonical_scalar(item);
+        return std::holds_alternative<std::string>(item) ? std::to_string(one.size()) + ":" + one : one;
+    });
+}
 
 WrittenParameter written(const ParameterValue& value) {
     WrittenParameter result;

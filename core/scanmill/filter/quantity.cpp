@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/quantity.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -40,13 +41,32 @@ struct Dimensioned {
 bool split(std::string_view text, Dimensioned& result) {
     const char* begin = text.data();
     const char* end = begin + text.size();
-    if (begin != end && *begin == '+') ++begin;
+    if (text.size() > 1 && *begin == '+' && begin[1] != '-') ++begin;
     const auto [rest, error] = std::from_chars(begin, end, result.amount);
     if (error != std::errc() || !std::isfinite(result.amount)) return false;
     std::string_view suffix(rest, end);
     while (!suffix.empty() && suffix.front() == ' ') suffix.remove_prefix(1);
     result.suffix = suffix;
     return true;
+}
+
+/// Whether an unsigned decimal number that no double holds is too small for one, not too large.
+bool is_too_small(std::string_view number) {
+    const std::size_t mantissa_end = std::min(number.find_first_of("eE"), number.size());
+    const std::string_view mantissa = number.substr(0, mantissa_end);
+    const auto point = static_cast<std::int64_t>(std::min(mantissa.find('.'), mantissa.size()));
+    const auto first_digit = static_cast<std::int64_t>(std::min(mantissa.find_first_not_of("0."), mantissa.size()));
+    if (first_digit == static_cast<std::int64_t>(mantissa.size())) return true;
+    std::int64_t exponent = 0;
+    if (mantissa_end < number.size()) {
+        std::string_view digits = number.substr(mantissa_end + 1);
+        if (digits.front() == '+') digits.remove_prefix(1);
+        // An exponent that no integer holds decides alone: no text has as many digits.
+        if (std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
+            return digits.front() == '-';
+    }
+    // The first significant digit stands for 10^(point - first_digit - 1) before the point, one more after it.
+    return exponent < (first_digit > point ? first_digit - point : first_digit - point + 1);
 }
 
 }  // namespace
@@ -66,11 +86,9 @@ bool parse_number(std::string_view text, double& value) {
     if (error == std::errc()) return true;
     if (error != std::errc::result_out_of_range) return false;
     // Beyond double's range: what every other reader of numbers makes of it.
-    const std::string_view digits(begin, end);
-    const std::size_t exponent = digits.find_first_of("eE");
-    const bool tiny = exponent != std::string_view::npos ? digits[exponent + 1] == '-' : digits.find('.') < 2;
-    value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
-    if (digits.front() == '-') value = -value;
+    const bool negative = *begin == '-';
+    value = is_too_small({begin + (negative ? 1 : 0), end}) ? 0.0 : std::numeric_limits<double>::infinity();
+    if (negative) value = -value;
     return true;
 }
 

@@ -22,9 +22,21 @@ bool is_name(std::string_view name) {
            std::ranges::all_of(name, plain);
 }
 
+/// Its letters and digits in lower case.
+std::string letters(std::string_view words) {
+    std::string kept;
+    for (char c : words) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) kept += c;
+    }
+    return kept;
+}
+
 void require_sentence(std::string_view filter, std::string_view what, std::string_view name, std::string_view help) {
     if (help.size() < 8 || help.back() != '.' || help.find(' ') == std::string_view::npos)
         throw Error("filter {}: the help of {} '{}' is no sentence: '{}'", filter, what, name, help);
+    if (letters(help) == letters(name))
+        throw Error("filter {}: the help of {} '{}' only repeats the name: '{}'", filter, what, name, help);
 }
 
 template <class Items>
@@ -40,6 +52,10 @@ void require_names(std::string_view filter, std::string_view what, const Items& 
 void require_sound_parameter(std::string_view filter, const ParameterSpec& parameter) {
     if (parameter.type == ParameterType::choice && parameter.choices.size() < 2)
         throw Error("filter {}: parameter '{}' has fewer than two choices", filter, parameter.name);
+    std::set<std::string_view> seen;
+    for (const Choice& choice : parameter.choices)
+        if (!seen.insert(choice.name).second)
+            throw Error("filter {}: parameter '{}' has the choice '{}' twice", filter, parameter.name, choice.name);
     if (std::holds_alternative<std::monostate>(parameter.default_value)) return;
     try {
         parse(parameter, written(parameter.default_value));

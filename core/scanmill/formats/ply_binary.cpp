@@ -162,34 +162,4 @@ std::size_t decode_ply_binary(std::string_view body, std::size_t body_offset, co
                                : decode_fixed_rows(body, element, swapped, slots);
 }
 
-template <class Scalar>
-BoundingBox widen_positions(const char* source, std::size_t stride, Array<Vec3>& positions) {
-    BoundingBox box;
-    constexpr std::size_t block = 1024;
-    for (std::size_t first = 0; first < positions.size(); first += block) {
-        const std::size_t rows = std::min(block, positions.size() - first);
-        Scalar low[3], high[3], poison[3] = {0, 0, 0};
-        std::memcpy(low, source, sizeof low);
-        std::memcpy(high, source, sizeof high);
-        for (std::size_t row = 0; row < rows; ++row, source += stride) {
-            Scalar p[3];
-            std::memcpy(p, source, sizeof p);
-            for (int axis = 0; axis < 3; ++axis) {
-                low[axis] = p[axis] < low[axis] ? p[axis] : low[axis];
-                high[axis] = p[axis] > high[axis] ? p[axis] : high[axis];
-                poison[axis] += p[axis] * 0;  // 0, unless the coordinate is NaN or infinite: then NaN, and so it stays
-                positions[first + row][axis] = static_cast<double>(p[axis]);
-            }
-        }
-        BoundingBox bounds{Vec3(low[0], low[1], low[2]), Vec3(high[0], high[1], high[2])};
-        if (!(poison[0] + poison[1] + poison[2] == 0)) bounds = bounding_box({positions.data() + first, rows});
-        box.low = box.low.cwiseMin(bounds.low);
-        box.high = box.high.cwiseMax(bounds.high);
-    }
-    return box;
-}
-
-template BoundingBox widen_positions<float>(const char*, std::size_t, Array<Vec3>&);
-template BoundingBox widen_positions<double>(const char*, std::size_t, Array<Vec3>&);
-
 }  // namespace scanmill

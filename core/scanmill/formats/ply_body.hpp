@@ -46,9 +46,4 @@ struct OverlongRows {
 /// the property's type, a list longer than its line.
 OverlongRows decode_ply_ascii(TextCursor& text, const PlyElement& element, std::span<const PlySlot> slots);
 
-/// The common case, as fast as memory: element rows of fixed size whose x, y and z are `Scalar`s side by side, of the
-/// machine's own byte order, the first at `source`, rows `stride` bytes apart. Returns the bounds of the finite points.
-template <class Scalar>
-BoundingBox widen_positions(const char* source, std::size_t stride, Array<Vec3>& positions);
-
 }  // namespace scanmill

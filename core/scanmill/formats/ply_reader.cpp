@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <bit>
 
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/ply.hpp"
+#include "scanmill/formats/ply_positions.hpp"
 #include "scanmill/formats/ply_table.hpp"
 #include "scanmill/formats/polygons.hpp"
 #include "scanmill/formats/reading.hpp"
@@ -11,33 +11,6 @@
 namespace scanmill {
 
 namespace {
-
-/// The x, y and z of an element, when they lie side by side as numbers of the machine's own spelling: the fast case.
-struct PackedPositions {
-    ScalarType type;
-    std::size_t offset = 0;    ///< of x in a row
-    std::size_t row_size = 0;
-};
-
-std::optional<PackedPositions> packed_positions(const PlyElement& vertex, PlyEncoding encoding) {
-    const bool native = encoding == (std::endian::native == std::endian::little ? PlyEncoding::binary_little_endian
-                                                                                : PlyEncoding::binary_big_endian);
-    if (!native || vertex.has_lists()) return {};
-    PackedPositions packed{vertex.find("x")->type};
-    if (packed.type != ScalarType::float32 && packed.type != ScalarType::float64) return {};
-    constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
-    std::size_t seen = 0;
-    for (const PlyProperty& property : vertex.properties) {
-        if (seen < 3 && property.name == axes[seen] && property.type == packed.type) {
-            if (seen++ == 0) packed.offset = packed.row_size;
-        } else if (seen == 1 || seen == 2) {
-            return {};
-        }
-        packed.row_size += size_of(property.type);
-    }
-    if (seen != 3) return {};
-    return packed;
-}
 
 class PlyReader {
 public:
@@ -109,10 +82,8 @@ private:
         constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
         PlyTable table(element, header_.comments, axes);
         positions_.resize(element.count);
-        if (const auto packed = packed_positions(element, header_.encoding)) {
-            const char* source = bytes_.data() + at_ + packed->offset;
-            box_ = packed->type == ScalarType::float32 ? widen_positions<float>(source, packed->row_size, positions_)
-                                                       : widen_positions<double>(source, packed->row_size, positions_);
+        if (const auto box = widen_packed_positions(bytes_.substr(at_), element, header_.encoding, positions_)) {
+            box_ = *box;
             decode(element, table.slots());
         } else {
             for (PlySlot& slot : table.slots()) {

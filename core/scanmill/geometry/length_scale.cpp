@@ -76,8 +76,10 @@ double edge_spacing(const TriangleMesh& mesh) {
     std::vector<double> lengths;
     lengths.reserve(3 * mesh.triangles.size());
     for (const Triangle& triangle : mesh.triangles)
-        for (int corner = 0; corner < 3; ++corner)
-            lengths.push_back((mesh.positions[triangle[corner]] - mesh.positions[triangle[(corner + 1) % 3]]).norm());
+        for (int corner = 0; corner < 3; ++corner) {
+            const Vec3 along = mesh.positions[triangle[corner]] - mesh.positions[triangle[(corner + 1) % 3]];
+            if (along.allFinite()) lengths.push_back(along.norm());
+        }
     return median(lengths);
 }
 

@@ -13,6 +13,7 @@ namespace scanmill {
 double point_spacing(std::span<const Vec3> positions);
 
 /// Median edge length over the mesh's edges, each counted once per triangle that has it; 0 without triangles.
+/// Edges of non-finite vertices are passed over.
 double edge_spacing(const TriangleMesh& mesh);
 
 /// What `%diag` and `spacing` mean for this value: points by point_spacing, meshes by edge_spacing, everything else by

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "test_step/test_step.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <new>
+#include <stdexcept>
+#include <thread>
+
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Mode = TestStepParams::Mode;
+
+std::string_view name_of(Mode mode) {
+    switch (mode) {
+        case Mode::pass: return "pass";
+        case Mode::fail: return "fail";
+        case Mode::throw_standard: return "throw";
+        case Mode::out_of_memory: return "out-of-memory";
+        case Mode::empty: return "empty";
+        case Mode::wait: return "wait";
+        case Mode::warn: return "warn";
+    }
+    return "";
+}
+
+/// One write of one line, so that processes that share a log do not mix their lines.
+void append_to_log(const std::filesystem::path& log, Mode mode, std::size_t points) {
+    std::ofstream stream(log, std::ios::binary | std::ios::app);
+    stream << fmt::format("{} {}\n", name_of(mode), points) << std::flush;
+    if (!stream) throw Error("the log '{}' cannot be written", log.string());
+}
+
+void misbehave(Mode mode, std::size_t points, Context& context) {
+    switch (mode) {
+        case Mode::fail:
+            throw Error("was asked to fail; the cloud has {} points", points).hint("mode: pass lets it through");
+        case Mode::throw_standard: throw std::runtime_error("was asked to throw");
+        case Mode::out_of_memory: throw std::bad_alloc();
+        case Mode::wait:
+            for (;;) {
+                context.check_cancelled();
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
+        case Mode::warn: context.warn("was asked to warn"); break;
+        case Mode::pass:
+        case Mode::empty: break;
+    }
+}
+
+TriangleMesh right_angled_tetrahedron(const Frame& frame, double leg) {
+    TriangleMesh mesh;
+    mesh.frame = frame;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(leg, 0, 0), Vec3(0, leg, 0), Vec3(0, 0, leg)};
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    return mesh;
+}
+
+}  // namespace
+
+TestStepResult test_step(const PointCloud& cloud, const TestStepParams& params, Context& context) {
+    if (params.log) append_to_log(*params.log, params.mode, cloud.size());
+    misbehave(params.mode, cloud.size(), context);
+
+    TestStepResult result{cloud, {}};
+    Array<Vec3> scaled(cloud.positions.begin(), cloud.positions.end());
+    for (Vec3& p : scaled) p *= params.factor;
+    result.points.positions = std::move(scaled);
+    result.mesh.frame = cloud.frame;
+    if (params.mode != Mode::empty) result.mesh = right_angled_tetrahedron(cloud.frame, params.length.value());
+
+    context.metric("points", static_cast<double>(cloud.size()));
+    context.metric("length", params.length.value(), Unit::length);
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A filter for tests of what runs filters: small, and able to misbehave in every way that a filter can.
+
+#include <filesystem>
+#include <optional>
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/context.hpp"
+#include "scanmill/filter/quantity.hpp"
+
+namespace scanmill {
+
+struct TestStepParams {
+    enum class Mode { pass, fail, throw_standard, out_of_memory, empty, wait, warn };
+    Mode mode = Mode::pass;
+    std::optional<std::filesystem::path> log;
+    Length length = Length::percent_of_diagonal(1);
+    double factor = 1;
+};
+
+struct TestStepResult {
+    PointCloud points;
+    TriangleMesh mesh;
+};
+
+/// The cloud with every position (relative to its frame's origin) times `factor`, columns and frame kept; and a right-
+/// angled tetrahedron with legs of `length` along the axes, outwards oriented, its corner at the frame's origin.
+///
+/// First of all one line, "<mode> <number of points>", is appended to `log`, when one is given. Then, by mode:
+/// fail throws Error with a hint, throw_standard a std::runtime_error, out_of_memory a std::bad_alloc; empty gives a mesh
+/// without vertices; wait returns only by throwing Cancelled; warn warns once.
+/// Metrics: `points`, the number of points that came out; `length`.
+TestStepResult test_step(const PointCloud& cloud, const TestStepParams& params, Context& context);
+
+}  // namespace scanmill

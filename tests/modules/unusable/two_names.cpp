@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Its descriptor says two-names, its declaration something else.
+
+#include "scanmill/filter/plugin.hpp"
+
+struct Nothing {};
+
+SCANMILL_FILTER() {
+    return scanmill::Declare<Nothing>("another-name", 1).run(
+        [](const scanmill::Inputs&, const Nothing&, scanmill::Context&) { return scanmill::Outputs(); });
+}
