@@ -38,7 +38,7 @@ DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams&, Context&
     require_spatial(positions, cloud.frame, context.threads());
 
     RawTriangulation raw = triangulate(positions, context);
-    if (raw.dimension < 3) throw_flat(positions, raw.dimension, raw.duplicates.size(), cloud.frame);
+    if (raw.dimension < 3) refuse_flat(positions, raw.dimension, 0, cloud.frame);
     context.progress(0.85);
     context.check_cancelled();
 

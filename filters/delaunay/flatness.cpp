@@ -2,6 +2,7 @@
 #include "delaunay/flatness.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 
 #include "scanmill/data/array.hpp"
@@ -16,31 +17,35 @@ constexpr std::size_t chunk = 1 << 15;
 constexpr std::string_view way_out = "voxel-thin and region-grow accept flat scans";
 
 struct Farthest {
-    double squared = -1;
+    double measure = -1;
     std::size_t row = 0;
 };
 
-/// The first row with the largest `measure(position)`.
+/// The first row with the largest measure(position).
 template <class Measure>
 Farthest farthest(std::span<const Vec3> positions, unsigned threads, const Measure& measure) {
     std::vector<Farthest> per_chunk((positions.size() + chunk - 1) / chunk);
     for_each_chunk(threads, positions.size(), chunk, [&](std::size_t begin, std::size_t end) {
         Farthest best;
         for (std::size_t row = begin; row < end; ++row)
-            if (const double squared = measure(positions[row]); squared > best.squared) best = {squared, row};
+            if (const double value = measure(positions[row]); value > best.measure) best = {value, row};
         per_chunk[begin / chunk] = best;
     });
     Farthest best;
     for (const Farthest& candidate : per_chunk)
-        if (candidate.squared > best.squared) best = candidate;
+        if (candidate.measure > best.measure) best = candidate;
     return best;
 }
 
-[[noreturn]] void refuse(std::size_t count, int dimension, double distance, const Frame& frame, bool rounding) {
-    const std::string_view shape = dimension == 0 ? "one place" : dimension == 1 ? "one line" : "one plane";
-    throw Error("needs at least 4 points that are not coplanar; the cloud has {}, all within {:.2g} {} of {}{}", count,
-                distance, symbol(frame.unit), shape, rounding ? ", less than their coordinates can express" : "")
-        .hint(std::string(way_out));
+std::size_t distinct_places(std::span<const Vec3> positions) {
+    std::vector<Vec3> sorted(positions.begin(), positions.end());
+    const auto less = [](const Vec3& a, const Vec3& b) {
+        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    };
+    std::ranges::sort(sorted, less);
+    std::size_t distinct = positions.empty() ? 0 : 1;
+    for (std::size_t i = 1; i < positions.size(); ++i) distinct += sorted[i] != sorted[i - 1];
+    return distinct;
 }
 
 }  // namespace
@@ -51,11 +56,11 @@ Extents extents(std::span<const Vec3> positions, const Vec3& origin, unsigned th
         return (p.cwiseAbs() + origin.cwiseAbs()).maxCoeff();
     });
     constexpr double last_places = 16;
-    result.rounding = last_places * std::numeric_limits<double>::epsilon() * largest.squared;
+    result.rounding = last_places * std::numeric_limits<double>::epsilon() * largest.measure;
 
     const Vec3 a = positions[0];
     const Farthest second = farthest(positions, threads, [&](const Vec3& p) { return (p - a).stableNorm(); });
-    result.from_point = second.squared;
+    result.from_point = second.measure;
     if (!(result.from_point > 0)) return result;
     const Vec3 direction = (positions[second.row] - a) / result.from_point;
     const auto off_line = [&](const Vec3& p) -> Vec3 {
@@ -63,12 +68,12 @@ Extents extents(std::span<const Vec3> positions, const Vec3& origin, unsigned th
         return offset - offset.dot(direction) * direction;
     };
     const Farthest third = farthest(positions, threads, [&](const Vec3& p) { return off_line(p).stableNorm(); });
-    result.from_line = third.squared;
+    result.from_line = third.measure;
     if (!(result.from_line > 0)) return result;
     const Vec3 normal = direction.cross(off_line(positions[third.row])).stableNormalized();
     result.from_plane = farthest(positions, threads, [&](const Vec3& p) {
                             return std::abs((p - a).dot(normal));
-                        }).squared;
+                        }).measure;
     return result;
 }
 
@@ -79,17 +84,20 @@ void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsign
     if (!std::isfinite(found.from_point))
         throw Error("needs points whose distances are finite numbers; the cloud has {} points up to {:.2g} {} apart",
                     positions.size(), found.from_point, symbol(frame.unit));
-    if (found.from_point <= found.rounding) refuse(positions.size(), 0, found.from_point, frame, found.from_point > 0);
-    if (found.from_line <= found.rounding) refuse(positions.size(), 1, found.from_line, frame, found.from_line > 0);
-    if (found.from_plane <= found.rounding) refuse(positions.size(), 2, found.from_plane, frame, found.from_plane > 0);
+    if (found.from_point <= found.rounding) refuse_flat(positions, 0, found.from_point, frame);
+    if (found.from_line <= found.rounding) refuse_flat(positions, 1, found.from_line, frame);
+    if (found.from_plane <= found.rounding) refuse_flat(positions, 2, found.from_plane, frame);
 }
 
-void throw_flat(std::span<const Vec3> positions, int dimension, std::size_t duplicates, const Frame& frame) {
-    const std::size_t distinct = positions.size() - duplicates;
-    if (distinct < 4)
-        throw Error("needs at least 4 points that are not coplanar; the cloud has {} points at {} distinct places",
-                    positions.size(), distinct);
-    refuse(positions.size(), dimension, 0, frame, false);
+void refuse_flat(std::span<const Vec3> positions, int dimension, double distance, const Frame& frame) {
+    if (const std::size_t distinct = distinct_places(positions); distinct < 4)
+        throw Error("needs at least 4 points that are not coplanar; the cloud has {} points at {} distinct place{}",
+                    positions.size(), distinct, distinct == 1 ? "" : "s");
+    const std::string_view shape = dimension == 0 ? "one place" : dimension == 1 ? "one line" : "one plane";
+    throw Error("needs at least 4 points that are not coplanar; the cloud has {}, all within {:.2g} {} of {}{}",
+                positions.size(), distance, symbol(frame.unit), shape,
+                distance > 0 ? ", less than their coordinates can express" : "")
+        .hint(std::string(way_out));
 }
 
 }  // namespace scanmill

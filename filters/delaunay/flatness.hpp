@@ -24,11 +24,10 @@ struct Extents {
 /// Pre: finite positions, at least one. Cost: four passes. Deterministic for any number of threads.
 Extents extents(std::span<const Vec3> positions, const Vec3& origin, unsigned threads);
 
-/// Throws Error for fewer than 4 points and for points within rounding of one place, line or plane.
+/// Throws Error for fewer than 4 distinct points and for points within rounding of one place, line or plane.
 void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsigned threads);
 
-/// Throws the Error for points that turned out to span only `dimension` < 3 exactly.
-[[noreturn]] void throw_flat(std::span<const Vec3> positions, int dimension, std::size_t duplicates,
-                             const Frame& frame);
+/// Throws the Error for points that span only `dimension` < 3 and stray up to `distance` from such a shape.
+[[noreturn]] void refuse_flat(std::span<const Vec3> positions, int dimension, double distance, const Frame& frame);
 
 }  // namespace scanmill

@@ -81,7 +81,10 @@ TEST(Buffer, View_KeepsItsOwnerAliveAsLongAsAnyCopy) {
 TEST(Buffer, LastCopyGone_LetsTheOwnerGo) {
     auto owner = std::make_shared<const int>(7);
     const std::weak_ptr<const int> watched = owner;
-    { const Buffer<int> view(owner, owner.get(), 1); owner.reset(); }
+    {
+        const Buffer<int> view(owner, owner.get(), 1);
+        owner.reset();
+    }
     EXPECT_TRUE(watched.expired());
 }
 

@@ -115,7 +115,9 @@ TEST(ColumnTable, Columns_KeepTheirOrderAndAreFoundByName) {
 TEST(ColumnTable, NameThatIsTaken_IsRefusedAndChangesNothing) {
     ColumnTable table;
     table.add(Column("weight", 1, Buffer<u8>{1, 2}));
-    EXPECT_EQ(sentence_of([&] { table.add(Column("weight", 1, Buffer<u8>{3, 4})); }),
+    EXPECT_EQ(sentence_of([&] {
+                  table.add(Column("weight", 1, Buffer<u8>{3, 4}));
+              }),
               "two columns are called 'weight'; names must differ");
     EXPECT_EQ(table.size(), 1u);
     EXPECT_EQ(table.find("weight")->number(0), 1);
@@ -124,7 +126,9 @@ TEST(ColumnTable, NameThatIsTaken_IsRefusedAndChangesNothing) {
 TEST(ColumnTable, OtherNumberOfRows_IsRefusedWithBothNumbers) {
     ColumnTable table;
     table.add(Column("weight", 1, Buffer<u8>{1, 2}));
-    EXPECT_EQ(sentence_of([&] { table.add(Column("normal", 3, Buffer<float>{0, 0, 1})); }),
+    EXPECT_EQ(sentence_of([&] {
+                  table.add(Column("normal", 3, Buffer<float>{0, 0, 1}));
+              }),
               "column 'normal' has 1 rows, the others have 2");
     EXPECT_EQ(table.size(), 1u);
 }

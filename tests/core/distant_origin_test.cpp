@@ -77,7 +77,7 @@ TEST(DistantOrigin, DistantCloud_ComesNearItsOrigin) {
         for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(p[axis] - origin[axis]), 2 * box.diagonal()) << axis;
 }
 
-TEST(DistantOrigin, MicrometresAtAMillionMetres_SurviveScaling) {
+TEST(DistantOrigin, MicrometresAtAMillionMetres_AreKept) {
     // What the origin is for: near zero, a coordinate can be computed with.
     const std::vector<Vec3> positions{{1e6, 0, 0}, {1e6 + 1e-6, 0, 0}};
     const Vec3 origin = distant_origin(bounding_box(positions));

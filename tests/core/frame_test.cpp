@@ -43,9 +43,7 @@ TEST(Frame, Equality_KnowsUnitOriginAndName) {
     EXPECT_NE(frame, (Frame{LengthUnit::millimetre, Vec3(1, 2, 3), "machine"}));
 }
 
-TEST(Frame, Default_IsTheOriginInAnUnknownUnit) {
-    EXPECT_EQ(Frame{}, (Frame{LengthUnit::unknown, Vec3(0, 0, 0), ""}));
-}
+TEST(Frame, Default_IsTheOriginInAnUnknownUnit) { EXPECT_EQ(Frame{}, (Frame{LengthUnit::unknown, Vec3(0, 0, 0), ""})); }
 
 }  // namespace
 }  // namespace scanmill::test

@@ -25,8 +25,8 @@ std::string range_text(const ParameterSpec& spec) {
     std::string range;
     if (spec.low) range += (spec.low->inclusive ? " of at least " : " above ") + number_text(spec.low->value) + unit;
     if (spec.high)
-        range += (range.empty() ? " " : " and ") + std::string(spec.high->inclusive ? "at most " : "below ") +
-                 number_text(spec.high->value) + unit;
+        range += (spec.low ? " and " : spec.high->inclusive ? " of " : " ") +
+                 std::string(spec.high->inclusive ? "at most " : "below ") + number_text(spec.high->value) + unit;
     return range;
 }
 

@@ -29,9 +29,9 @@ struct TestStepResult {
 /// angled tetrahedron with legs of `length` along the axes, outwards oriented, its corner at the frame's origin.
 ///
 /// First of all one line, "<mode> <number of points>", is appended to `log`, when one is given. Then, by mode:
-/// fail throws Error with a hint, throw_standard a std::runtime_error, out_of_memory a std::bad_alloc; empty gives a mesh
-/// without vertices; wait returns only by throwing Cancelled; warn warns once.
-/// Metrics: `points`, the number of points that came out; `length`.
+/// fail throws Error with a hint, throw_standard a std::runtime_error, out_of_memory a std::bad_alloc; empty gives a
+/// mesh without vertices; wait returns only by throwing Cancelled; warn warns once. Metrics: `points`, the number of
+/// points that came out; `length`.
 TestStepResult test_step(const PointCloud& cloud, const TestStepParams& params, Context& context);
 
 }  // namespace scanmill

@@ -14,5 +14,5 @@ static void declare(void* declaration) {
     abort();
 }
 
-__attribute__((visibility("default"))) const struct descriptor scanmill_plugin = {
-    "scanmill-filter", "scanmill 0.0.1, another compiler", "foreign", declare};
+__attribute__((visibility("default")))
+const struct descriptor scanmill_plugin = {"scanmill-filter", "scanmill 0.0.1, another compiler", "foreign", declare};

@@ -6,6 +6,6 @@
 struct Nothing {};
 
 SCANMILL_FILTER() {
-    return scanmill::Declare<Nothing>("another-name", 1).run(
-        [](const scanmill::Inputs&, const Nothing&, scanmill::Context&) { return scanmill::Outputs(); });
+    return scanmill::Declare<Nothing>("another-name", 1)
+        .run([](const scanmill::Inputs&, const Nothing&, scanmill::Context&) { return scanmill::Outputs(); });
 }

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/length_scale.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scanmill/filter/random.hpp"
+#include "support/real_data.hpp"
+#include "support/shapes.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Distance from every point to the nearest other one, sorted.
+std::vector<double> nearest_distances(std::span<const Vec3> points) {
+    std::vector<double> distances;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t j = 0; j < points.size(); ++j)
+            if (i != j) nearest = std::min(nearest, (points[i] - points[j]).norm());
+        distances.push_back(nearest);
+    }
+    std::ranges::sort(distances);
+    return distances;
+}
+
+double spacing(std::vector<Vec3> points) { return point_spacing(points); }
+
+Value value_of(auto object) { return std::make_shared<const decltype(object)>(std::move(object)); }
+
+TEST(PointSpacing, RandomClouds_HaveTheBruteForceMedian) {
+    for (const u32 count : {3u, 10u, 101u, 1000u}) {
+        const PointCloud cloud = random_cube(count, count, 7);
+        EXPECT_DOUBLE_EQ(point_spacing(cloud.positions.span()), nearest_distances(cloud.positions.span())[count / 2])
+            << count;
+        const PointCloud sphere = random_sphere(count, count, 0.01);
+        EXPECT_DOUBLE_EQ(point_spacing(sphere.positions.span()), nearest_distances(sphere.positions.span())[count / 2])
+            << count;
+    }
+}
+
+TEST(PointSpacing, HandComputedCloud) {
+    // Nearest others at 1, 1, 2, 4: of an even number the upper of the middle two.
+    EXPECT_EQ(spacing({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {7, 0, 0}}), 2);
+    EXPECT_EQ(spacing({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}), 1);
+}
+
+TEST(PointSpacing, TwoPoints_AreTheirDistance) { EXPECT_EQ(spacing({{0, 0, 0}, {0, 3, 4}}), 5); }
+
+TEST(PointSpacing, FewerThanTwoPoints_AreNone) {
+    EXPECT_EQ(spacing({}), 0);
+    EXPECT_EQ(spacing({{1, 2, 3}}), 0);
+    EXPECT_EQ(spacing({{1, 2, 3}, {nan, 0, 0}}), 0);
+}
+
+TEST(PointSpacing, Duplicates_AreAtDistanceZero) {
+    EXPECT_EQ(spacing({{1, 1, 1}, {1, 1, 1}}), 0);
+    // Two of three coincide: distances 0, 0, 5.
+    EXPECT_EQ(spacing({{0, 0, 0}, {0, 0, 0}, {5, 0, 0}}), 0);
+    // Two of five coincide: distances 0, 0, 1, 1, 1.
+    EXPECT_EQ(spacing({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}), 1);
+    EXPECT_EQ(spacing(std::vector<Vec3>(5000, Vec3(1, 2, 3))), 0);
+}
+
+TEST(PointSpacing, NonFinitePoints_ArePassedOver) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(spacing({{nan, 0, 0}, {0, 0, 0}, {0, infinity, 0}, {0, 0, 2}, {0, 0, nan}}), 2);
+}
+
+TEST(PointSpacing, Grid_HasItsPitchInAnyOrder) {
+    Array<Vec3> points;
+    for (int i = 0; i < 20; ++i)
+        for (int j = 0; j < 20; ++j) points.push_back({0.5 * i, 0.5 * j, 3});
+    EXPECT_EQ(point_spacing(points), 0.5);
+    std::ranges::reverse(points);
+    EXPECT_EQ(point_spacing(points), 0.5);
+}
+
+TEST(PointSpacing, Scaling_ScalesIt) {
+    const PointCloud cloud = random_cube(500, 4);
+    Array<Vec3> scaled(cloud.positions.begin(), cloud.positions.end());
+    for (Vec3& p : scaled) p *= 1024;
+    EXPECT_EQ(point_spacing(scaled), 1024 * point_spacing(cloud.positions.span()));
+}
+
+TEST(PointSpacing, CloudTooLargeToAskEveryPoint_IsAskedAllOver) {
+    // Pairs along a line: the first half at distance 1, the rest at 3. Every point sees its partner, asked or not.
+    Array<Vec3> points;
+    for (int pair = 0; pair < 110'000; ++pair) {
+        points.push_back({10.0 * pair, 0, 0});
+        points.push_back({10.0 * pair + (pair < 50'000 ? 1 : 3), 0, 0});
+    }
+    EXPECT_EQ(point_spacing(points), 3) << "six of eleven pairs";
+    std::ranges::reverse(points);
+    EXPECT_EQ(point_spacing(points), 3);
+}
+
+TEST(EdgeSpacing, Cube_IsItsEdge) {
+    // 12 triangles, each with two edges of the cube and one diagonal of a face.
+    EXPECT_EQ(edge_spacing(cube(3)), 3);
+    EXPECT_DOUBLE_EQ(edge_spacing(regular_tetrahedron(2)), 2);
+}
+
+TEST(EdgeSpacing, HandComputedTriangles) {
+    TriangleMesh mesh;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, 4, 0), Vec3(6, 8, 0)};
+    mesh.triangles = {{0, 1, 2}};
+    EXPECT_EQ(edge_spacing(mesh), 4) << "3, 4, 5";
+    // The hypotenuse is counted with both triangles: 3, 4, 5, 5, sqrt(52), sqrt(73).
+    mesh.triangles = {{0, 1, 2}, {2, 1, 3}};
+    EXPECT_EQ(edge_spacing(mesh), 5);
+}
+
+TEST(EdgeSpacing, NoTriangles_HaveNone) {
+    EXPECT_EQ(edge_spacing(TriangleMesh{}), 0);
+    EXPECT_EQ(edge_spacing(without_triangles(regular_tetrahedron(), {0, 1, 2, 3})), 0);
+}
+
+TEST(EdgeSpacing, EdgesOfNonFiniteVertices_ArePassedOver) {
+    TriangleMesh mesh;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(3, 0, 0), Vec3(0, 4, 0), Vec3(nan, 0, 0)};
+    mesh.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    EXPECT_EQ(edge_spacing(mesh), 4) << "3, 4 and 5 remain";
+    mesh.positions = {Vec3(nan, 0, 0), Vec3(nan, 0, 0), Vec3(nan, 0, 0), Vec3(nan, 0, 0)};
+    EXPECT_EQ(edge_spacing(mesh), 0);
+}
+
+TEST(LengthScale, Points_AreMeasuredByTheirNeighbours) {
+    PointCloud cloud = cloud_of({{0, 0, 0}, {3, 0, 0}, {3, 4, 0}});
+    cloud.frame.unit = LengthUnit::millimetre;
+    const LengthScale scale = length_scale(value_of(cloud));
+    EXPECT_EQ(scale.unit, LengthUnit::millimetre);
+    EXPECT_EQ(scale.diagonal(), 5);
+    EXPECT_EQ(scale.spacing(), 3);
+    EXPECT_EQ(Length::percent_of_diagonal(10).resolved(scale).value(), 0.5);
+}
+
+TEST(LengthScale, Mesh_IsMeasuredByItsEdges) {
+    const LengthScale scale = length_scale(value_of(cube(2)));
+    EXPECT_EQ(scale.unit, LengthUnit::unknown);
+    EXPECT_DOUBLE_EQ(scale.diagonal(), 2 * std::sqrt(3.0));
+    EXPECT_EQ(scale.spacing(), 2);
+}
+
+TEST(LengthScale, MeshWithoutTriangles_IsMeasuredAsPoints) {
+    TriangleMesh mesh;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(0, 0, 7)};
+    EXPECT_EQ(length_scale(value_of(mesh)).spacing(), 7);
+}
+
+TEST(LengthScale, ValueWithoutPositions_HasNoScale) {
+    const LengthScale scale = length_scale(value_of(RigidTransform{}));
+    EXPECT_EQ(scale.unit, LengthUnit::unknown);
+    EXPECT_EQ(scale.diagonal(), 0);
+    EXPECT_EQ(scale.spacing(), 0);
+    EXPECT_THROW(Length::spacings(1).resolved(scale), Error);
+}
+
+TEST(LengthScale, Scale_OutlivesWhoMadeTheValue) {
+    LengthScale scale;
+    {
+        const Value value = value_of(cloud_of({{0, 0, 0}, {0, 3, 4}}));
+        scale = length_scale(value);
+    }
+    const LengthScale copy = scale;
+    EXPECT_EQ(copy.diagonal(), 5);
+    EXPECT_EQ(scale.spacing(), 5);
+}
+
+}  // namespace
+}  // namespace scanmill::test

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/filter/spec.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+namespace {
+
+const char* const help = "Says what it is for.";
+
+ParameterSpec number_parameter(const std::string& name) {
+    ParameterSpec parameter;
+    parameter.name = name;
+    parameter.help = help;
+    parameter.default_value = ParameterScalar(1.0);
+    return parameter;
+}
+
+FilterSpec sound_spec() {
+    FilterSpec spec;
+    spec.name = "voxel-thin";
+    spec.summary = "Keeps one point in every voxel.";
+    spec.source = "Wang 2006";
+    spec.inputs = {{"points", Kind::points, help, false, false}};
+    spec.outputs = {{"points", Kind::points, help, false, false}, {"rest", Kind::points, help, false, false}};
+    spec.parameters = {number_parameter("bin-size"), number_parameter("k2")};
+    spec.metrics = {{"kept", Unit::count, help, true}};
+    return spec;
+}
+
+/// What require_sound says of the sound spec after `spoil` had its way.
+template <class Spoil>
+std::string verdict(Spoil&& spoil) {
+    FilterSpec spec = sound_spec();
+    spoil(spec);
+    return sentence_of([&] { require_sound(spec); });
+}
+
+TEST(RequireSound, SoundSpec_Passes) { EXPECT_NO_THROW(require_sound(sound_spec())); }
+
+TEST(RequireSound, FilterName_IsLowerCaseWithHyphens) {
+    for (const std::string name : {"", "Voxel", "voxel_thin", "voxel thin", "-thin", "thin-", "2d", "ä", "a/b", "a.b"})
+        EXPECT_EQ(verdict([&](FilterSpec& spec) { spec.name = name; }),
+                  "filter '" + name + "': the name is not lower-case-with-hyphens");
+}
+
+TEST(RequireSound, Summary_IsASentence) {
+    for (const std::string summary : {"", "Thins", "Thins points", "Thinning.", "A b."})
+        EXPECT_EQ(verdict([&](FilterSpec& spec) { spec.summary = summary; }),
+                  "filter voxel-thin: the help of filter 'voxel-thin' is no sentence: '" + summary + "'");
+}
+
+TEST(RequireSound, Version_IsAtLeastOne) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.version = 0; }), "filter voxel-thin: version 0 is below 1");
+}
+
+TEST(RequireSound, Source_IsNamed) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.source = ""; }), "filter voxel-thin: no source is named");
+}
+
+TEST(RequireSound, Outputs_AreNotNone) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.outputs.clear(); }), "filter voxel-thin: declares no output");
+}
+
+TEST(RequireSound, NamesOfEveryPart_AreLowerCaseWithHyphens) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.inputs[0].name = "Points"; }),
+              "filter voxel-thin: input 'Points' is not lower-case-with-hyphens");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.outputs[1].name = ""; }),
+              "filter voxel-thin: output '' is not lower-case-with-hyphens");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.parameters[0].name = "bin_size"; }),
+              "filter voxel-thin: parameter 'bin_size' is not lower-case-with-hyphens");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.metrics[0].name = "kept points"; }),
+              "filter voxel-thin: metric 'kept points' is not lower-case-with-hyphens");
+}
+
+TEST(RequireSound, NamesOfEveryPart_AreUnique) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.inputs.push_back(spec.inputs[0]); }),
+              "filter voxel-thin: input 'points' is declared twice");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.outputs[1].name = "points"; }),
+              "filter voxel-thin: output 'points' is declared twice");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.parameters[1].name = "bin-size"; }),
+              "filter voxel-thin: parameter 'bin-size' is declared twice");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.metrics.push_back(spec.metrics[0]); }),
+              "filter voxel-thin: metric 'kept' is declared twice");
+}
+
+TEST(RequireSound, InputAndOutputOfOneName_AreTwoThings) {
+    EXPECT_NO_THROW(require_sound(sound_spec())) << "both are called points";
+}
+
+TEST(RequireSound, HelpOfEveryPart_IsASentence) {
+    const std::string tail = " is no sentence: 'size'";
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.inputs[0].help = "size"; }),
+              "filter voxel-thin: the help of input 'points'" + tail);
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.outputs[0].help = "size"; }),
+              "filter voxel-thin: the help of output 'points'" + tail);
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.parameters[0].help = "size"; }),
+              "filter voxel-thin: the help of parameter 'bin-size'" + tail);
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.metrics[0].help = "size"; }),
+              "filter voxel-thin: the help of metric 'kept'" + tail);
+}
+
+TEST(RequireSound, HelpThatOnlyRepeatsTheName_IsRefused) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.parameters[0].help = "Bin size."; }),
+              "filter voxel-thin: the help of parameter 'bin-size' only repeats the name: 'Bin size.'");
+    EXPECT_NO_THROW([] {
+        FilterSpec spec = sound_spec();
+        spec.parameters[0].help = "Bin size, in x.";
+        require_sound(spec);
+    }());
+}
+
+TEST(RequireSound, Choices_AreAtLeastTwoAndDiffer) {
+    const auto with_choices = [](std::vector<Choice> choices) {
+        return [choices](FilterSpec& spec) {
+            spec.parameters[0].type = ParameterType::choice;
+            spec.parameters[0].choices = choices;
+            spec.parameters[0].default_value = std::monostate{};
+        };
+    };
+    EXPECT_EQ(verdict(with_choices({{"only", help}})),
+              "filter voxel-thin: parameter 'bin-size' has fewer than two choices");
+    EXPECT_EQ(verdict(with_choices({{"one", help}, {"two", help}, {"one", help}})),
+              "filter voxel-thin: parameter 'bin-size' has the choice 'one' twice");
+}
+
+TEST(RequireSound, Default_LiesInItsOwnRange) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) {
+                  spec.parameters[0].low = Bound{1, false};
+              }),
+              "filter voxel-thin: the default of 'bin-size': 1 is out of range; expected a number above 1");
+    EXPECT_EQ(verdict([](FilterSpec& spec) {
+                  spec.parameters[0].default_value = ParameterScalar(std::numeric_limits<double>::infinity());
+              }),
+              "filter voxel-thin: the default of 'bin-size': 'inf' is not a number; expected a number");
+    EXPECT_EQ(verdict([](FilterSpec& spec) {
+                  spec.parameters[0].list = true;
+                  spec.parameters[0].size = 3;
+                  spec.parameters[0].default_value = std::vector<ParameterScalar>{1.0};
+              }),
+              "filter voxel-thin: the default of 'bin-size': has 1 values; expected a list of 3 values, each a number");
+}
+
+TEST(RequireSound, NoDefault_IsSound) {
+    FilterSpec spec = sound_spec();
+    spec.parameters[0].default_value = std::monostate{};
+    spec.parameters[0].required = true;
+    EXPECT_NO_THROW(require_sound(spec));
+}
+
+TEST(FilterSpec, Parts_AreFoundByName) {
+    const FilterSpec spec = sound_spec();
+    EXPECT_EQ(spec.input("points"), &spec.inputs[0]);
+    EXPECT_EQ(spec.output("rest"), &spec.outputs[1]);
+    EXPECT_EQ(spec.parameter("k2"), &spec.parameters[1]);
+    EXPECT_EQ(spec.metric("kept"), &spec.metrics[0]);
+    EXPECT_EQ(spec.input("rest"), nullptr);
+    EXPECT_EQ(spec.output("point"), nullptr);
+    EXPECT_EQ(spec.parameter(""), nullptr);
+    EXPECT_EQ(spec.metric("points"), nullptr);
+}
+
+}  // namespace
+}  // namespace scanmill::test

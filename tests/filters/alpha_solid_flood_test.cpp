@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "alpha_solid/flood.hpp"
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "alpha_solid/growing_solid.hpp"
+#include "alpha_solid/pieces.hpp"
+#include "delaunay/delaunay.hpp"
+#include "scanmill/geometry/topology.hpp"
+#include "support/point_sets.hpp"
+#include "support/shapes.hpp"
+
+namespace scanmill::alpha {
+namespace {
+
+using namespace test;
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+
+TetMesh tets_of(const PointCloud& cloud) {
+    Context context;
+    return delaunay(cloud, {}, context).tets;
+}
+
+FacetValues values_of(const TetMesh& tets) {
+    Context context;
+    return facet_values(tets, context);
+}
+
+Flood whole_flood(const TetMesh& tets) {
+    Context context;
+    return flood_from_outside(tets, values_of(tets), {.value = 0, .coverage = 1}, context);
+}
+
+std::vector<PointCloud> various_clouds() {
+    return {random_cube(150, 1), lattice_cube(3), lattice_cube(4, 0.1, true), fibonacci_sphere(200, 1e-3),
+            joined(fibonacci_sphere(100), moved(fibonacci_sphere(80), 0.5, Vec3(3, 0, 0)))};
+}
+
+/// The definition, in exact arithmetic: is the facet a wall at squared radius `value`?
+bool is_wall(const TetMesh& tets, u32 cell, int corner, double value) {
+    const auto point = [&](u32 vertex) {
+        const Vec3& p = tets.positions[vertex];
+        return Kernel::Point_3(p.x(), p.y(), p.z());
+    };
+    const auto radius = [&](u32 c) {
+        const auto& [i, j, k, l] = tets.cells[c];
+        return CGAL::squared_radius(point(i), point(j), point(k), point(l));
+    };
+    const auto& [i, j, k] = outward_facet[corner];
+    const auto a = point(tets.cells[cell][i]), b = point(tets.cells[cell][j]), c = point(tets.cells[cell][k]);
+    const u32 across = tets.neighbours[cell][corner];
+    const auto inside = [&](u32 vertex) {
+        return CGAL::side_of_bounded_sphere(a, b, c, point(vertex)) == CGAL::ON_BOUNDED_SIDE;
+    };
+    bool attached = inside(tets.cells[cell][corner]);
+    auto least = radius(cell);
+    if (across != TetMesh::outside_hull) {
+        for (u32 vertex : tets.cells[across])
+            if (std::ranges::find(tets.cells[cell], vertex) == tets.cells[cell].end()) attached |= inside(vertex);
+        least = std::min(least, radius(across));
+    }
+    return (attached ? least : CGAL::squared_radius(a, b, c)) <= value;
+}
+
+/// The definition: everything that can be reached from outside without crossing a wall.
+Array<u8> brute_force_solid(const TetMesh& tets, double value) {
+    Array<u8> labels(tets.cells.size());
+    std::ranges::fill(labels, solid);
+    std::deque<u32> open;
+    for (u32 c = 0; c < labels.size(); ++c)
+        for (int i = 0; i < 4; ++i)
+            if (tets.neighbours[c][i] == TetMesh::outside_hull && labels[c] == solid && !is_wall(tets, c, i, value)) {
+                labels[c] = outside;
+                open.push_back(c);
+            }
+    for (; !open.empty(); open.pop_front())
+        for (int i = 0; i < 4; ++i) {
+            const u32 across = tets.neighbours[open.front()][i];
+            if (across == TetMesh::outside_hull || labels[across] == outside || is_wall(tets, open.front(), i, value))
+                continue;
+            labels[across] = outside;
+            open.push_back(across);
+        }
+    return labels;
+}
+
+Array<u8> labels_at(const TetMesh& tets, const Flood& flood, double value) {
+    Array<u8> labels(tets.cells.size());
+    std::ranges::fill(labels, solid);
+    for (std::size_t i = 0; i < flood.outside_above(value); ++i) labels[flood.cells[i]] = outside;
+    return labels;
+}
+
+TEST(Flood, AtManyLevels_IsTheBruteForceFloodFill) {
+    for (const PointCloud& cloud : various_clouds()) {
+        const TetMesh tets = tets_of(cloud);
+        const Flood flood = whole_flood(tets);
+        ASSERT_EQ(flood.cells.size(), tets.cells.size());
+        for (double quantile : {0.05, 0.3, 0.6, 0.9, 0.99}) {
+            // Between two values that differ by more than rounding, so that exact and rounded values agree.
+            std::size_t i = static_cast<std::size_t>(quantile * static_cast<double>(flood.values.size()));
+            while (i + 1 < flood.values.size() && flood.values[i + 1] > flood.values[i] * (1 - 1e-6)) ++i;
+            if (i + 1 == flood.values.size()) continue;
+            const double value = std::sqrt(flood.values[i] * flood.values[i + 1]);
+            EXPECT_EQ(labels_at(tets, flood, value), brute_force_solid(tets, value)) << quantile;
+        }
+    }
+}
+
+TEST(Flood, EveryCell_ComesAtItsWidestPath) {
+    for (const PointCloud& cloud : various_clouds()) {
+        const TetMesh tets = tets_of(cloud);
+        const FacetValues values = values_of(tets);
+        const Flood flood = whole_flood(tets);
+        EXPECT_TRUE(std::ranges::is_sorted(flood.values, std::greater<>()));
+        // Bellman–Ford: relax until nothing changes.
+        Array<double> out(tets.cells.size());
+        std::ranges::fill(out, -1.0);
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (u32 c = 0; c < out.size(); ++c)
+                for (int i = 0; i < 4; ++i) {
+                    const u32 across = tets.neighbours[c][i];
+                    const double beyond = across == TetMesh::outside_hull ? HUGE_VAL : out[across];
+                    const double path = std::min(beyond, values[c][i]);
+                    if (path > out[c]) {
+                        out[c] = path;
+                        changed = true;
+                    }
+                }
+        }
+        for (std::size_t i = 0; i < flood.cells.size(); ++i) ASSERT_EQ(flood.values[i], out[flood.cells[i]]);
+    }
+}
+
+TEST(Flood, FacetValues_AreTheSameFromBothSides) {
+    for (const PointCloud& cloud : various_clouds()) {
+        const TetMesh tets = tets_of(cloud);
+        const FacetValues values = values_of(tets);
+        for (u32 c = 0; c < tets.cells.size(); ++c)
+            for (int i = 0; i < 4; ++i) {
+                const u32 across = tets.neighbours[c][i];
+                if (across == TetMesh::outside_hull) continue;
+                const auto back = std::ranges::find(tets.neighbours[across], c) - tets.neighbours[across].begin();
+                ASSERT_EQ(values[across][back], values[c][i]);
+            }
+    }
+}
+
+TEST(Flood, Cover_IsTheLeastValueThatCoversTheShare) {
+    for (const PointCloud& cloud : various_clouds()) {
+        const TetMesh tets = tets_of(cloud);
+        const FacetValues values = values_of(tets);
+        const Flood whole = whole_flood(tets);
+        std::vector<double> cover(tets.positions.size(), HUGE_VAL);  // per point, the least out of its cells
+        for (std::size_t i = 0; i < whole.cells.size(); ++i)
+            for (u32 vertex : tets.cells[whole.cells[i]]) cover[vertex] = std::min(cover[vertex], whole.values[i]);
+        std::ranges::sort(cover);
+        for (double share : {1.0, 0.9, 0.5, 1e-9}) {
+            Context context;
+            const Flood flood = flood_from_outside(tets, values, {.coverage = share}, context);
+            const auto needed = static_cast<std::size_t>(std::ceil(share * static_cast<double>(cover.size())));
+            EXPECT_EQ(flood.needed, needed);
+            EXPECT_EQ(flood.cover, cover[needed - 1]);
+            // It stops early, but never inside a group of equal values, nor before cover's.
+            EXPECT_TRUE(std::ranges::equal(flood.values, std::span(whole.values).first(flood.values.size())));
+            EXPECT_EQ(flood.values.back(), flood.cover);
+            if (flood.values.size() < whole.values.size()) {
+                EXPECT_LT(whole.values[flood.values.size()], flood.cover);
+            }
+        }
+    }
+}
+
+TEST(Flood, AShareThatIsAWholeNumberOfPoints_IsNotRoundedUp) {
+    const TetMesh tets = tets_of(random_cube(1000, 2));
+    const FacetValues values = values_of(tets);
+    Context context;
+    EXPECT_EQ(flood_from_outside(tets, values, {.coverage = 0.999}, context).needed, 999u);
+    EXPECT_EQ(flood_from_outside(tets, values, {.coverage = 0.07}, context).needed, 70u);
+    EXPECT_EQ(flood_from_outside(tets, values, {.coverage = 0.0701}, context).needed, 71u);
+}
+
+TriangleMesh mesh_of(const TetMesh& tets, std::span<const u8> labels) {
+    TriangleMesh mesh;
+    mesh.positions = tets.positions;
+    mesh.triangles = boundary_triangles(tets, labels, 1);
+    return mesh;
+}
+
+TEST(BoundaryDefects, OfRandomCellSets_AreWhatTheMeshTopologySays) {
+    Random random(5);
+    for (double density : {0.03, 0.2, 0.5, 0.8, 0.97}) {
+        const TetMesh tets = tets_of(random_cube(400, 3));
+        Array<u8> labels(tets.cells.size());
+        for (u8& label : labels) label = random.uniform() < density ? solid : outside;
+        const TriangleMesh mesh = mesh_of(tets, labels);
+        const MeshTopology facts = topology(mesh);
+        const BoundaryDefects defects = boundary_defects(mesh.triangles.span(), tets.positions.size(), 2);
+        EXPECT_EQ(facts.boundary_edges, 0u);
+        EXPECT_EQ(defects.edges, facts.nonmanifold_edges);
+        EXPECT_EQ(defects.vertices.size(), facts.nonmanifold_vertices);
+        EXPECT_GT(defects.edges, 0u);
+        // The same judgement from the cells round each vertex.
+        GrowingSolid growing(tets, labels, {});
+        EXPECT_EQ(growing.verdict(), GrowingSolid::Verdict::manifold);
+        for (u32 vertex = 0; vertex < tets.positions.size(); ++vertex) {
+            growing.suspect_only(std::array{vertex});
+            const bool bad = std::ranges::binary_search(defects.vertices, vertex);
+            EXPECT_EQ(growing.verdict(), bad ? GrowingSolid::Verdict::not_manifold : GrowingSolid::Verdict::manifold);
+        }
+    }
+}
+
+/// Two tetrahedra that share only `shared` of their vertices.
+TriangleMesh two_tetrahedra(int shared) {
+    std::array<Triangle, 4> facets{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+    Array<Triangle> triangles;
+    for (const Triangle& t : facets) triangles.push_back(t);
+    for (const Triangle& t : facets) {
+        Triangle other;
+        for (int i = 0; i < 3; ++i) other[i] = t[i] < static_cast<u32>(shared) ? t[i] : t[i] + 4;
+        triangles.push_back(other);
+    }
+    TriangleMesh mesh;
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
+TEST(BoundaryDefects, TetrahedraThatTouchInAVertex_AreEdgeManifoldButNotManifold) {
+    const BoundaryDefects defects = boundary_defects(two_tetrahedra(1).triangles.span(), 8, 1);
+    EXPECT_EQ(defects.vertices, (Array<u32>{0}));
+    EXPECT_EQ(defects.edges, 0u);
+}
+
+TEST(BoundaryDefects, TetrahedraThatTouchInAnEdge_HaveOneSurplusEdge) {
+    const BoundaryDefects defects = boundary_defects(two_tetrahedra(2).triangles.span(), 8, 1);
+    EXPECT_EQ(defects.vertices, (Array<u32>{0, 1}));
+    EXPECT_EQ(defects.edges, 1u);
+}
+
+TEST(BoundaryDefects, SeparateTetrahedra_HaveNone) {
+    const TriangleMesh mesh = two_tetrahedra(0);
+    EXPECT_TRUE(boundary_defects(mesh.triangles.span(), 8, 1).vertices.empty());
+    DisjointSets vertices(8);
+    EXPECT_EQ(join_vertices(mesh.triangles.span(), vertices), 2u);
+}
+
+TEST(BoundaryDefects, VertexOfManyTriangles_IsJudgedLikeAnyOther) {
+    // A double fan of 100 triangles between two poles, once whole and once pinched at two rim vertices made one.
+    for (bool pinched : {false, true}) {
+        Array<Triangle> triangles;
+        const auto rim = [&](u32 i) { return 2 + (pinched && i % 100 == 50 ? 0 : i % 100); };
+        for (u32 i = 0; i < 100; ++i) {
+            triangles.push_back({0, rim(i), rim(i + 1)});
+            triangles.push_back({1, rim(i + 1), rim(i)});
+        }
+        const BoundaryDefects defects = boundary_defects(triangles, 102, 1);
+        EXPECT_EQ(defects.vertices, pinched ? (Array<u32>{0, 1, 2}) : Array<u32>{});
+        EXPECT_EQ(defects.edges, pinched ? 2u : 0u);
+    }
+}
+
+TEST(GrowingSolid, CellByCell_KeepsTheVerdictOfTheWholeBoundary) {
+    const TetMesh tets = tets_of(random_cube(120, 8));
+    const Flood flood = whole_flood(tets);
+    Array<u8> labels(tets.cells.size());
+    std::ranges::fill(labels, outside);
+    GrowingSolid growing(tets, labels, {});
+    int manifold = 0;
+    for (std::size_t i = flood.cells.size(); i-- > 0;) {
+        growing.add(std::span(flood.cells).subspan(i, 1));
+        const TriangleMesh mesh = mesh_of(tets, growing.labels());
+        const bool expected = topology(mesh).nonmanifold_vertices == 0;
+        ASSERT_EQ(growing.verdict() == GrowingSolid::Verdict::manifold, expected) << i;
+        manifold += expected;
+        EXPECT_EQ(growing.covered(), covered_points(tets, growing.labels()));
+    }
+    EXPECT_GT(manifold, 10);
+}
+
+TEST(GrowingSolid, RepairOfRandomCellSets_IsManifoldAndOnlyAdds) {
+    Random random(6);
+    for (double density : {0.05, 0.3, 0.6, 0.9}) {
+        const TetMesh tets = tets_of(random_cube(300, 4));
+        Array<u8> labels(tets.cells.size());
+        Array<double> price(tets.cells.size());
+        for (u8& label : labels) label = random.uniform() < density ? solid : outside;
+        for (double& entry : price) entry = random.uniform();
+        const BoundaryDefects defects = boundary_defects(boundary_triangles(tets, labels, 1), 300, 1);
+        ASSERT_FALSE(defects.vertices.empty());
+        GrowingSolid growing(tets, labels, defects.vertices);
+        growing.repair(price);
+        EXPECT_EQ(topology(mesh_of(tets, growing.labels())).nonmanifold_vertices, 0u);
+        for (std::size_t c = 0; c < labels.size(); ++c) EXPECT_LE(labels[c] == solid, growing.labels()[c] == solid);
+        // Filling what the repair has sealed keeps the boundary a manifold, and leaves one outside.
+        Array<u8> filled = growing.labels();
+        fill_cavities(tets, filled);
+        const TriangleMesh mesh = mesh_of(tets, filled);
+        const MeshTopology facts = topology(mesh);
+        EXPECT_TRUE(facts.closed);
+        fill_cavities(tets, filled);
+        EXPECT_EQ(mesh_of(tets, filled).triangles.size(), mesh.triangles.size());
+    }
+}
+
+TEST(Pieces, LargestPiece_IsTheOneWithTheMostPoints) {
+    const TetMesh tets = tets_of(joined(fibonacci_sphere(100), moved(lattice_cube(3), 0.2, Vec3(9, 0, 0))));
+    // Solid: cells within one of the two clouds; 100 points against 64.
+    Array<u8> labels(tets.cells.size());
+    for (u32 c = 0; c < labels.size(); ++c) {
+        const auto in_first = [](u32 vertex) { return vertex < 100; };
+        labels[c] = std::ranges::all_of(tets.cells[c], in_first) || std::ranges::none_of(tets.cells[c], in_first)
+                        ? solid
+                        : outside;
+    }
+    EXPECT_EQ(covered_points(tets, labels), 164u);
+    keep_largest_piece(tets, labels);
+    EXPECT_EQ(covered_points(tets, labels), 100u);
+    for (u32 c = 0; c < labels.size(); ++c)
+        EXPECT_LE(labels[c] == solid, *std::ranges::max_element(tets.cells[c]) < 100);
+    EXPECT_GT(std::ranges::count(labels, u8(left_out)), 0);
+}
+
+}  // namespace
+}  // namespace scanmill::alpha
