@@ -42,7 +42,8 @@ void Progress::node_progress(const RunNode& node, double fraction) {
 
 void Progress::node_warning(const RunNode& node, std::string_view text) {
     const std::scoped_lock lock(mutex_);
-    say(fmt::format("warning: {}: {}", label(node), text));
+    // What is said of reading begins with the file's path.
+    say(node.step ? fmt::format("warning: {}: {}", label(node), text) : fmt::format("warning: {}", text));
 }
 
 void Progress::node_ended(const RunNode& node, const NodeReport& report) {

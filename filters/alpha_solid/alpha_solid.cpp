@@ -111,9 +111,9 @@ AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params
 
     Flood flood;
     {
-        const FacetValues values = facet_values(tets, context);
+        const Array<SweepCell> cells = sweep_cells(tets, context);
         context.progress(0.35);
-        flood = flood_from_outside(tets, values, limits, context);
+        flood = flood_from_outside(cells, tets.positions.size(), limits, context);
     }
     context.progress(0.75);
     if (params.alpha && flood.outside_above(limits.value) == tets.cells.size())

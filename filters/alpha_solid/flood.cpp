@@ -21,26 +21,23 @@ namespace {
 
 class Sweep {
 public:
-    Sweep(const TetMesh& tets, const FacetValues& values)
-        : cells_(tets.cells.data()),
-          neighbours_(tets.neighbours.data()),
-          count_(tets.cells.size()),
-          values_(values),
-          seen_(count_),
-          cells_left_(tets.positions.size()) {
+    Sweep(std::span<const SweepCell> cells, std::size_t points)
+        : cells_(cells),
+          seen_(cells.size()),
+          cells_left_(points) {
         std::fill(seen_.begin(), seen_.end(), u8(0));
         std::fill(cells_left_.begin(), cells_left_.end(), 0);
-        for (u32 c = 0; c < count_; ++c) {
-            for (u32 corner : cells_[c]) ++cells_left_[corner];
+        for (u32 c = 0; c < cells_.size(); ++c) {
+            for (u32 corner : cells_[c].corners) ++cells_left_[corner];
             for (int i = 0; i < 4; ++i)
-                if (neighbours_[c][i] == TetMesh::outside_hull) queue_.push(values_[c][i], c);
+                if (cells_[c].neighbours[i] == TetMesh::outside_hull) queue_.push(cells_[c].values[i], c);
         }
     }
 
     Flood run(const FloodLimits& limits, Context& context) {
         Flood flood;
-        flood.cells.reserve(count_);
-        flood.values.reserve(count_);
+        flood.cells.reserve(cells_.size());
+        flood.values.reserve(cells_.size());
         for (u32 cells : cells_left_) flood.points += cells > 0;
         // A share like 99.9 % of 1000 points is 999, whatever its last bit.
         const double share = limits.coverage * static_cast<double>(flood.points);
@@ -54,22 +51,21 @@ public:
             if (flood.cells.size() % 65536 == 0) context.check_cancelled();
             flood.cells.push_back(cell);
             flood.values.push_back(level);
-            for (u32 corner : cells_[cell])
+            const SweepCell& swept = cells_[cell];
+            for (u32 corner : swept.corners)
                 if (--cells_left_[corner] == 0 && covered-- == flood.needed) flood.cover = level;
             for (int i = 0; i < 4; ++i) {
-                const u32 across = neighbours_[cell][i];
+                const u32 across = swept.neighbours[i];
                 if (across == TetMesh::outside_hull || seen_[across]) continue;
-                queue_.push(std::min(level, values_[cell][i]), across);
+                __builtin_prefetch(&cells_[across]);
+                queue_.push(std::min(level, swept.values[i]), across);
             }
         }
         return flood;
     }
 
 private:
-    const Tetrahedron* cells_;
-    const std::array<u32, 4>* neighbours_;
-    u32 count_;
-    const FacetValues& values_;
+    std::span<const SweepCell> cells_;
     Array<u8> seen_;
     /// Per point: cells round it that the sweep has not reached.
     Array<u32> cells_left_;
@@ -78,8 +74,9 @@ private:
 
 }  // namespace
 
-Flood flood_from_outside(const TetMesh& tets, const FacetValues& values, const FloodLimits& limits, Context& context) {
-    return Sweep(tets, values).run(limits, context);
+Flood flood_from_outside(std::span<const SweepCell> cells, std::size_t points, const FloodLimits& limits,
+                         Context& context) {
+    return Sweep(cells, points).run(limits, context);
 }
 
 }  // namespace scanmill::alpha

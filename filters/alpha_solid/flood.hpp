@@ -8,6 +8,7 @@
 /// the facets between solid cells.
 
 #include <limits>
+#include <span>
 
 #include "alpha_solid/facet_values.hpp"
 #include "scanmill/filter/context.hpp"
@@ -36,8 +37,9 @@ struct FloodLimits {
     double coverage = 1;
 };
 
-/// Every group of equal values is complete. Cost: O(m log m) time in theory for m cells swept, nearly linear in
+/// Every group of equal values is complete. Corners are below `points`. Cost: O(m log m) time in theory for m cells swept, nearly linear in
 /// practice; 12 bytes per cell swept and 1 per cell.
-Flood flood_from_outside(const TetMesh& tets, const FacetValues& values, const FloodLimits& limits, Context& context);
+Flood flood_from_outside(std::span<const SweepCell> cells, std::size_t points, const FloodLimits& limits,
+                         Context& context);
 
 }  // namespace scanmill::alpha

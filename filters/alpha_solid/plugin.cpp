@@ -7,31 +7,28 @@ using namespace scanmill;
 SCANMILL_FILTER() {
     using P = AlphaSolidParams;
     return Declare<P>("alpha-solid", 1)
-        .summary("The part of a tetrahedralisation that a ball of radius alpha cannot enter, with alpha found by itself.")
+        .summary("Finds the solid that the points enclose: every cell that a ball of radius alpha cannot enter from outside.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
-        .in<TetMesh>("tets", "Made by delaunay.")
-        .out<TriangleMesh>("mesh", "The solid's boundary, closed and oriented outwards; point columns are carried along.")
-        .out<TetMesh>("tets", "The same cells, labelled inside or outside.")
-        .param("alpha", &P::alpha,
-               "Radius of the ball; `auto` takes the least that gives a valid solid. A given one promises nothing of the "
-               "boundary.",
-               above(0), word("auto"))
+        .in<TetMesh>("tets", "A Delaunay tetrahedralisation.")
+        .out<TriangleMesh>("mesh", "The solid's boundary, closed and outward.")
+        .out<TetMesh>("tets", "The cells, labelled inside or outside.")
+        .param("alpha", &P::alpha, "The ball's radius; auto takes the least that gives a valid solid.", word("auto"), above(0))
         .choice("search", &P::search,
-                {{"scan", AlphaSearch::scan, "The least alpha with a valid solid."},
+                {{"scan", AlphaSearch::scan, "The least alpha whose solid is valid."},
                  {"binary", AlphaSearch::binary, "The paper's bisection: a valid solid, not always the least."}},
-                "How the automatic alpha is searched.")
+                "How alpha: auto is found.")
         .choice("components", &P::components,
                 {{"single", AlphaComponents::single,
-                  "One solid; with a coverage below 100 % the largest, and the others are left out."},
+                  "One solid; with coverage below 100 % the one with the most points, the others are left out."},
                  {"many", AlphaComponents::many, "Any number of solids."}},
-                "What a valid solid may consist of.")
+                "How many separate solids are valid.")
         .param("coverage", &P::coverage, "Share of the points that must be in or on the solid.", above(0), at_most(1))
-        .metric("alpha", Unit::length, "The radius of the solid.", headline)
-        .metric("alpha-cover", Unit::length, "Least radius at which the asked share of the points is in or on the solid.")
+        .metric("alpha", Unit::length, "The radius used.", headline)
+        .metric("alpha-cover", Unit::length, "The least radius that covers the asked share of the points.")
         .metric("cells", Unit::count, "Cells inside.")
         .metric("interior-points", Unit::count, "Points inside the solid but not on its boundary.")
-        .metric("uncovered-points", Unit::count, "Points in no cell of the solid.")
-        .metric("triangles", Unit::count, "Triangles of the boundary.")
+        .metric("uncovered-points", Unit::count, "Points in no cell of the solid.", headline)
+        .metric("triangles", Unit::count, "Triangles of the boundary.", headline)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             AlphaSolidResult result = alpha_solid(inputs.get<TetMesh>("tets"), params, context);
             return Outputs().set("mesh", std::move(result.mesh)).set("tets", std::move(result.tets));

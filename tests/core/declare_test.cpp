@@ -189,7 +189,7 @@ TEST(DeclareRun, ValuesOfEveryType_ReachTheirMembers) {
                                           {"size", one(Length(0.5))},
                                           {"bend", one(Angle::radians(1))},
                                           {"share", one(Ratio::fraction(0.5))},
-                                          {"rule", one(std::string("densest"))},
+                                          {"rule", one(std::string("nearest"))},
                                           {"axis", List{1.0, 2.0, 3.0}},
                                           {"sizes", List{Length(9)}},
                                           {"names", List{std::string("a"), std::string("b")}},
@@ -210,7 +210,7 @@ TEST(DeclareRun, ValuesOfEveryType_ReachTheirMembers) {
     EXPECT_EQ(params.size, Length(0.5));
     EXPECT_EQ(params.bend, Angle::radians(1));
     EXPECT_EQ(params.share, Ratio::fraction(0.5));
-    EXPECT_EQ(params.rule, Rule::densest);
+    EXPECT_EQ(params.rule, Rule::nearest);
     EXPECT_THAT(params.axis, ElementsAre(1, 2, 3));
     EXPECT_THAT(params.sizes, ElementsAre(Length(9)));
     EXPECT_THAT(params.names, ElementsAre("a", "b"));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scanmill/filter/quantity.hpp"
+#include "scanmill/filter/random.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -30,8 +31,14 @@ TEST(LengthResolution, AbsoluteLengths_AreConvertedIntoTheScansUnit) {
 }
 
 TEST(LengthResolution, SameUnit_KeepsTheNumberBitForBit) {
-    EXPECT_EQ(on(scan_in(LengthUnit::millimetre), "0.1 mm"), 0.1);
-    EXPECT_EQ(on(scan_in(LengthUnit::foot), "0.3 ft"), 0.3);
+    using enum LengthUnit;
+    Random random(31);
+    for (const LengthUnit unit : {micrometre, millimetre, centimetre, metre, inch, foot})
+        for (int i = 0; i < 200; ++i) {
+            const std::string amount = number_text(random.uniform(0, 100));
+            const std::string written = amount + " " + std::string(symbol(unit));
+            EXPECT_EQ(on(scan_in(unit), written.c_str()), on(scan_in(unit), (amount + " u").c_str())) << written;
+        }
 }
 
 TEST(LengthResolution, RelativeLengths_AreMeasuredOnTheScan) {

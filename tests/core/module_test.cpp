@@ -79,7 +79,7 @@ TEST(LoadModule, MissingFile_CannotBeLoaded) {
 
 TEST(LoadModule, Garbage_CannotBeLoaded) {
     const TemporaryFolder folder;
-    for (const std::string content : {std::string(),
+    for (const std::string& content : {std::string(),
                                       std::string("\x7f"
                                                   "ELF"),
                                       std::string("never a library"), std::string(5000, 'x'),

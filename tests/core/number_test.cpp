@@ -7,6 +7,7 @@
 #include <clocale>
 #include <cmath>
 #include <limits>
+#include <locale>
 
 #include "scanmill/filter/quantity.hpp"
 #include "scanmill/filter/random.hpp"
@@ -17,12 +18,12 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The number, by its bits; fails when the text is none.
-u64 bits_of(std::string_view text) {
+std::uint64_t bits_of(std::string_view text) {
     double value = -1;
     EXPECT_TRUE(parse_number(text, value)) << text;
-    return std::bit_cast<u64>(value);
+    return std::bit_cast<std::uint64_t>(value);
 }
-u64 bits(double value) { return std::bit_cast<u64>(value); }
+std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 
 /// Any finite double, every exponent equally likely.
 double any_double(Random& random) {
@@ -120,13 +121,21 @@ TEST(NumberText, Shortest_AsPeopleWriteIt) {
     EXPECT_EQ(number_text(0.1 + 0.2), "0.30000000000000004");
 }
 
-TEST(NumberText, CommaLocale_ChangesNothing) {
-    const std::string before = std::setlocale(LC_ALL, nullptr);
-    if (!std::setlocale(LC_ALL, "de_DE.UTF-8") && !std::setlocale(LC_ALL, "fr_FR.UTF-8"))
-        GTEST_SKIP() << "skipped: no locale with decimal commas is installed";
-    EXPECT_EQ(number_text(0.5), "0.5");
-    EXPECT_EQ(bits_of("0.5"), bits(0.5));
-    std::setlocale(LC_ALL, before.c_str());
+struct DecimalComma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(NumberText, LocaleWithDecimalCommas_ChangesNothing) {
+    const std::string c_locale = std::setlocale(LC_ALL, nullptr);
+    const std::locale before = std::locale::global(std::locale(std::locale(), new DecimalComma));
+    std::setlocale(LC_ALL, "de_DE.UTF-8");  // the C library's, where it is installed
+    EXPECT_EQ(number_text(1234567.5), "1234567.5");
+    EXPECT_EQ(bits_of("1234567.5"), bits(1234567.5));
+    EXPECT_EQ(Length::parse("0.5 mm").text(), "0.5 mm");
+    std::locale::global(before);
+    std::setlocale(LC_ALL, c_locale.c_str());
 }
 
 }  // namespace

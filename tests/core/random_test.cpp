@@ -90,6 +90,15 @@ TEST(RandomStream, DependsOnIndexSeedAndState) {
     EXPECT_NE(first_numbers(Random(9), 4), first);
 }
 
+TEST(RandomStream, SplittingAfterDrawing_GivesNoEarlierStream) {
+    Random random(9);
+    std::vector<std::uint64_t> firsts;
+    for (int drawn = 0; drawn < 20; ++drawn, random.next())
+        for (std::uint64_t index = 0; index < 20; ++index) firsts.push_back(random.stream(index).next());
+    std::ranges::sort(firsts);
+    EXPECT_EQ(std::ranges::adjacent_find(firsts), firsts.end());
+}
+
 TEST(RandomStream, ManyStreams_ShareNoNumber) {
     const Random random(0);
     std::vector<std::uint64_t> numbers = first_numbers(random, 100);

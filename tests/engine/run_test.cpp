@@ -81,7 +81,7 @@ TEST_F(Run, FailingAlternative_LeavesTheOthersAlone) {
     ASSERT_EQ(report.cells.size(), 4u);
     EXPECT_EQ(report.cells[0].outcome, Outcome::done);
     for (int failed = 1; failed < 4; ++failed) EXPECT_EQ(report.cells[failed].outcome, Outcome::failed);
-    EXPECT_THAT(report.cells[1].error, AllOf(HasSubstr("in step 'bad' (w.yaml:8:18)"), HasSubstr("a.xyz'"), HasSubstr("hint: ")));
+    EXPECT_THAT(report.cells[1].error, AllOf(HasSubstr("in step 'bad' (w.yaml:8:19)"), HasSubstr("a.xyz'"), HasSubstr("hint: ")));
     EXPECT_THAT(report.cells[2].error, HasSubstr("an unexpected error: "));
     EXPECT_THAT(report.cells[3].error, HasSubstr("memory did not suffice"));
     EXPECT_EQ(runs_logged(), 1u) << "nothing runs on what failed";
@@ -153,6 +153,12 @@ TEST_F(Run, ListInput_ReachesThePortWhole) {
     const RunReport report = run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz")}, "", "{scan: points, others: [points]}");
     EXPECT_TRUE(report.all_done()) << report.cells[0].error;
     EXPECT_EQ(graph_.nodes.back().inputs.size(), 3u);
+}
+
+TEST_F(Run, OptionalPortOfAKindThatAnotherPortTakes_StaysOpenWithoutIn) {
+    run("  - test-step:\n", {scan("a.xyz")});
+    ASSERT_EQ(graph_.nodes.back().inputs.size(), 1u);
+    EXPECT_EQ(graph_.nodes.back().inputs[0].port, "points");
 }
 
 TEST_F(Run, UnfedOrUnknownInputs_AreRefusedBeforeTheRun) {

@@ -181,7 +181,7 @@ TEST(AlphaSolid, SurfaceOfALatticeCube_IsSolidThroughout) {
     const AlphaSolidResult result = solid_of(lattice_cube(8, 0.125, true));
     EXPECT_EQ(result.cells_inside, result.tets.cells.size());
     expect_closed(result, 386, 2);
-    EXPECT_DOUBLE_EQ(signed_volume(result.mesh), 1);
+    EXPECT_NEAR(signed_volume(result.mesh), 1, 1e-12);
 }
 
 TEST(AlphaSolid, FilledLatticeCube_ReportsItsInteriorPoints) {
@@ -299,24 +299,41 @@ TEST(AlphaSolid, CubesThatTouchInACorner_AreNotTakenForManifold) {
     }
 }
 
-TEST(AlphaSolid, WhenNoAlphaNearIsValid_TheSolidIsRepairedWhereItIsPinched) {
-    // Finer lattices need a larger multiple of alpha_cover to bridge the notch beside the shared corner: beyond four
-    // times, local repair must do.
-    const PointCloud cube = lattice_cube(12, 1, true);
-    PointCloud cloud = joined(cube, moved(cube, 1, Vec3(12, 12, 12)));
-    const TetMesh tets = tets_of(cloud);
+/// Two needles that share their tip and point away from each other: each appears at about half its length, but the least
+/// circumsphere that reaches from one into the other is many times larger.
+PointCloud opposite_needles() {
+    Array<Vec3> positions{Vec3(0, 0, 0)};
+    for (double end : {1.0, -1.0})
+        for (int i = 0; i < 3; ++i) {
+            const double angle = end + 2 * std::numbers::pi * i / 3;
+            positions.push_back(Vec3(0.05 * std::cos(angle), 0.05 * std::sin(angle), end));
+        }
+    PointCloud cloud;
+    cloud.positions = std::move(positions);
+    return cloud;
+}
+
+TEST(AlphaSolid, OppositeNeedles_AreClosedRoundTheirCommonTip) {
+    const TetMesh tets = tets_of(opposite_needles());
     std::vector<std::string> warnings;
     ContextOptions options;
     options.on_warning = [&](std::string_view text) { warnings.emplace_back(text); };
     Context context(options);
     const AlphaSolidResult result = alpha_solid(tets, {}, context);
-    expect_closed(result, result.mesh.positions.size(), 2);
-    if (result.choice == AlphaChoice::repaired) {
-        EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("was closed round its non-manifold vertices")));
-        // Little was added: the two cubes, and cells round the corner.
-        EXPECT_LT(signed_volume(result.mesh), 2 * 12 * 12 * 12 * 1.2);
-    }
-    EXPECT_NEAR(result.alpha_cover, 1 / std::numbers::sqrt2, 1e-9);
+    EXPECT_EQ(result.choice, AlphaChoice::repaired);
+    EXPECT_EQ(result.alpha, result.alpha_cover);
+    EXPECT_NEAR(result.alpha, 0.5, 0.01);
+    EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("was closed round its non-manifold vertices")));
+    expect_closed(result, 7, 2);
+    // The two needles were all that alpha gave; the repair has added to them without filling the hull.
+    const AlphaSolidResult before = solid_of(tets, at_alpha(result.alpha));
+    EXPECT_EQ(before.cells_inside, 2u);
+    EXPECT_EQ(before.nonmanifold_vertices, 1u);
+    EXPECT_GT(result.cells_inside, 2u);
+    EXPECT_LT(result.cells_inside, tets.cells.size());
+    for (std::size_t c = 0; c < tets.cells.size(); ++c) EXPECT_LE(before.tets.inside[c], result.tets.inside[c]);
+    for (std::uint64_t seed : {1, 2, 3})
+        EXPECT_EQ(places(solid_of(shuffled(opposite_needles(), seed)).mesh), places(result.mesh));
 }
 
 PointCloud two_spheres() { return joined(fibonacci_sphere(600, 1e-4), moved(fibonacci_sphere(300, 1e-4, 2), 0.5, Vec3(3, 0, 0))); }

@@ -4,12 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
 
-#include "scanmill/filter/error.hpp"
 #include "scanmill/formats/files.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"
@@ -18,7 +16,6 @@ namespace scanmill::test {
 namespace {
 
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 VoxelThinParams bins_of(double size) {
     VoxelThinParams params;
@@ -31,15 +28,6 @@ VoxelThinResult thin(const PointCloud& cloud, const VoxelThinParams& params, uns
     options.threads = threads;
     Context context(options);
     return voxel_thin(cloud, params, context);
-}
-
-std::string refusal(const PointCloud& cloud, const VoxelThinParams& params) {
-    try {
-        thin(cloud, params);
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return "no refusal";
 }
 
 using Bin = std::array<double, 3>;
@@ -223,64 +211,6 @@ TEST(VoxelThin, Cancelled_Stops) {
     EXPECT_THROW(voxel_thin(random_cube(100, 1), bins_of(1), context), Cancelled);
 }
 
-TEST(VoxelThin, EmptyCloud_IsRefused) { EXPECT_THAT(refusal(PointCloud{}, bins_of(1)), HasSubstr("no points")); }
-
-TEST(VoxelThin, NotANumber_IsRefusedWithItsRow) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}, {1, nan, 0}}), bins_of(1)), HasSubstr("1 of 2 points"));
-}
-
-TEST(VoxelThin, InfinityOfEitherSign_IsRefused) {
-    const double infinity = std::numeric_limits<double>::infinity();
-    EXPECT_THAT(refusal(cloud_of({{0, 0, infinity}, {1, 0, 0}}), bins_of(1)), HasSubstr("finite"));
-    EXPECT_THAT(refusal(cloud_of({{0, -infinity, 0}, {1, 0, 0}}), bins_of(1)), HasSubstr("finite"));
-}
-
-TEST(VoxelThin, BinSizeNotAboveZero_IsRefused) {
-    const PointCloud cloud = cloud_of({{0, 0, 0}});
-    EXPECT_THAT(refusal(cloud, VoxelThinParams{}), HasSubstr("bin size is 0"));
-    EXPECT_THAT(refusal(cloud, bins_of(-1)), HasSubstr("bin size is -1"));
-    EXPECT_THAT(refusal(cloud, bins_of(std::numeric_limits<double>::quiet_NaN())), HasSubstr("above 0"));
-    EXPECT_THAT(refusal(cloud, bins_of(std::numeric_limits<double>::infinity())), HasSubstr("above 0"));
-}
-
-TEST(VoxelThin, UnresolvedBinSize_IsRefused) {
-    VoxelThinParams params;
-    params.bin_size = Length::percent_of_diagonal(1);
-    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("not resolved"));
-}
-
-TEST(VoxelThin, NegativeMargin_IsRefused) {
-    VoxelThinParams params = bins_of(1);
-    params.margin = -1;
-    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("margin is -1"));
-}
-
-TEST(VoxelThin, NoMinimumOfPoints_IsRefused) {
-    VoxelThinParams params = bins_of(1);
-    params.min_points = 0;
-    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("min-points is 0"));
-}
-
-TEST(VoxelThin, TwoToThe21BinsAlongAnAxis_AreTheMost) {
-    const double most = 1 << 21;
-    EXPECT_EQ(thin(cloud_of({{0, 0, 0}, {0, most - 1, 0}}), bins_of(1)).kept.size(), 2u);
-    const PointCloud long_cloud = cloud_of({{0, 0, 0}, {0, most, 0}});
-    EXPECT_THAT(refusal(long_cloud, bins_of(1)), HasSubstr("2097153; at most 2097152"));
-    EXPECT_THAT(refusal(long_cloud, bins_of(1)), HasSubstr("along y"));
-}
-
-TEST(VoxelThin, TooFineBins_NamedSmallestSizeFits) {
-    const PointCloud cloud = cloud_of({{0, 0, 0}, {0, 12345.678, 9}});
-    const std::string text = refusal(cloud, bins_of(1e-6));
-    const std::size_t at = text.find("bins of ", text.find("hint"));
-    ASSERT_NE(at, std::string::npos) << text;
-    double smallest = 0;
-    ASSERT_TRUE(parse_number(text.substr(at + 8, text.find(" u", at) - at - 8), smallest)) << text;
-    EXPECT_EQ(thin(cloud, bins_of(smallest)).kept.size(), 2u);
-    EXPECT_NE(refusal(cloud, bins_of(smallest * 0.999)), "no refusal");
-}
-
 TEST(VoxelThin, CornersOfTheLargestGrid_AreToldApart) {
     const double far = (1 << 21) - 1;
     const PointCloud corners = cloud_of({{0, 0, 0},
@@ -292,20 +222,6 @@ TEST(VoxelThin, CornersOfTheLargestGrid_AreToldApart) {
                                          {0, far, far},
                                          {far, far, far}});
     EXPECT_EQ(thin(corners, bins_of(1)).kept.size(), 8u);
-}
-
-TEST(VoxelThin, DistantGridOrigin_IsRefused) {
-    VoxelThinParams params = bins_of(1);
-    params.grid_origin = Vec3(0, 0, 1e10);
-    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("bins of 1 u away"));
-    params.grid_origin = Vec3(0, 0, std::numeric_limits<double>::quiet_NaN());
-    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("not finite"));
-}
-
-TEST(VoxelThin, NothingButNoise_IsRefused) {
-    VoxelThinParams params = bins_of(1);
-    params.min_points = 2;
-    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}, {5, 0, 0}}), params), HasSubstr("all 2 points lie in 2 bins"));
 }
 
 TEST(VoxelThin, RealScan_AgreesWithTheDefinition) {

@@ -84,7 +84,7 @@ TEST_P(BadScanTest, Run_SaysOneClearSentenceAndEndsWith1) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BadScanTest, testing::ValuesIn(bad_scans),
-                         [](const auto& info) { return info.param.test_name; });
+                         [](const auto& bad) { return bad.param.test_name; });
 
 TEST(BadScan, Folder_IsRefused) {
     const TemporaryFolder folder;

@@ -14,8 +14,8 @@ struct ProgramResult {
 };
 
 struct ProgramOptions {
-    std::filesystem::path folder;                 ///< to run in; empty: this one
-    std::vector<std::string> environment;         ///< NAME=VALUE, added
+    std::filesystem::path folder{};               ///< to run in; empty: this one
+    std::vector<std::string> environment{};       ///< NAME=VALUE, added
     std::size_t memory_limit = 0;                 ///< bytes of address space; 0: none
 };
 

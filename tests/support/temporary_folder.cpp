@@ -17,6 +17,7 @@ TemporaryFolder::TemporaryFolder() {
 
 TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;
+    std::filesystem::permissions(path_, std::filesystem::perms::owner_all, ignored);
     std::filesystem::remove_all(path_, ignored);
 }
 
@@ -28,6 +29,11 @@ std::filesystem::path TemporaryFolder::write(std::string_view name, std::string_
     stream.close();
     if (!stream) throw std::runtime_error("a test's file could not be written");
     return file;
+}
+
+std::size_t TemporaryFolder::files() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
 }
 
 std::string content_of(const std::filesystem::path& file) {

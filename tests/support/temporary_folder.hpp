@@ -19,6 +19,8 @@ public:
     std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
     /// Writes a file below the folder, making folders on the way, and returns its path.
     std::filesystem::path write(std::string_view name, std::string_view content) const;
+    /// How many files and folders lie directly in it.
+    std::size_t files() const;
 
 private:
     std::filesystem::path path_;

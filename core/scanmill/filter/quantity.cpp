@@ -65,8 +65,8 @@ bool is_too_small(std::string_view number) {
         if (std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
             return digits.front() == '-';
     }
-    // The first significant digit stands for 10^(point - first_digit - 1) before the point, one more after it.
-    return exponent < (first_digit > point ? first_digit - point : first_digit - point + 1);
+    // The first significant digit stands for about 10^(point - first_digit): hundreds of orders decide, not one.
+    return exponent < first_digit - point;
 }
 
 }  // namespace

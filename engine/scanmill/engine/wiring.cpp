@@ -95,10 +95,16 @@ private:
     }
 
     std::vector<ValueSource> nearest(const PortSpec& port) {
-        const auto rivals = std::ranges::count_if(spec_.inputs, [&](const PortSpec& other) { return other.kind == port.kind; });
-        if (rivals > 1 && !port.optional) {
+        std::size_t rivals = 0;
+        for (const PortSpec& other : spec_.inputs) {
+            if (other.kind != port.kind || other.name == port.name) continue;
+            // An optional port would get what the port before it gets; who wants that says so.
+            if (port.optional && &other < &port) return {};
+            rivals += other.optional ? 0 : 1;
+        }
+        if (rivals > 0 && !port.optional) {
             diagnostics_.error(step_.position, fmt::format("{} has {} ports that take {}; say which value goes where: `in: {{{}: …}}`",
-                                                           spec_.name, rivals, name_of(port.kind), port.name));
+                                                           spec_.name, rivals + 1, name_of(port.kind), port.name));
             return {};
         }
         for (auto step = scope_.earlier.rbegin(); step != scope_.earlier.rend(); ++step) {

@@ -3,7 +3,8 @@
 /// Which value feeds which port, within one variant.
 ///
 /// `in` decides where it speaks. Elsewhere a port takes the nearest earlier value of its kind, or the workflow input of
-/// that kind; where there are two equally near, the choice is the user's.
+/// that kind; where there are two equally near, the choice is the user's. An optional port that shares its kind with a
+/// port declared before it is wired by `in` alone.
 
 #include "scanmill/engine/plan.hpp"
 

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Everything that virtual-scan refuses.
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "scanmill/filter/error.hpp"
+#include "support/shapes.hpp"
+#include "virtual_scan/virtual_scan.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using Shape = VirtualScanParams::Shape;
+using ::testing::HasSubstr;
+
+VirtualScanParams sphere(double resolution) {
+    VirtualScanParams params;
+    params.shape = Shape::sphere;
+    params.resolution = resolution;
+    return params;
+}
+
+std::string refusal(const VirtualScanParams& params, const TriangleMesh* mesh = nullptr) {
+    try {
+        Context context;
+        virtual_scan(mesh, params, context);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "no refusal";
+}
+
+TEST(VirtualScanRefusals, NeitherMeshNorShape) {
+    EXPECT_THAT(refusal(VirtualScanParams{}), HasSubstr("nothing to scan"));
+}
+
+TEST(VirtualScanRefusals, MeshAndShape) {
+    const TriangleMesh mesh = cube();
+    EXPECT_THAT(refusal(sphere(0.1), &mesh), HasSubstr("only one is possible"));
+}
+
+TEST(VirtualScanRefusals, MeshWithoutTriangles) {
+    TriangleMesh mesh;
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("no triangles"));
+}
+
+TEST(VirtualScanRefusals, MeshWithoutExtent) {
+    TriangleMesh mesh = cube();
+    mesh.positions = Array<Vec3>(8, Vec3(1, 2, 3));
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("no extent"));
+}
+
+TEST(VirtualScanRefusals, MeshOfSliversOnly) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("none of"));
+}
+
+TEST(VirtualScanRefusals, MeshWithANaN) {
+    TriangleMesh mesh = cube();
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+    positions[3].y() = std::numeric_limits<double>::quiet_NaN();
+    mesh.positions = std::move(positions);
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("vertices"));
+}
+
+TEST(VirtualScanRefusals, MeshWithAnIndexOutOfRange) {
+    TriangleMesh mesh = cube();
+    mesh.triangles = {{0, 1, 8}};
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("names vertex 8"));
+}
+
+TEST(VirtualScanRefusals, ResolutionNotAboveZero) {
+    EXPECT_THAT(refusal(sphere(0)), HasSubstr("resolution is 0 u"));
+    EXPECT_THAT(refusal(sphere(-1)), HasSubstr("resolution is -1 u"));
+}
+
+TEST(VirtualScanRefusals, TooManyRays_WithAResolutionThatFits) {
+    const std::string text = refusal(sphere(1e-5));
+    EXPECT_THAT(text, HasSubstr("12 views"));
+    EXPECT_THAT(text, HasSubstr("at most 268435456"));
+    EXPECT_THAT(refusal(sphere(1e-300)), HasSubstr("rays"));
+}
+
+TEST(VirtualScanRefusals, ParametersOutOfRange) {
+    VirtualScanParams params = sphere(0.1);
+    params.noise = -1;
+    EXPECT_THAT(refusal(params), HasSubstr("noise is -1 u"));
+    params = sphere(0.1);
+    params.outliers = Ratio::percent(-1);
+    EXPECT_THAT(refusal(params), HasSubstr("outliers is -1 %"));
+    params = sphere(0.1);
+    params.overlap = Ratio::percent(101);
+    EXPECT_THAT(refusal(params), HasSubstr("overlap is 101 %"));
+    params = sphere(0.1);
+    params.max_angle = Angle::degrees(0);
+    EXPECT_THAT(refusal(params), HasSubstr("max-angle is 0 deg"));
+    params.max_angle = Angle::degrees(91);
+    EXPECT_THAT(refusal(params), HasSubstr("at most 90 deg"));
+}
+
+TEST(VirtualScanRefusals, ViewsThatAreNone) {
+    VirtualScanParams params = sphere(0.1);
+    for (const std::vector<double>& views :
+         {std::vector<double>{0}, {2.5}, {-3}, {1e9}, {std::numeric_limits<double>::quiet_NaN()}}) {
+        params.views = views;
+        EXPECT_THAT(refusal(params), HasSubstr("one number must be a whole one"));
+    }
+    params.views = {1, 2};
+    EXPECT_THAT(refusal(params), HasSubstr("views has 2 numbers"));
+    params.views = {};
+    EXPECT_THAT(refusal(params), HasSubstr("views has 0 numbers"));
+    params.views = {1, 0, 0, 0, 0, 0};
+    EXPECT_THAT(refusal(params), HasSubstr("view 1 looks from (0 0 0)"));
+}
+
+TEST(VirtualScanRefusals, SizesThatFitNoShape) {
+    VirtualScanParams params = sphere(0.1);
+    params.size = {1.0, 2.0};
+    EXPECT_THAT(refusal(params), HasSubstr("a sphere has 1 dimensions (radius); size has 2"));
+    params.size = {-1.0};
+    EXPECT_THAT(refusal(params), HasSubstr("the radius of the sphere is -1 u"));
+    params.shape = Shape::torus;
+    params.size = {1.0, 1.0};
+    EXPECT_THAT(refusal(params), HasSubstr("does not leave a hole"));
+}
+
+TEST(VirtualScanRefusals, SpacingOfAShape) {
+    VirtualScanParams params = sphere(0.1);
+    params.resolution = Length::spacings(1);
+    EXPECT_THAT(refusal(params), HasSubstr("cannot be resolved"));
+}
+
+}  // namespace
+}  // namespace scanmill::test
