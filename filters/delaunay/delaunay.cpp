@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "delaunay/delaunay.hpp"
 
-#include <numeric>
-
 #include "delaunay/canonical_cells.hpp"
 #include "delaunay/flatness.hpp"
 #include "delaunay/triangulate.hpp"
@@ -52,6 +50,7 @@ DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams&, Context&
         const DistinctRows rows = distinct_rows(positions.size(), raw.duplicates);
         result.tets.positions = gather(cloud.positions, rows.kept);
         result.tets.vertex_columns = cloud.columns.gather(rows.kept);
+        // Vertices keep the order of their rows, so the cells' corners stay in canonical order.
         for (Tetrahedron& cell : raw.cells)
             for (u32& corner : cell) corner = rows.vertex_of_row[corner];
     }

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 
+#include "delaunay/canonical_cells.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/parallel.hpp"
 
@@ -109,11 +110,15 @@ RawTriangulation triangulate(std::span<const Vec3> positions, Context& context) 
     raw.cells.resize(cells.size());
     raw.neighbours.resize(cells.size());
     for_each_chunk(context.threads(), cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c)
-            for (int corner = 0; corner < 4; ++corner) {
-                raw.cells[c][corner] = cells[c]->vertex(corner)->info();
-                raw.neighbours[c][corner] = cells[c]->neighbor(corner)->info();
+        for (std::size_t c = begin; c < end; ++c) {
+            Tetrahedron cell;
+            for (int corner = 0; corner < 4; ++corner) cell[corner] = cells[c]->vertex(corner)->info();
+            const std::array<int, 4> corners = canonical_corners(cell);
+            for (int i = 0; i < 4; ++i) {
+                raw.cells[c][i] = cell[corners[i]];
+                raw.neighbours[c][i] = cells[c]->neighbor(corners[i])->info();
             }
+        }
     });
     return raw;
 }

@@ -15,7 +15,7 @@ struct RawTriangulation {
     int dimension = 0;
     /// Input rows that lie exactly on an earlier row.
     Array<u32> duplicates;
-    /// Corners are input rows, of several rows at one place the first; positively oriented.
+    /// Corners are input rows, of several rows at one place the first; positively oriented, corners in canonical order.
     Array<Tetrahedron> cells;
     /// As TetMesh::neighbours.
     Array<std::array<u32, 4>> neighbours;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scanmill/filter/random.hpp"
+#include "scanmill/formats/files.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"
@@ -99,6 +99,16 @@ TEST(PointSpacing, CloudTooLargeToAskEveryPoint_IsAskedAllOver) {
     EXPECT_EQ(point_spacing(points), 3) << "six of eleven pairs";
     std::ranges::reverse(points);
     EXPECT_EQ(point_spacing(points), 3);
+}
+
+TEST(PointSpacing, RealScan_HasTheBruteForceMedian) {
+    SCANMILL_REAL_SCAN(file, fetched_data, "meshes/ChineseDragon-10kv.off");
+    const auto mesh = read_mesh(file);
+    const std::size_t count = mesh->positions.size();
+    ASSERT_GT(count, 9'000u);
+    EXPECT_DOUBLE_EQ(point_spacing(mesh->positions.span()), nearest_distances(mesh->positions.span())[count / 2]);
+    EXPECT_LE(point_spacing(mesh->positions.span()), edge_spacing(*mesh))
+        << "an edge is no shorter than what is nearest";
 }
 
 TEST(EdgeSpacing, Cube_IsItsEdge) {

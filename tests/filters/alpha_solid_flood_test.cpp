@@ -26,14 +26,18 @@ TetMesh tets_of(const PointCloud& cloud) {
     return delaunay(cloud, {}, context).tets;
 }
 
-FacetValues values_of(const TetMesh& tets) {
+Array<SweepCell> cells_of(const TetMesh& tets) {
     Context context;
-    return facet_values(tets, context);
+    return sweep_cells(tets, context);
+}
+
+Flood flood_of(const TetMesh& tets, const FloodLimits& limits) {
+    Context context;
+    return flood_from_outside(cells_of(tets), tets.positions.size(), limits, context);
 }
 
 Flood whole_flood(const TetMesh& tets) {
-    Context context;
-    return flood_from_outside(tets, values_of(tets), {.value = 0, .coverage = 1}, context);
+    return flood_of(tets, {.value = 0, .coverage = 1});
 }
 
 std::vector<PointCloud> various_clouds() {
@@ -115,7 +119,7 @@ TEST(Flood, AtManyLevels_IsTheBruteForceFloodFill) {
 TEST(Flood, EveryCell_ComesAtItsWidestPath) {
     for (const PointCloud& cloud : various_clouds()) {
         const TetMesh tets = tets_of(cloud);
-        const FacetValues values = values_of(tets);
+        const Array<SweepCell> values = cells_of(tets);
         const Flood flood = whole_flood(tets);
         EXPECT_TRUE(std::ranges::is_sorted(flood.values, std::greater<>()));
         // Bellman–Ford: relax until nothing changes.
@@ -127,7 +131,7 @@ TEST(Flood, EveryCell_ComesAtItsWidestPath) {
                 for (int i = 0; i < 4; ++i) {
                     const u32 across = tets.neighbours[c][i];
                     const double beyond = across == TetMesh::outside_hull ? HUGE_VAL : out[across];
-                    const double path = std::min(beyond, values[c][i]);
+                    const double path = std::min(beyond, values[c].values[i]);
                     if (path > out[c]) {
                         out[c] = path;
                         changed = true;
@@ -141,13 +145,13 @@ TEST(Flood, EveryCell_ComesAtItsWidestPath) {
 TEST(Flood, FacetValues_AreTheSameFromBothSides) {
     for (const PointCloud& cloud : various_clouds()) {
         const TetMesh tets = tets_of(cloud);
-        const FacetValues values = values_of(tets);
+        const Array<SweepCell> values = cells_of(tets);
         for (u32 c = 0; c < tets.cells.size(); ++c)
             for (int i = 0; i < 4; ++i) {
                 const u32 across = tets.neighbours[c][i];
                 if (across == TetMesh::outside_hull) continue;
                 const auto back = std::ranges::find(tets.neighbours[across], c) - tets.neighbours[across].begin();
-                ASSERT_EQ(values[across][back], values[c][i]);
+                ASSERT_EQ(values[across].values[back], values[c].values[i]);
             }
     }
 }
@@ -155,15 +159,13 @@ TEST(Flood, FacetValues_AreTheSameFromBothSides) {
 TEST(Flood, Cover_IsTheLeastValueThatCoversTheShare) {
     for (const PointCloud& cloud : various_clouds()) {
         const TetMesh tets = tets_of(cloud);
-        const FacetValues values = values_of(tets);
         const Flood whole = whole_flood(tets);
         std::vector<double> cover(tets.positions.size(), HUGE_VAL);  // per point, the least out of its cells
         for (std::size_t i = 0; i < whole.cells.size(); ++i)
             for (u32 vertex : tets.cells[whole.cells[i]]) cover[vertex] = std::min(cover[vertex], whole.values[i]);
         std::ranges::sort(cover);
         for (double share : {1.0, 0.9, 0.5, 1e-9}) {
-            Context context;
-            const Flood flood = flood_from_outside(tets, values, {.coverage = share}, context);
+            const Flood flood = flood_of(tets, {.coverage = share});
             const auto needed = static_cast<std::size_t>(std::ceil(share * static_cast<double>(cover.size())));
             EXPECT_EQ(flood.needed, needed);
             EXPECT_EQ(flood.cover, cover[needed - 1]);
@@ -179,11 +181,9 @@ TEST(Flood, Cover_IsTheLeastValueThatCoversTheShare) {
 
 TEST(Flood, AShareThatIsAWholeNumberOfPoints_IsNotRoundedUp) {
     const TetMesh tets = tets_of(random_cube(1000, 2));
-    const FacetValues values = values_of(tets);
-    Context context;
-    EXPECT_EQ(flood_from_outside(tets, values, {.coverage = 0.999}, context).needed, 999u);
-    EXPECT_EQ(flood_from_outside(tets, values, {.coverage = 0.07}, context).needed, 70u);
-    EXPECT_EQ(flood_from_outside(tets, values, {.coverage = 0.0701}, context).needed, 71u);
+    EXPECT_EQ(flood_of(tets, {.coverage = 0.999}).needed, 999u);
+    EXPECT_EQ(flood_of(tets, {.coverage = 0.07}).needed, 70u);
+    EXPECT_EQ(flood_of(tets, {.coverage = 0.0701}).needed, 71u);
 }
 
 TriangleMesh mesh_of(const TetMesh& tets, std::span<const u8> labels) {

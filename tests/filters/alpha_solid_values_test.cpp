@@ -42,39 +42,44 @@ bool is_flat(const std::array<Vec3, 4>& p) {
 }
 
 void expect_exact(const std::array<Vec3, 4>& p) {
-    const Circumsphere sphere = circumsphere(p[0], p[1], p[2], p[3]);
-    EXPECT_EQ(sphere.attached, exact_attached(p));
-    EXPECT_NEAR(sphere.squared_radius / exact_square(p[0], p[1], p[2], p[3]), 1, 1e-8);
-    EXPECT_NEAR(squared_circumradius(p[0], p[1], p[2]) / exact_square(p[0], p[1], p[2]), 1, 1e-8);
+    const CellSpheres spheres = cell_spheres(p[0], p[1], p[2], p[3]);
+    EXPECT_EQ(spheres.attached, exact_attached(p));
+    const double cell = exact_square(p[0], p[1], p[2], p[3]);
+    for (int i = 0; i < 4; ++i) {
+        const Vec3 &a = p[(i + 1) % 4], &b = p[(i + 2) % 4], &c = p[(i + 3) % 4];
+        EXPECT_NEAR(spheres.values[i] / (spheres.attached >> i & 1 ? cell : exact_square(a, b, c)), 1, 1e-8);
+        EXPECT_TRUE(spheres.attached >> i & 1 || spheres.values[i] == squared_circumradius(a, b, c));
+    }
 }
 
-TEST(Circumsphere, RegularTetrahedron_HasItsClosedFormsAndNoAttachedFacet) {
+TEST(CellSpheres, RegularTetrahedron_HasItsClosedFormsAndNoAttachedFacet) {
     const Vec3 a(1, 1, 1), b(1, -1, -1), c(-1, 1, -1), d(-1, -1, 1);  // edge √8
     EXPECT_DOUBLE_EQ(squared_circumradius(a, b, c), 8.0 / 3);
-    const Circumsphere sphere = circumsphere(a, b, c, d);
-    EXPECT_DOUBLE_EQ(sphere.squared_radius, 3);
-    EXPECT_EQ(sphere.attached, 0);
+    const CellSpheres spheres = cell_spheres(a, b, c, d);
+    EXPECT_EQ(spheres.attached, 0);
+    for (double value : spheres.values) EXPECT_DOUBLE_EQ(value, 8.0 / 3);
 }
 
-TEST(Circumsphere, FlatTetrahedron_HasTheWideFacetAttachedByItsLowApex) {
+TEST(CellSpheres, FlatTetrahedron_HasTheWideFacetAttachedByItsLowApex) {
     // The apex hovers over the base's centre: inside the base's smallest sphere, and nothing else is inside another.
     const Vec3 a(1, 0, 0), b(-0.5, 0.75, 0), c(-0.5, -0.75, 0), apex(0, 0, 0.25);
-    EXPECT_EQ(circumsphere(a, b, c, apex).attached, 0b1000);
-    EXPECT_EQ(circumsphere(apex, b, c, a).attached, 0b0001);
-    EXPECT_EQ(circumsphere(a, apex, b, c).attached, 0b0010);
+    EXPECT_EQ(cell_spheres(a, b, c, apex).attached, 0b1000);
+    EXPECT_DOUBLE_EQ(cell_spheres(a, b, c, apex).values[3], exact_square(a, b, c, apex));
+    EXPECT_DOUBLE_EQ(cell_spheres(a, b, c, apex).values[0], exact_square(b, c, apex));
+    EXPECT_EQ(cell_spheres(apex, b, c, a).attached, 0b0001);
+    EXPECT_EQ(cell_spheres(a, apex, b, c).attached, 0b0010);
 }
 
-TEST(Circumsphere, CornerExactlyOnTheSmallestSphere_DoesNotAttach) {
-    // The circumcentre of a cube's corner tetrahedron (½, ½, ½) lies in the plane of none of its facets; that of this one,
-    // whose base holds a diameter, lies in the base.
+TEST(CellSpheres, CornerExactlyOnTheSmallestSphere_DoesNotAttach) {
+    // The base holds a diameter of the circumsphere, so the circumcentre lies in the base.
     const Vec3 a(1, 0, 0), b(-1, 0, 0), c(0, 1, 0), d(0, 0, 1);
-    EXPECT_EQ(circumsphere(a, b, c, d).attached, 0);
+    EXPECT_EQ(cell_spheres(a, b, c, d).attached, 0);
     // A hair inside is inside.
-    EXPECT_EQ(circumsphere(a, b, c, Vec3(0, 0, std::nextafter(1.0, 0.0))).attached, 0b1000);
-    EXPECT_EQ(circumsphere(a, b, c, Vec3(0, 0, std::nextafter(1.0, 2.0))).attached, exact_attached({a, b, c, Vec3(0, 0, std::nextafter(1.0, 2.0))}));
+    EXPECT_EQ(cell_spheres(a, b, c, Vec3(0, 0, std::nextafter(1.0, 0.0))).attached, 0b1000);
+    EXPECT_EQ(cell_spheres(a, b, c, Vec3(0, 0, std::nextafter(1.0, 2.0))).attached & 0b1000, 0);
 }
 
-TEST(Circumsphere, RandomTetrahedra_AgreeWithExactArithmetic) {
+TEST(CellSpheres, RandomTetrahedra_AgreeWithExactArithmetic) {
     Random random(11);
     for (int i = 0; i < 2000; ++i) {
         std::array<Vec3, 4> p;
@@ -83,7 +88,7 @@ TEST(Circumsphere, RandomTetrahedra_AgreeWithExactArithmetic) {
     }
 }
 
-TEST(Circumsphere, TetrahedraOnASmallLattice_AgreeWithExactArithmetic) {
+TEST(CellSpheres, TetrahedraOnASmallLattice_AgreeWithExactArithmetic) {
     Random random(12);
     int with_ties = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -99,7 +104,7 @@ TEST(Circumsphere, TetrahedraOnASmallLattice_AgreeWithExactArithmetic) {
     EXPECT_GT(with_ties, 500);
 }
 
-TEST(Circumsphere, TetrahedraOneLastPlaceFromATie_AgreeWithExactArithmetic) {
+TEST(CellSpheres, TetrahedraOneLastPlaceFromATie_AgreeWithExactArithmetic) {
     Random random(13);
     for (int i = 0; i < 2000; ++i) {
         std::array<Vec3, 4> p;
@@ -113,7 +118,7 @@ TEST(Circumsphere, TetrahedraOneLastPlaceFromATie_AgreeWithExactArithmetic) {
     }
 }
 
-TEST(Circumsphere, NeedlesSliversAndFarPoints_AgreeWithExactArithmetic) {
+TEST(CellSpheres, NeedlesSliversAndFarPoints_AgreeWithExactArithmetic) {
     Random random(14);
     for (int i = 0; i < 3000; ++i) {
         std::array<Vec3, 4> p;
@@ -129,31 +134,36 @@ TEST(Circumsphere, NeedlesSliversAndFarPoints_AgreeWithExactArithmetic) {
     }
 }
 
-TEST(Circumsphere, ExtremeSizes_ScaleExactly) {
+TEST(CellSpheres, ExtremeSizes_ScaleExactly) {
     Random random(15);
     for (int i = 0; i < 200; ++i) {
         std::array<Vec3, 4> p;
         for (Vec3& q : p) q = random_point(random, 1);
-        const Circumsphere unit = circumsphere(p[0], p[1], p[2], p[3]);
+        const CellSpheres unit = cell_spheres(p[0], p[1], p[2], p[3]);
         for (int exponent : {-300, -100, 100, 300}) {
             const double factor = std::ldexp(1.0, exponent);
-            const Circumsphere scaled = circumsphere(factor * p[0], factor * p[1], factor * p[2], factor * p[3]);
+            const CellSpheres scaled = cell_spheres(factor * p[0], factor * p[1], factor * p[2], factor * p[3]);
             EXPECT_EQ(scaled.attached, unit.attached);
-            EXPECT_NEAR(scaled.squared_radius / factor / factor / unit.squared_radius, 1, 1e-8);
+            for (int k = 0; k < 4; ++k) EXPECT_NEAR(scaled.values[k] / factor / factor / unit.values[k], 1, 1e-8);
         }
     }
 }
 
-TEST(Circumsphere, CornersInAnyOrder_GiveTheSameBits) {
+TEST(CellSpheres, CornersInAnyOrder_GiveTheSameBits) {
     Random random(16);
     for (int i = 0; i < 300; ++i) {
         std::array<Vec3, 4> p;
         for (Vec3& q : p) q = random_point(random, 1);
-        const double cell = circumsphere(p[0], p[1], p[2], p[3]).squared_radius;
+        const CellSpheres cell = cell_spheres(p[0], p[1], p[2], p[3]);
         const double facet = squared_circumradius(p[0], p[1], p[2]);
         std::array<int, 4> order{0, 1, 2, 3};
-        while (std::next_permutation(order.begin(), order.end()))
-            EXPECT_EQ(circumsphere(p[order[0]], p[order[1]], p[order[2]], p[order[3]]).squared_radius, cell);
+        while (std::next_permutation(order.begin(), order.end())) {
+            const CellSpheres permuted = cell_spheres(p[order[0]], p[order[1]], p[order[2]], p[order[3]]);
+            for (int k = 0; k < 4; ++k) {
+                EXPECT_EQ(permuted.values[k], cell.values[order[k]]);
+                EXPECT_EQ(permuted.attached >> k & 1, cell.attached >> order[k] & 1);
+            }
+        }
         std::array<int, 3> corners{0, 1, 2};
         while (std::next_permutation(corners.begin(), corners.end()))
             EXPECT_EQ(squared_circumradius(p[corners[0]], p[corners[1]], p[corners[2]]), facet);

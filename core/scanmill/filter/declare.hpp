@@ -225,13 +225,14 @@ public:
         ParameterSpec spec;
         detail::Convert<T>::describe(spec, Params{}.*member);
         (constraints.apply(spec), ...);
-        bind(std::move(spec), std::move(name), std::move(help),
-             [member](Params& params, const ParameterValue& value) { params.*member = detail::Convert<T>::from(value); });
+        bind(std::move(spec), std::move(name), std::move(help), [member](Params& params, const ParameterValue& value) {
+            params.*member = detail::Convert<T>::from(value);
+        });
         return *this;
     }
     template <class Enum>
-    Declare& choice(std::string name, Enum Params::*member, std::vector<Alternative<std::type_identity_t<Enum>>> alternatives,
-                    std::string help) {
+    Declare& choice(std::string name, Enum Params::*member,
+                    std::vector<Alternative<std::type_identity_t<Enum>>> alternatives, std::string help) {
         ParameterSpec spec;
         spec.type = ParameterType::choice;
         for (const auto& alternative : alternatives) {
@@ -254,7 +255,8 @@ public:
     template <class Body>
         requires std::is_invocable_r_v<Outputs, Body, const Inputs&, const Params&, Context&>
     Declare& run(Body body) {
-        declaration_.run = [setters = setters_, body](const Inputs& inputs, const ParameterSet& values, Context& context) {
+        declaration_.run = [setters = setters_, body](const Inputs& inputs, const ParameterSet& values,
+                                                      Context& context) {
             Params params;
             for (const auto& [name, set] : setters)
                 if (const ParameterValue* value = values.find(name)) set(params, *value);

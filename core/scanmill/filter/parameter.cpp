@@ -25,7 +25,9 @@ std::string range_text(const ParameterSpec& spec) {
     std::string range;
     if (spec.low) range += (spec.low->inclusive ? " of at least " : " above ") + number_text(spec.low->value) + unit;
     if (spec.high)
-        range += (spec.low ? " and " : spec.high->inclusive ? " of " : " ") +
+        range += (spec.low               ? " and "
+                  : spec.high->inclusive ? " of "
+                                         : " ") +
                  std::string(spec.high->inclusive ? "at most " : "below ") + number_text(spec.high->value) + unit;
     return range;
 }
@@ -44,8 +46,7 @@ std::string one_value_expectation(const ParameterSpec& spec) {
         case ParameterType::choice: return "one of " + enumerated(choice_names(spec));
         case ParameterType::text: return "a text";
         case ParameterType::path: return "a path";
-        case ParameterType::length:
-            return "a length" + range_text(spec) + ", as " + std::string(length_examples());
+        case ParameterType::length: return "a length" + range_text(spec) + ", as " + std::string(length_examples());
         case ParameterType::angle: return "an angle" + range_text(spec) + ", as 40 deg or 0.7 rad";
         case ParameterType::ratio: return "a ratio" + range_text(spec) + ", as 5 % or 0.05";
     }
@@ -155,8 +156,9 @@ std::optional<ParameterType> parameter_type_named(std::string_view name) {
 
 std::string expectation(const ParameterSpec& spec) {
     std::string expected = one_value_expectation(spec);
-    if (spec.list) expected = "a list of " + (spec.size ? std::to_string(*spec.size) + " values" : "values") +
-                              ", each " + expected;
+    if (spec.list)
+        expected =
+            "a list of " + (spec.size ? std::to_string(*spec.size) + " values" : "values") + ", each " + expected;
     if (!spec.word.empty()) expected += "; or `" + spec.word + "`";
     return expected;
 }

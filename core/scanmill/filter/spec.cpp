@@ -43,8 +43,10 @@ template <class Items>
 void require_names(std::string_view filter, std::string_view what, const Items& items) {
     std::set<std::string_view> seen;
     for (const auto& item : items) {
-        if (!is_name(item.name)) throw Error("filter {}: {} '{}' is not lower-case-with-hyphens", filter, what, item.name);
-        if (!seen.insert(item.name).second) throw Error("filter {}: {} '{}' is declared twice", filter, what, item.name);
+        if (!is_name(item.name))
+            throw Error("filter {}: {} '{}' is not lower-case-with-hyphens", filter, what, item.name);
+        if (!seen.insert(item.name).second)
+            throw Error("filter {}: {} '{}' is declared twice", filter, what, item.name);
         require_sentence(filter, what, item.name, item.help);
     }
 }

@@ -30,7 +30,8 @@ std::span<const Vec3> positions_of(const Value& value) {
 }
 
 double spacing_of(const Value& value) {
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value); mesh && !(*mesh)->triangles.empty())
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value);
+        mesh && !(*mesh)->triangles.empty())
         return edge_spacing(**mesh);
     return point_spacing(positions_of(value));
 }
