@@ -40,7 +40,8 @@ int check(const Options& options) {
             const bool sound = !checked.diagnostics.has_errors();
             if (!sound) code = bad_request;
             if (as_json) {
-                nlohmann::ordered_json entry{{"file", file}, {"ok", sound}, {"diagnostics", to_json(checked.diagnostics)}};
+                nlohmann::ordered_json entry{
+                    {"file", file}, {"ok", sound}, {"diagnostics", to_json(checked.diagnostics)}};
                 if (sound && options.plan) entry["plan"] = nlohmann::ordered_json::parse(plan_json(checked.plan));
                 json["files"].push_back(std::move(entry));
                 continue;
@@ -50,12 +51,17 @@ int check(const Options& options) {
             if (options.plan)
                 fmt::print("{}", options.format == "dot" ? plan_dot(checked.plan) : plan_text(checked.plan));
             else
-                fmt::print("{}: ok, {} step{}, {} variant{}\n", file, checked.plan.steps.size(), checked.plan.steps.size() == 1 ? "" : "s",
-                           checked.plan.variants.size(), checked.plan.variants.size() == 1 ? "" : "s");
+                fmt::print("{}: ok, {} step{}, {} variant{}\n", file, checked.plan.steps.size(),
+                           checked.plan.steps.size() == 1 ? "" : "s", checked.plan.variants.size(),
+                           checked.plan.variants.size() == 1 ? "" : "s");
         } catch (const Error& error) {
             code = bad_request;
             if (as_json)
-                json["files"].push_back({{"file", file}, {"ok", false}, {"diagnostics", {{{"severity", "error"}, {"line", 0}, {"column", 0}, {"message", error.sentence()}}}}});
+                json["files"].push_back(
+                    {{"file", file},
+                     {"ok", false},
+                     {"diagnostics",
+                      {{{"severity", "error"}, {"line", 0}, {"column", 0}, {"message", error.sentence()}}}}});
             else
                 fmt::print(stderr, "error: {}\n", error.what());
         }

@@ -31,7 +31,8 @@ std::shared_ptr<const T> rescaled(const T& value, LengthUnit unit, double factor
 template <class T>
 Value tell_dropped(Cleaned<T> cleaned, const std::function<void(std::string)>& warn) {
     if (cleaned.points > 0)
-        warn(fmt::format("{} points with a NaN or an infinity were left out, and {} triangles on them", cleaned.points, cleaned.triangles));
+        warn(fmt::format("{} points with a NaN or an infinity were left out, and {} triangles on them", cleaned.points,
+                         cleaned.triangles));
     return std::make_shared<const T>(std::move(cleaned.result));
 }
 
@@ -46,7 +47,8 @@ Value in_unit(const Value& value, LengthUnit unit) {
     if (from == LengthUnit::unknown)
         throw Error("--to-unit {}: the unit of the input is not known", symbol(unit)).hint("say it with --unit");
     const double factor = metres(from) / metres(unit);
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value)) return rescaled(**mesh, unit, factor);
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
+        return rescaled(**mesh, unit, factor);
     return rescaled(*std::get<std::shared_ptr<const PointCloud>>(value), unit, factor);
 }
 
@@ -75,13 +77,15 @@ int convert(const Options& options) {
 }  // namespace
 
 void add_convert(CLI::App& app, Action& chosen) {
-    CLI::App* command = app.add_subcommand("convert", "Writes a scan or mesh in another format; the extension says which");
+    CLI::App* command =
+        app.add_subcommand("convert", "Writes a scan or mesh in another format; the extension says which");
     auto options = std::make_shared<Options>();
     command->add_option("FROM", options->from, "The file to read")->required();
     command->add_option("TO", options->to, "The file to write")->required();
     command->add_option("--unit", options->unit, "The input's unit of length: um, mm, cm, m, in, ft");
     command->add_option("--to-unit", options->to_unit, "Convert the coordinates to this unit");
-    command->add_flag("--drop-invalid", options->drop_invalid, "Leave out points with a NaN or infinite coordinate, and faces on them");
+    command->add_flag("--drop-invalid", options->drop_invalid,
+                      "Leave out points with a NaN or infinite coordinate, and faces on them");
     command->callback([&chosen, options] { chosen = [options] { return convert(*options); }; });
 }
 

@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;
 Json to_json(const ColumnTable& columns) {
     Json json = Json::array();
     for (const Column& column : columns)
-        json.push_back({{"name", column.name()}, {"type", name_of(column.type())}, {"components", column.components()}});
+        json.push_back(
+            {{"name", column.name()}, {"type", name_of(column.type())}, {"components", column.components()}});
     return json;
 }
 
@@ -36,7 +37,10 @@ Json describe(const std::string& file) {
     options.on_warning = [&](std::string text) { warnings.push_back(std::move(text)); };
     const LoadedFile loaded = read_file(file, options);
     const Frame& frame = *frame_of(loaded.value);
-    Json json{{"file", file}, {"format", loaded.format}, {"encoding", loaded.encoding}, {"kind", name_of(kind_of(loaded.value))}};
+    Json json{{"file", file},
+              {"format", loaded.format},
+              {"encoding", loaded.encoding},
+              {"kind", name_of(kind_of(loaded.value))}};
     const Metrics facts = facts_of(loaded.value);
     for (const Metric& fact : facts.values)
         json[fact.name] = fact.unit == Unit::boolean ? Json(fact.value != 0) : Json(static_cast<long long>(fact.value));
@@ -78,7 +82,9 @@ std::string value_text(const Json& value) {
         if (item.is_object()) {
             const unsigned components = item.at("components");
             part = fmt::format("{} ({}{})", item.at("name").get<std::string>(), item.at("type").get<std::string>(),
-                               components == 0 ? " lists" : components == 1 ? "" : " x " + std::to_string(components));
+                               components == 0   ? " lists"
+                               : components == 1 ? ""
+                                                 : " x " + std::to_string(components));
         } else {
             part = value_text(item);
         }

@@ -14,12 +14,14 @@ namespace {
 std::string kinds(const std::vector<PortSpec>& ports) {
     std::string text;
     for (const PortSpec& port : ports)
-        text += (text.empty() ? "" : ", ") + std::string(name_of(port.kind)) + (port.list ? "…" : "") + (port.optional ? "?" : "");
+        text += (text.empty() ? "" : ", ") + std::string(name_of(port.kind)) + (port.list ? "…" : "") +
+                (port.optional ? "?" : "");
     return text.empty() ? "-" : text;
 }
 
 void print_json(const FilterLibrary& library) {
-    nlohmann::ordered_json json{{"scanmill", 1}, {"filters", nlohmann::json::array()}, {"unusable", nlohmann::json::array()}};
+    nlohmann::ordered_json json{
+        {"scanmill", 1}, {"filters", nlohmann::json::array()}, {"unusable", nlohmann::json::array()}};
     for (const std::string& name : library.names())
         json["filters"].push_back(nlohmann::ordered_json::parse(to_json_text({"", *library.find(name)})));
     for (nlohmann::ordered_json& filter : json["filters"]) {
@@ -27,7 +29,8 @@ void print_json(const FilterLibrary& library) {
         filter.erase("abi");
     }
     for (const UnusableModule& module : library.unusable())
-        json["unusable"].push_back({{"name", module.name}, {"manifest", module.manifest.string()}, {"reason", module.reason}});
+        json["unusable"].push_back(
+            {{"name", module.name}, {"manifest", module.manifest.string()}, {"reason", module.reason}});
     fmt::print("{}\n", json.dump(2));
 }
 
@@ -44,7 +47,8 @@ int list(bool json) {
     }
     fmt::print("{}", table.text());
     for (const UnusableModule& module : library.unusable())
-        fmt::print(stderr, "warning: the filter '{}' cannot be used: '{}' {}\n", module.name, module.manifest.string(), module.reason);
+        fmt::print(stderr, "warning: the filter '{}' cannot be used: '{}' {}\n", module.name, module.manifest.string(),
+                   module.reason);
     return done;
 }
 

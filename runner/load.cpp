@@ -35,7 +35,8 @@ FilterLibrary open_library() {
     std::vector<std::string> ignored;
     FilterLibrary library(plugin_folders(&ignored));
     for (const std::string& folder : ignored)
-        fmt::print(stderr, "warning: SCANMILL_PLUGIN_PATH: '{}' is passed over; only absolute folders are searched\n", folder);
+        fmt::print(stderr, "warning: SCANMILL_PLUGIN_PATH: '{}' is passed over; only absolute folders are searched\n",
+                   folder);
     return library;
 }
 
@@ -67,7 +68,8 @@ void print(const Diagnostics& diagnostics) {
     for (const Diagnostic& diagnostic : diagnostics.sorted())
         fmt::print(stderr, "{}\n", text(diagnostic, diagnostics.file()));
     if (diagnostics.has_errors())
-        fmt::print(stderr, "{} error{} in '{}'\n", diagnostics.errors(), diagnostics.errors() == 1 ? "" : "s", diagnostics.file());
+        fmt::print(stderr, "{} error{} in '{}'\n", diagnostics.errors(), diagnostics.errors() == 1 ? "" : "s",
+                   diagnostics.file());
 }
 
 LengthUnit parse_unit(const std::string& symbol) {

@@ -31,20 +31,23 @@ std::string source_node(const ValueSource& source) {
 }  // namespace
 
 std::string plan_text(const Plan& plan) {
-    std::string text = fmt::format("{}: {} step{}, {} variant{}\n", plan.workflow.name.empty() ? plan.workflow.file : plan.workflow.name,
-                                   plan.steps.size(), plan.steps.size() == 1 ? "" : "s", plan.variants.size(),
-                                   plan.variants.size() == 1 ? "" : "s");
+    std::string text =
+        fmt::format("{}: {} step{}, {} variant{}\n",
+                    plan.workflow.name.empty() ? plan.workflow.file : plan.workflow.name, plan.steps.size(),
+                    plan.steps.size() == 1 ? "" : "s", plan.variants.size(), plan.variants.size() == 1 ? "" : "s");
     for (const WorkflowInput& input : plan.workflow.inputs)
         text += fmt::format("input {}: {}{}\n", input.name, name_of(input.kind), input.list ? " (a list)" : "");
     for (const PlannedVariant& variant : plan.variants) {
         text += fmt::format("variant {}\n", variant.name);
         for (const std::size_t index : variant.steps) {
             const PlannedStep& step = plan.steps[index];
-            text += fmt::format("  {:>2}. {}{}\n", index + 1, step.label, step.label == step.spec.name ? "" : " (" + step.spec.name + ")");
+            text += fmt::format("  {:>2}. {}{}\n", index + 1, step.label,
+                                step.label == step.spec.name ? "" : " (" + step.spec.name + ")");
             for (const PlannedInput& input : step.inputs)
                 text += fmt::format("        {} <- {}\n", input.port, sources_text(plan, input));
             for (const auto& [name, value] : step.parameters.values)
-                if (const std::string shown = scanmill::text(value); !shown.empty()) text += fmt::format("        {}: {}\n", name, shown);
+                if (const std::string shown = scanmill::text(value); !shown.empty())
+                    text += fmt::format("        {}: {}\n", name, shown);
             for (const PlannedExpectation& expectation : step.expectations)
                 text += fmt::format("        expect {}\n", expectation.text);
         }
@@ -76,12 +79,14 @@ std::string plan_dot(const Plan& plan) {
 
 std::string plan_json(const Plan& plan) {
     using Json = nlohmann::ordered_json;
-    Json json{{"name", plan.workflow.name}, {"inputs", Json::array()}, {"steps", Json::array()}, {"variants", Json::array()}};
+    Json json{
+        {"name", plan.workflow.name}, {"inputs", Json::array()}, {"steps", Json::array()}, {"variants", Json::array()}};
     for (const WorkflowInput& input : plan.workflow.inputs)
         json["inputs"].push_back({{"name", input.name}, {"kind", name_of(input.kind)}, {"list", input.list}});
     for (const PlannedStep& step : plan.steps) {
-        Json entry{{"label", step.label}, {"filter", step.spec.name}, {"version", step.spec.version}, {"key", step.structure_key},
-                   {"line", step.position.line}, {"column", step.position.column}, {"in", Json::object()}, {"parameters", Json::object()}};
+        Json entry{{"label", step.label},       {"filter", step.spec.name},    {"version", step.spec.version},
+                   {"key", step.structure_key}, {"line", step.position.line},  {"column", step.position.column},
+                   {"in", Json::object()},      {"parameters", Json::object()}};
         for (const PlannedInput& input : step.inputs)
             for (const ValueSource& source : input.sources) entry["in"][input.port].push_back(describe(plan, source));
         for (const auto& [name, value] : step.parameters.values)
@@ -91,7 +96,8 @@ std::string plan_json(const Plan& plan) {
     }
     for (const PlannedVariant& variant : plan.variants) {
         Json entry{{"name", variant.name}, {"steps", variant.steps}, {"outputs", Json::object()}};
-        for (const PlannedOutput& output : variant.outputs) entry["outputs"][output.file] = describe(plan, output.source);
+        for (const PlannedOutput& output : variant.outputs)
+            entry["outputs"][output.file] = describe(plan, output.source);
         json["variants"].push_back(std::move(entry));
     }
     return json.dump(2);

@@ -7,7 +7,10 @@
 namespace scanmill::runner {
 
 Progress::Progress(const Plan& plan, const RunGraph& graph, bool quiet)
-    : plan_(plan), graph_(graph), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
+    : plan_(plan),
+      graph_(graph),
+      quiet_(quiet),
+      terminal_(::isatty(STDERR_FILENO) != 0) {}
 
 std::string Progress::label(const RunNode& node) const {
     return node.step ? fmt::format("{}: {}", graph_.scan_names[node.scan], plan_.steps[*node.step].label)
@@ -62,7 +65,8 @@ void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     const std::scoped_lock lock(mutex_);
     if (report.error.empty()) return;
     const bool several = plan_.variants.size() > 1;
-    say(fmt::format("error: {}{}", report.error, several ? fmt::format("\n  under variant '{}'", plan_.variants[cell.variant].name) : ""));
+    say(fmt::format("error: {}{}", report.error,
+                    several ? fmt::format("\n  under variant '{}'", plan_.variants[cell.variant].name) : ""));
 }
 
 void Progress::finish() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What a run says on stderr while it runs: on a terminal one line that is written over and over, elsewhere a plain line
-/// per finished step. Warnings and failures are always said.
+/// What a run says on stderr while it runs: on a terminal one line that is written over and over, elsewhere a plain
+/// line per finished step. Warnings and failures are always said.
 
 #include <mutex>
 

@@ -78,7 +78,8 @@ int run_workflow(const Options& options) {
     const RunReport report = run(checked.plan, library, graph, request, settings, progress);
     progress.finish();
 
-    fmt::print("{}", options.json ? report_json(checked.plan, graph, report) + "\n" : report_text(checked.plan, graph, report));
+    fmt::print("{}", options.json ? report_json(checked.plan, graph, report) + "\n"
+                                  : report_text(checked.plan, graph, report));
     if (report.interrupted) {
         fmt::print(stderr, "interrupted; what was written is whole\n");
         return interrupted;
@@ -93,14 +94,24 @@ void add_run(CLI::App& app, Action& chosen) {
     auto options = std::make_shared<Options>();
     command->add_option("WORKFLOW", options->workflow, "The workflow file")->required();
     command->add_option("SCAN", options->scans, "Files that feed the workflow's first input, one run each");
-    command->add_option("--in", options->inputs, "Files for the other inputs: NAME=FILE[,FILE…]")->take_all()->allow_extra_args(false);
+    command->add_option("--in", options->inputs, "Files for the other inputs: NAME=FILE[,FILE…]")
+        ->take_all()
+        ->allow_extra_args(false);
     command->add_option("--unit", options->unit, "The scans' unit of length: um, mm, cm, m, in, ft");
     command->add_option("-o,--output", options->output_folder, "The output folder")->capture_default_str();
-    command->add_option("--set", options->settings, "A workflow parameter's value, NAME=VALUE")->take_all()->allow_extra_args(false);
-    command->add_option("--only", options->only, "Run only this variant (may be repeated)")->take_all()->allow_extra_args(false);
+    command->add_option("--set", options->settings, "A workflow parameter's value, NAME=VALUE")
+        ->take_all()
+        ->allow_extra_args(false);
+    command->add_option("--only", options->only, "Run only this variant (may be repeated)")
+        ->take_all()
+        ->allow_extra_args(false);
     command->add_option("--until", options->until, "Stop after this step");
-    command->add_option("--save", options->save, "Also write this step's result, STEP or STEP.PORT (may be repeated)")->take_all()->allow_extra_args(false);
-    command->add_option("--threads", options->threads, "Threads inside a filter; 0: as many as the machine has. Results do not depend on it")
+    command->add_option("--save", options->save, "Also write this step's result, STEP or STEP.PORT (may be repeated)")
+        ->take_all()
+        ->allow_extra_args(false);
+    command
+        ->add_option("--threads", options->threads,
+                     "Threads inside a filter; 0: as many as the machine has. Results do not depend on it")
         ->capture_default_str();
     command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
     command->add_flag("--dry-run", options->dry_run, "Print what would be run and written, and stop");

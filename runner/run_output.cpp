@@ -71,13 +71,16 @@ std::string graph_text(const Plan& plan, const RunGraph& graph) {
         text += fmt::format("{:>4}. {} {}{}\n", index + 1, node.key.substr(0, 8), node_label(plan, node),
                             node.step ? "" : " " + node.file.string());
         for (const NodeInput& input : node.inputs)
-            text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1, input.from.empty() ? "" : "." + input.from);
+            text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1,
+                                input.from.empty() ? "" : "." + input.from);
         if (!node.unreadable.empty()) text += fmt::format("        {}\n", node.unreadable);
     }
     for (const RunCell& cell : graph.cells)
         for (const RunOutput& output : cell.outputs)
-            text += fmt::format("{} [{}] -> {}\n", graph.scan_names[cell.scan], plan.variants[cell.variant].name, shown_path(output.file));
-    return text + fmt::format("{} to compute, {} cell{}\n", graph.nodes.size(), graph.cells.size(), graph.cells.size() == 1 ? "" : "s");
+            text += fmt::format("{} [{}] -> {}\n", graph.scan_names[cell.scan], plan.variants[cell.variant].name,
+                                shown_path(output.file));
+    return text + fmt::format("{} to compute, {} cell{}\n", graph.nodes.size(), graph.cells.size(),
+                              graph.cells.size() == 1 ? "" : "s");
 }
 
 std::string graph_json(const Plan& plan, const RunGraph& graph) {
@@ -91,7 +94,9 @@ std::string graph_json(const Plan& plan, const RunGraph& graph) {
         json["nodes"].push_back(std::move(entry));
     }
     for (const RunCell& cell : graph.cells) {
-        Json entry{{"scan", graph.scan_names[cell.scan]}, {"variant", plan.variants[cell.variant].name}, {"nodes", cell.nodes},
+        Json entry{{"scan", graph.scan_names[cell.scan]},
+                   {"variant", plan.variants[cell.variant].name},
+                   {"nodes", cell.nodes},
                    {"outputs", Json::array()}};
         for (const RunOutput& output : cell.outputs) entry["outputs"].push_back(output.file.string());
         json["cells"].push_back(std::move(entry));
@@ -117,7 +122,8 @@ std::string report_text(const Plan& plan, const RunGraph& graph, const RunReport
     for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
         const CellReport& done = report.cells[cell];
         if (done.outcome == Outcome::failed) ++failed;
-        std::vector<std::string> row{std::filesystem::path(graph.scan_names[graph.cells[cell].scan]).filename().string()};
+        std::vector<std::string> row{
+            std::filesystem::path(graph.scan_names[graph.cells[cell].scan]).filename().string()};
         if (several_variants) row.push_back(plan.variants[graph.cells[cell].variant].name);
         for (const std::string& column : columns) {
             const Metric* metric = numbers[cell].find(column);
@@ -136,11 +142,18 @@ std::string report_text(const Plan& plan, const RunGraph& graph, const RunReport
 }
 
 std::string report_json(const Plan& plan, const RunGraph& graph, const RunReport& report) {
-    Json json{{"scanmill", 1}, {"workflow", plan.workflow.name}, {"interrupted", report.interrupted}, {"steps", Json::array()}, {"cells", Json::array()}};
+    Json json{{"scanmill", 1},
+              {"workflow", plan.workflow.name},
+              {"interrupted", report.interrupted},
+              {"steps", Json::array()},
+              {"cells", Json::array()}};
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         const RunNode& node = graph.nodes[index];
         const NodeReport& done = report.nodes[index];
-        Json entry{{"key", node.key}, {"step", node_label(plan, node)}, {"outcome", name_of(done.outcome)}, {"seconds", done.seconds}};
+        Json entry{{"key", node.key},
+                   {"step", node_label(plan, node)},
+                   {"outcome", name_of(done.outcome)},
+                   {"seconds", done.seconds}};
         if (node.step)
             entry["filter"] = plan.steps[*node.step].spec.name;
         else
@@ -154,11 +167,18 @@ std::string report_json(const Plan& plan, const RunGraph& graph, const RunReport
     }
     for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
         const CellReport& done = report.cells[cell];
-        Json entry{{"scan", graph.scan_names[graph.cells[cell].scan]}, {"variant", plan.variants[graph.cells[cell].variant].name},
-                   {"outcome", name_of(done.outcome)}, {"seconds", done.seconds}, {"steps", graph.cells[cell].nodes}, {"outputs", Json::array()}};
+        Json entry{{"scan", graph.scan_names[graph.cells[cell].scan]},
+                   {"variant", plan.variants[graph.cells[cell].variant].name},
+                   {"outcome", name_of(done.outcome)},
+                   {"seconds", done.seconds},
+                   {"steps", graph.cells[cell].nodes},
+                   {"outputs", Json::array()}};
         if (!done.error.empty()) entry["error"] = done.error;
         for (const OutputReport& output : done.outputs) {
-            Json file{{"file", output.file.string()}, {"outcome", name_of(output.outcome)}, {"kind", name_of(output.kind)}, {"facts", to_json(output.facts)}};
+            Json file{{"file", output.file.string()},
+                      {"outcome", name_of(output.outcome)},
+                      {"kind", name_of(output.kind)},
+                      {"facts", to_json(output.facts)}};
             if (!output.warnings.empty()) file["warnings"] = output.warnings;
             entry["outputs"].push_back(std::move(file));
         }

@@ -23,8 +23,10 @@ void print_ports(std::string_view title, const std::vector<PortSpec>& ports) {
 void print_parameter(const ParameterSpec& parameter) {
     const std::string value = text(parameter.default_value);
     fmt::print("  {}{}\n      {}\n      {}\n", parameter.name,
-               parameter.required ? " (required)" : value.empty() ? "" : " = " + value, parameter.help,
-               "Takes " + expectation(parameter) + ".");
+               parameter.required ? " (required)"
+               : value.empty()    ? ""
+                                  : " = " + value,
+               parameter.help, "Takes " + expectation(parameter) + ".");
     for (const Choice& choice : parameter.choices) fmt::print("      {}: {}\n", choice.name, choice.help);
 }
 
@@ -109,10 +111,10 @@ void add_show(CLI::App& app, Action& chosen) {
     auto options = std::make_shared<Options>();
     command->add_option("FILTER", options->filter, "The filter's name")->required();
     command->add_flag("--json", options->json, "Print the declaration as JSON");
-    command->add_flag("--example", options->example, "Print a workflow with this filter, every parameter at its default");
-    command->callback([&chosen, options] {
-        chosen = [options] { return show(options->filter, options->json, options->example); };
-    });
+    command->add_flag("--example", options->example,
+                      "Print a workflow with this filter, every parameter at its default");
+    command->callback(
+        [&chosen, options] { chosen = [options] { return show(options->filter, options->json, options->example); }; });
 }
 
 }  // namespace scanmill::runner

@@ -17,8 +17,7 @@ int main(int argc, char** argv) {
     const std::filesystem::path module = argv[1];
     try {
         const std::string name = module.stem().string().substr(std::string_view("scanmill-").size());
-        const scanmill::FilterDeclaration declaration =
-            scanmill::load_module(std::filesystem::absolute(module), name);
+        const scanmill::FilterDeclaration declaration = scanmill::load_module(std::filesystem::absolute(module), name);
         scanmill::require_sound(declaration.spec);
         std::ofstream file(argv[2], std::ios::binary | std::ios::trunc);
         file << scanmill::to_json_text({scanmill::abi_text(), declaration.spec});

@@ -80,15 +80,15 @@ TEST(LoadModule, MissingFile_CannotBeLoaded) {
 TEST(LoadModule, Garbage_CannotBeLoaded) {
     const TemporaryFolder folder;
     for (const std::string& content : {std::string(),
-                                      std::string("\x7f"
-                                                  "ELF"),
-                                      std::string("never a library"), std::string(5000, 'x'),
-                                      "\x7f"
-                                      "ELF" +
-                                          std::string(5000, '\xff'),
-                                      "\x7f"
-                                      "ELF\2\1\1" +
-                                          std::string(5000, '\0')}) {
+                                       std::string("\x7f"
+                                                   "ELF"),
+                                       std::string("never a library"), std::string(5000, 'x'),
+                                       "\x7f"
+                                       "ELF" +
+                                           std::string(5000, '\xff'),
+                                       "\x7f"
+                                       "ELF\2\1\1" +
+                                           std::string(5000, '\0')}) {
         const auto module = folder.write("scanmill-garbage.so", content);
         EXPECT_THAT(sentence_of([&] { load_module(module, "garbage"); }), HasSubstr("'" + module.string() + "'"));
     }

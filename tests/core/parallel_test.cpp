@@ -2,6 +2,7 @@
 #include "scanmill/filter/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -119,11 +120,11 @@ TEST(ForEachChunk, LoopInALoop_VisitsEveryPairOnce) {
     EXPECT_TRUE(std::ranges::all_of(visits, [](const auto& count) { return count == 1; }));
 }
 
-TEST(WithinThreadBudget, Body_SeesExactlyItsThreads) {
+TEST(WithinThreadBudget, Body_SeesItsThreadsUpToThoseOfTheMachine) {
     for (const unsigned threads : {1u, 2u, 5u}) {
         int seen = 0;
         within_thread_budget(threads, [&] { seen = tbb::this_task_arena::max_concurrency(); });
-        EXPECT_EQ(seen, static_cast<int>(threads));
+        EXPECT_EQ(seen, std::min(static_cast<int>(threads), tbb::info::default_concurrency()));
     }
     int seen = 0;
     within_thread_budget(0, [&] { seen = tbb::this_task_arena::max_concurrency(); });

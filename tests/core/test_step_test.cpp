@@ -61,7 +61,8 @@ TEST_F(TestStep, Mesh_IsATetrahedronWithLegsOfTheLength) {
 }
 
 TEST_F(TestStep, Unwired_WorksOnTheUnitTetrahedron) {
-    EXPECT_THAT(points(run("pass")).positions.span(), ElementsAre(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)));
+    EXPECT_THAT(points(run("pass")).positions.span(),
+                ElementsAre(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)));
     EXPECT_EQ(context_.metrics().find("more")->value, 0);
 }
 

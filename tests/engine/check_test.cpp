@@ -50,25 +50,29 @@ steps:
 outputs:
   "../{scan}.stl": a
 )");
-    EXPECT_THAT(found,
-                ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("no filter 'thinn'"), HasSubstr("did you mean 'thin'?")),
-                            AllOf(StartsWith("w:5:12: "), HasSubstr("no parameter 'siz'"), HasSubstr("did you mean 'size'?")),
-                            AllOf(StartsWith("w:6:18: "), HasSubstr("'0.5' has no unit"), HasSubstr("0.1 %diag")),
-                            AllOf(StartsWith("w:8:23: "), HasSubstr("300 % is out of range"), HasSubstr("at most 1")),
-                            AllOf(StartsWith("w:9:16: "), HasSubstr("'scan' is points"), HasSubstr("takes tets"),
-                                  HasSubstr("'tetrahedralise'")),
-                            AllOf(StartsWith("w:11:33: "), HasSubstr("'max-error' stands here a second time")),
-                            AllOf(StartsWith("w:13:3: "), HasSubstr("outside the output folder"))));
+    EXPECT_THAT(
+        found,
+        ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("no filter 'thinn'"), HasSubstr("did you mean 'thin'?")),
+                    AllOf(StartsWith("w:5:12: "), HasSubstr("no parameter 'siz'"), HasSubstr("did you mean 'size'?")),
+                    AllOf(StartsWith("w:6:18: "), HasSubstr("'0.5' has no unit"), HasSubstr("0.1 %diag")),
+                    AllOf(StartsWith("w:8:23: "), HasSubstr("300 % is out of range"), HasSubstr("at most 1")),
+                    AllOf(StartsWith("w:9:16: "), HasSubstr("'scan' is points"), HasSubstr("takes tets"),
+                          HasSubstr("'tetrahedralise'")),
+                    AllOf(StartsWith("w:11:33: "), HasSubstr("'max-error' stands here a second time")),
+                    AllOf(StartsWith("w:13:3: "), HasSubstr("outside the output folder"))));
 }
 
 TEST_F(Check, SoundWorkflow_HasNoFindings) {
-    EXPECT_THAT(steps("  - thin: {size: 0.1 %diag, axis: [1, 0, 0], rule: random}\n  - tetrahedralise:\n  - solid: {alpha: auto}\n"),
+    EXPECT_THAT(steps("  - thin: {size: 0.1 %diag, axis: [1, 0, 0], rule: random}\n  - tetrahedralise:\n  - solid: "
+                      "{alpha: auto}\n"),
                 IsEmpty());
 }
 
 TEST_F(Check, MissingGrammarVersion_IsAnError) {
-    EXPECT_THAT(findings("steps: [{make: }]\n"), ElementsAre(HasSubstr("w:1:1: does not say its grammar; expected `scanmill: 1`")));
-    EXPECT_THAT(findings("scanmill: 2\nsteps: [{make: }]\n"), ElementsAre(AllOf(StartsWith("w:1:11"), HasSubstr("'2'"))));
+    EXPECT_THAT(findings("steps: [{make: }]\n"),
+                ElementsAre(HasSubstr("w:1:1: does not say its grammar; expected `scanmill: 1`")));
+    EXPECT_THAT(findings("scanmill: 2\nsteps: [{make: }]\n"),
+                ElementsAre(AllOf(StartsWith("w:1:11"), HasSubstr("'2'"))));
 }
 
 TEST_F(Check, UnknownTopLevelKey_ProposesTheClosest) {
@@ -81,14 +85,17 @@ TEST_F(Check, NoSteps_IsAnError) {
     EXPECT_THAT(findings("scanmill: 1\nsteps: []\n"), ElementsAre(HasSubstr("the list of steps is empty")));
 }
 
-TEST_F(Check, EmptyFile_IsAnError) { EXPECT_THAT(findings(""), ElementsAre(HasSubstr("is empty; expected a workflow"))); }
+TEST_F(Check, EmptyFile_IsAnError) {
+    EXPECT_THAT(findings(""), ElementsAre(HasSubstr("is empty; expected a workflow")));
+}
 
 TEST_F(Check, NotYaml_NamesThePlace) {
     EXPECT_THAT(findings("scanmill: 1\nsteps: [\n"), testing::Contains(HasSubstr("is no YAML")));
 }
 
 TEST_F(Check, TwoFiltersInOneStep_SaysHowToBeginAnotherStep) {
-    EXPECT_THAT(steps("  - thin: {}\n    make: {}\n"), ElementsAre(AllOf(StartsWith("w:5:5: "), HasSubstr("'make' stands beside 'thin'"))));
+    EXPECT_THAT(steps("  - thin: {}\n    make: {}\n"),
+                ElementsAre(AllOf(StartsWith("w:5:5: "), HasSubstr("'make' stands beside 'thin'"))));
 }
 
 TEST_F(Check, StepWithoutFilter_IsAnError) {
@@ -97,25 +104,29 @@ TEST_F(Check, StepWithoutFilter_IsAnError) {
 
 TEST_F(Check, RequiredParameterLeftOut_SaysWhatItTakes) {
     EXPECT_THAT(steps("  - tetrahedralise:\n  - solid:\n  - simplify:\n"),
-                ElementsAre(AllOf(StartsWith("w:6:5: "), HasSubstr("needs the parameter 'max-error'"), HasSubstr("a length above 0"))));
+                ElementsAre(AllOf(StartsWith("w:6:5: "), HasSubstr("needs the parameter 'max-error'"),
+                                  HasSubstr("a length above 0"))));
 }
 
 TEST_F(Check, WrongTypes_SayWhatWasExpected) {
-    EXPECT_THAT(steps("  - thin: {count: many, rule: nearst, axis: [1, 2], size: [1 u]}\n"),
-                ElementsAre(AllOf(HasSubstr("count: 'many' is not a whole number"), HasSubstr("of at least 1 and at most 9")),
-                            AllOf(HasSubstr("rule: 'nearst'"), HasSubstr("did you mean 'nearest'?")),
-                            AllOf(HasSubstr("axis: has 2 values"), HasSubstr("a list of 3 values")),
-                            AllOf(HasSubstr("size: is a list"), HasSubstr("a length above 0"))));
+    EXPECT_THAT(
+        steps("  - thin: {count: many, rule: nearst, axis: [1, 2], size: [1 u]}\n"),
+        ElementsAre(AllOf(HasSubstr("count: 'many' is not a whole number"), HasSubstr("of at least 1 and at most 9")),
+                    AllOf(HasSubstr("rule: 'nearst'"), HasSubstr("did you mean 'nearest'?")),
+                    AllOf(HasSubstr("axis: has 2 values"), HasSubstr("a list of 3 values")),
+                    AllOf(HasSubstr("size: is a list"), HasSubstr("a length above 0"))));
     EXPECT_THAT(steps("  - thin: {size: }\n"), ElementsAre(HasSubstr("found nothing; expected a value")));
     EXPECT_THAT(steps("  - thin: {size: 0 u, count: 0}\n"),
                 ElementsAre(HasSubstr("size: 0 u is out of range"), HasSubstr("count: 0 is out of range")));
-    EXPECT_THAT(steps("  - tetrahedralise:\n  - solid: {alpha: atuo, angle: 40}\n"),
-                ElementsAre(HasSubstr("did you mean 'auto'?"), HasSubstr("'40' has no unit; an angle is 40 deg or 0.7 rad")));
+    EXPECT_THAT(
+        steps("  - tetrahedralise:\n  - solid: {alpha: atuo, angle: 40}\n"),
+        ElementsAre(HasSubstr("did you mean 'auto'?"), HasSubstr("'40' has no unit; an angle is 40 deg or 0.7 rad")));
 }
 
 TEST_F(Check, PortWithoutAnyValue_NamesTheFiltersThatGiveOne) {
-    EXPECT_THAT(steps("  - solid:\n"), ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("solid needs tets for its port 'tets'"),
-                                                         HasSubstr("'tetrahedralise'"))));
+    EXPECT_THAT(steps("  - solid:\n"),
+                ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("solid needs tets for its port 'tets'"),
+                                  HasSubstr("'tetrahedralise'"))));
 }
 
 TEST_F(Check, AfterAnUnknownFilter_MissingValuesAreNotBlamedOnTheNextStep) {
@@ -143,7 +154,8 @@ TEST_F(Check, FilterWithTwoPortsOfOneKind_AsksForBoth) {
 TEST_F(Check, UnknownSourceOrPort_ProposesTheClosest) {
     EXPECT_THAT(steps("  - thin:\n    in: {points: scam}\n"), ElementsAre(HasSubstr("did you mean 'scan'?")));
     EXPECT_THAT(steps("  - thin:\n    in: {point: scan}\n"), ElementsAre(HasSubstr("did you mean 'points'?")));
-    EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: {points: pair.lfet}\n"), ElementsAre(HasSubstr("did you mean 'left'?")));
+    EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: {points: pair.lfet}\n"),
+                ElementsAre(HasSubstr("did you mean 'left'?")));
 }
 
 TEST_F(Check, LaterStepAsSource_IsNoEarlierStep) {
@@ -157,14 +169,16 @@ TEST_F(Check, NameOfTwoSteps_StandsForNone) {
 }
 
 TEST_F(Check, SeveralValuesForASinglePort_AreAnError) {
-    EXPECT_THAT(steps("  - thin:\n    in: {points: [scan, scan]}\n"), ElementsAre(HasSubstr("takes one value; found 2")));
+    EXPECT_THAT(steps("  - thin:\n    in: {points: [scan, scan]}\n"),
+                ElementsAre(HasSubstr("takes one value; found 2")));
     EXPECT_THAT(steps("  - pair:\n  - combine:\n    in: {points: [pair.left, pair.right, scan]}\n"), IsEmpty());
 }
 
 TEST_F(Check, ListInput_FeedsOnlyListPorts) {
     const std::string head = "scanmill: 1\ninputs: {scan: points, others: [points]}\nsteps:\n";
     EXPECT_THAT(findings(head + "  - thin:\n"), IsEmpty());
-    EXPECT_THAT(findings(head + "  - thin:\n    in: {points: others}\n"), ElementsAre(HasSubstr("is a list of points")));
+    EXPECT_THAT(findings(head + "  - thin:\n    in: {points: others}\n"),
+                ElementsAre(HasSubstr("is a list of points")));
     EXPECT_THAT(findings(head + "  - combine:\n    in: {points: others}\n"), IsEmpty());
     EXPECT_THAT(findings("scanmill: 1\ninputs: {scans: [points]}\nsteps:\n  - combine:\n"),
                 ElementsAre(HasSubstr("fed one scan at a time")));
@@ -172,12 +186,14 @@ TEST_F(Check, ListInput_FeedsOnlyListPorts) {
 
 TEST_F(Check, IdsAndInputs_HaveDifferentNames) {
     EXPECT_THAT(steps("  - id: scan\n    thin:\n"), ElementsAre(HasSubstr("already the name of an input")));
-    EXPECT_THAT(steps("  - id: a\n    thin: {size: 1 u}\n  - id: a\n    thin: {size: 2 u}\n"), ElementsAre(HasSubstr("'a' is given twice")));
+    EXPECT_THAT(steps("  - id: a\n    thin: {size: 1 u}\n  - id: a\n    thin: {size: 2 u}\n"),
+                ElementsAre(HasSubstr("'a' is given twice")));
     EXPECT_THAT(steps("  - id: 1a\n    thin:\n"), ElementsAre(HasSubstr("'1a' is no name")));
 }
 
 TEST_F(Check, InputKinds_AreThoseThatFilesHold) {
-    EXPECT_THAT(findings("scanmill: 1\ninputs: {scan: point}\nsteps: [{thin: }]\n"), ElementsAre(HasSubstr("did you mean 'points'?")));
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {scan: point}\nsteps: [{thin: }]\n"),
+                ElementsAre(HasSubstr("did you mean 'points'?")));
     EXPECT_THAT(findings("scanmill: 1\ninputs: {scan: points, t: tets}\nsteps: [{thin: }]\n"),
                 ElementsAre(HasSubstr("cannot be read from a file")));
     EXPECT_THAT(findings("scanmill: 1\ninputs: {scan: {kind: points, unit: yard}}\nsteps: [{thin: }]\n"),
@@ -185,7 +201,8 @@ TEST_F(Check, InputKinds_AreThoseThatFilesHold) {
 }
 
 TEST_F(Check, WorkflowParameters_AreTypedWhereTheyAreUsed) {
-    const std::string head = "scanmill: 1\ninputs: {scan: points}\nparameters:\n  s: {default: 2, help: Size.}\nsteps:\n";
+    const std::string head =
+        "scanmill: 1\ninputs: {scan: points}\nparameters:\n  s: {default: 2, help: Size.}\nsteps:\n";
     EXPECT_THAT(findings(head + "  - thin: {size: $s}\n"),
                 ElementsAre(AllOf(StartsWith("w:6:18: "), HasSubstr("size (from $s): '2' has no unit"))));
     EXPECT_THAT(findings(head + "  - thin: {count: $s}\n"), IsEmpty());
@@ -195,10 +212,13 @@ TEST_F(Check, WorkflowParameters_AreTypedWhereTheyAreUsed) {
 
 TEST_F(Check, Expect_KnowsFactsAndMetricsOfTheStep) {
     EXPECT_THAT(steps("  - thin:\n    expect: {points: '> 3', kept: [1, 9]}\n"), IsEmpty());
-    EXPECT_THAT(steps("  - thin:\n    expect: {keptt: 1}\n"), ElementsAre(AllOf(StartsWith("w:5:14: "), HasSubstr("did you mean 'kept'?"))));
-    EXPECT_THAT(steps("  - thin:\n    expect: {closed: true}\n"), ElementsAre(HasSubstr("nothing is known as 'closed'")));
+    EXPECT_THAT(steps("  - thin:\n    expect: {keptt: 1}\n"),
+                ElementsAre(AllOf(StartsWith("w:5:14: "), HasSubstr("did you mean 'kept'?"))));
+    EXPECT_THAT(steps("  - thin:\n    expect: {closed: true}\n"),
+                ElementsAre(HasSubstr("nothing is known as 'closed'")));
     EXPECT_THAT(steps("  - tetrahedralise:\n  - solid:\n    expect: {closed: 1, alpha: '< 2', bending: < 40 deg}\n"),
-                ElementsAre(HasSubstr("expect closed: '1' is neither true nor false"), HasSubstr("expect alpha: '2' has no unit")));
+                ElementsAre(HasSubstr("expect closed: '1' is neither true nor false"),
+                            HasSubstr("expect alpha: '2' has no unit")));
     EXPECT_THAT(steps("  - thin:\n    expect: {kept: [1, 2, 3]}\n"), ElementsAre(HasSubstr("a range has two ends")));
 }
 
@@ -209,14 +229,17 @@ TEST_F(Check, OutputTemplates_AreCheckedBeforeTheRun) {
     EXPECT_THAT(findings(head + "  '{scan.ply': thin\n"), ElementsAre(HasSubstr("without its }")));
     EXPECT_THAT(findings(head + "  '/tmp/{scan}.ply': thin\n"), ElementsAre(HasSubstr("outside the output folder")));
     EXPECT_THAT(findings(head + "  'a/../../{scan}.ply': thin\n"), ElementsAre(HasSubstr("outside the output folder")));
-    EXPECT_THAT(findings(head + "  '{scan}.stl': thin\n"), ElementsAre(AllOf(HasSubstr("no '.stl' file can hold"), HasSubstr("ply"))));
+    EXPECT_THAT(findings(head + "  '{scan}.stl': thin\n"),
+                ElementsAre(AllOf(HasSubstr("no '.stl' file can hold"), HasSubstr("ply"))));
     EXPECT_THAT(findings(head + "  '{scan}.ply': tetrahedralise\n"), ElementsAre(HasSubstr("is tets")));
     EXPECT_THAT(findings(head + "  '{scan}.ply': thn\n"), ElementsAre(HasSubstr("did you mean 'thin'?")));
 }
 
 TEST_F(Check, VariantsThatWouldWriteOneFile_AskForVariantInTheName) {
-    const std::string head = "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin: {count: {sweep: [1, 2]}}\noutputs:\n";
-    EXPECT_THAT(findings(head + "  '{scan}.ply': thin\n"), ElementsAre(AllOf(StartsWith("w:6:3"), HasSubstr("put {variant} into the name"))));
+    const std::string head =
+        "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin: {count: {sweep: [1, 2]}}\noutputs:\n";
+    EXPECT_THAT(findings(head + "  '{scan}.ply': thin\n"),
+                ElementsAre(AllOf(StartsWith("w:6:3"), HasSubstr("put {variant} into the name"))));
     EXPECT_THAT(findings(head + "  '{scan}-{variant}.ply': thin\n"), IsEmpty());
     EXPECT_THAT(findings(head + "  'copy.ply': scan\n"), IsEmpty()) << "all variants share this value";
 }

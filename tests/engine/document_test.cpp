@@ -50,7 +50,9 @@ TEST(YamlDocument, RepeatedKey_IsAnErrorAtTheSecondPlace) {
     EXPECT_EQ(parsed.root.find("a")->text, "1");
 }
 
-TEST(YamlDocument, RepeatedKeyInANestedFlowMap_IsFound) { EXPECT_EQ(parse("a: {b: [{c: 1, c: 2}]}\n").findings.size(), 1u); }
+TEST(YamlDocument, RepeatedKeyInANestedFlowMap_IsFound) {
+    EXPECT_EQ(parse("a: {b: [{c: 1, c: 2}]}\n").findings.size(), 1u);
+}
 
 TEST(YamlDocument, Alias_StandsForItsAnchor) {
     const Parsed parsed = parse("a: &x {n: 1}\nb: *x\n");

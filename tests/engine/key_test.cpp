@@ -9,9 +9,12 @@ namespace scanmill {
 namespace {
 
 TEST(KeyBuilder, FieldBorders_CannotBeShifted) {
-    std::set<std::string> keys{KeyBuilder().field("ab", "c").key(), KeyBuilder().field("a", "bc").key(),
-                               KeyBuilder().field("a", "b").field("c", "").key(), KeyBuilder().field("", "abc").key(),
-                               KeyBuilder().field("a", "b").field("", "c").key(), KeyBuilder().field("1:a", "").key(),
+    std::set<std::string> keys{KeyBuilder().field("ab", "c").key(),
+                               KeyBuilder().field("a", "bc").key(),
+                               KeyBuilder().field("a", "b").field("c", "").key(),
+                               KeyBuilder().field("", "abc").key(),
+                               KeyBuilder().field("a", "b").field("", "c").key(),
+                               KeyBuilder().field("1:a", "").key(),
                                KeyBuilder().key()};
     EXPECT_EQ(keys.size(), 7u);
 }

@@ -29,8 +29,9 @@ protected:
     RunReport run(const std::string& steps, const std::vector<std::string>& scans, const std::string& tail = "",
                   const std::string& inputs = "{scan: points}") {
         Diagnostics diagnostics("w.yaml");
-        plan_ = make_plan(parse_workflow("scanmill: 1\nname: w\ninputs: " + inputs + "\nsteps:\n" + steps + tail, diagnostics),
-                          library_, {}, diagnostics);
+        plan_ = make_plan(
+            parse_workflow("scanmill: 1\nname: w\ninputs: " + inputs + "\nsteps:\n" + steps + tail, diagnostics),
+            library_, {}, diagnostics);
         for (const Diagnostic& diagnostic : diagnostics.sorted())
             if (diagnostic.severity == Diagnostic::Severity::error) ADD_FAILURE() << text(diagnostic, "w.yaml");
         request_.scans.assign(scans.begin(), scans.end());
@@ -39,7 +40,9 @@ protected:
         RunObserver nobody;
         return scanmill::run(plan_, library_, graph_, request_, settings_, nobody);
     }
-    std::string scan(const std::string& name, const std::string& content = small_scan) { return folder_.write(name, content).string(); }
+    std::string scan(const std::string& name, const std::string& content = small_scan) {
+        return folder_.write(name, content).string();
+    }
     std::string log() const { return (folder_ / "log").string(); }
     std::size_t runs_logged() const {
         const std::string text = test::content_of(folder_ / "log");
@@ -55,7 +58,8 @@ protected:
 };
 
 TEST_F(Run, StepsSharedByVariants_RunOnce) {
-    const RunReport report = run("  - test-step: {factor: 2, log: " + log() + "}\n  - id: b\n    test-step: {factor: {sweep: [3, 4, 5]}, log: " + log() + "}\n",
+    const RunReport report = run("  - test-step: {factor: 2, log: " + log() +
+                                     "}\n  - id: b\n    test-step: {factor: {sweep: [3, 4, 5]}, log: " + log() + "}\n",
                                  {scan("a.xyz")}, "outputs: {'{scan}-{variant}.xyz': b}\n");
     EXPECT_TRUE(report.all_done());
     EXPECT_EQ(report.cells.size(), 3u);
@@ -65,8 +69,9 @@ TEST_F(Run, StepsSharedByVariants_RunOnce) {
 }
 
 TEST_F(Run, TwoFilesOfEqualContent_AreComputedOnceAndWrittenTwice) {
-    const RunReport report = run("  - test-step: {log: " + log() + "}\n", {scan("a.xyz"), scan("b.xyz"), scan("c.xyz", "0 0 0\n1 1 1\n")},
-                                 "outputs: {'{scan}.xyz': test-step}\n");
+    const RunReport report =
+        run("  - test-step: {log: " + log() + "}\n", {scan("a.xyz"), scan("b.xyz"), scan("c.xyz", "0 0 0\n1 1 1\n")},
+            "outputs: {'{scan}.xyz': test-step}\n");
     EXPECT_TRUE(report.all_done());
     EXPECT_EQ(runs_logged(), 2u);
     EXPECT_EQ(test::content_of(folder_ / "out/a.xyz"), test::content_of(folder_ / "out/b.xyz"));
@@ -74,14 +79,18 @@ TEST_F(Run, TwoFilesOfEqualContent_AreComputedOnceAndWrittenTwice) {
 }
 
 TEST_F(Run, FailingAlternative_LeavesTheOthersAlone) {
-    const RunReport report = run(
-        "  - id: x\n    one-of:\n      - {id: good, test-step: {factor: 2}}\n      - {id: bad, test-step: {mode: fail}}\n"
-        "      - {id: worse, test-step: {mode: throw}}\n      - {id: huge, test-step: {mode: out-of-memory}}\n  - id: after\n    test-step: {log: " + log() + "}\n",
-        {scan("a.xyz")}, "outputs: {'{scan}-{variant}.xyz': after}\n");
+    const RunReport report =
+        run("  - id: x\n    one-of:\n      - {id: good, test-step: {factor: 2}}\n      - {id: bad, test-step: {mode: "
+            "fail}}\n"
+            "      - {id: worse, test-step: {mode: throw}}\n      - {id: huge, test-step: {mode: out-of-memory}}\n  - "
+            "id: after\n    test-step: {log: " +
+                log() + "}\n",
+            {scan("a.xyz")}, "outputs: {'{scan}-{variant}.xyz': after}\n");
     ASSERT_EQ(report.cells.size(), 4u);
     EXPECT_EQ(report.cells[0].outcome, Outcome::done);
     for (int failed = 1; failed < 4; ++failed) EXPECT_EQ(report.cells[failed].outcome, Outcome::failed);
-    EXPECT_THAT(report.cells[1].error, AllOf(HasSubstr("in step 'bad' (w.yaml:8:19)"), HasSubstr("a.xyz'"), HasSubstr("hint: ")));
+    EXPECT_THAT(report.cells[1].error,
+                AllOf(HasSubstr("in step 'bad' (w.yaml:8:19)"), HasSubstr("a.xyz'"), HasSubstr("hint: ")));
     EXPECT_THAT(report.cells[2].error, HasSubstr("an unexpected error: "));
     EXPECT_THAT(report.cells[3].error, HasSubstr("memory did not suffice"));
     EXPECT_EQ(runs_logged(), 1u) << "nothing runs on what failed";
@@ -90,8 +99,9 @@ TEST_F(Run, FailingAlternative_LeavesTheOthersAlone) {
 }
 
 TEST_F(Run, BadScan_FailsItsCellOnly) {
-    const RunReport report = run("  - test-step:\n", {scan("bad.xyz", "1 2\n"), (folder_ / "missing.xyz").string(), scan("good.xyz")},
-                                 "outputs: {'{scan}.xyz': test-step}\n");
+    const RunReport report =
+        run("  - test-step:\n", {scan("bad.xyz", "1 2\n"), (folder_ / "missing.xyz").string(), scan("good.xyz")},
+            "outputs: {'{scan}.xyz': test-step}\n");
     EXPECT_EQ(report.cells[0].outcome, Outcome::failed);
     EXPECT_EQ(report.cells[1].outcome, Outcome::failed);
     EXPECT_THAT(report.cells[1].error, HasSubstr("missing.xyz"));
@@ -105,8 +115,11 @@ TEST_F(Run, EmptyMesh_IsAnError) {
 
 TEST_F(Run, Expectations_AreComparedWithMetricsAndFacts) {
     EXPECT_TRUE(run("  - test-step:\n    expect: {points: 4}\n", {scan("a.xyz")}).all_done());
-    EXPECT_TRUE(run("  - test-step: {length: 10 %diag}\n    expect: {points: [3, 5], length: '< 0.31 u'}\n", {scan("a.xyz")}).all_done());
-    const RunReport unmet = run("  - test-step:\n    expect: {points: '> 4'}\n", {scan("a.xyz")}, "outputs: {'{scan}.xyz': test-step}\n");
+    EXPECT_TRUE(
+        run("  - test-step: {length: 10 %diag}\n    expect: {points: [3, 5], length: '< 0.31 u'}\n", {scan("a.xyz")})
+            .all_done());
+    const RunReport unmet =
+        run("  - test-step:\n    expect: {points: '> 4'}\n", {scan("a.xyz")}, "outputs: {'{scan}.xyz': test-step}\n");
     EXPECT_EQ(unmet.cells[0].outcome, Outcome::failed);
     EXPECT_THAT(unmet.cells[0].error, HasSubstr("expected points > 4, found 4"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/a.xyz"));
@@ -114,7 +127,8 @@ TEST_F(Run, Expectations_AreComparedWithMetricsAndFacts) {
 
 TEST_F(Run, Lengths_AreResolvedOnceAgainstTheFirstInput) {
     const auto length_of = [&](const std::string& written) {
-        const RunReport report = run("  - test-step: {length: " + written + "}\n", {scan("a.xyz", "# unit mm\n" + small_scan)});
+        const RunReport report =
+            run("  - test-step: {length: " + written + "}\n", {scan("a.xyz", "# unit mm\n" + small_scan)});
         return report.nodes[1].metrics.find("length")->value;
     };
     EXPECT_DOUBLE_EQ(length_of("10 %diag"), 0.3);
@@ -127,14 +141,17 @@ TEST_F(Run, Lengths_AreResolvedOnceAgainstTheFirstInput) {
 
 TEST_F(Run, AbsoluteLengthOnAScanOfUnknownUnit_Fails) {
     const RunReport report = run("  - test-step: {length: 1 mm}\n", {scan("a.xyz")});
-    EXPECT_THAT(report.cells[0].error, AllOf(HasSubstr("unit is not declared"), HasSubstr("--unit mm"), HasSubstr("'length'")));
+    EXPECT_THAT(report.cells[0].error,
+                AllOf(HasSubstr("unit is not declared"), HasSubstr("--unit mm"), HasSubstr("'length'")));
     request_.unit = LengthUnit::metre;
-    EXPECT_DOUBLE_EQ(run("  - test-step: {length: 1 mm}\n", {scan("a.xyz")}).nodes[1].metrics.find("length")->value, 0.001);
+    EXPECT_DOUBLE_EQ(run("  - test-step: {length: 1 mm}\n", {scan("a.xyz")}).nodes[1].metrics.find("length")->value,
+                     0.001);
 }
 
 TEST_F(Run, UnitOfTheWorkflowInput_IsTheScans) {
-    const RunReport report = run("  - test-step: {length: 1 cm}\n", {scan("a.xyz")}, "outputs: {'{scan}.xyz': test-step}\n",
-                                 "{scan: {kind: points, unit: m, frame: part}}");
+    const RunReport report =
+        run("  - test-step: {length: 1 cm}\n", {scan("a.xyz")}, "outputs: {'{scan}.xyz': test-step}\n",
+            "{scan: {kind: points, unit: m, frame: part}}");
     EXPECT_DOUBLE_EQ(report.nodes[1].metrics.find("length")->value, 0.01);
     const auto written = read_points(folder_ / "out/a.xyz");
     EXPECT_EQ(written->frame.unit, LengthUnit::metre);
@@ -143,14 +160,15 @@ TEST_F(Run, UnitOfTheWorkflowInput_IsTheScans) {
 
 TEST_F(Run, InputsOfDifferentUnits_AreRefused) {
     request_.inputs = {{"others", {scan("b.xyz", "# unit m\n" + small_scan)}}};
-    const RunReport report = run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz", "# unit mm\n" + small_scan)}, "",
-                                 "{scan: points, others: [points]}");
+    const RunReport report = run("  - test-step:\n    in: {points: scan, more: others}\n",
+                                 {scan("a.xyz", "# unit mm\n" + small_scan)}, "", "{scan: points, others: [points]}");
     EXPECT_THAT(report.cells[0].error, HasSubstr("different units: mm at the first port, m at 'more'"));
 }
 
 TEST_F(Run, ListInput_ReachesThePortWhole) {
     request_.inputs = {{"others", {scan("b.xyz", "5 5 5\n6 6 6\n"), scan("c.xyz", "7 7 7\n8 8 8\n9 9 9\n")}}};
-    const RunReport report = run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz")}, "", "{scan: points, others: [points]}");
+    const RunReport report = run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz")}, "",
+                                 "{scan: points, others: [points]}");
     EXPECT_TRUE(report.all_done()) << report.cells[0].error;
     EXPECT_EQ(graph_.nodes.back().inputs.size(), 3u);
 }
@@ -177,14 +195,16 @@ TEST_F(Run, UnfedOrUnknownInputs_AreRefusedBeforeTheRun) {
 }
 
 TEST_F(Run, DistantScan_KeepsItsCoordinatesThroughSteps) {
-    const std::string distant = "500000.000001 4900000.25 0\n500001.5 4900000.5 0\n500000.125 4900002.75 1\n500001 4900001 2\n";
+    const std::string distant =
+        "500000.000001 4900000.25 0\n500001.5 4900000.5 0\n500000.125 4900002.75 1\n500001 4900001 2\n";
     const RunReport report = run("  - test-step:\n", {scan("a.xyz", distant)}, "outputs: {'{scan}.xyz': test-step}\n");
     EXPECT_TRUE(report.all_done());
     EXPECT_EQ(test::content_of(folder_ / "out/a.xyz"), distant);
 }
 
 TEST_F(Run, OnlyUntilAndSave_SelectVariantsAndSteps) {
-    const std::string steps = "  - id: a\n    test-step: {factor: {sweep: [1, 2]}, log: " + log() + "}\n  - id: b\n    test-step: {factor: 7, log: " + log() + "}\n";
+    const std::string steps = "  - id: a\n    test-step: {factor: {sweep: [1, 2]}, log: " + log() +
+                              "}\n  - id: b\n    test-step: {factor: 7, log: " + log() + "}\n";
     request_.only = {"factor=2"};
     request_.until = "a";
     request_.save = {"a"};

@@ -15,9 +15,11 @@ using testing::HasSubstr;
 
 class Variants : public testing::Test {
 protected:
-    Plan plan(const std::string& steps, const Settings& settings = {}, const std::string& head = "inputs: {scan: points}\n") {
+    Plan plan(const std::string& steps, const Settings& settings = {},
+              const std::string& head = "inputs: {scan: points}\n") {
         Diagnostics diagnostics("w");
-        Plan result = make_plan(parse_workflow("scanmill: 1\n" + head + "steps:\n" + steps, diagnostics), library_, settings, diagnostics);
+        Plan result = make_plan(parse_workflow("scanmill: 1\n" + head + "steps:\n" + steps, diagnostics), library_,
+                                settings, diagnostics);
         findings_.clear();
         for (const Diagnostic& diagnostic : diagnostics.sorted()) findings_ += text(diagnostic, "w") + "\n";
         return result;
@@ -38,10 +40,13 @@ protected:
     std::string findings_;
 };
 
-TEST_F(Variants, WithoutForks_ThereIsOneCalledDefault) { EXPECT_THAT(names(plan("  - thin:\n")), ElementsAre("default")); }
+TEST_F(Variants, WithoutForks_ThereIsOneCalledDefault) {
+    EXPECT_THAT(names(plan("  - thin:\n")), ElementsAre("default"));
+}
 
 TEST_F(Variants, OneOf_GivesOnePerAlternativeNamedByFilterOrId) {
-    const Plan found = plan("  - one-of:\n      - thin:\n      - id: two\n        thin: {count: 2}\n  - tetrahedralise:\n");
+    const Plan found =
+        plan("  - one-of:\n      - thin:\n      - id: two\n        thin: {count: 2}\n  - tetrahedralise:\n");
     EXPECT_EQ(findings_, "");
     EXPECT_THAT(names(found), ElementsAre("thin", "two"));
     EXPECT_THAT(labels(found, 0), ElementsAre("thin", "tetrahedralise"));
@@ -62,7 +67,8 @@ TEST_F(Variants, AlternativeOfSeveralSteps_HasItsName) {
 
 TEST_F(Variants, OneOfInsideAnAlternative_Multiplies) {
     const Plan found = plan(
-        "  - one-of:\n      - make:\n      - name: fork\n        steps:\n          - one-of: [{thin: }, {id: b, thin: {count: 2}}]\n");
+        "  - one-of:\n      - make:\n      - name: fork\n        steps:\n          - one-of: [{thin: }, {id: b, thin: "
+        "{count: 2}}]\n");
     EXPECT_EQ(findings_, "");
     EXPECT_THAT(names(found), ElementsAre("make", "fork+thin", "fork+b"));
 }
@@ -74,8 +80,11 @@ TEST_F(Variants, Sweep_IsNamedByParameterAndValueSafeInFileNames) {
 }
 
 TEST_F(Variants, AlternativesAndSweeps_AreJoinedFirstForkSlowest) {
-    const Plan found = plan("  - one-of: [{thin: }, {id: b, thin: {count: 2}}]\n  - tetrahedralise:\n  - solid: {coverage: {sweep: [99 %, 100 %]}}\n");
-    EXPECT_THAT(names(found), ElementsAre("thin+coverage=99pct", "thin+coverage=100pct", "b+coverage=99pct", "b+coverage=100pct"));
+    const Plan found = plan(
+        "  - one-of: [{thin: }, {id: b, thin: {count: 2}}]\n  - tetrahedralise:\n  - solid: {coverage: {sweep: [99 %, "
+        "100 %]}}\n");
+    EXPECT_THAT(names(found),
+                ElementsAre("thin+coverage=99pct", "thin+coverage=100pct", "b+coverage=99pct", "b+coverage=100pct"));
     // thin, b, a tetrahedralise below each, two solids below each of those
     EXPECT_EQ(found.steps.size(), 8u);
 }
@@ -107,7 +116,8 @@ TEST_F(Variants, SettingsReplaceDefaultsAndMaySweep) {
 
 TEST_F(Variants, TwoSweepsOfOneParameterName_TellWhoseTheyAre) {
     const Plan found = plan("  - thin: {count: {sweep: [1, 2]}}\n  - id: b\n    thin: {count: {sweep: [3, 4]}}\n");
-    EXPECT_THAT(names(found), ElementsAre("count=1+b.count=3", "count=1+b.count=4", "count=2+b.count=3", "count=2+b.count=4"));
+    EXPECT_THAT(names(found),
+                ElementsAre("count=1+b.count=3", "count=1+b.count=4", "count=2+b.count=3", "count=2+b.count=4"));
 }
 
 TEST_F(Variants, EqualNames_AreAnError) {
@@ -117,7 +127,8 @@ TEST_F(Variants, EqualNames_AreAnError) {
 
 TEST_F(Variants, IdOfAOneOf_StandsForWhicheverAlternativeRan) {
     const Plan found = plan(
-        "  - id: x\n    one-of: [{thin: }, {name: two, steps: [{id: p, thin: {count: 2}}, {id: q, thin: {count: 3}}]}]\n"
+        "  - id: x\n    one-of: [{thin: }, {name: two, steps: [{id: p, thin: {count: 2}}, {id: q, thin: {count: "
+        "3}}]}]\n"
         "  - pair:\n  - tetrahedralise:\n    in: {points: x}\n");
     EXPECT_EQ(findings_, "");
     ASSERT_EQ(found.variants.size(), 2u);
@@ -127,7 +138,8 @@ TEST_F(Variants, IdOfAOneOf_StandsForWhicheverAlternativeRan) {
 
 TEST_F(Variants, AMillionOfThem_IsRefused) {
     std::string steps;
-    for (int i = 0; i < 6; ++i) steps += "  - id: s" + std::to_string(i) + "\n    thin: {count: {sweep: [1, 2, 3, 4, 5, 6, 7, 8, 9]}}\n";
+    for (int i = 0; i < 6; ++i)
+        steps += "  - id: s" + std::to_string(i) + "\n    thin: {count: {sweep: [1, 2, 3, 4, 5, 6, 7, 8, 9]}}\n";
     plan(steps);
     EXPECT_THAT(findings_, HasSubstr("more than 10000 variants"));
 }
@@ -141,16 +153,21 @@ TEST_F(Variants, DollarDollar_IsATextThatBeginsWithADollar) {
 }
 
 TEST_F(Variants, Wiring_TakesTheNearestEarlierValueOfTheKind) {
-    const Plan found = plan("  - id: first\n    thin:\n  - tetrahedralise:\n  - id: second\n    thin: {count: 2}\n  - make:\n");
+    const Plan found =
+        plan("  - id: first\n    thin:\n  - tetrahedralise:\n  - id: second\n    thin: {count: 2}\n  - make:\n");
     EXPECT_EQ(findings_, "");
     EXPECT_EQ(describe(found, found.steps[1].inputs[0].sources[0]), "first");
-    EXPECT_EQ(describe(found, found.steps[2].inputs[0].sources[0]), "first") << "points pass over a step that gives tets";
+    EXPECT_EQ(describe(found, found.steps[2].inputs[0].sources[0]), "first")
+        << "points pass over a step that gives tets";
     EXPECT_TRUE(found.steps[3].inputs.empty()) << "an optional port without a candidate stays open";
 }
 
 TEST_F(Variants, StructureKey_IgnoresNamesOrderAndSpelling) {
-    const Plan a = plan("  - thin: {count: 2, size: 1 u}\n  - tetrahedralise:\n  - solid: {angle: 180 deg, coverage: 50 %}\n");
-    const Plan b = plan("  - id: x\n    thin:\n      size: 1.0 u\n      count: 2\n  - tetrahedralise: {}\n  - solid: {coverage: 0.5}\n");
+    const Plan a =
+        plan("  - thin: {count: 2, size: 1 u}\n  - tetrahedralise:\n  - solid: {angle: 180 deg, coverage: 50 %}\n");
+    const Plan b = plan(
+        "  - id: x\n    thin:\n      size: 1.0 u\n      count: 2\n  - tetrahedralise: {}\n  - solid: {coverage: "
+        "0.5}\n");
     ASSERT_EQ(a.steps.size(), 3u);
     ASSERT_EQ(b.steps.size(), 3u);
     EXPECT_EQ(a.steps[0].structure_key, b.steps[0].structure_key);

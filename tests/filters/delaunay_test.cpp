@@ -128,8 +128,8 @@ TEST(Delaunay, TwoPointsAcrossATriangle_GiveTwoCellsThatShareIt) {
     ASSERT_EQ(tets.cells.size(), 2u);
     EXPECT_EQ(tets.cells[0], (Tetrahedron{0, 1, 2, 3}));
     EXPECT_EQ(tets.cells[1], (Tetrahedron{0, 1, 4, 2}));
-    EXPECT_EQ(tets.neighbours[0], (std::array<u32, 4>{TetMesh::outside_hull, TetMesh::outside_hull,
-                                                      TetMesh::outside_hull, 1}));
+    EXPECT_EQ(tets.neighbours[0],
+              (std::array<u32, 4>{TetMesh::outside_hull, TetMesh::outside_hull, TetMesh::outside_hull, 1}));
     EXPECT_EQ(tets.neighbours[1][2], 0u);
 }
 
@@ -194,8 +194,7 @@ TEST(Delaunay, ManyDuplicates_LeaveTheTriangulationOfTheDistinctPoints) {
 }
 
 TEST(Delaunay, MinusZero_IsTheSamePlaceAsZero) {
-    const DelaunayResult result =
-        triangulated(cloud_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-0.0, 0, -0.0}}));
+    const DelaunayResult result = triangulated(cloud_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-0.0, 0, -0.0}}));
     EXPECT_EQ(result.duplicates, 1u);
 }
 
@@ -223,7 +222,8 @@ TEST(Delaunay, NaNOrInfinity_IsRefusedWithItsPlace) {
 
 TEST(Delaunay, TooFewPoints_AreRefused) {
     EXPECT_THAT(refusal(cloud_of({})), HasSubstr("the cloud has 0"));
-    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})), HasSubstr("at least 4 points that are not coplanar"));
+    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})),
+                HasSubstr("at least 4 points that are not coplanar"));
 }
 
 TEST(Delaunay, TooFewDistinctPoints_AreRefusedWithBothNumbers) {
@@ -325,8 +325,9 @@ TEST(Delaunay, Bunny_IsCanonicalAndFillsItsHull) {
         for (int i = 0; i < 4; ++i) {
             if (tets.neighbours[c][i] != TetMesh::outside_hull) continue;
             const auto& [j, k, l] = outward_facet[i];
-            six_enclosed += tets.positions[tets.cells[c][j]].cross(tets.positions[tets.cells[c][k]]).dot(
-                tets.positions[tets.cells[c][l]]);
+            six_enclosed += tets.positions[tets.cells[c][j]]
+                                .cross(tets.positions[tets.cells[c][k]])
+                                .dot(tets.positions[tets.cells[c][l]]);
         }
     EXPECT_NEAR(volume(tets), six_enclosed / 6, 1e-12);
 }

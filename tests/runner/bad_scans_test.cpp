@@ -42,8 +42,14 @@ const std::vector<BadScan> bad_scans{
     {"TruncatedAscii", "scan.ply", ply_header("3", "ascii") + "0 0 0\n1 1 1\n", {"3"}},
     {"PromisesTwoToTheForty", "scan.ply", ply_header("1099511627776") + std::string(120, 'a'), {"1099511627776"}},
     {"PromisesTwoToTheFortyAscii", "scan.ply", ply_header("1099511627776", "ascii") + "0 0 0\n", {"1099511627776"}},
-    {"PromisesBeyondSixtyFourBits", "scan.ply", ply_header("99999999999999999999999") + "abc", {"99999999999999999999999"}},
-    {"BinaryStlPromisesMore", "scan.stl", std::string(80, ' ') + "\xff\xff\xff\xff" + std::string(50, 'a'), {"4294967295"}},
+    {"PromisesBeyondSixtyFourBits",
+     "scan.ply",
+     ply_header("99999999999999999999999") + "abc",
+     {"99999999999999999999999"}},
+    {"BinaryStlPromisesMore",
+     "scan.stl",
+     std::string(80, ' ') + "\xff\xff\xff\xff" + std::string(50, 'a'),
+     {"4294967295"}},
     {"NotANumber", "scan.xyz", "0 0 0\n1 nan 0\n0 1 0\n0 0 1\n1 1 1\n", {"1 of 5", "NaN", "--drop-invalid"}},
     {"Infinity", "scan.xyz", "0 0 0\n1 0 0\n0 inf 0\n0 0 1\n-inf 1 1\n", {"2 of 5", "infinity"}},
     {"AllPointsEqual", "scan.xyz", repeated("1 2 3\n", 9), {"9"}},
@@ -52,20 +58,28 @@ const std::vector<BadScan> bad_scans{
     {"ThreePoints", "scan.xyz", "0 0 0\n1 0 0\n0 1 0\n", {"4", "3"}},
     {"OnePoint", "scan.xyz", "0 0 0\n", {"1"}},
     {"WordsInsteadOfNumbers", "scan.xyz", "0 0 0\nzero one two\n", {"line 2"}},
-    {"UnknownFormat", "scan.bin", std::string("\x7f" "ELF\x02\x01\x01", 7) + std::string(99, '\0'), {"format"}},
+    {"UnknownFormat",
+     "scan.bin",
+     std::string("\x7f"
+                 "ELF\x02\x01\x01",
+                 7) +
+         std::string(99, '\0'),
+     {"format"}},
 };
 
 class BadScanTest : public testing::TestWithParam<BadScan> {};
 
 /// One refusal: the exit code, one error that names the file, nothing written.
-void expect_one_clear_sentence(const ProgramResult& ran, const std::string& file, const std::vector<std::string>& said) {
+void expect_one_clear_sentence(const ProgramResult& ran, const std::string& file,
+                               const std::vector<std::string>& said) {
     EXPECT_EQ(ran.exit_code, 1) << ran.err;
     EXPECT_THAT(ran.err, HasSubstr(file));
     for (const std::string& part : said) EXPECT_THAT(ran.err, HasSubstr(part));
     EXPECT_THAT(ran.err, testing::Not(HasSubstr("bad_alloc")));
     EXPECT_THAT(ran.err, testing::Not(HasSubstr("memory did not suffice")));
     std::size_t errors = 0;
-    for (std::size_t at = ran.err.find("error: "); at != std::string::npos; at = ran.err.find("error: ", at + 1)) ++errors;
+    for (std::size_t at = ran.err.find("error: "); at != std::string::npos; at = ran.err.find("error: ", at + 1))
+        ++errors;
     EXPECT_EQ(errors, 1u) << ran.err;
 }
 
@@ -73,7 +87,9 @@ TEST_P(BadScanTest, Run_SaysOneClearSentenceAndEndsWith1) {
     const BadScan& bad = GetParam();
     const TemporaryFolder folder;
     folder.write(bad.file, bad.content);
-    folder.write("w.yaml", "scanmill: 1\ninputs: {scan: points}\nsteps: [{delaunay: }, {alpha-solid: }]\noutputs: {\"{scan}.stl\": alpha-solid}\n");
+    folder.write("w.yaml",
+                 "scanmill: 1\ninputs: {scan: points}\nsteps: [{delaunay: }, {alpha-solid: }]\noutputs: "
+                 "{\"{scan}.stl\": alpha-solid}\n");
     ProgramOptions options{.folder = folder.path(), .environment = {}};
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     options.memory_limit = std::size_t(1) << 31;
@@ -90,13 +106,15 @@ TEST(BadScan, Folder_IsRefused) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "scan.ply");
     const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
-    expect_one_clear_sentence(scanmill_program({"run", quickstart, "scan.ply", "-o", "out"}, {.folder = folder.path()}), "scan.ply", {"folder"});
+    expect_one_clear_sentence(scanmill_program({"run", quickstart, "scan.ply", "-o", "out"}, {.folder = folder.path()}),
+                              "scan.ply", {"folder"});
 }
 
 TEST(BadScan, MissingFile_IsRefused) {
     const TemporaryFolder folder;
     const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
-    expect_one_clear_sentence(scanmill_program({"run", quickstart, "scan.ply", "-o", "out"}, {.folder = folder.path()}), "scan.ply", {"no such file"});
+    expect_one_clear_sentence(scanmill_program({"run", quickstart, "scan.ply", "-o", "out"}, {.folder = folder.path()}),
+                              "scan.ply", {"no such file"});
 }
 
 }  // namespace

@@ -23,10 +23,10 @@ const std::vector<std::string> filters{"alpha-solid", "delaunay", "virtual-scan"
 
 /// A scan of a sphere by the program itself, written to `file`.
 void write_sphere(const TemporaryFolder& folder, const std::string& name) {
-    const auto workflow = folder.write("sphere.yaml",
-                                       "scanmill: 1\nname: " + name +
-                                           "\nsteps:\n  - virtual-scan: {shape: sphere, views: [8], resolution: 3 %diag}\n"
-                                           "outputs: {\"{scan}.ply\": virtual-scan}\n");
+    const auto workflow =
+        folder.write("sphere.yaml", "scanmill: 1\nname: " + name +
+                                        "\nsteps:\n  - virtual-scan: {shape: sphere, views: [8], resolution: 3 %diag}\n"
+                                        "outputs: {\"{scan}.ply\": virtual-scan}\n");
     const ProgramResult made = scanmill_program({"run", workflow.string(), "-o", folder.path().string()});
     ASSERT_EQ(made.exit_code, 0) << made.err;
 }
@@ -48,12 +48,22 @@ TEST(Command, Help_GoesToStdoutAndIsNoError) {
 TEST(Command, Version_IsPrinted) { EXPECT_THAT(scanmill_program({"--version"}).out, HasSubstr("scanmill 0.")); }
 
 TEST(Command, BadArguments_EndWith2AndAHint) {
-    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-             {}, {"frobnicate"}, {"run"}, {"show"}, {"show", "no-such-filter"}, {"check", "--format", "xml", "x"},
-             {"run", "no-such-workflow.yaml", "x.ply"}, {"run", quickstart()}, {"run", quickstart(), "x.ply", "--unit", "yard"},
-             {"run", quickstart(), "x.ply", "--set", "bin-size"}, {"run", quickstart(), "x.ply", "--set", "nothing=1"},
-             {"run", quickstart(), "x.ply", "--only", "nothing"}, {"run", quickstart(), "x.ply", "--until", "nothing"},
-             {"run", quickstart(), "x.ply", "--in", "nothing=x"}, {"convert", "a"}}) {
+    for (const std::vector<std::string>& arguments :
+         std::vector<std::vector<std::string>>{{},
+                                               {"frobnicate"},
+                                               {"run"},
+                                               {"show"},
+                                               {"show", "no-such-filter"},
+                                               {"check", "--format", "xml", "x"},
+                                               {"run", "no-such-workflow.yaml", "x.ply"},
+                                               {"run", quickstart()},
+                                               {"run", quickstart(), "x.ply", "--unit", "yard"},
+                                               {"run", quickstart(), "x.ply", "--set", "bin-size"},
+                                               {"run", quickstart(), "x.ply", "--set", "nothing=1"},
+                                               {"run", quickstart(), "x.ply", "--only", "nothing"},
+                                               {"run", quickstart(), "x.ply", "--until", "nothing"},
+                                               {"run", quickstart(), "x.ply", "--in", "nothing=x"},
+                                               {"convert", "a"}}) {
         const ProgramResult result = scanmill_program(arguments);
         EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(arguments);
         EXPECT_THAT(result.out, IsEmpty());
@@ -84,10 +94,12 @@ TEST(Command, List_LoadsNoModule) {
     folder.write("scanmill-other-thin.so", "no module");
     const ProgramOptions with_folder{.folder = {}, .environment = {"SCANMILL_PLUGIN_PATH=" + folder.path().string()}};
     EXPECT_THAT(scanmill_program({"list"}, with_folder).out, HasSubstr("other-thin"));
-    const auto workflow = folder.write("w.yaml", "scanmill: 1\ninputs: {scan: points}\nsteps: [{other-thin: {bin-size: 1 u}}]\n");
+    const auto workflow =
+        folder.write("w.yaml", "scanmill: 1\ninputs: {scan: points}\nsteps: [{other-thin: {bin-size: 1 u}}]\n");
     EXPECT_EQ(scanmill_program({"check", workflow.string()}, with_folder).exit_code, 0);
     const auto scan = folder.write("scan.xyz", "0 0 0\n1 1 1\n");
-    const ProgramResult ran = scanmill_program({"run", workflow.string(), scan.string(), "-o", folder.path().string()}, with_folder);
+    const ProgramResult ran =
+        scanmill_program({"run", workflow.string(), scan.string(), "-o", folder.path().string()}, with_folder);
     EXPECT_EQ(ran.exit_code, 1);
     EXPECT_THAT(ran.err, HasSubstr("cannot be loaded"));
 }
@@ -97,7 +109,8 @@ TEST(Command, Modules_AreNeverTakenFromTheWorkingFolder) {
     folder.write("scanmill-mine.json", "{}");
     folder.write("scanmill-mine.so", "");
     for (const char* variable : {"SCANMILL_PLUGIN_PATH=", "SCANMILL_PLUGIN_PATH=.", "SCANMILL_PLUGIN_PATH=:"}) {
-        const ProgramResult listed = scanmill_program({"list", "--json"}, {.folder = folder.path(), .environment = {variable}});
+        const ProgramResult listed =
+            scanmill_program({"list", "--json"}, {.folder = folder.path(), .environment = {variable}});
         EXPECT_EQ(json::parse(listed.out).at("unusable").size(), 0u) << variable;
     }
 }
@@ -143,11 +156,13 @@ outputs:
     const ProgramResult checked = scanmill_program({"check", workflow.string()});
     EXPECT_EQ(checked.exit_code, 2);
     EXPECT_THAT(checked.out, IsEmpty());
-    EXPECT_THAT(checked.err, AllOf(HasSubstr("w.yaml:5:5: there is no filter 'voxel-thinn'"), HasSubstr("did you mean 'voxel-thin'?"),
-                                   HasSubstr("w.yaml:6:18: voxel-thin has no parameter 'bin-siz'"), HasSubstr("did you mean 'bin-size'?"),
-                                   HasSubstr("w.yaml:6:46: bin-size: '0.5' has no unit"), HasSubstr("w.yaml:8:29: coverage: 300 %"),
-                                   HasSubstr("w.yaml:9:16: 'scan' is points"), HasSubstr("w.yaml:11:5: the key 'delaunay'"),
-                                   HasSubstr("w.yaml:13:3: '../{scan}.stl' lies outside"), HasSubstr("7 errors")));
+    EXPECT_THAT(
+        checked.err,
+        AllOf(HasSubstr("w.yaml:5:5: there is no filter 'voxel-thinn'"), HasSubstr("did you mean 'voxel-thin'?"),
+              HasSubstr("w.yaml:6:18: voxel-thin has no parameter 'bin-siz'"), HasSubstr("did you mean 'bin-size'?"),
+              HasSubstr("w.yaml:6:46: bin-size: '0.5' has no unit"), HasSubstr("w.yaml:8:29: coverage: 300 %"),
+              HasSubstr("w.yaml:9:16: 'scan' is points"), HasSubstr("w.yaml:11:5: the key 'delaunay'"),
+              HasSubstr("w.yaml:13:3: '../{scan}.stl' lies outside"), HasSubstr("7 errors")));
     const json found = json::parse(scanmill_program({"check", "--json", workflow.string()}).out);
     EXPECT_EQ(found.at("files").at(0).at("diagnostics").size(), 7u);
     EXPECT_FALSE(found.at("files").at(0).at("ok").get<bool>());
@@ -156,7 +171,8 @@ outputs:
 TEST(Command, CheckPlan_ShowsTheWiringInThreeForms) {
     const ProgramResult text = scanmill_program({"check", "--plan", quickstart()});
     EXPECT_EQ(text.exit_code, 0);
-    EXPECT_THAT(text.out, AllOf(HasSubstr("points <- scan"), HasSubstr("tets <- delaunay"), HasSubstr("{scan}.stl <- surface")));
+    EXPECT_THAT(text.out,
+                AllOf(HasSubstr("points <- scan"), HasSubstr("tets <- delaunay"), HasSubstr("{scan}.stl <- surface")));
     EXPECT_THAT(scanmill_program({"check", "--plan", "--format", "dot", quickstart()}).out, HasSubstr("digraph"));
     const json plan = json::parse(scanmill_program({"check", "--plan", "--format", "json", quickstart()}).out);
     EXPECT_EQ(plan.at("files").at(0).at("plan").at("steps").size(), 3u);
@@ -165,7 +181,8 @@ TEST(Command, CheckPlan_ShowsTheWiringInThreeForms) {
 TEST(Command, Run_WritesAClosedMeshAndATable) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
-    const ProgramResult ran = scanmill_program({"run", quickstart(), "ball.ply", "--set", "bin-size=1 %diag", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran = scanmill_program(
+        {"run", quickstart(), "ball.ply", "--set", "bin-size=1 %diag", "-o", "out"}, {.folder = folder.path()});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_THAT(ran.out, AllOf(HasSubstr("kept"), HasSubstr("triangles"), HasSubstr("out/ball.stl"), HasSubstr("yes")));
     const json info = json::parse(scanmill_program({"info", "--json", (folder / "out/ball.stl").string()}).out);
@@ -176,7 +193,8 @@ TEST(Command, Run_WritesAClosedMeshAndATable) {
 TEST(Command, RunJson_IsJsonWithKeysMetricsAndFiles) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
-    const ProgramResult ran = scanmill_program({"run", quickstart(), "ball.ply", "--json", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran =
+        scanmill_program({"run", quickstart(), "ball.ply", "--json", "-o", "out"}, {.folder = folder.path()});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     const json report = json::parse(ran.out);
     EXPECT_EQ(report.at("scanmill"), 1);
@@ -191,7 +209,10 @@ TEST(Command, RunTwiceWithAnyThreads_WritesEqualBytes) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
     for (const char* threads : {"1", "2"})
-        ASSERT_EQ(scanmill_program({"run", quickstart(), "ball.ply", "--threads", threads, "-o", threads}, {.folder = folder.path()}).exit_code, 0);
+        ASSERT_EQ(scanmill_program({"run", quickstart(), "ball.ply", "--threads", threads, "-o", threads},
+                                   {.folder = folder.path()})
+                      .exit_code,
+                  0);
     EXPECT_EQ(content_of(folder / "1/ball.stl"), content_of(folder / "2/ball.stl"));
     EXPECT_FALSE(content_of(folder / "1/ball.stl").empty());
 }
@@ -199,7 +220,8 @@ TEST(Command, RunTwiceWithAnyThreads_WritesEqualBytes) {
 TEST(Command, DryRun_WritesNothing) {
     const TemporaryFolder folder;
     folder.write("a.xyz", "0 0 0\n1 0 0\n");
-    const ProgramResult ran = scanmill_program({"run", quickstart(), "a.xyz", "--dry-run", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran =
+        scanmill_program({"run", quickstart(), "a.xyz", "--dry-run", "-o", "out"}, {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 0);
     EXPECT_THAT(ran.out, HasSubstr("out/a.stl"));
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));
@@ -209,9 +231,11 @@ TEST(Command, OneBadScanAmongGoodOnes_FailsAloneWith1) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
     folder.write("flat.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
-    const ProgramResult ran = scanmill_program({"run", quickstart(), "flat.xyz", "missing.ply", "ball.ply", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran = scanmill_program(
+        {"run", quickstart(), "flat.xyz", "missing.ply", "ball.ply", "-o", "out"}, {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 1);
-    EXPECT_THAT(ran.err, AllOf(HasSubstr("on scan 'flat.xyz'"), HasSubstr("in step 'delaunay'"), HasSubstr("missing.ply")));
+    EXPECT_THAT(ran.err,
+                AllOf(HasSubstr("on scan 'flat.xyz'"), HasSubstr("in step 'delaunay'"), HasSubstr("missing.ply")));
     EXPECT_THAT(ran.out, HasSubstr("2 of 3 failed"));
     EXPECT_TRUE(std::filesystem::exists(folder / "out/ball.stl"));
     EXPECT_FALSE(std::filesystem::exists(folder / "out/flat.stl"));
@@ -221,7 +245,8 @@ TEST(Command, TwoScansOfOneName_AreRefusedBeforeTheRun) {
     const TemporaryFolder folder;
     folder.write("a/s.xyz", "0 0 0\n1 0 0\n");
     folder.write("b/s.xyz", "0 0 0\n2 0 0\n");
-    const ProgramResult ran = scanmill_program({"run", quickstart(), "a/s.xyz", "b/s.xyz", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran =
+        scanmill_program({"run", quickstart(), "a/s.xyz", "b/s.xyz", "-o", "out"}, {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 2);
     EXPECT_THAT(ran.err, AllOf(HasSubstr("a/s.xyz"), HasSubstr("b/s.xyz"), HasSubstr("would both write")));
 }
@@ -229,7 +254,9 @@ TEST(Command, TwoScansOfOneName_AreRefusedBeforeTheRun) {
 TEST(Command, Output_NeverReplacesAnInput) {
     const TemporaryFolder folder;
     folder.write("s.ply", "ply\n");
-    const auto workflow = folder.write("w.yaml", "scanmill: 1\ninputs: {scan: points}\nsteps: [{voxel-thin: {bin-size: 1 u}}]\noutputs: {\"{scan}.ply\": voxel-thin}\n");
+    const auto workflow = folder.write("w.yaml",
+                                       "scanmill: 1\ninputs: {scan: points}\nsteps: [{voxel-thin: {bin-size: 1 "
+                                       "u}}]\noutputs: {\"{scan}.ply\": voxel-thin}\n");
     const ProgramResult ran = scanmill_program({"run", "w.yaml", "s.ply", "-o", "."}, {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 2);
     EXPECT_THAT(ran.err, HasSubstr("must not replace it"));
@@ -251,7 +278,9 @@ TEST(Command, AbsoluteLengthOnAScanOfUnknownUnit_SaysHowToDeclareIt) {
 TEST(Command, SaveAndUntil_WriteAndStopAtAStep) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
-    const ProgramResult ran = scanmill_program({"run", quickstart(), "ball.ply", "--save", "voxel-thin", "--until", "voxel-thin", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran = scanmill_program(
+        {"run", quickstart(), "ball.ply", "--save", "voxel-thin", "--until", "voxel-thin", "-o", "out"},
+        {.folder = folder.path()});
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_TRUE(std::filesystem::exists(folder / "out/ball.voxel-thin.ply"));
     EXPECT_FALSE(std::filesystem::exists(folder / "out/ball.stl"));
@@ -270,7 +299,9 @@ TEST(Command, Convert_KeepsPointsAndConvertsUnits) {
     const TemporaryFolder folder;
     folder.write("a.xyz", "0 0 0\n1 nan 0\n3000 4000 0\n");
     const ProgramOptions here{.folder = folder.path(), .environment = {}};
-    EXPECT_EQ(scanmill_program({"convert", "a.xyz", "a.ply", "--unit", "mm", "--to-unit", "m", "--drop-invalid"}, here).exit_code, 0);
+    EXPECT_EQ(scanmill_program({"convert", "a.xyz", "a.ply", "--unit", "mm", "--to-unit", "m", "--drop-invalid"}, here)
+                  .exit_code,
+              0);
     const json info = json::parse(scanmill_program({"info", "--json", "a.ply"}, here).out).at("files").at(0);
     EXPECT_EQ(info.at("points"), 2);
     EXPECT_EQ(info.at("unit"), "m");
@@ -283,7 +314,8 @@ TEST(Command, Convert_KeepsPointsAndConvertsUnits) {
 TEST(Command, RealScan_ThroughTheQuickstart) {
     SCANMILL_REAL_SCAN(kitten, fetched_data, "points_3/kitten.xyz");
     const TemporaryFolder folder;
-    const ProgramResult ran = scanmill_program({"run", quickstart(), kitten.string(), "--json", "-o", "out"}, {.folder = folder.path()});
+    const ProgramResult ran =
+        scanmill_program({"run", quickstart(), kitten.string(), "--json", "-o", "out"}, {.folder = folder.path()});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     const json facts = json::parse(ran.out).at("cells").at(0).at("outputs").at(0).at("facts");
     EXPECT_EQ(facts.at("closed"), true);

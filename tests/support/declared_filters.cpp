@@ -42,14 +42,15 @@ const char* const help = "As its name says.";
 
 DeclaredFilters::DeclaredFilters() {
     const auto spec = [](const FilterDeclaration& declaration) { return declaration.spec; };
-    add(spec(declare<ThinParams>("thin")
-                 .in<PointCloud>("points", help)
-                 .out<PointCloud>("points", help)
-                 .param("size", &ThinParams::size, help, above(0))
-                 .param("count", &ThinParams::count, help, at_least(1), at_most(9))
-                 .choice("rule", &ThinParams::rule, {{"nearest", Rule::nearest, help}, {"random", Rule::random, help}}, help)
-                 .param("axis", &ThinParams::axis, help, size(3))
-                 .metric("kept", Unit::count, help)));
+    add(spec(
+        declare<ThinParams>("thin")
+            .in<PointCloud>("points", help)
+            .out<PointCloud>("points", help)
+            .param("size", &ThinParams::size, help, above(0))
+            .param("count", &ThinParams::count, help, at_least(1), at_most(9))
+            .choice("rule", &ThinParams::rule, {{"nearest", Rule::nearest, help}, {"random", Rule::random, help}}, help)
+            .param("axis", &ThinParams::axis, help, size(3))
+            .metric("kept", Unit::count, help)));
     add(spec(declare<Nothing>("tetrahedralise").in<PointCloud>("points", help).out<TetMesh>("tets", help)));
     add(spec(declare<SolidParams>("solid")
                  .in<TetMesh>("tets", help)

@@ -8,9 +8,9 @@
 namespace scanmill::test {
 
 /// thin: points → points (size: length above 0 = 1 %diag; count: integer of at least 1 = 1; rule: nearest, random).
-/// tetrahedralise: points → tets.        solid: tets → mesh*, tets (alpha: length or auto; coverage: ratio up to 100 %).
-/// simplify: mesh → mesh (max-error: length, required).    register: source, target: points → transform.
-/// combine: points… (a list) → points.   pair: points → left*, right: points.    make: mesh? → points.
+/// tetrahedralise: points → tets.        solid: tets → mesh*, tets (alpha: length or auto; coverage: ratio up to 100
+/// %). simplify: mesh → mesh (max-error: length, required).    register: source, target: points → transform. combine:
+/// points… (a list) → points.   pair: points → left*, right: points.    make: mesh? → points.
 class DeclaredFilters {
 public:
     DeclaredFilters();

@@ -2,8 +2,8 @@
 #include "support/point_sets.hpp"
 
 #include <Eigen/Geometry>
-#include <numeric>
 #include <numbers>
+#include <numeric>
 #include <unordered_map>
 
 #include "scanmill/filter/random.hpp"
@@ -93,8 +93,7 @@ PointCloud lattice_cube(u32 n, double spacing, bool surface_only) {
     for (u32 i = 0; i <= n; ++i)
         for (u32 j = 0; j <= n; ++j)
             for (u32 k = 0; k <= n; ++k)
-                if (!surface_only || at_end(i) || at_end(j) || at_end(k))
-                    positions.push_back(Vec3(i, j, k) * spacing);
+                if (!surface_only || at_end(i) || at_end(j) || at_end(k)) positions.push_back(Vec3(i, j, k) * spacing);
     return cloud(std::move(positions));
 }
 

@@ -15,7 +15,8 @@ namespace scanmill::test {
 
 namespace {
 
-[[noreturn]] void become(const std::vector<std::string>& arguments, const ProgramOptions& options, const char* out, const char* err) {
+[[noreturn]] void become(const std::vector<std::string>& arguments, const ProgramOptions& options, const char* out,
+                         const char* err) {
     const int input = ::open("/dev/null", O_RDONLY);
     const int output = ::open(out, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int errors = ::open(err, O_WRONLY | O_CREAT | O_TRUNC, 0600);

@@ -19,7 +19,7 @@ std::optional<std::filesystem::path> shared_data(std::string_view name);
 }  // namespace scanmill::test
 
 /// Declares `variable` as the path of a real scan, or ends the test as skipped.
-#define SCANMILL_REAL_SCAN(variable, source, name)                       \
-    const auto variable##_found = ::scanmill::test::source(name);        \
-    if (!variable##_found) GTEST_SKIP() << "skipped: no " << (name);     \
+#define SCANMILL_REAL_SCAN(variable, source, name)                   \
+    const auto variable##_found = ::scanmill::test::source(name);    \
+    if (!variable##_found) GTEST_SKIP() << "skipped: no " << (name); \
     const std::filesystem::path variable = *variable##_found

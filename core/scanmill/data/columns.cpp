@@ -14,7 +14,7 @@ std::size_t size_of(ScalarType type) {
 }
 
 std::string_view name_of(ScalarType type) {
-    constexpr std::array<std::string_view, 10> names{"int8",  "uint8",  "int16", "uint16", "int32",
+    constexpr std::array<std::string_view, 10> names{"int8",   "uint8", "int16",  "uint16",  "int32",
                                                      "uint32", "int64", "uint64", "float32", "float64"};
     return names[static_cast<std::size_t>(type)];
 }

@@ -3,8 +3,9 @@
 /// Named per-element columns: what a scan carries beside its positions.
 ///
 /// A Column is #rows × components numbers of one scalar type, or #rows lists of varying length. Well-known names:
-/// `normal` (3 × float32 or float64, unit length), `colour` (3 or 4 × uint8, red green blue alpha), `weight` (1). Everything else
-/// keeps the name and type it had in its file. Columns are values: copying shares the memory, gather() makes a new one.
+/// `normal` (3 × float32 or float64, unit length), `colour` (3 or 4 × uint8, red green blue alpha), `weight` (1).
+/// Everything else keeps the name and type it had in its file. Columns are values: copying shares the memory, gather()
+/// makes a new one.
 
 #include <array>
 #include <optional>

@@ -38,7 +38,8 @@ public:
     const std::filesystem::path& module_file(std::string_view name) const;
     /// Content hash of the module, computed once. Pre: find(name).
     const std::string& build_id(std::string_view name);
-    /// Loads the module on first use. Throws Error when it cannot be loaded or differs from its manifest. Pre: find(name).
+    /// Loads the module on first use. Throws Error when it cannot be loaded or differs from its manifest. Pre:
+/// find(name).
     const FilterDeclaration& load(std::string_view name);
 
 private:

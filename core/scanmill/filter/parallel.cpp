@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/parallel.hpp"
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -25,7 +26,8 @@ void for_each_chunk(unsigned threads, std::size_t count, std::size_t chunk,
 }
 
 void within_thread_budget(unsigned threads, const std::function<void()>& body) {
-    tbb::task_arena arena(static_cast<int>(std::max(1u, threads)));
+    // More threads than the machine has would only make the library complain.
+    tbb::task_arena arena(std::clamp(static_cast<int>(threads), 1, tbb::info::default_concurrency()));
     arena.execute(body);
 }
 

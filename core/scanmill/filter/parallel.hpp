@@ -15,7 +15,8 @@ namespace scanmill {
 void for_each_chunk(unsigned threads, std::size_t count, std::size_t chunk,
                     const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-/// Runs `body` where oneTBB sees exactly `threads` threads: for libraries that parallelise themselves.
+/// Runs `body` where oneTBB sees `threads` threads (never more than the machine has): for libraries that parallelise
+/// themselves.
 void within_thread_budget(unsigned threads, const std::function<void()>& body);
 
 }  // namespace scanmill

@@ -2,8 +2,8 @@
 #pragma once
 /// Parameters as data: what one is called, of which type and range it is, and how its written form becomes a value.
 ///
-/// The specification of a parameter comes from the filter's declaration (declare.hpp) or, without loading any code, from
-/// its manifest. Both check a workflow the same way.
+/// The specification of a parameter comes from the filter's declaration (declare.hpp) or, without loading any code,
+/// from its manifest. Both check a workflow the same way.
 
 #include <cstdint>
 #include <optional>

@@ -19,7 +19,7 @@
 #define SCANMILL_ABI_SANITIZER ""
 #endif
 /// Everything that must agree for C++ objects to cross the border.
-#define SCANMILL_ABI_TEXT                                                                           \
+#define SCANMILL_ABI_TEXT \
     "scanmill " SCANMILL_VERSION ", compiler abi " SCANMILL_TEXT(__GXX_ABI_VERSION) ", libstdc++ "  \
     SCANMILL_TEXT(_GLIBCXX_RELEASE) ", c++ " SCANMILL_TEXT(__cplusplus) ", eigen "                  \
     SCANMILL_TEXT(EIGEN_WORLD_VERSION) "." SCANMILL_TEXT(EIGEN_MAJOR_VERSION) " aligned to "        \
@@ -42,10 +42,10 @@ struct PluginDescriptor {
 }  // namespace scanmill
 
 /// Exactly once per module; its body returns the declaration. SCANMILL_FILTER_NAME comes from scanmill_add_filter().
-#define SCANMILL_FILTER()                                                                                          \
-    static scanmill::FilterDeclaration scanmill_filter_declaration();                                              \
-    extern "C" __attribute__((visibility("default"))) const scanmill::PluginDescriptor scanmill_plugin;            \
-    constinit const scanmill::PluginDescriptor scanmill_plugin{                                                              \
-        "scanmill-filter", SCANMILL_ABI_TEXT, SCANMILL_FILTER_NAME,                                                \
-        [](scanmill::FilterDeclaration* declaration) { *declaration = scanmill_filter_declaration(); }};           \
+#define SCANMILL_FILTER()                                                                                \
+    static scanmill::FilterDeclaration scanmill_filter_declaration();                                    \
+    extern "C" __attribute__((visibility("default"))) const scanmill::PluginDescriptor scanmill_plugin;  \
+    constinit const scanmill::PluginDescriptor scanmill_plugin{                                          \
+        "scanmill-filter", SCANMILL_ABI_TEXT, SCANMILL_FILTER_NAME,                                      \
+        [](scanmill::FilterDeclaration* declaration) { *declaration = scanmill_filter_declaration(); }}; \
     static scanmill::FilterDeclaration scanmill_filter_declaration()

@@ -37,14 +37,16 @@ u32 high(const Side& side) { return static_cast<u32>(side.edge); }
 
 bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-/// The sides of all proper triangles, those of one edge together: a counting sort by the smaller vertex, then tiny sorts.
+/// The sides of all proper triangles, those of one edge together: a counting sort by the smaller vertex, then tiny
+/// sorts.
 std::vector<Side> sides_by_edge(const TriangleMesh& mesh) {
     std::vector<u32> begin(mesh.positions.size() + 1, 0);
     const auto for_each_side = [&](auto&& action) {
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
             const Triangle& triangle = mesh.triangles[t];
             if (is_degenerate(triangle)) continue;
-            for (int corner = 0; corner < 3; ++corner) action(static_cast<u32>(t), triangle[corner], triangle[(corner + 1) % 3]);
+            for (int corner = 0; corner < 3; ++corner)
+                action(static_cast<u32>(t), triangle[corner], triangle[(corner + 1) % 3]);
         }
     };
     for_each_side([&](u32, u32 a, u32 b) { ++begin[std::min(a, b) + 1]; });
@@ -55,8 +57,9 @@ std::vector<Side> sides_by_edge(const TriangleMesh& mesh) {
         sides[next[std::min(a, b)]++] = {u64(std::min(a, b)) << 32 | std::max(a, b), t, a < b};
     });
     for (std::size_t vertex = 0; vertex + 1 < begin.size(); ++vertex)
-        std::sort(sides.begin() + begin[vertex], sides.begin() + begin[vertex + 1],
-                  [](const Side& a, const Side& b) { return std::pair(a.edge, a.triangle) < std::pair(b.edge, b.triangle); });
+        std::sort(sides.begin() + begin[vertex], sides.begin() + begin[vertex + 1], [](const Side& a, const Side& b) {
+            return std::pair(a.edge, a.triangle) < std::pair(b.edge, b.triangle);
+        });
     return sides;
 }
 
@@ -134,8 +137,7 @@ MeshTopology topology(const TriangleMesh& mesh) {
                           facts.nonmanifold_vertices == 0 && facts.misoriented_edges == 0;
     facts.closed = manifold && facts.boundary_edges == 0;
     if (manifold)
-        facts.genus = static_cast<long>(facts.components) -
-                      (facts.euler + static_cast<long>(facts.boundary_loops)) / 2;
+        facts.genus = static_cast<long>(facts.components) - (facts.euler + static_cast<long>(facts.boundary_loops)) / 2;
     return facts;
 }
 

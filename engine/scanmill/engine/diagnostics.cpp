@@ -28,8 +28,9 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
 }
 
 std::string text(const Diagnostic& diagnostic, const std::string& file) {
-    const std::string place =
-        diagnostic.position.line == 0 ? file : fmt::format("{}:{}:{}", file, diagnostic.position.line, diagnostic.position.column);
+    const std::string place = diagnostic.position.line == 0
+                                  ? file
+                                  : fmt::format("{}:{}:{}", file, diagnostic.position.line, diagnostic.position.column);
     const bool warning = diagnostic.severity == Diagnostic::Severity::warning;
     return fmt::format("{}: {}{}", place, warning ? "warning: " : "", diagnostic.message);
 }

@@ -39,7 +39,8 @@ public:
     void OnDocumentStart(const YAML::Mark&) override {}
     void OnDocumentEnd() override {}
     void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-        finish({.type = YamlNode::Type::null, .position = position_of(mark), .text = "", .items = {}, .entries = {}}, anchor);
+        finish({.type = YamlNode::Type::null, .position = position_of(mark), .text = "", .items = {}, .entries = {}},
+               anchor);
     }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
         const auto found = anchors_.find(anchor);
@@ -124,8 +125,9 @@ private:
         map.has_key = false;
         const auto earlier = std::ranges::find(map.node.entries, map.key, &YamlEntry::key);
         if (earlier != map.node.entries.end()) {
-            diagnostics_.error(map.key_position, fmt::format("the key '{}' stands here a second time; it is already at line {}",
-                                                             map.key, earlier->position.line));
+            diagnostics_.error(map.key_position,
+                               fmt::format("the key '{}' stands here a second time; it is already at line {}", map.key,
+                                           earlier->position.line));
             return;
         }
         map.node.entries.push_back({map.key, map.key_position, std::move(value)});
@@ -147,7 +149,8 @@ const YamlNode* YamlNode::find(std::string_view key) const {
 std::string YamlNode::described() const {
     switch (type) {
         case Type::null: return "nothing";
-        case Type::scalar: return text.size() <= 60 ? "'" + text + "'" : "a text of " + std::to_string(text.size()) + " bytes";
+        case Type::scalar:
+            return text.size() <= 60 ? "'" + text + "'" : "a text of " + std::to_string(text.size()) + " bytes";
         case Type::sequence: return "a list";
         case Type::map: return "a map";
     }
@@ -166,7 +169,8 @@ YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
     } catch (const YAML::Exception& error) {
         diagnostics.error(position_of(error.mark), "is no YAML: " + error.msg);
     } catch (const TooManyNodes& too_many) {
-        diagnostics.error(too_many.position, fmt::format("unfolds to more than {} nodes; write fewer aliases", most_nodes));
+        diagnostics.error(too_many.position,
+                          fmt::format("unfolds to more than {} nodes; write fewer aliases", most_nodes));
     }
     return std::move(builder.root);
 }

@@ -2,8 +2,8 @@
 #pragma once
 /// A YAML file as a plain tree with the place of every node. The only file of the engine that meets the YAML library.
 ///
-/// Refused beyond what YAML itself refuses: repeated keys, keys that are no plain text, more than one document, and files
-/// whose aliases unfold to more than a million nodes.
+/// Refused beyond what YAML itself refuses: repeated keys, keys that are no plain text, more than one document, and
+/// files whose aliases unfold to more than a million nodes.
 
 #include <string>
 #include <string_view>

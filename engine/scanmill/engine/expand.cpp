@@ -39,7 +39,9 @@ struct TooManyVariants {};
 class Expander {
 public:
     Expander(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
-        : workflow_(workflow), settings_(settings), diagnostics_(diagnostics) {}
+        : workflow_(workflow),
+          settings_(settings),
+          diagnostics_(diagnostics) {}
 
     std::vector<Variant> all() {
         for (const auto& [name, value] : settings_) require_known(name, {});
@@ -47,7 +49,8 @@ public:
         walk(workflow_.steps, 0, start, [this](State& end) { finish(end); });
         for (const WorkflowParameter& parameter : workflow_.parameters)
             if (!used_.contains(parameter.name))
-                diagnostics_.warning(parameter.position, fmt::format("no step uses the parameter '{}'", parameter.name));
+                diagnostics_.warning(parameter.position,
+                                     fmt::format("no step uses the parameter '{}'", parameter.name));
         return std::move(variants_);
     }
 
@@ -83,7 +86,8 @@ private:
     }
 
     /// Fixes the step's parameters from `index` on, forking at every sweep.
-    void arguments(const StepSyntax& step, std::size_t index, ExpandedStep expanded, State& state, const Continue& then) {
+    void arguments(const StepSyntax& step, std::size_t index, ExpandedStep expanded, State& state,
+                   const Continue& then) {
         if (index == step.parameters.size()) {
             State next = state;
             next.steps.push_back(std::move(expanded));
@@ -146,7 +150,8 @@ private:
 
     static void add_swept(State& state, const StepSyntax& step, const std::string& name, const WrittenValue& value) {
         // A second sweep of the same name tells whose it is.
-        const std::string label = state.swept.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
+        const std::string label =
+            state.swept.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
         state.swept.insert(name);
         state.name_parts.push_back(file_safe(label + "=" + written_text(value.literal)));
     }
@@ -157,8 +162,9 @@ private:
         for (const std::string& part : state.name_parts) variant.name += (variant.name.empty() ? "" : "+") + part;
         if (variant.name.empty()) variant.name = "default";
         if (!names_.insert(variant.name).second)
-            diagnostics_.error(state.steps.empty() ? Position{} : state.steps.back().syntax->position,
-                               fmt::format("two variants are called '{}'; give their alternatives different names", variant.name));
+            diagnostics_.error(
+                state.steps.empty() ? Position{} : state.steps.back().syntax->position,
+                fmt::format("two variants are called '{}'; give their alternatives different names", variant.name));
         variant.steps = std::move(state.steps);
         variants_.push_back(std::move(variant));
     }

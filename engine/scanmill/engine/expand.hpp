@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// From a workflow with forks (`one-of`, `sweep`) to its variants: straight lists of steps with every value written out.
+/// From a workflow with forks (`one-of`, `sweep`) to its variants: straight lists of steps with every value written
+/// out.
 
 #include <map>
 #include <string>

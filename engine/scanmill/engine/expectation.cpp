@@ -69,12 +69,14 @@ std::optional<PlannedExpectation> plan_expectation(const Expectation& written, c
     if (asked == askable.end()) {
         std::vector<std::string> names;
         for (const MetricSpec& metric : askable) names.push_back(metric.name);
-        diagnostics.error(written.position, fmt::format("nothing is known as '{}' of what {} gives; expect takes {}{}", written.name,
-                                                        spec.name, enumerated(names), did_you_mean(written.name, names)));
+        diagnostics.error(written.position,
+                          fmt::format("nothing is known as '{}' of what {} gives; expect takes {}{}", written.name,
+                                      spec.name, enumerated(names), did_you_mean(written.name, names)));
         return std::nullopt;
     }
     const ParameterSpec form = written_as(asked->unit);
-    PlannedExpectation planned{written.name, written.position, written.relation, asked->unit, {}, {}, expectation_text(written)};
+    PlannedExpectation planned{written.name, written.position,         written.relation, asked->unit, {},
+                               {},           expectation_text(written)};
     try {
         planned.low = parse(form, {{written.value}, false});
         if (written.relation == Expectation::Relation::between) planned.high = parse(form, {{written.high}, false});

@@ -8,7 +8,8 @@ namespace scanmill {
 
 /// The expectation with its numbers typed by what it asks for: a metric of the filter, or a fact about its primary
 /// output. Reports unknown names and values of the wrong type.
-std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec, Diagnostics& diagnostics);
+std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec,
+                                                   Diagnostics& diagnostics);
 
 /// Throws Error naming every expectation that `found` does not meet. Lengths are resolved against `scale`.
 void require_met(const std::vector<PlannedExpectation>& expectations, const Metrics& found, const LengthScale& scale);

@@ -60,7 +60,8 @@ std::string display(const Metric& metric) {
     if (metric.unit == Unit::boolean) return metric.value != 0 ? "yes" : "no";
     if (metric.unit == Unit::angle) return fmt::format("{:.4g} deg", metric.value * 180 / std::numbers::pi);
     if (metric.unit == Unit::ratio) return fmt::format("{:.4g} %", metric.value * 100);
-    if (metric.value == std::floor(metric.value) && std::abs(metric.value) < 1e15) return fmt::format("{:.0f}", metric.value);
+    if (metric.value == std::floor(metric.value) && std::abs(metric.value) < 1e15)
+        return fmt::format("{:.0f}", metric.value);
     return fmt::format("{:.6g}", metric.value);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What is true of a value whatever filter made it: the numbers that `expect` may ask for beside a filter's metrics, and
-/// that summaries show.
+/// What is true of a value whatever filter made it: the numbers that `expect` may ask for beside a filter's metrics,
+/// and that summaries show.
 
 #include <vector>
 
@@ -14,7 +14,8 @@ namespace scanmill {
 /// triangles, points; point clouds: points; tetrahedra: points, cells.
 std::vector<MetricSpec> fact_specs(Kind kind);
 
-/// The facts, in the order of fact_specs; one that is not defined (the genus of a mesh that is no manifold) is left out.
+/// The facts, in the order of fact_specs; one that is not defined (the genus of a mesh that is no manifold) is left
+/// out.
 Metrics facts_of(const Value& value);
 
 /// "3000", "0.0125", "true": a metric's number for people, angles in degrees.

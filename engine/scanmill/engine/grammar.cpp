@@ -10,7 +10,9 @@
 namespace scanmill {
 
 MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagnostics)
-    : node_(node), what_(std::move(what)), diagnostics_(diagnostics) {}
+    : node_(node),
+      what_(std::move(what)),
+      diagnostics_(diagnostics) {}
 
 const YamlEntry* MapReader::find(std::string_view key) {
     known_.emplace_back(key);
@@ -53,8 +55,9 @@ bool require_name(const std::string& name, Position position, std::string_view w
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     const auto plain = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
     if (!name.empty() && letter(name.front()) && std::ranges::all_of(name, plain)) return true;
-    diagnostics.error(position, fmt::format("'{}' is no name for {}; expected letters, digits, '-' and '_', a letter first",
-                                            name, what));
+    diagnostics.error(
+        position,
+        fmt::format("'{}' is no name for {}; expected letters, digits, '-' and '_', a letter first", name, what));
     return false;
 }
 

@@ -24,7 +24,10 @@ namespace fs = std::filesystem;
 class GraphBuilder {
 public:
     GraphBuilder(const Plan& plan, FilterLibrary& library, const RunRequest& request)
-        : plan_(plan), library_(library), request_(request), core_build_(content_hash(core_library_file())) {
+        : plan_(plan),
+          library_(library),
+          request_(request),
+          core_build_(content_hash(core_library_file())) {
         output_folder_ = fs::weakly_canonical(fs::absolute(request.output_folder));
     }
 
@@ -56,7 +59,8 @@ private:
         for (const auto& [name, files] : request_.inputs) {
             if (std::ranges::find(others, name) == others.end())
                 throw Error("--in {}: the workflow has no such input beside the scans; {}{}", name,
-                            others.empty() ? "it has none" : "it has " + enumerated(others), did_you_mean(name, others));
+                            others.empty() ? "it has none" : "it has " + enumerated(others),
+                            did_you_mean(name, others));
             const auto& input = *std::ranges::find(inputs, name, &WorkflowInput::name);
             if (!input.list && files.size() > 1)
                 throw Error("--in {}: the input takes one file; found {}", name, files.size());
@@ -75,13 +79,14 @@ private:
         }
         for (const std::string& name : request_.only)
             if (std::ranges::find(variants, name) == variants.end())
-                throw Error("--only {}: there is no such variant; there {} {}{}", name, variants.size() == 1 ? "is" : "are",
-                            enumerated(variants), did_you_mean(name, variants));
+                throw Error("--only {}: there is no such variant; there {} {}{}", name,
+                            variants.size() == 1 ? "is" : "are", enumerated(variants), did_you_mean(name, variants));
         const std::vector<std::string> step_names(steps.begin(), steps.end());
         const auto require_step = [&](const std::string& option, const std::string& name) {
             if (!steps.contains(name))
-                throw Error("{} {}: there is no such step; there {} {}{}", option, name, step_names.size() == 1 ? "is" : "are",
-                            enumerated(step_names), did_you_mean(name, step_names));
+                throw Error("{} {}: there is no such step; there {} {}{}", option, name,
+                            step_names.size() == 1 ? "is" : "are", enumerated(step_names),
+                            did_you_mean(name, step_names));
         };
         if (!request_.until.empty()) require_step("--until", request_.until);
         for (const std::string& name : request_.save) require_step("--save", name.substr(0, name.find('.')));
@@ -90,19 +95,21 @@ private:
     void add_cells(std::size_t scan, const fs::path& file) {
         for (std::size_t variant = 0; variant < plan_.variants.size(); ++variant) {
             const PlannedVariant& planned = plan_.variants[variant];
-            if (!request_.only.empty() && std::ranges::find(request_.only, planned.name) == request_.only.end()) continue;
+            if (!request_.only.empty() && std::ranges::find(request_.only, planned.name) == request_.only.end())
+                continue;
             RunCell cell{scan, variant, {}, {}};
             std::map<std::size_t, std::size_t> node_of_step;
             for (const std::size_t step : steps_to_run(planned)) {
                 node_of_step[step] = add_step(step, node_of_step, scan, file, cell);
                 add_to(cell, node_of_step[step]);
             }
-            const TemplateValues values{file.empty() ? graph_.scan_names.back() : file.stem().string(), planned.name,
-                                        plan_.workflow.name.empty() ? fs::path(plan_.workflow.file).stem().string()
-                                                                    : plan_.workflow.name};
+            const TemplateValues values{
+                file.empty() ? graph_.scan_names.back() : file.stem().string(), planned.name,
+                plan_.workflow.name.empty() ? fs::path(plan_.workflow.file).stem().string() : plan_.workflow.name};
             for (const auto& [name, source] : outputs(planned)) {
                 if (source.step && !node_of_step.contains(*source.step)) continue;  // beyond --until
-                const std::size_t node = source.step ? node_of_step[*source.step] : add_leaf(source.input, scan, file, cell);
+                const std::size_t node =
+                    source.step ? node_of_step[*source.step] : add_leaf(source.input, scan, file, cell);
                 add_output(cell, expand_template(name, values), node, source.port);
             }
             graph_.cells.push_back(std::move(cell));
@@ -128,7 +135,8 @@ private:
             const std::string port = dot == std::string::npos ? spec.outputs.front().name : wanted.substr(dot + 1);
             if (!spec.output(port)) throw Error("--save {}: the step has no output port '{}'", wanted, port);
             const Kind kind = spec.output(port)->kind;
-            if (!can_write("ply", kind)) throw Error("--save {}: {} cannot be written to a file yet", wanted, name_of(kind));
+            if (!can_write("ply", kind))
+                throw Error("--save {}: {} cannot be written to a file yet", wanted, name_of(kind));
             const std::string variant_part = plan_.variants.size() > 1 ? ".{variant}" : "";
             all.emplace_back("{scan}" + variant_part + "." + wanted + ".ply", ValueSource{step->second, 0, port});
         }
@@ -148,7 +156,8 @@ private:
             .field("module", library_.build_id(planned.spec.name))
             .field("core", core_build_)
             .field("seed", std::to_string(request_.seed));
-        for (const auto& [name, value] : planned.parameters.values) key.field("parameter " + name, canonical_text(value));
+        for (const auto& [name, value] : planned.parameters.values)
+            key.field("parameter " + name, canonical_text(value));
         for (const PlannedInput& input : planned.inputs)
             for (const ValueSource& source : input.sources)
                 for (const std::size_t from : sources_of(source, node_of_step, scan, file, cell)) {
@@ -159,8 +168,9 @@ private:
         return add_node(std::move(node));
     }
 
-    std::vector<std::size_t> sources_of(const ValueSource& source, const std::map<std::size_t, std::size_t>& node_of_step,
-                                        std::size_t scan, const fs::path& file, RunCell& cell) {
+    std::vector<std::size_t> sources_of(const ValueSource& source,
+                                        const std::map<std::size_t, std::size_t>& node_of_step, std::size_t scan,
+                                        const fs::path& file, RunCell& cell) {
         if (source.step) return {node_of_step.at(*source.step)};
         if (source.input == 0) return {add_leaf(0, scan, file, cell)};
         std::vector<std::size_t> leaves;
@@ -215,7 +225,8 @@ private:
 
     void add_output(RunCell& cell, const std::string& name, std::size_t node, const std::string& port) {
         const fs::path file = (output_folder_ / name).lexically_normal();
-        const std::string what = fmt::format("scan '{}' under variant '{}'", graph_.scan_names.back(), plan_.variants[cell.variant].name);
+        const std::string what =
+            fmt::format("scan '{}' under variant '{}'", graph_.scan_names.back(), plan_.variants[cell.variant].name);
         const auto [known, is_new] = writers_.emplace(file, Writer{what, node, port});
         if (!is_new && (known->second.node != node || known->second.port != port))
             throw Error("{} and {} would both write '{}'", known->second.what, what, file.string())
@@ -224,8 +235,8 @@ private:
             throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), real.string())
                 .hint("a symbolic link below the output folder leads out of it; remove it");
         if (is_input(file))
-                throw Error("'{}' is an input; an output must not replace it", file.string())
-                    .hint("choose another output folder with -o");
+            throw Error("'{}' is an input; an output must not replace it", file.string())
+                .hint("choose another output folder with -o");
         cell.outputs.push_back({file, node, port});
     }
 

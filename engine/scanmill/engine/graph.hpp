@@ -3,8 +3,8 @@
 /// A plan laid out over actual scans: the graph of everything that one run computes.
 ///
 /// Nodes are files to read (leaves) and steps to run, identified by their plan key: what two cells have in common, down
-/// to two files of equal content, is one node. A cell is one scan under one variant. The graph says what will be written
-/// where before anything runs; an executor, or an export to another scheduler, only has to follow it.
+/// to two files of equal content, is one node. A cell is one scan under one variant. The graph says what will be
+/// written where before anything runs; an executor, or an export to another scheduler, only has to follow it.
 
 #include <filesystem>
 #include <map>
@@ -17,13 +17,13 @@
 namespace scanmill {
 
 struct RunRequest {
-    std::vector<std::filesystem::path> scans;                           ///< feed the workflow's first input, one at a time
-    std::map<std::string, std::vector<std::filesystem::path>> inputs;   ///< feed the other inputs
+    std::vector<std::filesystem::path> scans;  ///< feed the workflow's first input, one at a time
+    std::map<std::string, std::vector<std::filesystem::path>> inputs;  ///< feed the other inputs
     std::filesystem::path output_folder;
     LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: what the workflow or the file says
     std::uint64_t seed = 0;
     std::vector<std::string> only;  ///< variants; empty: all
-    std::string until;              ///< last step to run; empty: all
+    std::string until;  ///< last step to run; empty: all
     std::vector<std::string> save;  ///< steps (or step.port) to write in addition to the outputs
 };
 
@@ -36,9 +36,9 @@ struct NodeInput {
 struct RunNode {
     std::string key;
     std::optional<std::size_t> step;  ///< index into Plan::steps; nothing: a leaf
-    std::filesystem::path file;       ///< of a leaf
-    std::size_t input = 0;            ///< of a leaf: index into Workflow::inputs
-    std::string unreadable;           ///< of a leaf: why its content could not be hashed
+    std::filesystem::path file;  ///< of a leaf
+    std::size_t input = 0;  ///< of a leaf: index into Workflow::inputs
+    std::string unreadable;  ///< of a leaf: why its content could not be hashed
     std::vector<NodeInput> inputs;
     std::size_t scan = 0;  ///< the first cell's
 };
@@ -51,7 +51,7 @@ struct RunOutput {
 
 struct RunCell {
     std::size_t scan;
-    std::size_t variant;             ///< index into Plan::variants
+    std::size_t variant;  ///< index into Plan::variants
     std::vector<std::size_t> nodes;  ///< in an order that can be run
     std::vector<RunOutput> outputs;
 };

@@ -3,8 +3,8 @@
 /// Plan keys: what identifies a step's result before anything runs.
 ///
 /// A key is the 128-bit XXH3 hash of a sequence of fields, each written as name length, name, value length, value, so
-/// that no two different sequences give the same bytes. It knows filter, version, builds, parameters, unit, seed and the
-/// keys of everything upstream; it knows nothing of thread counts, paths, step names or the order of a file's keys.
+/// that no two different sequences give the same bytes. It knows filter, version, builds, parameters, unit, seed and
+/// the keys of everything upstream; it knows nothing of thread counts, paths, step names or the order of a file's keys.
 
 #include <string>
 #include <string_view>

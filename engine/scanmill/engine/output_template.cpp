@@ -42,13 +42,17 @@ void check_template(const std::string& file, Position position, Diagnostics& dia
         }
         const std::string name = file.substr(at + 1, end - at - 1);
         if (std::ranges::find(placeholders, name) == placeholders.end())
-            diagnostics.error(position, fmt::format("'{}' has no meaning for {{{}}}; expected {{scan}}, {{variant}} or {{workflow}}{}",
-                                                    file, name, did_you_mean(name, placeholders)));
+            diagnostics.error(
+                position,
+                fmt::format("'{}' has no meaning for {{{}}}; expected {{scan}}, {{variant}} or {{workflow}}{}", file,
+                            name, did_you_mean(name, placeholders)));
         at = end;
     }
     if (file.find('\0') != std::string::npos) diagnostics.error(position, "a file's name has a zero byte");
     if (leaves_folder(file))
-        diagnostics.error(position, fmt::format("'{}' lies outside the output folder; expected a path below it, as \"{{scan}}.stl\"", file));
+        diagnostics.error(
+            position,
+            fmt::format("'{}' lies outside the output folder; expected a path below it, as \"{{scan}}.stl\"", file));
     else if (names_a_folder(file))
         diagnostics.error(position, fmt::format("'{}' names a folder; expected a file, as \"{{scan}}.stl\"", file));
 }
@@ -66,8 +70,7 @@ std::string expand_template(const std::string& file, const TemplateValues& value
         at = end;
     }
     if (leaves_folder(name) || names_a_folder(name))
-        throw Error("'{}' becomes '{}', which is no file below the output folder", file, name)
-            .hint("rename the scan");
+        throw Error("'{}' becomes '{}', which is no file below the output folder", file, name).hint("rename the scan");
     return name;
 }
 

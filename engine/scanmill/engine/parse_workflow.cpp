@@ -96,7 +96,8 @@ void WorkflowParser::input(const YamlEntry& entry, Workflow& workflow) {
     if (kind)
         input_kind(*kind, input);
     else
-        diagnostics_.error(entry.position, fmt::format("the input '{}' has no kind; expected one of {}", input.name, kind_names()));
+        diagnostics_.error(entry.position,
+                           fmt::format("the input '{}' has no kind; expected one of {}", input.name, kind_names()));
     workflow.inputs.push_back(std::move(input));
 }
 
@@ -107,7 +108,8 @@ void WorkflowParser::input_details(const YamlNode& node, WorkflowInput& input) {
     input.frame = keys.text("frame");
     if (const YamlEntry* list = keys.find("list")) {
         if (list->value.text != "true" && list->value.text != "false")
-            diagnostics_.error(list->value.position, fmt::format("found {}; expected true or false", list->value.described()));
+            diagnostics_.error(list->value.position,
+                               fmt::format("found {}; expected true or false", list->value.described()));
         input.list = list->value.text == "true";
     }
     if (const YamlEntry* unit = keys.find("unit")) {
@@ -135,7 +137,9 @@ void WorkflowParser::input_kind(const YamlNode& node, WorkflowInput& input) {
         diagnostics_.error(scalar->position, fmt::format("'{}' is no kind; expected one of {}{}", *text, kind_names(),
                                                          did_you_mean(*text, kinds)));
     } else if (*kind != Kind::points && *kind != Kind::mesh) {
-        diagnostics_.error(scalar->position, fmt::format("an input of kind {} cannot be read from a file; expected points or mesh", *text));
+        diagnostics_.error(
+            scalar->position,
+            fmt::format("an input of kind {} cannot be read from a file; expected points or mesh", *text));
     }
     input.kind = kind.value_or(Kind::points);
 }
@@ -191,7 +195,8 @@ OneOfSyntax WorkflowParser::one_of(const YamlNode& node) {
     if (!one_of.id.empty()) require_name(one_of.id, node.find("id")->position, "a step", diagnostics_);
     const YamlEntry* alternatives = keys.find("one-of");
     keys.complain_of_others();
-    if (!require_list(alternatives->value, "a list of alternatives, each beginning with `- `", diagnostics_)) return one_of;
+    if (!require_list(alternatives->value, "a list of alternatives, each beginning with `- `", diagnostics_))
+        return one_of;
     if (alternatives->value.items.empty()) diagnostics_.error(alternatives->position, "one-of has no alternatives");
     for (const YamlNode& item : alternatives->value.items) one_of.alternatives.push_back(alternative(item));
     return one_of;
@@ -205,7 +210,8 @@ AlternativeSyntax WorkflowParser::alternative(const YamlNode& node) {
     } else if (node.find("steps")) {
         MapReader keys(node, "an alternative", diagnostics_);
         result.name = keys.text("name");
-        if (!result.name.empty()) require_name(result.name, node.find("name")->position, "an alternative", diagnostics_);
+        if (!result.name.empty())
+            require_name(result.name, node.find("name")->position, "an alternative", diagnostics_);
         result.steps = steps(keys.find("steps")->value);
         keys.complain_of_others();
     } else {
@@ -234,10 +240,11 @@ StepSyntax WorkflowParser::step(const YamlNode& node) {
     for (const YamlEntry& entry : node.entries) {
         if (reserved.contains(entry.key)) continue;
         if (filter) {
-            diagnostics_.error(entry.position,
-                               fmt::format("a step has one filter; '{}' stands beside '{}'. A second step begins with `- `; "
-                                           "beside the filter a step takes id, in and expect",
-                                           entry.key, filter->key));
+            diagnostics_.error(
+                entry.position,
+                fmt::format("a step has one filter; '{}' stands beside '{}'. A second step begins with `- `; "
+                            "beside the filter a step takes id, in and expect",
+                            entry.key, filter->key));
             continue;
         }
         filter = &entry;
@@ -254,7 +261,9 @@ StepSyntax WorkflowParser::step(const YamlNode& node) {
 
 void WorkflowParser::parameters(const YamlNode& node, StepSyntax& step) {
     if (node.is_null()) return;
-    if (!require_map(node, fmt::format("the parameters of {}, as {{name: value}}, or nothing", step.filter), diagnostics_)) return;
+    if (!require_map(node, fmt::format("the parameters of {}, as {{name: value}}, or nothing", step.filter),
+                     diagnostics_))
+        return;
     for (const YamlEntry& entry : node.entries)
         step.parameters.push_back({entry.key, entry.position, expression(entry.value)});
 }
@@ -329,14 +338,16 @@ void WorkflowParser::expectations(const YamlNode& node, StepSyntax& step) {
     for (const YamlEntry& entry : node.entries) {
         Expectation expectation{entry.key, entry.position, Expectation::Relation::equal, {}, {}};
         if (entry.value.is_sequence()) {
-            if (entry.value.items.size() != 2 || !entry.value.items[0].is_scalar() || !entry.value.items[1].is_scalar()) {
+            if (entry.value.items.size() != 2 || !entry.value.items[0].is_scalar() ||
+                !entry.value.items[1].is_scalar()) {
                 diagnostics_.error(entry.value.position, "a range has two ends, as [2, 4]");
                 continue;
             }
             expectation.relation = Expectation::Relation::between;
             expectation.value = entry.value.items[0].text;
             expectation.high = entry.value.items[1].text;
-        } else if (const auto text = require_text(entry.value, "a value, `< value`, `> value` or [low, high]", diagnostics_)) {
+        } else if (const auto text =
+                       require_text(entry.value, "a value, `< value`, `> value` or [low, high]", diagnostics_)) {
             std::string_view rest = *text;
             if (rest.starts_with('<')) expectation.relation = Expectation::Relation::below;
             if (rest.starts_with('>')) expectation.relation = Expectation::Relation::above;

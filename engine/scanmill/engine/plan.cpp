@@ -22,7 +22,8 @@ namespace {
 class Planner {
 public:
     Planner(Workflow workflow, const FilterLibrary& library, Diagnostics& diagnostics)
-        : library_(library), diagnostics_(diagnostics) {
+        : library_(library),
+          diagnostics_(diagnostics) {
         plan_.workflow = std::move(workflow);
     }
 
@@ -55,8 +56,9 @@ private:
     void complain_of_repeated_inputs() {
         if (plan_.workflow.inputs.empty()) return;
         if (plan_.workflow.inputs.front().list)
-            diagnostics_.error(plan_.workflow.inputs.front().position,
-                               "the first input is fed one scan at a time and cannot be a list; put another input first");
+            diagnostics_.error(
+                plan_.workflow.inputs.front().position,
+                "the first input is fed one scan at a time and cannot be a list; put another input first");
     }
 
     PlannedVariant plan_variant(const Variant& variant) {
@@ -97,7 +99,8 @@ private:
             if (!ids.insert(name).second)
                 diagnostics_.error(step.syntax->position, fmt::format("the id '{}' is given twice", name));
             if (std::ranges::find(plan_.workflow.inputs, name, &WorkflowInput::name) != plan_.workflow.inputs.end())
-                diagnostics_.error(step.syntax->position, fmt::format("the id '{}' is already the name of an input", name));
+                diagnostics_.error(step.syntax->position,
+                                   fmt::format("the id '{}' is already the name of an input", name));
         }
     }
 
@@ -111,8 +114,9 @@ private:
                 return nullptr;
             }
         const std::vector<std::string> names = library_.names();
-        diagnostics_.error(step.position, fmt::format("there is no filter '{}'; `scanmill list` shows the {} there are{}", step.filter,
-                                                      names.size(), did_you_mean(step.filter, names)));
+        diagnostics_.error(step.position,
+                           fmt::format("there is no filter '{}'; `scanmill list` shows the {} there are{}", step.filter,
+                                       names.size(), did_you_mean(step.filter, names)));
         return nullptr;
     }
 
@@ -134,7 +138,8 @@ private:
         }
         std::vector<PlannedExpectation>& expectations = plan_.steps[place->second].expectations;
         for (PlannedExpectation& expectation : planned.expectations)
-            if (std::ranges::find(expectations, expectation.position, &PlannedExpectation::position) == expectations.end())
+            if (std::ranges::find(expectations, expectation.position, &PlannedExpectation::position) ==
+                expectations.end())
                 expectations.push_back(std::move(expectation));
         return place->second;
     }
@@ -149,7 +154,8 @@ private:
                                                known.empty() ? "it has none" : "it has " + enumerated(known),
                                                did_you_mean(argument.name, known)));
         ParameterSet set;
-        for (const ParameterSpec& parameter : spec.parameters) set.values.emplace_back(parameter.name, parameter_value(step, parameter));
+        for (const ParameterSpec& parameter : spec.parameters)
+            set.values.emplace_back(parameter.name, parameter_value(step, parameter));
         return set;
     }
 
@@ -159,15 +165,17 @@ private:
             const bool attempted = std::ranges::find(step.syntax->parameters, parameter.name, &NamedExpression::name) !=
                                    step.syntax->parameters.end();  // its text was wrong, and reported
             if (parameter.required && !attempted)
-                diagnostics_.error(step.syntax->position, fmt::format("{} needs the parameter '{}': {}", step.syntax->filter,
-                                                                      parameter.name, expectation(parameter)));
+                diagnostics_.error(step.syntax->position,
+                                   fmt::format("{} needs the parameter '{}': {}", step.syntax->filter, parameter.name,
+                                               expectation(parameter)));
             return parameter.default_value;
         }
         try {
             return parse(parameter, argument->value);
         } catch (const Error& error) {
             const std::string through = argument->reference.empty() ? "" : " (from $" + argument->reference + ")";
-            diagnostics_.error(argument->value_position, fmt::format("{}{}: {}", parameter.name, through, error.sentence()));
+            diagnostics_.error(argument->value_position,
+                               fmt::format("{}{}: {}", parameter.name, through, error.sentence()));
             return parameter.default_value;
         }
     }
@@ -178,8 +186,9 @@ private:
         for (const auto& [name, value] : step.parameters.values) key.field("parameter " + name, canonical_text(value));
         for (const PlannedInput& input : step.inputs)
             for (const ValueSource& source : input.sources)
-                key.field("port " + input.port, source.step ? plan_.steps[*source.step].structure_key + "." + source.port
-                                                            : "input " + plan_.workflow.inputs[source.input].name);
+                key.field("port " + input.port, source.step
+                                                    ? plan_.steps[*source.step].structure_key + "." + source.port
+                                                    : "input " + plan_.workflow.inputs[source.input].name);
         return key.key();
     }
 
@@ -190,9 +199,10 @@ private:
         const std::string extension = std::filesystem::path(output.file).extension().string();
         if (!can_write(extension, kind)) {
             const std::string writable = writable_extensions(kind);
-            diagnostics_.error(output.position,
-                               fmt::format("'{}' is {}, which no '{}' file can hold; {}", output.source.text, name_of(kind), extension,
-                                           writable.empty() ? "this kind cannot be written yet" : "expected " + writable));
+            diagnostics_.error(
+                output.position,
+                fmt::format("'{}' is {}, which no '{}' file can hold; {}", output.source.text, name_of(kind), extension,
+                            writable.empty() ? "this kind cannot be written yet" : "expected " + writable));
         }
         variant.outputs.push_back({output.file, output.position, *source});
     }
@@ -205,9 +215,10 @@ private:
             for (const PlannedOutput& planned : variant.outputs) {
                 if (planned.file != output.file) continue;
                 if (source && *source != planned.source) {
-                    diagnostics_.error(output.position, fmt::format("the variants '{}' and '{}' would both write '{}'; put "
-                                                                    "{{variant}} into the name",
-                                                                    first->name, variant.name, output.file));
+                    diagnostics_.error(output.position,
+                                       fmt::format("the variants '{}' and '{}' would both write '{}'; put "
+                                                   "{{variant}} into the name",
+                                                   first->name, variant.name, output.file));
                     return;
                 }
                 first = &variant;
@@ -228,7 +239,8 @@ Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& 
 }
 
 Kind kind_of(const Plan& plan, const ValueSource& source) {
-    return source.step ? plan.steps[*source.step].spec.output(source.port)->kind : plan.workflow.inputs[source.input].kind;
+    return source.step ? plan.steps[*source.step].spec.output(source.port)->kind
+                       : plan.workflow.inputs[source.input].kind;
 }
 
 std::string describe(const Plan& plan, const ValueSource& source) {

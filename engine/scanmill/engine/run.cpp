@@ -28,7 +28,8 @@ class ScratchFolder {
 public:
     ScratchFolder() {
         std::string name = (fs::temp_directory_path() / "scanmill-XXXXXX").string();
-        if (!::mkdtemp(name.data())) throw Error("no scratch folder could be made in '{}'", fs::temp_directory_path().string());
+        if (!::mkdtemp(name.data()))
+            throw Error("no scratch folder could be made in '{}'", fs::temp_directory_path().string());
         path_ = name;
     }
     ~ScratchFolder() {
@@ -119,8 +120,8 @@ private:
         const auto fail = [&](Error error) {
             if (node.step) {
                 const PlannedStep& step = plan_.steps[*node.step];
-                error.add_frame(fmt::format("in step '{}' ({}:{}:{})", step.label, plan_.workflow.file, step.position.line,
-                                            step.position.column));
+                error.add_frame(fmt::format("in step '{}' ({}:{}:{})", step.label, plan_.workflow.file,
+                                            step.position.line, step.position.column));
             }
             if (node.step || node.file != graph_.scan_names[node.scan])
                 error.add_frame(fmt::format("on scan '{}'", graph_.scan_names[node.scan]));
@@ -138,7 +139,8 @@ private:
         } catch (const Error& error) {
             fail(error);
         } catch (const std::bad_alloc&) {
-            fail(Error("the machine's memory did not suffice").hint("thin the scan first, or use a machine with more memory"));
+            fail(Error("the machine's memory did not suffice")
+                     .hint("thin the scan first, or use a machine with more memory"));
         } catch (const std::exception& error) {
             fail(Error("an unexpected error: {}", error.what()));
         }
@@ -193,7 +195,8 @@ private:
             written_[output.file] = written;
         } catch (const std::exception& error) {
             written.outcome = Outcome::failed;
-            if (report.error.empty()) report.error = fmt::format("{}\n  on scan '{}'", error.what(), graph_.scan_names[cell.scan]);
+            if (report.error.empty())
+                report.error = fmt::format("{}\n  on scan '{}'", error.what(), graph_.scan_names[cell.scan]);
         }
         report.seconds += seconds_since(start);
         observer_.output_written(cell, written);

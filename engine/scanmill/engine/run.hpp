@@ -26,7 +26,7 @@ struct NodeReport {
     double seconds = 0;
     ParameterSet resolved;  ///< as the filter got them: lengths in the scan's unit
     Metrics metrics;        ///< of the filter, in its declared order
-    Metrics facts;          ///< of the primary output, or of the file that was read; only where something asked for them
+    Metrics facts;  ///< of the primary output, or of the file that was read; only where something asked for them
     std::vector<std::string> warnings;
 };
 

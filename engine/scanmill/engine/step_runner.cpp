@@ -14,7 +14,8 @@ namespace scanmill {
 namespace {
 
 const Value* first_geometric(const std::vector<StepInput>& inputs) {
-    const auto found = std::ranges::find_if(inputs, [](const StepInput& input) { return frame_of(input.value) != nullptr; });
+    const auto found =
+        std::ranges::find_if(inputs, [](const StepInput& input) { return frame_of(input.value) != nullptr; });
     return found == inputs.end() ? nullptr : &found->value;
 }
 
@@ -22,7 +23,8 @@ const Value* first_geometric(const std::vector<StepInput>& inputs) {
 Frame common_frame(const Frame& first, const Frame& other, const std::string& port, Context& context) {
     const bool both_known = first.unit != LengthUnit::unknown && other.unit != LengthUnit::unknown;
     if (both_known && first.unit != other.unit)
-        throw Error("the inputs have different units: {} at the first port, {} at '{}'", symbol(first.unit), symbol(other.unit), port)
+        throw Error("the inputs have different units: {} at the first port, {} at '{}'", symbol(first.unit),
+                    symbol(other.unit), port)
             .hint("convert one of them: scanmill convert --to-unit mm IN OUT");
     if (first.unit != other.unit)
         context.warn(fmt::format("the unit of the value at '{}' was taken to be that of the first input: {}", port,
@@ -37,7 +39,8 @@ Inputs rebased(const std::vector<StepInput>& inputs, const Frame* first, Context
     for (const StepInput& input : inputs) {
         const Frame* frame = frame_of(input.value);
         const bool moves = first && frame && (frame->origin != first->origin || frame->unit != first->unit);
-        result.add(input.port, moves ? reframed(input.value, common_frame(*first, *frame, input.port, context)) : input.value);
+        result.add(input.port,
+                   moves ? reframed(input.value, common_frame(*first, *frame, input.port, context)) : input.value);
     }
     return result;
 }
@@ -62,13 +65,14 @@ void require_whole(const Outputs& outputs, const FilterSpec& spec) {
         const Value* value = outputs.find(port.name);
         if (!value) throw Error("the filter {} gave no '{}', which it declares", spec.name, port.name);
         if (kind_of(*value) != port.kind)
-            throw Error("the filter {} gave {} at '{}', which it declares as {}", spec.name, name_of(kind_of(*value)), port.name,
-                        name_of(port.kind));
+            throw Error("the filter {} gave {} at '{}', which it declares as {}", spec.name, name_of(kind_of(*value)),
+                        port.name, name_of(port.kind));
         if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(value)) {
             require_consistent(**mesh);
             if ((*mesh)->triangles.empty()) throw Error("the result has no triangles");
         }
-        if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(value); points && (*points)->size() == 0)
+        if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(value);
+            points && (*points)->size() == 0)
             throw Error("the result has no points");
     }
 }
@@ -96,7 +100,9 @@ Value read_leaf(const std::filesystem::path& file, const WorkflowInput& declared
         value = read_points(file, options);
     if (declared.frame.empty() || frame_of(value)->name == declared.frame) return value;
     Frame frame = *frame_of(value);
-    if (!frame.name.empty()) on_warning(fmt::format("the frame '{}' of the file is called '{}' by the workflow", frame.name, declared.frame));
+    if (!frame.name.empty())
+        on_warning(
+            fmt::format("the frame '{}' of the file is called '{}' by the workflow", frame.name, declared.frame));
     frame.name = declared.frame;
     return reframed(value, frame);
 }

@@ -29,7 +29,10 @@ std::string givers(const FilterLibrary& library, Kind kind) {
 class Wiring {
 public:
     Wiring(const StepSyntax& step, const FilterSpec& spec, const WiringScope& scope, Diagnostics& diagnostics)
-        : step_(step), spec_(spec), scope_(scope), diagnostics_(diagnostics) {}
+        : step_(step),
+          spec_(spec),
+          scope_(scope),
+          diagnostics_(diagnostics) {}
 
     std::vector<PlannedInput> all() {
         complain_of_unknown_ports();
@@ -47,13 +50,14 @@ private:
         const std::string has = ports.empty() ? "it has none" : "it has " + enumerated(ports);
         for (const InputWiring& wired : step_.in)
             if (!spec_.input(wired.port))
-                diagnostics_.error(wired.position, fmt::format("{} has no input port '{}'; {}{}", spec_.name, wired.port, has,
-                                                               did_you_mean(wired.port, ports)));
+                diagnostics_.error(wired.position, fmt::format("{} has no input port '{}'; {}{}", spec_.name,
+                                                               wired.port, has, did_you_mean(wired.port, ports)));
         if (step_.in_shorthand && spec_.inputs.size() != 1)
-            diagnostics_.error(step_.in_shorthand->position,
-                               fmt::format("`in:` with a single name is for filters with one input port; {}: {}. Expected "
-                                           "`in: {{port: {}}}`",
-                                           spec_.name, has, step_.in_shorthand->text));
+            diagnostics_.error(
+                step_.in_shorthand->position,
+                fmt::format("`in:` with a single name is for filters with one input port; {}: {}. Expected "
+                            "`in: {{port: {}}}`",
+                            spec_.name, has, step_.in_shorthand->text));
     }
 
     bool is_given(const PortSpec& port) const {
@@ -68,8 +72,8 @@ private:
         else
             references = std::ranges::find(step_.in, port.name, &InputWiring::port)->sources;
         if (references.size() > 1 && !port.list)
-            diagnostics_.error(references[1].position, fmt::format("the port '{}' of {} takes one value; found {}", port.name,
-                                                                   spec_.name, references.size()));
+            diagnostics_.error(references[1].position, fmt::format("the port '{}' of {} takes one value; found {}",
+                                                                   port.name, spec_.name, references.size()));
         std::vector<ValueSource> sources;
         for (const Reference& reference : references) {
             const auto source = resolve(reference, scope_, diagnostics_);
@@ -81,14 +85,14 @@ private:
     bool fits(const PortSpec& port, const ValueSource& source, const Reference& reference) {
         const Kind kind = kind_of(scope_.plan, source);
         if (kind != port.kind) {
-            diagnostics_.error(reference.position,
-                               fmt::format("'{}' is {}; the port '{}' of {} takes {}{}", reference.text, name_of(kind), port.name,
-                                           spec_.name, name_of(port.kind), givers(scope_.library, port.kind)));
+            diagnostics_.error(reference.position, fmt::format("'{}' is {}; the port '{}' of {} takes {}{}",
+                                                               reference.text, name_of(kind), port.name, spec_.name,
+                                                               name_of(port.kind), givers(scope_.library, port.kind)));
             return false;
         }
         if (!source.step && scope_.plan.workflow.inputs[source.input].list && !port.list) {
-            diagnostics_.error(reference.position, fmt::format("'{}' is a list of {}; the port '{}' of {} takes one", reference.text,
-                                                               name_of(kind), port.name, spec_.name));
+            diagnostics_.error(reference.position, fmt::format("'{}' is a list of {}; the port '{}' of {} takes one",
+                                                               reference.text, name_of(kind), port.name, spec_.name));
             return false;
         }
         return true;
@@ -103,8 +107,9 @@ private:
             rivals += other.optional ? 0 : 1;
         }
         if (rivals > 0 && !port.optional) {
-            diagnostics_.error(step_.position, fmt::format("{} has {} ports that take {}; say which value goes where: `in: {{{}: …}}`",
-                                                           spec_.name, rivals + 1, name_of(port.kind), port.name));
+            diagnostics_.error(step_.position,
+                               fmt::format("{} has {} ports that take {}; say which value goes where: `in: {{{}: …}}`",
+                                           spec_.name, rivals + 1, name_of(port.kind), port.name));
             return {};
         }
         for (auto step = scope_.earlier.rbegin(); step != scope_.earlier.rend(); ++step) {
@@ -114,8 +119,8 @@ private:
                 if (output.kind == port.kind) found.push_back(output.name);
             if (found.size() == 1) return {{*step, 0, found.front()}};
             if (found.size() > 1) {
-                ambiguous(port, fmt::format("'{}' gives {} of that kind ({})", scope_.plan.steps[*step].label, found.size(),
-                                            enumerated(found)));
+                ambiguous(port, fmt::format("'{}' gives {} of that kind ({})", scope_.plan.steps[*step].label,
+                                            found.size(), enumerated(found)));
                 return {};
             }
         }
@@ -133,16 +138,18 @@ private:
             for (std::size_t i : found) names.push_back(inputs[i].name);
             ambiguous(port, "the workflow has the inputs " + enumerated(names));
         } else if (!port.optional && !scope_.uncertain) {
-            diagnostics_.error(step_.position, fmt::format("{} needs {} for its port '{}', and nothing before it gives any{}",
-                                                           spec_.name, name_of(port.kind), port.name,
-                                                           givers(scope_.library, port.kind)));
+            diagnostics_.error(
+                step_.position,
+                fmt::format("{} needs {} for its port '{}', and nothing before it gives any{}", spec_.name,
+                            name_of(port.kind), port.name, givers(scope_.library, port.kind)));
         }
         return {};
     }
 
     void ambiguous(const PortSpec& port, const std::string& why) {
-        diagnostics_.error(step_.position, fmt::format("which {} the port '{}' of {} takes is open: {}; expected `in: {{{}: …}}`",
-                                                       name_of(port.kind), port.name, spec_.name, why, port.name));
+        diagnostics_.error(step_.position,
+                           fmt::format("which {} the port '{}' of {} takes is open: {}; expected `in: {{{}: …}}`",
+                                       name_of(port.kind), port.name, spec_.name, why, port.name));
     }
 
     const StepSyntax& step_;
@@ -177,9 +184,10 @@ std::optional<ValueSource> resolve(const Reference& reference, const WiringScope
         return ValueSource{std::nullopt, static_cast<std::size_t>(input - inputs.begin()), ""};
     std::vector<std::string> known = names_of(inputs);
     for (const auto& [known_name, index] : scope.steps_by_name) known.push_back(known_name);
-    diagnostics.error(reference.position, fmt::format("'{}' is neither an earlier step nor an input; there {} {}{}", name,
-                                                      known.size() == 1 ? "is" : "are",
-                                                      known.empty() ? "none" : enumerated(known), did_you_mean(name, known)));
+    diagnostics.error(reference.position,
+                      fmt::format("'{}' is neither an earlier step nor an input; there {} {}{}", name,
+                                  known.size() == 1 ? "is" : "are", known.empty() ? "none" : enumerated(known),
+                                  did_you_mean(name, known)));
     return std::nullopt;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A workflow as its file says it, with the place of everything: the grammar's syntax tree. What the names in it mean is
-/// checked later (plan.hpp), against the filters at hand.
+/// A workflow as its file says it, with the place of everything: the grammar's syntax tree. What the names in it mean
+/// is checked later (plan.hpp), against the filters at hand.
 
 #include <optional>
 #include <string>
