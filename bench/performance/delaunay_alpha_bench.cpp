@@ -74,9 +74,11 @@ double run_ours(const PointCloud& cloud, unsigned threads, std::string* summary)
         }
         seconds = seconds_since(begin);
         if (summary)
-            *summary = fmt::format("{} cells, {} triangles, alpha {:.5g}, alpha_cover {:.5g}, {} interior points, delaunay {:.0f} % of the time",
-                                   cells, solid.mesh.triangles.size(), solid.alpha, solid.alpha_cover,
-                                   solid.interior_points.size(), 100 * delaunay_seconds / seconds);
+            *summary = fmt::format(
+                "{} cells, {} triangles, alpha {:.5g}, alpha_cover {:.5g}, {} interior points, delaunay {:.0f} % of "
+                "the time",
+                cells, solid.mesh.triangles.size(), solid.alpha, solid.alpha_cover, solid.interior_points.size(),
+                100 * delaunay_seconds / seconds);
     }
     return seconds;
 }
@@ -107,8 +109,9 @@ void print_memory(const Input& input) {
     const double bare = peak_mebibytes([&] { run_bare(cgal_points(*input.cloud)); });
     const double one = peak_mebibytes([&] { run_ours(*input.cloud, 1, nullptr); });
     const double two = peak_mebibytes([&] { run_ours(*input.cloud, 2, nullptr); });
-    fmt::print("{:<16} peak memory: before {:.0f} MiB, bare CGAL {:.0f}, ours with 1 thread {:.0f}, with 2 threads {:.0f}\n",
-               input.name, points, bare, one, two);
+    fmt::print(
+        "{:<16} peak memory: before {:.0f} MiB, bare CGAL {:.0f}, ours with 1 thread {:.0f}, with 2 threads {:.0f}\n",
+        input.name, points, bare, one, two);
 }
 
 double median(std::vector<double> values) {

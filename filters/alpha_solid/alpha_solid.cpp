@@ -26,8 +26,9 @@ void require_usable(const TetMesh& tets, const AlphaSolidParams& params) {
         throw Error("alpha must be a length above 0; it is {}", params.alpha->text());
     const double size = bounding_box(tets.positions.span()).diagonal();
     if (!(size > 1e-100 && size < 1e100))
-        throw Error("needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {:.3g}",
-                    size);
+        throw Error(
+            "needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {:.3g}",
+            size);
 }
 
 /// A radius whose square is not below `squared`, so that giving it as alpha selects the same cells.
@@ -77,19 +78,21 @@ void warn_about(const AlphaSolidResult& result, Context& context) {
     const std::size_t points = result.tets.positions.size();
     if (const std::size_t uncovered = result.uncovered_points.size(); uncovered > 0)
         context.warn(fmt::format("{} of {} points are not in or on the solid{}", uncovered, points,
-                                 result.cells_left_out > 0 ? fmt::format("; {} cells of other solids were left out",
-                                                                         result.cells_left_out)
-                                                           : ""));
+                                 result.cells_left_out > 0
+                                     ? fmt::format("; {} cells of other solids were left out", result.cells_left_out)
+                                     : ""));
     if (result.choice == AlphaChoice::repaired)
-        context.warn(fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary; the one at {:.4g} {} "
-                                 "was closed round its non-manifold vertices",
-                                 4 * result.alpha_cover, unit, result.alpha, unit));
+        context.warn(
+            fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary; the one at {:.4g} {} "
+                        "was closed round its non-manifold vertices",
+                        4 * result.alpha_cover, unit, result.alpha, unit));
     if (result.choice == AlphaChoice::hull)
         context.warn("no alpha gives a solid with a manifold boundary; the solid is the convex hull");
     if (result.nonmanifold_vertices > 0)
-        context.warn(fmt::format("the boundary has {} non-manifold vertices and {} edges with more than two triangles; "
-                                 "alpha: auto avoids them",
-                                 result.nonmanifold_vertices, result.nonmanifold_edges));
+        context.warn(
+            fmt::format("the boundary has {} non-manifold vertices and {} edges with more than two triangles; "
+                        "alpha: auto avoids them",
+                        result.nonmanifold_vertices, result.nonmanifold_edges));
 }
 
 void report(const AlphaSolidResult& result, Context& context) {
@@ -117,8 +120,9 @@ AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params
     }
     context.progress(0.75);
     if (params.alpha && flood.outside_above(limits.value) == tets.cells.size())
-        throw Error("alpha {} leaves no cell inside; the least that gives one is {:.6g}, and {:.6g} covers {} of {} points",
-                    params.alpha->text(), radius(flood.values.back()), radius(flood.cover), flood.needed, flood.points)
+        throw Error(
+            "alpha {} leaves no cell inside; the least that gives one is {:.6g}, and {:.6g} covers {} of {} points",
+            params.alpha->text(), radius(flood.values.back()), radius(flood.cover), flood.needed, flood.points)
             .hint("'alpha: auto' finds the least alpha with a closed manifold boundary");
 
     const Selector selector(tets, flood, params, context);

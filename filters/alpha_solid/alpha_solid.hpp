@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The alpha-solid: the part of a Delaunay tetrahedralisation that a ball of radius alpha cannot enter from outside, with
-/// alpha chosen automatically.
+/// The alpha-solid: the part of a Delaunay tetrahedralisation that a ball of radius alpha cannot enter from outside,
+/// with alpha chosen automatically.
 ///
 /// A facet is a wall at alpha when it belongs to the alpha-shape. The solid is every cell that cannot be reached from
 /// outside without crossing a wall; what walls enclose is solid, so it has no cavities. Growing alpha grows the solid.
@@ -69,21 +69,22 @@ struct AlphaSolidResult {
     std::size_t nonmanifold_edges = 0, nonmanifold_vertices = 0;
 };
 
-/// Finds the smallest alpha whose solid is valid: the asked share of the points is in or on it, its boundary is a closed
-/// 2-manifold (every vertex's triangles form exactly one closed fan), and for `single` it is connected. When no alpha up
-/// to four times alpha_cover has one, the solid at alpha_cover (for `single` the first connected one above) is repaired
-/// by adding the cheapest cells round every non-manifold vertex.
+/// Finds the smallest alpha whose solid is valid: the asked share of the points is in or on it, its boundary is a
+/// closed 2-manifold (every vertex's triangles form exactly one closed fan), and for `single` it is connected. When no
+/// alpha up to four times alpha_cover has one, the solid at alpha_cover (for `single` the first connected one above) is
+/// repaired by adding the cheapest cells round every non-manifold vertex.
 ///
-/// Pre:  a tetrahedralisation made by delaunay(); alpha above 0; coverage in (0, 1]; size of the scan between 1e-100 and
+/// Pre:  a tetrahedralisation made by delaunay(); alpha above 0; coverage in (0, 1]; size of the scan between 1e-100
+/// and
 ///       1e100. Throws Error with numbers, also when the given alpha leaves no cell inside.
 /// Post: see AlphaSolidResult. Facet values are computed from corners sorted by coordinates and compared exactly; equal
 ///       values enter together. So the solid depends neither on the order of the points nor on the number of threads.
 ///       A point exactly on a facet's smallest circumsphere does not attach the facet.
 /// Cost: O(n log n) in the worst case, about linear in the cells outside the solid for surface scans; about 30 bytes
 ///       per cell beside the result.
-/// Metrics: alpha, alpha-cover, cells, interior-points, uncovered-points, triangles. Warns about points left out, about a
-/// repaired or hull solid, and about non-manifold places at a given alpha.
-/// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
+/// Metrics: alpha, alpha-cover, cells, interior-points, uncovered-points, triangles. Warns about points left out, about
+/// a repaired or hull solid, and about non-manifold places at a given alpha. Source: Bernardini, Bajaj, Chen, Schikore
+/// 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
 
 }  // namespace scanmill

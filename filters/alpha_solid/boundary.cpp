@@ -42,8 +42,8 @@ std::size_t surplus_edges(std::span<LinkEdge> link, u32 centre) {
     std::ranges::sort(link, {}, &LinkEdge::from);
     std::size_t count = 0;
     for (std::size_t i = 1; i < link.size(); ++i)
-        count += link[i].from > centre && link[i].from == link[i - 1].from &&
-                 (i == 1 || link[i - 2].from != link[i].from);
+        count +=
+            link[i].from > centre && link[i].from == link[i - 1].from && (i == 1 || link[i - 2].from != link[i].from);
     return count;
 }
 
@@ -84,7 +84,9 @@ Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labe
 BoundaryDefects boundary_defects(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads) {
     Array<u32> next(vertices + 1);
     std::fill(next.begin(), next.end(), 0);
-    const auto claim = [&](u32 vertex) { return std::atomic_ref(next[vertex]).fetch_add(1, std::memory_order_relaxed); };
+    const auto claim = [&](u32 vertex) {
+        return std::atomic_ref(next[vertex]).fetch_add(1, std::memory_order_relaxed);
+    };
     for_each_chunk(threads, triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t)
             for (u32 corner : triangles[t]) claim(corner);

@@ -10,8 +10,8 @@ namespace scanmill::alpha {
 
 namespace {
 
-/// A double result is accepted where cancellation has left at least this share of the terms, squared; the rest is computed
-/// exactly.
+/// A double result is accepted where cancellation has left at least this share of the terms, squared; the rest is
+/// computed exactly.
 constexpr double squared_share = 1e-12;
 
 /// Within these sizes no intermediate overflows, nor underflows so far as to matter against the bounds.
@@ -79,8 +79,7 @@ public:
 
     double squared_radius() const {
         const double numerator = dot(centre_, centre_), denominator = volume_ * volume_, product = uu_ * vv_ * ww_;
-        if (denominator > squared_share * product &&
-            numerator > 3 * squared_share * (product * (uu_ + vv_ + ww_)) &&
+        if (denominator > squared_share * product && numerator > 3 * squared_share * (product * (uu_ + vv_ + ww_)) &&
             is_moderate(std::min({uu_, vv_, ww_}), std::max({uu_, vv_, ww_})))
             return numerator / (4 * denominator);
         return exact_squared_circumradius(a_, b_, c_, d_);
@@ -93,10 +92,9 @@ public:
         // value, and pass at most 19 roundings each, the offsets' included; those of the first to at most
         // 44 uvw (u + v + w) (vw + wu + uv) and 22 roundings. 22 · 44 · 2^-53 < 1.1e-13 covers all four.
         const double u = largest(u_), v = largest(v_), w = largest(w_);
-        const double bound =
-            std::min({u, v, w}) > least_size && std::max({u, v, w}) < largest_size
-                ? 1.1e-13 * (u * v * w * (u + v + w) * (v * w + w * u + u * v))
-                : std::numeric_limits<double>::infinity();
+        const double bound = std::min({u, v, w}) > least_size && std::max({u, v, w}) < largest_size
+                                 ? 1.1e-13 * (u * v * w * (u + v + w) * (v * w + w * u + u * v))
+                                 : std::numeric_limits<double>::infinity();
         const Offset<double> sum{vw_[0] + wu_[0] + uv_[0], vw_[1] + wu_[1] + uv_[1], vw_[2] + wu_[2] + uv_[2]};
         const std::array<double, 4> coordinates{2 * volume_ * volume_ - dot(centre_, sum), dot(centre_, vw_),
                                                 dot(centre_, wu_), dot(centre_, uv_)};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A priority queue for values that never rise: no value pushed exceeds the last one popped. A radix heap (Ahuja, Mehlhorn,
-/// Orlin, Tarjan 1990) over the bits of non-negative doubles: amortised a few sequential moves per item where a binary
-/// heap would miss the cache at every level.
+/// A priority queue for values that never rise: no value pushed exceeds the last one popped. A radix heap (Ahuja,
+/// Mehlhorn, Orlin, Tarjan 1990) over the bits of non-negative doubles: amortised a few sequential moves per item where
+/// a binary heap would miss the cache at every level.
 
 #include <array>
 #include <bit>
@@ -26,8 +26,8 @@ public:
     /// The value being popped; infinite at first.
     double level() const { return std::bit_cast<double>(~level_); }
 
-    /// Puts the next item that `wanted(item)` accepts into `item`; items of equal value come last in, first out. An item is
-    /// offered to `wanted` when its value becomes the level, once per push.
+    /// Puts the next item that `wanted(item)` accepts into `item`; items of equal value come last in, first out. An
+    /// item is offered to `wanted` when its value becomes the level, once per push.
     template <class Wanted>
     bool pop(u32& item, const Wanted& wanted) {
         std::vector<Entry>& current = buckets_[0];

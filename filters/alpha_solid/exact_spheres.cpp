@@ -45,8 +45,7 @@ double exact_squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c, c
     const auto& [u, v, w] = offsets;
     const Offset<Exact> vw = cross(v, w);
     const Exact determinant = dot(u, vw);
-    const Offset<Exact> centre =
-        circumcentre_numerator(dot(u, u), dot(v, v), dot(w, w), vw, cross(w, u), cross(u, v));
+    const Offset<Exact> centre = circumcentre_numerator(dot(u, u), dot(v, v), dot(w, w), vw, cross(w, u), cross(u, v));
     return quotient(dot(centre, centre), Exact(4) * determinant * determinant, exponent);
 }
 

@@ -9,8 +9,8 @@
 /// cell alone tells whether it attaches a facet, and then its own radius is the facet's value.
 ///
 /// Values depend on the places of the corners alone, not on their numbers: arithmetic starts from corners sorted by
-/// coordinates. Relative error below 1e-8 (thin shapes are computed exactly and then rounded); which facets are attached
-/// is exact.
+/// coordinates. Relative error below 1e-8 (thin shapes are computed exactly and then rounded); which facets are
+/// attached is exact.
 
 #include "scanmill/data/tets.hpp"
 #include "scanmill/filter/context.hpp"
@@ -33,8 +33,8 @@ double squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// A cell's part in the values of its facets.
 struct CellSpheres {
-    /// Per corner the squared circumradius of the facet opposite to it; where the corner attaches that facet, the cell's,
-    /// if larger (rounding may say otherwise).
+    /// Per corner the squared circumradius of the facet opposite to it; where the corner attaches that facet, the
+    /// cell's, if larger (rounding may say otherwise).
     std::array<double, 4> values;
     /// Bit i: corner i attaches the facet opposite to it. Exact.
     u8 attached;

@@ -2,10 +2,10 @@
 #pragma once
 /// One sweep answers every question about alpha: in which order do cells fall out of the solid as alpha shrinks?
 ///
-/// out(c) is the largest value such that a path from outside the hull to cell c crosses only facets of at least that value
-/// (a widest path). A cell is outside at alpha exactly when out(c) > alpha². The sweep is Prim's algorithm from outside:
-/// cells come in order of descending out, so it may stop as soon as the rest is known to be solid, and never looks at
-/// the facets between solid cells.
+/// out(c) is the largest value such that a path from outside the hull to cell c crosses only facets of at least that
+/// value (a widest path). A cell is outside at alpha exactly when out(c) > alpha². The sweep is Prim's algorithm from
+/// outside: cells come in order of descending out, so it may stop as soon as the rest is known to be solid, and never
+/// looks at the facets between solid cells.
 
 #include <limits>
 #include <span>
@@ -37,8 +37,8 @@ struct FloodLimits {
     double coverage = 1;
 };
 
-/// Every group of equal values is complete. Corners are below `points`. Cost: O(m log m) time in theory for m cells swept, nearly linear in
-/// practice; 12 bytes per cell swept and 1 per cell.
+/// Every group of equal values is complete. Corners are below `points`. Cost: O(m log m) time in theory for m cells
+/// swept, nearly linear in practice; 12 bytes per cell swept and 1 per cell.
 Flood flood_from_outside(std::span<const SweepCell> cells, std::size_t points, const FloodLimits& limits,
                          Context& context);
 

@@ -98,8 +98,8 @@ void GrowingSolid::collect_star(u32 vertex) {
     }
 }
 
-/// The boundary triangles are one fan exactly when the solid cells round the vertex hang together across facets, and so do
-/// the others, the unbounded outside included.
+/// The boundary triangles are one fan exactly when the solid cells round the vertex hang together across facets, and so
+/// do the others, the unbounded outside included.
 bool GrowingSolid::is_manifold_at(u32 vertex) {
     collect_star(vertex);
     const u32 hull = static_cast<u32>(star_.size());

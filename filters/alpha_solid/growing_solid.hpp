@@ -23,13 +23,14 @@ public:
     enum class Verdict {
         manifold,
         not_manifold,
-        many_suspects  ///< so many vertices are suspect that looking at the whole boundary is cheaper: see suspect_only()
+        many_suspects  ///< so many vertices are suspect that looking at the whole boundary is cheaper: see
+                       ///< suspect_only()
     };
     Verdict verdict();
     /// Replaces the suspects, as in the constructor.
     void suspect_only(std::span<const u32> vertices);
-    /// Adds, round every non-manifold vertex, the cells with the least `price` that are not solid, all vertices at once;
-    /// again until none is left. `price` is per cell. Each round solidifies a cell, so it ends.
+    /// Adds, round every non-manifold vertex, the cells with the least `price` that are not solid, all vertices at
+    /// once; again until none is left. `price` is per cell. Each round solidifies a cell, so it ends.
     void repair(std::span<const double> price);
 
     const Array<u8>& labels() const { return labels_; }

@@ -10,7 +10,8 @@ namespace scanmill::alpha {
 
 namespace {
 
-/// Visits every cell that hangs together with `seed` through cells that `enter(cell)` accepts; it must accept each once.
+/// Visits every cell that hangs together with `seed` through cells that `enter(cell)` accepts; it must accept each
+/// once.
 template <class Enter, class Visit>
 void walk(const TetMesh& tets, std::vector<u32>& stack, u32 seed, const Enter& enter, const Visit& visit) {
     stack.assign(1, seed);
@@ -56,7 +57,8 @@ void fill_cavities(const TetMesh& tets, std::span<u8> labels) {
     std::ranges::fill(reached, u8(0));
     const auto enter = [&](u32 cell) { return labels[cell] != solid && std::exchange(reached[cell], u8(1)) == 0; };
     for (u32 cell = 0; cell < labels.size(); ++cell) {
-        const bool at_hull = std::ranges::find(tets.neighbours[cell], TetMesh::outside_hull) != tets.neighbours[cell].end();
+        const bool at_hull =
+            std::ranges::find(tets.neighbours[cell], TetMesh::outside_hull) != tets.neighbours[cell].end();
         if (at_hull && enter(cell)) walk(tets, stack, cell, enter, [](u32) {});
     }
     for (u32 cell = 0; cell < labels.size(); ++cell)
@@ -69,8 +71,7 @@ Array<u8> coverage(const TetMesh& tets, std::span<const u8> labels, unsigned thr
     for_each_chunk(threads, labels.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c)
             if (labels[c] == solid)
-                for (u32 vertex : tets.cells[c])
-                    std::atomic_ref(covered[vertex]).store(1, std::memory_order_relaxed);
+                for (u32 vertex : tets.cells[c]) std::atomic_ref(covered[vertex]).store(1, std::memory_order_relaxed);
     });
     return covered;
 }

@@ -8,11 +8,12 @@
 
 namespace scanmill::alpha {
 
-/// Keeps, of the solid cells, those of the piece (joined across facets) with the most points, of equals the one with the
-/// smallest cell; labels the others `left_out`.
+/// Keeps, of the solid cells, those of the piece (joined across facets) with the most points, of equals the one with
+/// the smallest cell; labels the others `left_out`.
 void keep_largest_piece(const TetMesh& tets, std::span<u8> labels);
 
-/// Makes solid what the solid encloses: cells that are not solid and cannot be reached from outside the hull through such.
+/// Makes solid what the solid encloses: cells that are not solid and cannot be reached from outside the hull through
+/// such.
 void fill_cavities(const TetMesh& tets, std::span<u8> labels);
 
 /// Per vertex 1 when it has a solid cell, else 0.

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "alpha_solid/alpha_solid.hpp"
 #include "scanmill/filter/plugin.hpp"
+#include "alpha_solid/alpha_solid.hpp"
 
 using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = AlphaSolidParams;
     return Declare<P>("alpha-solid", 1)
-        .summary("Finds the solid that the points enclose: every cell that a ball of radius alpha cannot enter from outside.")
+        .summary(
+            "Finds the solid that the points enclose: every cell that a ball of radius alpha cannot enter from "
+            "outside.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
         .in<TetMesh>("tets", "A Delaunay tetrahedralisation.")
         .out<TriangleMesh>("mesh", "The solid's boundary, closed and outward.")
         .out<TetMesh>("tets", "The cells, labelled inside or outside.")
-        .param("alpha", &P::alpha, "The ball's radius; auto takes the least that gives a valid solid.", word("auto"), above(0))
+        .param("alpha", &P::alpha, "The ball's radius; auto takes the least that gives a valid solid.", word("auto"),
+               above(0))
         .choice("search", &P::search,
                 {{"scan", AlphaSearch::scan, "The least alpha whose solid is valid."},
                  {"binary", AlphaSearch::binary, "The paper's bisection: a valid solid, not always the least."}},

@@ -9,7 +9,8 @@
 namespace scanmill::alpha {
 
 struct Selection {
-    /// The alpha-solid is every cell but the flood's first `outside`; `labels` may differ from it by cells left out or added.
+    /// The alpha-solid is every cell but the flood's first `outside`; `labels` may differ from it by cells left out or
+    /// added.
     std::size_t outside = 0;
     AlphaChoice choice = AlphaChoice::scan;
     Array<u8> labels;
@@ -52,7 +53,8 @@ private:
 /// smallest cell; labels the others `left_out`.
 void keep_largest_piece(const TetMesh& tets, std::span<u8> labels);
 
-/// Makes solid what the solid encloses: cells that are not solid and cannot be reached from outside the hull through such.
+/// Makes solid what the solid encloses: cells that are not solid and cannot be reached from outside the hull through
+/// such.
 void fill_cavities(const TetMesh& tets, std::span<u8> labels);
 
 }  // namespace scanmill::alpha

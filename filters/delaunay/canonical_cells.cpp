@@ -26,7 +26,9 @@ CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, 
     // buckets are sorted afterwards.
     Array<u32> next(vertices + 1);
     std::fill(next.begin(), next.end(), 0);
-    const auto claim = [&](u32 vertex) { return std::atomic_ref(next[vertex]).fetch_add(1, std::memory_order_relaxed); };
+    const auto claim = [&](u32 vertex) {
+        return std::atomic_ref(next[vertex]).fetch_add(1, std::memory_order_relaxed);
+    };
     for_each_chunk(threads, cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) claim(cells[c][0]);
     });

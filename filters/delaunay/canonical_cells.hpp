@@ -9,7 +9,8 @@
 
 namespace scanmill {
 
-/// Where the corners of `cell` come from in canonical order: the even permutation that makes it lexicographically smallest.
+/// Where the corners of `cell` come from in canonical order: the even permutation that makes it lexicographically
+/// smallest.
 inline std::array<int, 4> canonical_corners(const Tetrahedron& cell) {
     constexpr std::array<std::array<int, 4>, 4> first{{{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}}};
     const std::array<int, 4>& corners = first[std::ranges::min_element(cell) - cell.begin()];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The Delaunay tetrahedralisation of a scan's points: the frame that alpha-solid, sculpt and cocone carve surfaces from.
+/// The Delaunay tetrahedralisation of a scan's points: the frame that alpha-solid, sculpt and cocone carve surfaces
+/// from.
 
 #include "scanmill/data/points.hpp"
 #include "scanmill/data/tets.hpp"

@@ -52,9 +52,8 @@ std::size_t distinct_places(std::span<const Vec3> positions) {
 
 Extents extents(std::span<const Vec3> positions, const Vec3& origin, unsigned threads) {
     Extents result;
-    const Farthest largest = farthest(positions, threads, [&](const Vec3& p) {
-        return (p.cwiseAbs() + origin.cwiseAbs()).maxCoeff();
-    });
+    const Farthest largest =
+        farthest(positions, threads, [&](const Vec3& p) { return (p.cwiseAbs() + origin.cwiseAbs()).maxCoeff(); });
     constexpr double last_places = 16;
     result.rounding = last_places * std::numeric_limits<double>::epsilon() * largest.measure;
 
@@ -71,9 +70,8 @@ Extents extents(std::span<const Vec3> positions, const Vec3& origin, unsigned th
     result.from_line = third.measure;
     if (!(result.from_line > 0)) return result;
     const Vec3 normal = direction.cross(off_line(positions[third.row])).stableNormalized();
-    result.from_plane = farthest(positions, threads, [&](const Vec3& p) {
-                            return std::abs((p - a).dot(normal));
-                        }).measure;
+    result.from_plane =
+        farthest(positions, threads, [&](const Vec3& p) { return std::abs((p - a).dot(normal)); }).measure;
     return result;
 }
 

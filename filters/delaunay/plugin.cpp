@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "delaunay/delaunay.hpp"
 #include "scanmill/filter/plugin.hpp"
+#include "delaunay/delaunay.hpp"
 
 using namespace scanmill;
 
@@ -9,7 +9,9 @@ SCANMILL_FILTER() {
     return Declare<P>("delaunay", 1)
         .summary("Tetrahedralises the points so that no point lies inside the circumsphere of any cell.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
-        .in<PointCloud>("points", "Finite coordinates, at least 4 distinct points that are not coplanar; every column is carried along.")
+        .in<PointCloud>(
+            "points",
+            "Finite coordinates, at least 4 distinct points that are not coplanar; every column is carried along.")
         .out<TetMesh>("tets", "The cells over the distinct points, in canonical order.")
         .metric("cells", Unit::count, "Finite tetrahedra.")
         .metric("duplicates", Unit::count, "Points that lie exactly on an earlier one and were merged into it.")

@@ -22,7 +22,8 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<u32, Kernel>;
-using CellBase = CGAL::Triangulation_cell_base_with_info_3<u32, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using CellBase =
+    CGAL::Triangulation_cell_base_with_info_3<u32, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
 using Triangulation =
     CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 using PointRow = std::pair<Kernel::Point_3, u32>;

@@ -36,9 +36,7 @@ Flood flood_of(const TetMesh& tets, const FloodLimits& limits) {
     return flood_from_outside(cells_of(tets), tets.positions.size(), limits, context);
 }
 
-Flood whole_flood(const TetMesh& tets) {
-    return flood_of(tets, {.value = 0, .coverage = 1});
-}
+Flood whole_flood(const TetMesh& tets) { return flood_of(tets, {.value = 0, .coverage = 1}); }
 
 std::vector<PointCloud> various_clouds() {
     return {random_cube(150, 1), lattice_cube(3), lattice_cube(4, 0.1, true), fibonacci_sphere(200, 1e-3),

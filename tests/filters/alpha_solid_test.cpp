@@ -278,9 +278,7 @@ TEST(AlphaSolid, Bisection_GivesAValidSolidNotBelowTheScans) {
 }
 
 /// Two unit-spaced lattice cubes that share exactly one corner: pinched there until alpha reaches across.
-PointCloud cubes_sharing_a_corner() {
-    return joined(lattice_cube(8), moved(lattice_cube(8), 1, Vec3(8, 8, 8)));
-}
+PointCloud cubes_sharing_a_corner() { return joined(lattice_cube(8), moved(lattice_cube(8), 1, Vec3(8, 8, 8))); }
 
 TEST(AlphaSolid, CubesThatTouchInACorner_AreNotTakenForManifold) {
     const TetMesh tets = tets_of(cubes_sharing_a_corner());
@@ -299,8 +297,8 @@ TEST(AlphaSolid, CubesThatTouchInACorner_AreNotTakenForManifold) {
     }
 }
 
-/// Two needles that share their tip and point away from each other: each appears at about half its length, but the least
-/// circumsphere that reaches from one into the other is many times larger.
+/// Two needles that share their tip and point away from each other: each appears at about half its length, but the
+/// least circumsphere that reaches from one into the other is many times larger.
 PointCloud opposite_needles() {
     Array<Vec3> positions{Vec3(0, 0, 0)};
     for (double end : {1.0, -1.0})
@@ -336,7 +334,9 @@ TEST(AlphaSolid, OppositeNeedles_AreClosedRoundTheirCommonTip) {
         EXPECT_EQ(places(solid_of(shuffled(opposite_needles(), seed)).mesh), places(result.mesh));
 }
 
-PointCloud two_spheres() { return joined(fibonacci_sphere(600, 1e-4), moved(fibonacci_sphere(300, 1e-4, 2), 0.5, Vec3(3, 0, 0))); }
+PointCloud two_spheres() {
+    return joined(fibonacci_sphere(600, 1e-4), moved(fibonacci_sphere(300, 1e-4, 2), 0.5, Vec3(3, 0, 0)));
+}
 
 TEST(AlphaSolid, TwoObjects_StayTwoWhenManyAreAllowed) {
     const AlphaSolidResult result = solid_of(two_spheres(), many());
@@ -394,8 +394,9 @@ TEST(AlphaSolid, Outliers_AreLeftOutAndReportedWhenTheShareAllowsIt) {
 }
 
 TEST(AlphaSolid, PointsInAnyOrder_GiveTheSameSolid) {
-    const std::vector<PointCloud> clouds{random_cube(300, 3), lattice_cube(5), l_block_surface(5, 1, 5),
-                                         cubes_sharing_a_corner(), lattice_cube(7, 0.1, true), two_spheres()};
+    const std::vector<PointCloud> clouds{random_cube(300, 3),        lattice_cube(5),
+                                         l_block_surface(5, 1, 5),   cubes_sharing_a_corner(),
+                                         lattice_cube(7, 0.1, true), two_spheres()};
     for (const PointCloud& cloud : clouds) {
         const AlphaSolidResult expected = solid_of(cloud);
         for (std::uint64_t seed : {1, 2, 3}) {
