@@ -15,10 +15,12 @@ SCANMILL_FILTER() {
         .param("min-points", &P::min_points, "Voxels with fewer points are noise and keep none; 1 keeps all voxels.",
                at_least(1), at_most(4294967295.0))
         .param("margin", &P::margin, "The grid begins this far below the bounding box, along every axis.", at_least(0))
+        .metric("bin-size", Unit::length, "Edge of a voxel, resolved.")
         .metric("kept", Unit::count, "Points kept.", headline)
         .metric("removed", Unit::count, "Points that gave way to a nearer one of their voxel, or were noise.")
         .metric("noise", Unit::count, "Removed points whose voxels had fewer than min-points.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
+            context.metric("bin-size", params.bin_size.value(), Unit::length);
             return Outputs().set("points", voxel_thin(inputs.get<PointCloud>("points"), params, context).points);
         });
 }

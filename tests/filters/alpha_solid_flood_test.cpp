@@ -325,5 +325,38 @@ TEST(Pieces, LargestPiece_IsTheOneWithTheMostPoints) {
     EXPECT_GT(std::ranges::count(labels, u8(left_out)), 0);
 }
 
+TEST(Pieces, CavityThatTouchesNoHullFacet_IsFilledAndABayIsNot) {
+    const TetMesh tets = tets_of(random_cube(300, 21));
+    const auto at_hull = [&](u32 c) {
+        return std::ranges::find(tets.neighbours[c], TetMesh::outside_hull) != tets.neighbours[c].end();
+    };
+    // Opens one cell without hull facets, and another with one together with a neighbour behind it.
+    u32 cavity = 0;
+    while (at_hull(cavity)) ++cavity;
+    const auto touches_cavity = [&](u32 c) {
+        return c == cavity || std::ranges::find(tets.neighbours[c], cavity) != tets.neighbours[c].end();
+    };
+    u32 bay = 0, behind = 0;
+    for (; bay < tets.cells.size(); ++bay) {
+        if (!at_hull(bay) || touches_cavity(bay)) continue;
+        const auto found = std::ranges::find_if(tets.neighbours[bay], [&](u32 across) {
+            return across != TetMesh::outside_hull && !at_hull(across) && !touches_cavity(across);
+        });
+        if (found == tets.neighbours[bay].end()) continue;
+        behind = *found;
+        break;
+    }
+    ASSERT_LT(bay, tets.cells.size());
+    Array<u8> labels(tets.cells.size());
+    std::ranges::fill(labels, solid);
+    labels[cavity] = labels[bay] = outside;
+    labels[behind] = left_out;
+    fill_cavities(tets, labels);
+    EXPECT_EQ(labels[cavity], solid);
+    EXPECT_EQ(labels[bay], outside);
+    EXPECT_EQ(labels[behind], left_out);
+    EXPECT_EQ(std::ranges::count(labels, u8(solid)), static_cast<long>(labels.size()) - 2);
+}
+
 }  // namespace
 }  // namespace scanmill::alpha

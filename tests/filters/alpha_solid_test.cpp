@@ -393,6 +393,30 @@ TEST(AlphaSolid, Outliers_AreLeftOutAndReportedWhenTheShareAllowsIt) {
     }
 }
 
+TEST(AlphaSolid, AnyShareOfRandomPoints_IsHeldByOneClosedManifold) {
+    // Random clumps: solids of many sizes that touch and merge.
+    int kept_apart = 0;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        PointCloud cloud = random_cube(40, seed);
+        for (int clump = 0; clump < 4; ++clump)
+            cloud = joined(cloud, moved(random_cube(40, 100 + seed), 0.2, random_cube(4, 200 + seed).positions[clump]));
+        const TetMesh tets = tets_of(cloud);
+        for (double share : {50.0, 75.0, 90.0, 99.0})
+            for (AlphaComponents components : {AlphaComponents::single, AlphaComponents::many}) {
+                const AlphaSolidResult result = solid_of(tets, covering(share, components));
+                expect_closed(result, result.mesh.positions.size(), topology(result.mesh).euler);
+                EXPECT_GE(200 - result.uncovered_points.size(), 2 * share);
+                EXPECT_EQ(200 - result.uncovered_points.size(),
+                          result.interior_points.size() + result.mesh.positions.size());
+                if (components == AlphaComponents::single) {
+                    EXPECT_EQ(result.components, 1u);
+                    kept_apart += result.cells_left_out > 0;
+                }
+            }
+    }
+    EXPECT_GT(kept_apart, 10);
+}
+
 TEST(AlphaSolid, PointsInAnyOrder_GiveTheSameSolid) {
     const std::vector<PointCloud> clouds{random_cube(300, 3),        lattice_cube(5),
                                          l_block_surface(5, 1, 5),   cubes_sharing_a_corner(),
