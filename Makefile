@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The front door. Every target does all the set-up it needs; a fresh Debian 12 with git and make is enough.
 jobs ?= $(shell nproc)
-demo_scans := points_3/kitten.xyz meshes/bunny00.off meshes/femur.off meshes/hand.off points_3/hippo1.ply
+demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fandisk_large.off
 
 .PHONY: help demo test deps data bench format lint release dev asan tsan
 .DEFAULT_GOAL := help
