@@ -3,7 +3,7 @@
 # Formats every C++ file; `format.sh check` only says which differ, and fails then.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-mapfile -d '' files < <(find bench core engine filters formats runner report tests \( -name '*.cpp' -o -name '*.hpp' \) -print0)
+mapfile -d '' files < <(find . -path ./build -prune -o \( -name '*.cpp' -o -name '*.hpp' \) -print0)
 if [ "${1:-}" = check ]; then
     clang-format-16 --dry-run --Werror "${files[@]}"
 else
