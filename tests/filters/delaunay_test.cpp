@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -159,7 +160,7 @@ TEST(Delaunay, CosphericalPoints_GiveTheSameCellsInAnyOrder) {
 }
 
 TEST(Delaunay, AnyNumberOfThreads_GivesTheSameBytes) {
-    for (const PointCloud& cloud : {random_cube(40000, 5), lattice_cube(20), fibonacci_sphere(30000, 1e-4)}) {
+    for (const PointCloud& cloud : {random_cube(40000, 5), lattice_cube(24), fibonacci_sphere(30000, 1e-4)}) {
         const TetMesh one = triangulated(cloud, 1).tets;
         for (unsigned threads : {2u, 3u}) expect_equal_bytes(one, triangulated(cloud, threads).tets);
     }
@@ -191,6 +192,25 @@ TEST(Delaunay, ManyDuplicates_LeaveTheTriangulationOfTheDistinctPoints) {
     EXPECT_EQ(context.metrics().find("duplicates")->value, 2000);
     EXPECT_EQ(context.metrics().find("cells")->value, static_cast<double>(result.tets.cells.size()));
     EXPECT_EQ(context.metrics().find("hidden")->value, 0);
+}
+
+TEST(Delaunay, ManyDuplicates_AreTheSameForThreads) {
+    const PointCloud base = random_cube(20000, 9);
+    const PointCloud twice = shuffled(joined(base, base), 4);
+    const DelaunayResult one = triangulated(twice, 1), two = triangulated(twice, 2);
+    EXPECT_EQ(two.duplicates, 20000u);
+    expect_equal_bytes(one.tets, two.tets);
+    EXPECT_EQ(places(two.tets), places(triangulated(base).tets));
+}
+
+TEST(Delaunay, PlateUnderOnePoint_IsTheSameForThreads) {
+    PointCloud cloud = joined(random_cube(12000, 3), cloud_of({{0.5, 0.5, 1}}));
+    Array<Vec3> flat(cloud.positions.begin(), cloud.positions.end());
+    for (std::size_t i = 0; i + 1 < flat.size(); ++i) flat[i].z() = 0;
+    cloud.positions = std::move(flat);
+    const TetMesh one = triangulated(cloud, 1).tets;
+    expect_equal_bytes(one, triangulated(cloud, 2).tets);
+    expect_canonical(one);
 }
 
 TEST(Delaunay, MinusZero_IsTheSamePlaceAsZero) {
@@ -299,6 +319,16 @@ TEST(Delaunay, WhenCancelled_StopsWithCancelled) {
     Context context(options);
     EXPECT_THROW(delaunay(random_cube(50000, 1), {}, context), Cancelled);
     EXPECT_LT(asked, 10);
+}
+
+TEST(Delaunay, WhenCancelledAmongThreads_StopsWithCancelled) {
+    std::atomic<int> asked = 0;
+    ContextOptions options;
+    options.threads = 2;
+    options.is_cancelled = [&] { return ++asked > 50; };
+    Context context(options);
+    EXPECT_THROW(delaunay(random_cube(50000, 1), {}, context), Cancelled);
+    EXPECT_LT(asked, 60);
 }
 
 TEST(Delaunay, Progress_RisesToOne) {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Filling CGAL's Delaunay triangulation with the points of a scan, on several threads.
+
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Delaunay_triangulation_cell_base_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_lock_grid_3.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+
+#include <span>
+
+#include "scanmill/data/array.hpp"
+#include "scanmill/data/frame.hpp"
+#include "scanmill/filter/context.hpp"
+
+namespace scanmill {
+
+/// Of the input rows at a vertex's place the smallest.
+struct FirstRow {
+    static constexpr u32 none = 0xffff'ffff;
+    u32 row = none;
+};
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<FirstRow, Kernel>;
+using CellBase =
+    CGAL::Triangulation_cell_base_with_info_3<u32, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using DataStructure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase, CGAL::Parallel_tag>;
+/// A grid over space: threads lock its boxes before they change cells there. Whoever finds a lock taken gives up at
+/// once; CGAL's default would wait for it by spinning, for a whole time slice when its owner waits for a core.
+using Locks = CGAL::Spatial_lock_grid_3<CGAL::Tag_non_blocking>;
+using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, DataStructure, CGAL::Default, Locks>;
+
+/// Inserts all points into an empty triangulation and returns the rows that lie exactly on an earlier one, ascending.
+/// Cells' infos are left alone. Throws Cancelled between insertions.
+Array<u32> insert_all(Triangulation& triangulation, std::span<const Vec3> positions, Context& context);
+
+}  // namespace scanmill
