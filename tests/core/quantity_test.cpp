@@ -57,8 +57,8 @@ TEST(Length, WhatIsNoNumber_IsRefusedWithExamples) {
 }
 
 TEST(Length, NumberAlone_IsRefusedForItsMissingUnit) {
-    EXPECT_EQ(length_refusal("0.2"), "'0.2' has no unit; a length is 0.2 mm, 0.1 %diag, 3 spacing or 0.5 u");
-    EXPECT_EQ(length_refusal("2 "), "'2 ' has no unit; a length is 0.2 mm, 0.1 %diag, 3 spacing or 0.5 u");
+    EXPECT_EQ(length_refusal("0.2"), "'0.2' has no unit; expected 0.2 mm, 0.1 %diag, 3 spacing or 0.5 u");
+    EXPECT_EQ(length_refusal("2 "), "'2 ' has no unit; expected 0.2 mm, 0.1 %diag, 3 spacing or 0.5 u");
 }
 
 TEST(Length, BarePercent_IsAskedOfWhat) {
@@ -124,7 +124,7 @@ TEST(Angle, TextOfRandomAngles_ReadsBackEqual) {
 TEST(Angle, EveryRefusal_SaysWhatWasExpected) {
     EXPECT_EQ(angle_refusal("wide"), "'wide' is not an angle; expected 40 deg or 0.7 rad");
     EXPECT_EQ(angle_refusal("inf deg"), "'inf deg' is not an angle; expected 40 deg or 0.7 rad");
-    EXPECT_EQ(angle_refusal("40"), "'40' has no unit; an angle is 40 deg or 0.7 rad");
+    EXPECT_EQ(angle_refusal("40"), "'40' has no unit; expected 40 deg or 0.7 rad");
     EXPECT_EQ(angle_refusal("40 mm"), "'mm' is no unit of angle; expected deg or rad");
     EXPECT_EQ(angle_refusal("40 °"), "'°' is no unit of angle; expected deg or rad");
 }

@@ -120,7 +120,7 @@ TEST_F(Check, WrongTypes_SayWhatWasExpected) {
                 ElementsAre(HasSubstr("size: 0 u is out of range"), HasSubstr("count: 0 is out of range")));
     EXPECT_THAT(
         steps("  - tetrahedralise:\n  - solid: {alpha: atuo, angle: 40}\n"),
-        ElementsAre(HasSubstr("did you mean 'auto'?"), HasSubstr("'40' has no unit; an angle is 40 deg or 0.7 rad")));
+        ElementsAre(HasSubstr("did you mean 'auto'?"), HasSubstr("'40' has no unit; expected 40 deg or 0.7 rad")));
 }
 
 TEST_F(Check, PortWithoutAnyValue_NamesTheFiltersThatGiveOne) {

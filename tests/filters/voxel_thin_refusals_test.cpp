@@ -4,27 +4,14 @@
 
 #include <limits>
 
+#include "filters/voxel_thin_cases.hpp"
 #include "scanmill/filter/error.hpp"
 #include "support/shapes.hpp"
-#include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill::test {
 namespace {
 
 using ::testing::HasSubstr;
-
-VoxelThinParams bins_of(double size) {
-    VoxelThinParams params;
-    params.bin_size = size;
-    return params;
-}
-
-VoxelThinResult thin(const PointCloud& cloud, const VoxelThinParams& params, unsigned threads = 1) {
-    ContextOptions options;
-    options.threads = threads;
-    Context context(options);
-    return voxel_thin(cloud, params, context);
-}
 
 std::string refusal(const PointCloud& cloud, const VoxelThinParams& params) {
     try {

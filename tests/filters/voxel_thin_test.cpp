@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "voxel_thin/voxel_thin.hpp"
+#include "filters/voxel_thin_cases.hpp"
 
 #include <gmock/gmock.h>
 
@@ -16,19 +16,6 @@ namespace scanmill::test {
 namespace {
 
 using ::testing::ElementsAre;
-
-VoxelThinParams bins_of(double size) {
-    VoxelThinParams params;
-    params.bin_size = size;
-    return params;
-}
-
-VoxelThinResult thin(const PointCloud& cloud, const VoxelThinParams& params, unsigned threads = 1) {
-    ContextOptions options;
-    options.threads = threads;
-    Context context(options);
-    return voxel_thin(cloud, params, context);
-}
 
 using Bin = std::array<double, 3>;
 Bin bin_of(const Vec3& p, const Vec3& origin, double size) {

@@ -129,7 +129,7 @@ std::string_view length_examples() { return "0.2 mm, 0.1 %diag, 3 spacing or 0.5
 Length Length::parse(std::string_view text) {
     Dimensioned parts;
     if (!split(text, parts)) throw Error("'{}' is not a length; expected {}", text, length_examples());
-    if (parts.suffix.empty()) throw Error("'{}' has no unit; a length is {}", text, length_examples());
+    if (parts.suffix.empty()) throw Error("'{}' has no unit; expected {}", text, length_examples());
     if (parts.suffix == "spacings") parts.suffix = "spacing";
     for (const LengthSuffix& suffix : suffixes)
         if (suffix.text == parts.suffix) return {parts.amount, suffix.in};
@@ -145,7 +145,7 @@ std::string Angle::text() const { return number_text(amount_) + (degrees_ ? " de
 Angle Angle::parse(std::string_view text) {
     Dimensioned parts;
     if (!split(text, parts)) throw Error("'{}' is not an angle; expected 40 deg or 0.7 rad", text);
-    if (parts.suffix.empty()) throw Error("'{}' has no unit; an angle is 40 deg or 0.7 rad", text);
+    if (parts.suffix.empty()) throw Error("'{}' has no unit; expected 40 deg or 0.7 rad", text);
     if (parts.suffix == "deg") return degrees(parts.amount);
     if (parts.suffix == "rad") return radians(parts.amount);
     throw Error("'{}' is no unit of angle; expected deg or rad", parts.suffix);
