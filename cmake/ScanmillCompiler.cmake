@@ -18,6 +18,9 @@ endif()
 add_library(scanmill-warnings INTERFACE)
 target_compile_options(scanmill-warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                                    -Wno-restrict)  # false on "literal" + std::string with GCC 12
+if(SCANMILL_SANITIZE)
+  target_compile_options(scanmill-warnings INTERFACE -Wno-maybe-uninitialized)  # false with instrumentation
+endif()
 if(SCANMILL_WERROR)
   target_compile_options(scanmill-warnings INTERFACE -Werror)
 endif()
