@@ -66,7 +66,7 @@ int check(const Options& options) {
                 fmt::print(stderr, "error: {}\n", error.what());
         }
     }
-    if (as_json) fmt::print("{}\n", json.dump(2));
+    if (as_json) fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return code;
 }
 

@@ -100,7 +100,7 @@ std::string plan_json(const Plan& plan) {
             entry["outputs"][output.file] = describe(plan, output.source);
         json["variants"].push_back(std::move(entry));
     }
-    return json.dump(2);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace scanmill::runner

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <csignal>
+#include <filesystem>
+#include <limits>
 #include <thread>
 
 #include "commands.hpp"
@@ -87,6 +90,33 @@ int run_workflow(const Options& options) {
     return report.all_done() ? done : some_failed;
 }
 
+/// The command line's own reading takes -1 for the largest number and 010 for eight.
+template <class Number>
+CLI::Validator whole_number() {
+    return CLI::Validator(
+        [](const std::string& text) -> std::string {
+            Number ignored = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ignored);
+            const bool octal = text.size() > 1 && text[0] == '0';
+            if (error == std::errc() && end == text.data() + text.size() && !octal) return {};
+            return fmt::format("'{}' is no whole number from 0 to {}", text, std::numeric_limits<Number>::max());
+        },
+        "");
+}
+
+/// Empty when results can be put into the folder, which may have to be made.
+std::string what_bars_folder(const std::string& folder) {
+    if (folder.empty()) return "the output folder's name is empty";
+    std::error_code ignored;
+    for (std::filesystem::path part = folder; !part.empty(); part = part.parent_path()) {
+        if (std::filesystem::is_directory(part, ignored)) break;
+        if (std::filesystem::exists(part, ignored))
+            return fmt::format("results cannot be put into '{}': '{}' is a file", folder, part.string());
+        if (part == part.parent_path()) break;
+    }
+    return {};
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, Action& chosen) {
@@ -98,7 +128,9 @@ void add_run(CLI::App& app, Action& chosen) {
         ->take_all()
         ->allow_extra_args(false);
     command->add_option("--unit", options->unit, "The scans' unit of length: um, mm, cm, m, in, ft");
-    command->add_option("-o,--output", options->output_folder, "The output folder")->capture_default_str();
+    command->add_option("-o,--output", options->output_folder, "The output folder")
+        ->capture_default_str()
+        ->check(CLI::Validator(what_bars_folder, ""));
     command->add_option("--set", options->settings, "A workflow parameter's value, NAME=VALUE")
         ->take_all()
         ->allow_extra_args(false);
@@ -112,8 +144,11 @@ void add_run(CLI::App& app, Action& chosen) {
     command
         ->add_option("--threads", options->threads,
                      "Threads inside a filter; 0: as many as the machine has. Results do not depend on it")
-        ->capture_default_str();
-    command->add_option("--seed", options->seed, "Seed of everything random")->capture_default_str();
+        ->capture_default_str()
+        ->check(whole_number<unsigned>());
+    command->add_option("--seed", options->seed, "Seed of everything random")
+        ->capture_default_str()
+        ->check(whole_number<std::uint64_t>());
     command->add_flag("--dry-run", options->dry_run, "Print what would be run and written, and stop");
     command->add_flag("--json", options->json, "Print the report as JSON");
     command->add_flag("-q,--quiet", options->quiet, "No progress on stderr");

@@ -101,7 +101,7 @@ std::string graph_json(const Plan& plan, const RunGraph& graph) {
         for (const RunOutput& output : cell.outputs) entry["outputs"].push_back(output.file.string());
         json["cells"].push_back(std::move(entry));
     }
-    return json.dump(2);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string report_text(const Plan& plan, const RunGraph& graph, const RunReport& report) {

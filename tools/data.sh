@@ -14,12 +14,14 @@ trap 'rm -rf "$work"' EXIT
 cd "$work"
 chmod 755 "$work"
 
+as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
+
 check() { # file, sha256
     echo "$2  $1" | sha256sum --check --status || { echo "error: $1 is not the file that was expected (SHA-256 differs)" >&2; return 1; }
 }
 
 fetch_cgal_models() {
-    apt-get download -qq libcgal-demo=5.5.1-2 2>/dev/null || { apt-get update -qq && apt-get download -qq libcgal-demo=5.5.1-2; } || return 1
+    apt-get download -qq libcgal-demo=5.5.1-2 2>/dev/null || { as_root apt-get update -qq && apt-get download -qq libcgal-demo=5.5.1-2; } || return 1
     check libcgal-demo_5.5.1-2_all.deb 78b09b23d4d6d1bf15552a1060b419ab3fc09918486462faed197e5fc6ac3735 || return 1
     dpkg -x libcgal-demo_5.5.1-2_all.deb unpacked
     tar -xzf unpacked/usr/share/doc/libcgal-dev/data.tar.gz data/meshes data/points_3

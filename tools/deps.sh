@@ -8,7 +8,7 @@ packages=(
     build-essential cmake ninja-build ccache clang-format-16
     libcgal-dev libeigen3-dev libflann-dev libtbb-dev libyaml-cpp-dev libfmt-dev libxxhash-dev
     libcli11-dev nlohmann-json3-dev libgtest-dev libgmock-dev)
-if [ "${1:-}" = bench ]; then packages+=(libpcl-dev libbenchmark-dev); fi
+if [ "${1:-}" = bench ]; then packages+=(libpcl-dev); fi
 if [ "${1:-}" = lint ]; then packages+=(clang-tidy-16); fi
 
 missing=()

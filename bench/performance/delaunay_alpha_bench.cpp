@@ -7,7 +7,7 @@
 /// points included.
 ///
 /// usage: delaunay_alpha_bench [rounds = 5] [--large] [file…]     --large adds 3.5 million points; files replace the
-/// scans of build/data (missing ones are an error)
+/// scans of build/data
 
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@
 #include "delaunay/delaunay.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/topology.hpp"
 #include "support/point_sets.hpp"
 
 namespace {
@@ -73,12 +75,14 @@ double run_ours(const PointCloud& cloud, unsigned threads, std::string* summary)
             solid = scanmill::alpha_solid(tets.tets, {}, context);
         }
         seconds = seconds_since(begin);
-        if (summary)
-            *summary = fmt::format(
-                "{} cells, {} triangles, alpha {:.5g}, alpha_cover {:.5g}, {} interior points, delaunay {:.0f} % of "
-                "the time",
-                cells, solid.mesh.triangles.size(), solid.alpha, solid.alpha_cover, solid.interior_points.size(),
-                100 * delaunay_seconds / seconds);
+        if (!summary) return seconds;
+        const scanmill::MeshTopology facts = scanmill::topology(solid.mesh);
+        *summary = fmt::format(
+            "{} cells, delaunay {:.0f} % of the time; alpha {:.5g}, alpha_cover {:.5g}, {} triangles, {}, {} pieces, "
+            "genus {}, {} interior points, {} left out",
+            cells, 100 * delaunay_seconds / seconds, solid.alpha, solid.alpha_cover, solid.mesh.triangles.size(),
+            facts.closed ? "closed" : "open", facts.components, facts.genus, solid.interior_points.size(),
+            solid.uncovered_points.size());
     }
     return seconds;
 }
@@ -155,7 +159,13 @@ int main(int argc, char** argv) {
         else
             files.push_back(argument);
     }
-    if (files.empty()) files = {"build/data/meshes/bunny00.off", "build/data/dragon/dragon_vrip.ply"};
+    if (files.empty())
+        for (const char* fetched : {"build/data/meshes/bunny00.off", "build/data/dragon/dragon_vrip.ply"}) {
+            if (std::filesystem::exists(fetched))
+                files.push_back(fetched);
+            else
+                fmt::print("{} was not fetched and is left out\n", fetched);
+        }
 
     std::vector<Input> inputs;
     try {

@@ -73,7 +73,7 @@ std::size_t candidates_from(const Flood& flood, double value) {
     return count;
 }
 
-void warn_about(const AlphaSolidResult& result, Context& context) {
+void warn_about(const AlphaSolidResult& result, const AlphaSolidParams& params, Context& context) {
     const std::string_view unit = symbol(result.tets.frame.unit);
     const std::size_t points = result.tets.positions.size();
     if (const std::size_t uncovered = result.uncovered_points.size(); uncovered > 0)
@@ -88,6 +88,11 @@ void warn_about(const AlphaSolidResult& result, Context& context) {
                         4 * result.alpha_cover, unit, result.alpha, unit));
     if (result.choice == AlphaChoice::hull)
         context.warn("no alpha gives a solid with a manifold boundary; the solid is the convex hull");
+    if (params.alpha && params.components == AlphaComponents::single && result.components > 1)
+        context.warn(
+            fmt::format("at alpha {} the solid has {} pieces; alpha: auto finds one that holds all points, coverage "
+                        "below 100 % keeps the largest",
+                        params.alpha->text(), result.components));
     if (result.nonmanifold_vertices > 0)
         context.warn(
             fmt::format("the boundary has {} non-manifold vertices and {} edges with more than two triangles; "
@@ -142,7 +147,7 @@ AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params
     result.tets = tets;
     describe_cells(result, selection, context.threads());
     result.mesh = boundary_mesh(tets, std::move(selection.triangles));
-    warn_about(result, context);
+    warn_about(result, params, context);
     report(result, context);
     context.progress(1);
     return result;

@@ -28,8 +28,8 @@ struct DelaunayResult {
 ///       an empty sphere, ties are broken by a symbolic perturbation that depends on the coordinates alone. So the
 ///       cells, as sets of points, depend on neither the order of the input nor the number of threads, and the bytes
 ///       only on the input.
-/// Cost: O(n log n) time for scanned surfaces, about 1 KB per point at the peak. All threads of the budget insert from
-///       10,000 points on, and number the cells.
+/// Cost: O(n log n) time for scanned surfaces. All threads of the budget insert from 10,000 points on, and sort the
+///       cells; memory is proportional to the cells (`make bench` prints both).
 /// Metrics: cells, duplicates, hidden.
 /// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; the triangulation is CGAL's.
 DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams& params, Context& context);

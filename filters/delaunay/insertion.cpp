@@ -102,15 +102,21 @@ private:
     }
 
     /// `last` is the vertex of the last point that this thread inserted: the next one is likely to be near it.
-    void insert(std::span<const PointRow> points, Triangulation::Vertex_handle& last) {
+    void insert(std::span<const PointRow> points, Triangulation::Vertex_handle& last) try {
         std::vector<u32> duplicates;
         for (const auto& [point, row] : points) {
-            for (int failures = 0; !try_insert(point, last); ++failures) wait_after(failures);
+            for (int failures = 0; !try_insert(point, last); ++failures) {
+                if (broken_) return;
+                wait_after(failures);
+            }
             // Another thread may find the same vertex at the same time.
             const u32 other = exchange_with_smaller(last->info().row, row);
             if (other != FirstRow::none) duplicates.push_back(std::max(other, row));
         }
         finish_chunk(points.size(), duplicates);
+    } catch (...) {
+        broken_ = true;
+        throw;
     }
 
     /// False, and nothing has changed, when another thread is at work there.
@@ -149,6 +155,8 @@ private:
     std::span<const PointRow> points_;
     Context& context_;
     Triangulation::Vertex_handle last_;
+    /// An insertion ended with an exception; its cells are half changed, and stay locked so that nobody enters them.
+    std::atomic<bool> broken_ = false;
     std::mutex mutex_;
     std::size_t done_ = 0;
     Array<u32> duplicates_;

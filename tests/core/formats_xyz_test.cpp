@@ -17,6 +17,29 @@ TEST(XyzReader_Separators, BlanksTabsCommasAndSemicolons_ReadAlike) {
     }
 }
 
+TEST(XyzReader_Separators, AnEmptyField_IsRefused_RatherThanShiftTheOthers) {
+    for (const char* text : {"1,,3,4\n5,6,7,8\n", "1,2,3\n4, ;6\n", ",1,2,3\n", "1,2,3,,\n"})
+        EXPECT_THAT(refusal_of(text, "a.csv"), HasSubstr("a field is empty")) << text;
+}
+
+TEST(XyzReader_Separators, DecimalCommas_AreRefused_RatherThanReadAsSeparators) {
+    EXPECT_THAT(refusal_of("1,5 2,25 3,5\n", "a.xyz"), HasSubstr("line 1: commas separate some numbers"));
+    EXPECT_THAT(refusal_of("1 2 3\n4,5 6\n", "a.xyz"), HasSubstr("line 2: commas separate some numbers"));
+}
+
+TEST(XyzReader_ByteOrderMark, IsPassedOver) {
+    EXPECT_EQ(points_in("\xef\xbb\xbf"
+                        "1 2 3\n4 5 6\n",
+                        "a.csv")
+                  ->size(),
+              2u);
+    EXPECT_EQ(read_bytes("\xef\xbb\xbf"
+                         "1 2 3\n",
+                         "scan.dat")
+                  .format,
+              "XYZ");
+}
+
 TEST(XyzReader_SixColumns, AreNormalsWhenUnit_ElseTheyAreKeptAndTold) {
     Told told;
     const auto with = points_in("0 0 0 0.6 0.8 0\n1 1 1 0 0 0\n", "a.xyz", &told);

@@ -51,6 +51,7 @@ const std::vector<BadScan> bad_scans{
      std::string(80, ' ') + "\xff\xff\xff\xff" + std::string(50, 'a'),
      {"4294967295"}},
     {"NotANumber", "scan.xyz", "0 0 0\n1 nan 0\n0 1 0\n0 0 1\n1 1 1\n", {"1 of 5", "NaN", "--drop-invalid"}},
+    {"OneFinitePoint", "scan.xyz", "nan nan nan\n1 2 3\n", {"1 of 2", "NaN", "--drop-invalid"}},
     {"Infinity", "scan.xyz", "0 0 0\n1 0 0\n0 inf 0\n0 0 1\n-inf 1 1\n", {"2 of 5", "infinity"}},
     {"AllPointsEqual", "scan.xyz", repeated("1 2 3\n", 9), {"9"}},
     {"Collinear", "scan.xyz", "0 0 0\n1 1 1\n2 2 2\n3 3 3\n5 5 5\n", {"line"}},
@@ -97,6 +98,16 @@ TEST_P(BadScanTest, Run_SaysOneClearSentenceAndEndsWith1) {
     const ProgramResult ran = scanmill_program({"run", "w.yaml", bad.file, "-o", "out"}, options);
     expect_one_clear_sentence(ran, bad.file, bad.said);
     EXPECT_FALSE(std::filesystem::exists(folder / "out/scan.stl"));
+}
+
+TEST_P(BadScanTest, Quickstart_SaysOneClearSentenceAndEndsWith1) {
+    const BadScan& bad = GetParam();
+    const TemporaryFolder folder;
+    folder.write(bad.file, bad.content);
+    const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
+    const ProgramResult ran =
+        scanmill_program({"run", quickstart, bad.file, "-o", "out"}, {.folder = folder.path(), .environment = {}});
+    expect_one_clear_sentence(ran, bad.file, bad.said);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BadScanTest, testing::ValuesIn(bad_scans),

@@ -63,6 +63,12 @@ TEST(Command, BadArguments_EndWith2AndAHint) {
                                                {"run", quickstart(), "x.ply", "--only", "nothing"},
                                                {"run", quickstart(), "x.ply", "--until", "nothing"},
                                                {"run", quickstart(), "x.ply", "--in", "nothing=x"},
+                                               {"run", quickstart(), "x.ply", "--seed", "-1"},
+                                               {"run", quickstart(), "x.ply", "--seed", "010"},
+                                               {"run", quickstart(), "x.ply", "--seed", "18446744073709551616"},
+                                               {"run", quickstart(), "x.ply", "--threads", "two"},
+                                               {"run", quickstart(), "x.ply", "-o", ""},
+                                               {"run", quickstart(), "x.ply", "-o", quickstart() + "/out"},
                                                {"convert", "a"}}) {
         const ProgramResult result = scanmill_program(arguments);
         EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(arguments);

@@ -11,10 +11,13 @@ bool TextCursor::next_row() {
         if (at_ != end_) pass_line_end();
     }
     begun_ = true;
+    gaps_ = 0;
     while (!more()) {
         if (at_ == end_) return false;
         pass_line_end();
+        gaps_ = 0;
     }
+    gaps_ = gaps_ & (comma_gap | empty_field) ? empty_field : 0;  // what stands before the first token is no gap
     return true;
 }
 

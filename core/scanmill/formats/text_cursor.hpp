@@ -45,6 +45,11 @@ public:
     std::string_view last_token() const { return last_token_; }
     /// Makes `tail`, the end of the token just read, the next token.
     void put_back(std::string_view tail) { at_ = tail.data(); }
+    /// Between the numbers of this row, as far as it was read, stood blanks here and commas there: "1,5 2,5 3" may mean
+    /// three numbers or five.
+    bool mixes_separators() const { return gaps_ & blank_gap && gaps_ & comma_gap; }
+    /// A comma with nothing before it in this row, as far as it was read.
+    bool has_empty_field() const { return gaps_ & empty_field; }
     /// Tokens left in this row; does not move.
     std::size_t count_tokens() const;
 
@@ -54,8 +59,11 @@ public:
     const std::vector<std::string>& comments() const { return comments_; }
 
 private:
+    static constexpr unsigned blank_gap = 1, comma_gap = 2, empty_field = 4;
+
+    static bool is_comma(char c) { return c == ',' || c == ';'; }
     bool separates(char c) const {
-        return c == ' ' || c == '\t' || c == '\v' || c == '\f' || (rules_.commas && (c == ',' || c == ';'));
+        return c == ' ' || c == '\t' || c == '\v' || c == '\f' || (rules_.commas && is_comma(c));
     }
     static bool ends_line(char c) { return c == '\n' || c == '\r'; }
     bool ends_token(char c) const { return separates(c) || ends_line(c) || (c == rules_.comment && c != '\0'); }
@@ -68,17 +76,24 @@ private:
     const char* end_;
     TextRules rules_;
     std::size_t line_;
+    unsigned gaps_ = 0;
     bool begun_ = false;
     std::string_view last_token_;
     std::vector<std::string> comments_;
 };
 
 inline bool TextCursor::more() {
-    while (at_ != end_ && separates(*at_)) ++at_;
+    const char* const begin = at_;
+    int commas = 0;
+    for (; at_ != end_ && separates(*at_); ++at_) commas += is_comma(*at_);
+    if (commas > 1) gaps_ |= empty_field;
     if (at_ == end_ || ends_line(*at_)) return false;
-    if (!at_comment()) return true;
-    pass_comment();
-    return false;
+    if (at_comment()) {
+        pass_comment();
+        return false;
+    }
+    if (at_ != begin) gaps_ |= commas == 0 ? blank_gap : comma_gap;
+    return true;
 }
 
 template <class Number>

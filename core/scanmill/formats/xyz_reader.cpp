@@ -22,6 +22,13 @@ std::vector<std::string_view> tokens_of_row(TextCursor row) {
     return tokens;
 }
 
+/// Text editors of Windows begin a file with these three bytes.
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    if (text.starts_with(mark)) text.remove_prefix(mark.size());
+    return text;
+}
+
 bool is_number(std::string_view token) {
     double ignored = 0;
     return parse_number(token, ignored);
@@ -51,7 +58,7 @@ bool are_unit(const std::vector<Array<double>>& columns) {
 class XyzReader {
 public:
     XyzReader(const FileBytes& file, const ReadOptions& options)
-        : text_(file.bytes, rules),
+        : text_(without_byte_order_mark(file.bytes), rules),
           size_(file.bytes.size()),
           options_(options) {}
 
@@ -115,9 +122,11 @@ private:
             Vec3 p;
             for (std::size_t i = 0; i < width_; ++i) {
                 double value = 0;
-                if (!text_.more())
+                if (!text_.more()) {
+                    require_plain_separators();
                     throw Error("line {}: found {}; the rows before have {}", text_.line(),
                                 counted(i, "column", "columns"), width_);
+                }
                 if (!text_.number(value))
                     throw Error("line {}: {} is no number", text_.line(), quote(text_.last_token()));
                 if (i < 3)
@@ -128,12 +137,22 @@ private:
             if (text_.more())
                 throw Error("line {}: found {}; the rows before have {}", text_.line(),
                             counted(width_ + text_.count_tokens(), "column", "columns"), width_);
+            require_plain_separators();
             positions_.push_back(p);
         } while (text_.next_row());
         require_countable(positions_.size(), "points");
         if (counted_ && promised_ != positions_.size())
             throw Error("its first line promises {} points; {} follow", promised_, positions_.size())
                 .hint("the file is truncated or its count is wrong: correct or remove the first line");
+    }
+
+    /// Of the row as far as it was read.
+    void require_plain_separators() const {
+        if (text_.has_empty_field())
+            throw Error("line {}: a field is empty; every point needs a number in every column", text_.line());
+        if (text_.mixes_separators())
+            throw Error("line {}: commas separate some numbers and blanks others", text_.line())
+                .hint("if the commas are decimal ones, write points in their place");
     }
 
     ColumnTable columns() {
@@ -170,7 +189,7 @@ private:
 }  // namespace
 
 Recognition recognise_xyz(std::string_view head, u64) {
-    TextCursor text(head, rules);
+    TextCursor text(without_byte_order_mark(head), rules);
     if (!text.next_row()) return Recognition::no;
     const std::vector<std::string_view> tokens = tokens_of_row(text);
     const bool numbers = tokens.size() >= 3 && std::ranges::all_of(tokens, is_number);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/length_scale.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <flann/flann.hpp>
+
+#include "scanmill/filter/error.hpp"
 
 namespace scanmill {
 
@@ -27,6 +31,14 @@ std::span<const Vec3> positions_of(const Value& value) {
                 return {};
         },
         value);
+}
+
+double diagonal_of(std::span<const Vec3> positions) {
+    const double diagonal = bounding_box(positions).diagonal();
+    if (diagonal > 0 || positions.empty()) return diagonal;
+    require_finite(positions);
+    throw Error("the scan has no size: {} at one place; at least two places are needed",
+                positions.size() == 1 ? "its only point is" : fmt::format("all {} points are", positions.size()));
 }
 
 double spacing_of(const Value& value) {
@@ -86,8 +98,7 @@ double edge_spacing(const TriangleMesh& mesh) {
 
 LengthScale length_scale(const Value& value) {
     const Frame* frame = frame_of(value);
-    return {frame ? frame->unit : LengthUnit::unknown,
-            memoised([value] { return bounding_box(positions_of(value)).diagonal(); }),
+    return {frame ? frame->unit : LengthUnit::unknown, memoised([value] { return diagonal_of(positions_of(value)); }),
             memoised([value] { return spacing_of(value); })};
 }
 
