@@ -81,7 +81,7 @@ double run_ours(const PointCloud& cloud, unsigned threads, std::string* summary)
             "{} cells, delaunay {:.0f} % of the time; alpha {:.5g}, alpha_cover {:.5g}, {} triangles, {}, {} pieces, "
             "genus {}, {} interior points, {} left out",
             cells, 100 * delaunay_seconds / seconds, solid.alpha, solid.alpha_cover, solid.mesh.triangles.size(),
-            facts.closed ? "closed" : "open", facts.components, facts.genus, solid.interior_points.size(),
+            facts.closed ? "closed" : "open", facts.components, facts.genus.value_or(-1), solid.interior_points.size(),
             solid.uncovered_points.size());
     }
     return seconds;

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -30,15 +31,18 @@ public:
         if (!::mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
         folder_ = pattern;
         constexpr std::size_t count = 3'500'000;
-        Array<Vec3> positions(count);
+        std::vector<float> numbers;
+        numbers.reserve(3 * count);
         for (std::size_t i = 0; i < count; ++i) {
             const double turn = static_cast<double>(i) * 1e-3;
-            const auto rounded = [](double value) { return static_cast<double>(static_cast<float>(value)); };
-            positions[i] = {rounded(std::cos(turn)), rounded(std::sin(turn)), rounded(turn)};
+            for (double number : {std::cos(turn), std::sin(turn), turn}) numbers.push_back(static_cast<float>(number));
         }
-        PointCloud cloud;
-        cloud.positions = std::move(positions);
-        write_file(path(), std::make_shared<const PointCloud>(std::move(cloud)));
+        std::ofstream stream(path(), std::ios::binary);
+        stream << "ply\nformat binary_little_endian 1.0\nelement vertex " << count
+               << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+        stream.write(reinterpret_cast<const char*>(numbers.data()),
+                     static_cast<std::streamsize>(numbers.size() * sizeof(float)));
+        if (!stream.flush()) throw std::runtime_error("the file could not be written");
     }
     ~PointFile() {
         std::error_code ignored;
