@@ -69,6 +69,16 @@ TEST(AlphaSolidOfTheBunny, ReachesIntoNoPointsNeighbourhood) {
     EXPECT_EQ(result.mesh.vertex_columns.find("confidence")->rows(), result.mesh.positions.size());
 }
 
+TEST(AlphaSolidOfTheDragon, InFull_IsOneClosedManifoldThroughAllItsPoints) {
+    SCANMILL_REAL_SCAN(path, fetched_data, "dragon/dragon_vrip.ply");
+    const auto cloud = read_points(path);
+    ASSERT_EQ(cloud->size(), 437645u);
+    const AlphaSolidResult result = solid_of(*cloud);
+    expect_valid(result);
+    EXPECT_EQ(result.uncovered_points.size(), 0u);
+    EXPECT_EQ(topology(result.mesh).genus, 1);
+}
+
 TEST(AlphaSolidOfTheDragon, WithItsDebris_IsOneClosedManifold) {
     SCANMILL_REAL_SCAN(path, fetched_data, "dragon/dragon_vrip_res2.ply");
     const auto cloud = read_points(path);

@@ -212,9 +212,9 @@ TEST(VoxelThin, CornersOfTheLargestGrid_AreToldApart) {
 }
 
 TEST(VoxelThin, RealScan_AgreesWithTheDefinition) {
-    SCANMILL_REAL_SCAN(path, shared_data, "1-bunny/raw/bun000.ply");
+    SCANMILL_REAL_SCAN(path, fetched_data, "meshes/bunny00.off");
     const auto cloud = read_points(path);
-    const double size = 0.002;
+    const double size = 0.02 * bounding_box(cloud->positions.span()).diagonal();
     const VoxelThinResult result = thin(*cloud, bins_of(size), 2);
     EXPECT_GT(result.removed, cloud->size() / 2);
     EXPECT_TRUE(std::ranges::equal(result.kept, nearest_by_definition(*cloud, result.grid_origin, size)));

@@ -4,19 +4,20 @@
 namespace scanmill::test {
 
 namespace {
-std::optional<std::filesystem::path> existing(std::filesystem::path path) {
-    if (std::filesystem::exists(path)) return path;
+std::optional<std::filesystem::path> in_collection(const std::filesystem::path& collection, std::string_view file) {
+    if (std::filesystem::exists(collection)) return collection / file;
     return std::nullopt;
 }
 const std::filesystem::path source_folder = SCANMILL_SOURCE_DIR;
 }  // namespace
 
 std::optional<std::filesystem::path> fetched_data(std::string_view name) {
-    return existing(source_folder / "build/data" / name);
+    const std::size_t slash = name.find('/');
+    return in_collection(source_folder / "build/data" / name.substr(0, slash), name.substr(slash + 1));
 }
 
 std::optional<std::filesystem::path> shared_data(std::string_view name) {
-    return existing(source_folder.parent_path() / "shared/data" / name);
+    return in_collection(source_folder.parent_path() / "shared/data", name);
 }
 
 }  // namespace scanmill::test
