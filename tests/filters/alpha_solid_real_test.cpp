@@ -41,6 +41,8 @@ struct Scan {
     long genus;
 };
 
+void PrintTo(const Scan& scan, std::ostream* stream) { *stream << scan.file; }
+
 class AlphaSolidOfRealScan : public testing::TestWithParam<Scan> {};
 
 TEST_P(AlphaSolidOfRealScan, IsOneClosedManifoldOfTheObjectsGenus) {
