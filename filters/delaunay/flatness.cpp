@@ -14,7 +14,7 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t chunk = 1 << 15;
-constexpr std::string_view way_out = "voxel-thin and region-grow accept flat scans";
+constexpr std::string_view way_out = "voxel-thin accepts flat scans";
 
 struct Farthest {
     double measure = -1;

@@ -74,8 +74,7 @@ std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path,
     if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&loaded.value)) return *mesh;
     throw Error("'{}': a mesh is needed; the file holds {} and not a single face", path.string(),
                 counted(std::get<std::shared_ptr<const PointCloud>>(loaded.value)->size(), "point", "points"))
-        .hint(
-            "make a surface of the points first, with a workflow that takes points (cocone, region-grow, alpha-solid)");
+        .hint("make a surface of the points first, by a workflow of filters that lead from points to a mesh");
 }
 
 void write_file(const std::filesystem::path& path, const Value& value, const WriteOptions& options) {
