@@ -26,6 +26,7 @@ std::size_t edits(std::string_view a, std::string_view b) {
 }
 
 constexpr std::size_t longest_word = 100;  // nobody's typing error; keeps hostile input cheap
+constexpr std::size_t most_enumerated = 40;
 
 }  // namespace
 
@@ -48,11 +49,13 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
 }
 
 std::string enumerated(std::span<const std::string> names) {
+    const std::size_t shown = names.size() <= most_enumerated ? names.size() : most_enumerated - 1;
     std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t i = 0; i < shown; ++i) {
         if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
         text += names[i];
     }
+    if (shown < names.size()) text += " and " + std::to_string(names.size() - shown) + " more";
     return text;
 }
 

@@ -15,7 +15,7 @@ std::string closest(std::string_view word, std::span<const std::string> candidat
 /// "; did you mean 'x'?" or nothing.
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
 
-/// "a, b and c", for messages.
+/// "a, b and c", for messages; of more than forty names the first 39 and how many more there are.
 std::string enumerated(std::span<const std::string> names);
 
 }  // namespace scanmill

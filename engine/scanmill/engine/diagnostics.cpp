@@ -16,7 +16,7 @@ void Diagnostics::warning(Position position, std::string message) {
 }
 
 void Diagnostics::add(Diagnostic diagnostic) {
-    if (std::ranges::find(items_, diagnostic) != items_.end()) return;
+    if (!known_.insert(diagnostic).second) return;
     if (diagnostic.severity == Diagnostic::Severity::error) ++errors_;
     items_.push_back(std::move(diagnostic));
 }

@@ -2,6 +2,8 @@
 #pragma once
 /// Everything that is wrong with a file, found in one go, each with its place.
 
+#include <compare>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,7 +21,7 @@ struct Diagnostic {
     Severity severity;
     Position position;
     std::string message;
-    bool operator==(const Diagnostic&) const = default;
+    auto operator<=>(const Diagnostic&) const = default;
 };
 
 class Diagnostics {
@@ -41,6 +43,7 @@ private:
 
     std::string file_;
     std::vector<Diagnostic> items_;
+    std::set<Diagnostic> known_;
     std::size_t errors_ = 0;
 };
 

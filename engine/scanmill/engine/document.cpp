@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
+#include <unordered_map>
 
 namespace scanmill {
 
@@ -83,6 +84,7 @@ private:
         bool has_key = false;
         std::string key;
         Position key_position;
+        std::unordered_map<std::string, int> line_of_key;
     };
 
     void count(std::size_t nodes, Position position) {
@@ -90,7 +92,7 @@ private:
         if (nodes_ > most_nodes) throw TooManyNodes{position};
     }
     void open(YamlNode::Type type, const YAML::Mark& mark, YAML::anchor_t anchor) {
-        Open level{.node = {}, .anchor = anchor, .has_key = false, .key = {}, .key_position = {}};
+        Open level{.node = {}, .anchor = anchor, .has_key = false, .key = {}, .key_position = {}, .line_of_key = {}};
         level.node.type = type;
         level.node.position = position_of(mark);
         stack_.push_back(std::move(level));
@@ -123,11 +125,11 @@ private:
     }
     void add_entry(Open& map, YamlNode value) {
         map.has_key = false;
-        const auto earlier = std::ranges::find(map.node.entries, map.key, &YamlEntry::key);
-        if (earlier != map.node.entries.end()) {
+        const auto [earlier, is_new] = map.line_of_key.emplace(map.key, map.key_position.line);
+        if (!is_new) {
             diagnostics_.error(map.key_position,
                                fmt::format("the key '{}' stands here a second time; it is already at line {}", map.key,
-                                           earlier->position.line));
+                                           earlier->second));
             return;
         }
         map.node.entries.push_back({map.key, map.key_position, std::move(value)});
@@ -162,10 +164,10 @@ YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
     try {
         std::istringstream stream(text);
         YAML::Parser parser(stream);
-        if (!parser.HandleNextDocument(builder)) diagnostics.error({}, "is empty; expected a workflow");
-        TreeBuilder second(diagnostics);
-        if (parser.HandleNextDocument(second) && !second.root.is_null())
-            diagnostics.error(second.root.position, "a second document begins here; expected one");
+        parser.HandleNextDocument(builder);
+        for (TreeBuilder next(diagnostics); parser.HandleNextDocument(next);)
+            if (!next.root.is_null())
+                diagnostics.error(next.root.position, "a second document begins here; expected one");
     } catch (const YAML::Exception& error) {
         diagnostics.error(position_of(error.mark), "is no YAML: " + error.msg);
     } catch (const TooManyNodes& too_many) {

@@ -33,159 +33,212 @@ std::string written_text(const WrittenParameter& value) {
     return text;
 }
 
-struct TooManyVariants {};
-
-/// Walks the steps depth first; each fork copies the state of the walk.
-class Expander {
+/// Says at every fork which way to go.
+class Choices {
 public:
-    Expander(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
-        : workflow_(workflow),
-          settings_(settings),
-          diagnostics_(diagnostics) {}
+    virtual ~Choices() = default;
+    /// One of 0 … count - 1.
+    virtual std::size_t choose(std::size_t count) = 0;
+};
 
-    std::vector<Variant> all() {
-        for (const auto& [name, value] : settings_) require_known(name, {});
-        State start;
-        walk(workflow_.steps, 0, start, [this](State& end) { finish(end); });
-        for (const WorkflowParameter& parameter : workflow_.parameters)
-            if (!used_.contains(parameter.name))
-                diagnostics_.warning(parameter.position,
-                                     fmt::format("no step uses the parameter '{}'", parameter.name));
-        return std::move(variants_);
+/// Every combination once, the last fork fastest.
+class EveryCombination : public Choices {
+public:
+    std::size_t choose(std::size_t count) override {
+        if (count <= 1) return 0;
+        if (next_ == made_.size()) made_.push_back({0, count});
+        return made_[next_++].choice;
+    }
+    /// Goes on to the next combination; false after the last.
+    bool advance() {
+        next_ = 0;
+        while (!made_.empty() && made_.back().choice + 1 == made_.back().count) made_.pop_back();
+        if (made_.empty()) return false;
+        ++made_.back().choice;
+        return true;
     }
 
 private:
-    struct State {
-        std::vector<std::string> name_parts;
-        std::set<std::string> swept;                       // names that appear in name_parts
-        std::map<std::string, const WrittenValue*> bound;  // swept workflow parameters, once chosen
-        std::vector<ExpandedStep> steps;
+    struct Made {
+        std::size_t choice, count;
     };
-    using Continue = std::function<void(State&)>;
+    std::vector<Made> made_;
+    std::size_t next_ = 0;  // the fork that is asked for next
+};
 
-    void walk(const std::vector<StepItem>& items, std::size_t index, State& state, const Continue& then) {
-        if (index == items.size()) {
-            then(state);
-            return;
-        }
-        const Continue rest = [&](State& next) { walk(items, index + 1, next, then); };
-        if (const auto* step = std::get_if<StepSyntax>(&items[index].item)) {
-            ExpandedStep expanded{step, {}, {}};
-            arguments(*step, 0, std::move(expanded), state, rest);
-            return;
-        }
-        const auto& fork = std::get<OneOfSyntax>(items[index].item);
-        for (const AlternativeSyntax& alternative : fork.alternatives) {
-            State branch = state;
-            if (!alternative.name.empty()) branch.name_parts.push_back(file_safe(alternative.name));
-            walk(alternative.steps, 0, branch, [&](State& end) {
-                if (!fork.id.empty() && !end.steps.empty()) end.steps.back().aliases.push_back(fork.id);
-                rest(end);
-            });
+/// The first way everywhere, then the second, and so on round: each way of each fork at least once.
+class EachOnce : public Choices {
+public:
+    std::size_t choose(std::size_t count) override {
+        widest_ = std::max(widest_, count);
+        return count <= 1 ? 0 : round_ % count;
+    }
+    bool advance() { return ++round_ < std::min(widest_, most_variants); }
+
+private:
+    std::size_t round_ = 0, widest_ = 1;
+};
+
+/// One way through the workflow's forks.
+class Walk {
+public:
+    Walk(const Workflow& workflow, const Settings& settings, Choices& choices)
+        : workflow_(workflow),
+          settings_(settings),
+          choices_(choices) {}
+
+    Variant variant() {
+        follow(workflow_.steps);
+        for (const std::string& part : name_parts_) variant_.name += (variant_.name.empty() ? "" : "+") + part;
+        if (variant_.name.empty()) variant_.name = "default";
+        return std::move(variant_);
+    }
+
+private:
+    void follow(const std::vector<StepItem>& items) {
+        for (const StepItem& item : items) {
+            if (const auto* step = std::get_if<StepSyntax>(&item.item))
+                variant_.steps.push_back({step, arguments(*step), {}});
+            else
+                follow(std::get<OneOfSyntax>(item.item));
         }
     }
 
-    /// Fixes the step's parameters from `index` on, forking at every sweep.
-    void arguments(const StepSyntax& step, std::size_t index, ExpandedStep expanded, State& state,
-                   const Continue& then) {
-        if (index == step.parameters.size()) {
-            State next = state;
-            next.steps.push_back(std::move(expanded));
-            then(next);
-            return;
+    void follow(const OneOfSyntax& fork) {
+        if (fork.alternatives.empty()) return;
+        const AlternativeSyntax& taken = fork.alternatives[choices_.choose(fork.alternatives.size())];
+        if (!taken.name.empty()) name_parts_.push_back(file_safe(taken.name));
+        const std::size_t before = variant_.steps.size();
+        follow(taken.steps);
+        if (!fork.id.empty() && variant_.steps.size() > before) variant_.steps.back().aliases.push_back(fork.id);
+    }
+
+    std::vector<ChosenArgument> arguments(const StepSyntax& step) {
+        std::vector<ChosenArgument> all;
+        for (const NamedExpression& parameter : step.parameters) {
+            const std::vector<WrittenValue>& values = parameter.value.values;
+            if (values.empty()) continue;  // its text was wrong
+            const WrittenValue& written = values[choices_.choose(values.size())];
+            const std::size_t told = name_parts_.size();
+            const WrittenValue* value =
+                written.reference.empty() ? &written : referenced(step, written.reference);
+            if (!value) continue;  // an unknown parameter, or one whose text was wrong
+            if (parameter.value.sweep && name_parts_.size() == told) tell_swept(step, parameter.name, *value);
+            all.push_back({&parameter, value, &written});
         }
-        const NamedExpression& parameter = step.parameters[index];
-        for (const WrittenValue& written : parameter.value.values) {
-            State branch = state;
-            const std::string* reference = nullptr;
-            std::vector<const WrittenValue*> candidates{&written};
-            if (!written.reference.empty()) {
-                candidates = referenced(written, branch);
-                reference = &written.reference;
-                if (candidates.empty()) return;  // unknown, and reported
-            }
-            for (const WrittenValue* value : candidates) {
-                State chosen = branch;
-                if (candidates.size() > 1) {
-                    chosen.bound[*reference] = value;
-                    add_swept(chosen, step, *reference, *value);
-                } else if (parameter.value.sweep) {
-                    add_swept(chosen, step, parameter.name, *value);
-                }
-                ExpandedStep with = expanded;
-                with.arguments.push_back({parameter.name, parameter.position, value->literal, written.position,
-                                          reference ? *reference : std::string()});
-                arguments(step, index + 1, std::move(with), chosen, then);
-            }
+        return all;
+    }
+
+    /// What `$name` stands for; a swept parameter keeps the value that was chosen where it is first used.
+    const WrittenValue* referenced(const StepSyntax& step, const std::string& name) {
+        if (const auto bound = bound_.find(name); bound != bound_.end()) return bound->second;
+        const auto setting = settings_.find(name);
+        const auto parameter = std::ranges::find(workflow_.parameters, name, &WorkflowParameter::name);
+        if (parameter == workflow_.parameters.end()) return nullptr;
+        const std::vector<WrittenValue>& values =
+            setting != settings_.end() ? setting->second.values : parameter->value.values;
+        if (values.empty()) return nullptr;
+        const WrittenValue* chosen = &values[choices_.choose(values.size())];
+        if (values.size() > 1) {
+            bound_.emplace(name, chosen);
+            tell_swept(step, name, *chosen);
         }
-        // An expression whose text was wrong has no values; it was reported when it was read.
-        if (parameter.value.values.empty()) arguments(step, index + 1, std::move(expanded), state, then);
+        return chosen;
     }
 
-    /// The values that `$name` may take here: one, unless it is a sweep that this variant has not chosen from yet.
-    std::vector<const WrittenValue*> referenced(const WrittenValue& written, const State& state) {
-        if (!require_known(written.reference, written.position)) return {};
-        used_.insert(written.reference);
-        if (const auto found = state.bound.find(written.reference); found != state.bound.end()) return {found->second};
-        const auto setting = settings_.find(written.reference);
-        const ValueExpression& expression =
-            setting != settings_.end()
-                ? setting->second
-                : std::ranges::find(workflow_.parameters, written.reference, &WorkflowParameter::name)->value;
-        std::vector<const WrittenValue*> values;
-        for (const WrittenValue& value : expression.values) values.push_back(&value);
-        return values;
-    }
-
-    bool require_known(const std::string& name, Position position) {
-        if (std::ranges::find(workflow_.parameters, name, &WorkflowParameter::name) != workflow_.parameters.end())
-            return true;
-        std::vector<std::string> names;
-        for (const WorkflowParameter& parameter : workflow_.parameters) names.push_back(parameter.name);
-        diagnostics_.error(position, fmt::format("the workflow has no parameter '{}'; {}{}", name,
-                                                 names.empty() ? "it declares none" : "it has " + enumerated(names),
-                                                 did_you_mean(name, names)));
-        return false;
-    }
-
-    static void add_swept(State& state, const StepSyntax& step, const std::string& name, const WrittenValue& value) {
+    void tell_swept(const StepSyntax& step, const std::string& name, const WrittenValue& value) {
         // A second sweep of the same name tells whose it is.
         const std::string label =
-            state.swept.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
-        state.swept.insert(name);
-        state.name_parts.push_back(file_safe(label + "=" + written_text(value.literal)));
-    }
-
-    void finish(State& state) {
-        if (variants_.size() == most_variants) throw TooManyVariants{};
-        Variant variant;
-        for (const std::string& part : state.name_parts) variant.name += (variant.name.empty() ? "" : "+") + part;
-        if (variant.name.empty()) variant.name = "default";
-        if (!names_.insert(variant.name).second)
-            diagnostics_.error(
-                state.steps.empty() ? Position{} : state.steps.back().syntax->position,
-                fmt::format("two variants are called '{}'; give their alternatives different names", variant.name));
-        variant.steps = std::move(state.steps);
-        variants_.push_back(std::move(variant));
+            swept_.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
+        swept_.insert(name);
+        name_parts_.push_back(file_safe(label + "=" + written_text(value.literal)));
     }
 
     const Workflow& workflow_;
     const Settings& settings_;
-    Diagnostics& diagnostics_;
-    std::set<std::string> used_;
-    std::set<std::string> names_;
-    std::vector<Variant> variants_;
+    Choices& choices_;
+    Variant variant_;
+    std::vector<std::string> name_parts_;
+    std::set<std::string> swept_;                       // names that appear in name_parts_
+    std::map<std::string, const WrittenValue*> bound_;  // swept workflow parameters, once chosen
 };
+
+/// Every `$name` of the file must be declared, and every declared one should be used.
+class References {
+public:
+    References(const Workflow& workflow, Diagnostics& diagnostics) : diagnostics_(diagnostics) {
+        for (const WorkflowParameter& parameter : workflow.parameters) names_.push_back(parameter.name);
+        look_at(workflow.steps);
+        for (const WorkflowParameter& parameter : workflow.parameters)
+            if (!used_.contains(parameter.name))
+                diagnostics_.warning(parameter.position,
+                                     fmt::format("no step uses the parameter '{}'", parameter.name));
+    }
+
+    void require_known(const std::string& name, Position position) const {
+        if (std::ranges::find(names_, name) != names_.end()) return;
+        diagnostics_.error(position, fmt::format("the workflow has no parameter '{}'; {}{}", name,
+                                                 names_.empty() ? "it declares none" : "it has " + enumerated(names_),
+                                                 did_you_mean(name, names_)));
+    }
+
+private:
+    void look_at(const std::vector<StepItem>& items) {
+        for (const StepItem& item : items) {
+            if (const auto* fork = std::get_if<OneOfSyntax>(&item.item)) {
+                for (const AlternativeSyntax& alternative : fork->alternatives) look_at(alternative.steps);
+                continue;
+            }
+            for (const NamedExpression& parameter : std::get<StepSyntax>(item.item).parameters)
+                for (const WrittenValue& written : parameter.value.values) {
+                    if (written.reference.empty()) continue;
+                    require_known(written.reference, written.position);
+                    used_.insert(written.reference);
+                }
+        }
+    }
+
+    Diagnostics& diagnostics_;
+    std::vector<std::string> names_;
+    std::set<std::string> used_;
+};
+
+bool has_too_many(const Workflow& workflow, const Settings& settings) {
+    EveryCombination choices;
+    std::size_t count = 0;
+    do {
+        Walk(workflow, settings, choices).variant();
+        if (++count > most_variants) return true;
+    } while (choices.advance());
+    return false;
+}
+
+template <class Order>
+void visit_all(const Workflow& workflow, const Settings& settings, const std::function<void(const Variant&)>& visit) {
+    Order choices;
+    do visit(Walk(workflow, settings, choices).variant());
+    while (choices.advance());
+}
 
 }  // namespace
 
-std::vector<Variant> expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics) {
-    try {
-        return Expander(workflow, settings, diagnostics).all();
-    } catch (const TooManyVariants&) {
+void expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics,
+            const std::function<void(const Variant&)>& visit) {
+    const References references(workflow, diagnostics);
+    for (const auto& [name, value] : settings) references.require_known(name, {});
+    if (has_too_many(workflow, settings)) {
         diagnostics.error({}, fmt::format("has more than {} variants; sweep over fewer values", most_variants));
-        return {};
+        visit_all<EachOnce>(workflow, settings, visit);
+        return;
     }
+    std::set<std::string> names;
+    visit_all<EveryCombination>(workflow, settings, [&](const Variant& variant) {
+        if (!names.insert(variant.name).second)
+            diagnostics.error(
+                variant.steps.empty() ? Position{} : variant.steps.back().syntax->position,
+                fmt::format("two variants are called '{}'; give their alternatives different names", variant.name));
+        visit(variant);
+    });
 }
 
 }  // namespace scanmill

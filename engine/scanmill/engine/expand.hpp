@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// From a workflow with forks (`one-of`, `sweep`) to its variants: straight lists of steps with every value written
-/// out.
+/// From a workflow with forks (`one-of`, `sweep`) to its variants: straight lists of steps with one value for every
+/// parameter.
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,18 +15,17 @@ namespace scanmill {
 /// Values given from outside for workflow parameters: `--set`.
 using Settings = std::map<std::string, ValueExpression>;
 
-struct WrittenArgument {
-    std::string name;
-    Position name_position;
-    WrittenParameter value;
-    Position value_position;
-    std::string reference;  ///< the workflow parameter it came through; empty: none
+/// A parameter of a step and the value that this variant takes for it. Leads into the workflow or the settings.
+struct ChosenArgument {
+    const NamedExpression* parameter;
+    const WrittenValue* value;
+    const WrittenValue* written;  ///< what stands in the step: the value itself, or the `$name` that leads to it
 };
 
 struct ExpandedStep {
     const StepSyntax* syntax;
-    std::vector<WrittenArgument> arguments;
-    std::vector<std::string> aliases;  ///< ids of the one-of steps whose alternative ends here
+    std::vector<ChosenArgument> arguments;  ///< without those whose value could not be read
+    std::vector<std::string> aliases;       ///< ids of the one-of steps whose alternative ends here
 };
 
 struct Variant {
@@ -35,8 +35,11 @@ struct Variant {
     std::vector<ExpandedStep> steps;
 };
 
-/// Every variant, in the order of the file, first fork slowest. Pointers lead into `workflow`. Reports unknown
-/// parameters and variants of equal names.
-std::vector<Variant> expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics);
+/// Calls `visit` with every variant, in the order of the file, first fork slowest. Reports unknown parameters, variants
+/// of equal names and workflows of more than 10,000 variants; of those it visits only as many as show every
+/// alternative and every swept value once, so that what is wrong in them is found too.
+/// Costs variants × steps, and the memory of one variant.
+void expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics,
+            const std::function<void(const Variant&)>& visit);
 
 }  // namespace scanmill

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "scanmill/engine/facts.hpp"
 #include "scanmill/filter/error.hpp"
@@ -47,6 +48,17 @@ bool is_met(const PlannedExpectation& expectation, double found, const LengthSca
     return false;
 }
 
+/// Throws Error for what no number can meet.
+void require_possible(const PlannedExpectation& expectation) {
+    const bool equal = expectation.relation == Expectation::Relation::equal;
+    if (expectation.unit == Unit::count && equal)
+        if (const double wanted = number_of(expectation.low, {}); wanted != std::floor(wanted))
+            throw Error("a count is never {}; expected a whole number", number_text(wanted));
+    if (expectation.unit == Unit::length || expectation.relation != Expectation::Relation::between) return;
+    const double low = number_of(expectation.low, {}), high = number_of(expectation.high, {});
+    if (low > high) throw Error("nothing lies in {}; expected the lower end first", expectation.text);
+}
+
 std::string expectation_text(const Expectation& written) {
     switch (written.relation) {
         case Expectation::Relation::equal: return fmt::format("{}: {}", written.name, written.value);
@@ -80,6 +92,7 @@ std::optional<PlannedExpectation> plan_expectation(const Expectation& written, c
     try {
         planned.low = parse(form, {{written.value}, false});
         if (written.relation == Expectation::Relation::between) planned.high = parse(form, {{written.high}, false});
+        require_possible(planned);
     } catch (const Error& error) {
         diagnostics.error(written.position, fmt::format("expect {}: {}", written.name, error.sentence()));
         return std::nullopt;

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/engine/graph.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <set>
 
 #include "scanmill/engine/key.hpp"
+#include "scanmill/engine/output_files.hpp"
 #include "scanmill/engine/output_template.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/module.hpp"
-#include "scanmill/filter/suggestion.hpp"
 #include "scanmill/formats/files.hpp"
 
 namespace scanmill {
@@ -27,13 +24,11 @@ public:
         : plan_(plan),
           library_(library),
           request_(request),
-          core_build_(content_hash(core_library_file())) {
-        output_folder_ = fs::weakly_canonical(fs::absolute(request.output_folder));
-    }
+          core_build_(content_hash(core_library_file())),
+          output_files_(request) {}
 
     RunGraph build() {
-        require_fed();
-        require_known_names();
+        require_fits(request_, plan_);
         const std::vector<WorkflowInput>& inputs = plan_.workflow.inputs;
         if (inputs.empty()) {
             graph_.scan_names.push_back(plan_.workflow.name.empty() ? "workflow" : plan_.workflow.name);
@@ -47,51 +42,6 @@ public:
     }
 
 private:
-    void require_fed() const {
-        const std::vector<WorkflowInput>& inputs = plan_.workflow.inputs;
-        if (inputs.empty() && !request_.scans.empty())
-            throw Error("the workflow takes no scans: it declares no inputs; found {}", request_.scans.size());
-        if (!inputs.empty() && request_.scans.empty())
-            throw Error("no scan was given for the workflow's input '{}'", inputs.front().name)
-                .hint("scanmill run WORKFLOW SCAN…");
-        std::vector<std::string> others;
-        for (std::size_t i = 1; i < inputs.size(); ++i) others.push_back(inputs[i].name);
-        for (const auto& [name, files] : request_.inputs) {
-            if (std::ranges::find(others, name) == others.end())
-                throw Error("--in {}: the workflow has no such input beside the scans; {}{}", name,
-                            others.empty() ? "it has none" : "it has " + enumerated(others),
-                            did_you_mean(name, others));
-            const auto& input = *std::ranges::find(inputs, name, &WorkflowInput::name);
-            if (!input.list && files.size() > 1)
-                throw Error("--in {}: the input takes one file; found {}", name, files.size());
-        }
-        for (const std::string& name : others)
-            if (!request_.inputs.contains(name))
-                throw Error("the workflow's input '{}' is not fed", name).hint("--in " + name + "=FILE");
-    }
-
-    void require_known_names() const {
-        std::vector<std::string> variants;
-        std::set<std::string> steps;
-        for (const PlannedVariant& variant : plan_.variants) {
-            variants.push_back(variant.name);
-            for (const auto& [name, index] : variant.steps_by_name) steps.insert(name);
-        }
-        for (const std::string& name : request_.only)
-            if (std::ranges::find(variants, name) == variants.end())
-                throw Error("--only {}: there is no such variant; there {} {}{}", name,
-                            variants.size() == 1 ? "is" : "are", enumerated(variants), did_you_mean(name, variants));
-        const std::vector<std::string> step_names(steps.begin(), steps.end());
-        const auto require_step = [&](const std::string& option, const std::string& name) {
-            if (!steps.contains(name))
-                throw Error("{} {}: there is no such step; there {} {}{}", option, name,
-                            step_names.size() == 1 ? "is" : "are", enumerated(step_names),
-                            did_you_mean(name, step_names));
-        };
-        if (!request_.until.empty()) require_step("--until", request_.until);
-        for (const std::string& name : request_.save) require_step("--save", name.substr(0, name.find('.')));
-    }
-
     void add_cells(std::size_t scan, const fs::path& file) {
         for (std::size_t variant = 0; variant < plan_.variants.size(); ++variant) {
             const PlannedVariant& planned = plan_.variants[variant];
@@ -110,7 +60,11 @@ private:
                 if (source.step && !node_of_step.contains(*source.step)) continue;  // beyond --until
                 const std::size_t node =
                     source.step ? node_of_step[*source.step] : add_leaf(source.input, scan, file, cell);
-                add_output(cell, expand_template(name, values), node, source.port);
+                const std::string writer =
+                    fmt::format("scan '{}' under variant '{}'", graph_.scan_names.back(), planned.name);
+                const fs::path target =
+                    output_files_.add(expand_template(name, values), {graph_.nodes[node].key, source.port}, writer);
+                cell.outputs.push_back({target, node, source.port});
             }
             graph_.cells.push_back(std::move(cell));
         }
@@ -223,62 +177,14 @@ private:
         if (std::ranges::find(cell.nodes, node) == cell.nodes.end()) cell.nodes.push_back(node);
     }
 
-    void add_output(RunCell& cell, const std::string& name, std::size_t node, const std::string& port) {
-        const fs::path file = (output_folder_ / name).lexically_normal();
-        const std::string what =
-            fmt::format("scan '{}' under variant '{}'", graph_.scan_names.back(), plan_.variants[cell.variant].name);
-        const auto [known, is_new] = writers_.emplace(file, Writer{what, node, port});
-        if (!is_new && (known->second.node != node || known->second.port != port))
-            throw Error("{} and {} would both write '{}'", known->second.what, what, file.string())
-                .hint("use {scan} and {variant} in the output's name, or rename a scan");
-        if (const fs::path real = fs::weakly_canonical(file.parent_path()); !lies_below(real, output_folder_))
-            throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), real.string())
-                .hint("a symbolic link below the output folder leads out of it; remove it");
-        if (is_input(file))
-            throw Error("'{}' is an input; an output must not replace it", file.string())
-                .hint("choose another output folder with -o");
-        cell.outputs.push_back({file, node, port});
-    }
-
-    static bool lies_below(const fs::path& path, const fs::path& folder) {
-        const auto [end, rest] = std::ranges::mismatch(folder, path);
-        return end == folder.end() || end->empty();
-    }
-
-    /// Whether the file is one of the inputs, by whatever name or link.
-    bool is_input(const fs::path& file) {
-        if (input_identities_.empty()) {
-            for (const fs::path& scan : request_.scans) input_identities_.insert(identity(scan));
-            for (const auto& [name, files] : request_.inputs)
-                for (const fs::path& other : files) input_identities_.insert(identity(other));
-        }
-        const auto found = identity(file);
-        return found.second != 0 && input_identities_.contains(found);
-    }
-
-    /// Device and inode; zeros for what does not exist.
-    static std::pair<dev_t, ino_t> identity(const fs::path& file) {
-        struct stat status;
-        if (::stat(file.c_str(), &status) != 0) return {0, 0};
-        return {status.st_dev, status.st_ino};
-    }
-
-    struct Writer {
-        std::string what;
-        std::size_t node;
-        std::string port;
-    };
-
     const Plan& plan_;
     FilterLibrary& library_;
     const RunRequest& request_;
     std::string core_build_;
-    fs::path output_folder_;
+    OutputFiles output_files_;
     RunGraph graph_;
     std::map<std::string, std::size_t> node_of_key_;
     std::map<std::string, std::pair<std::string, std::string>> contents_;  // file → hash, reason
-    std::map<fs::path, Writer> writers_;
-    std::set<std::pair<dev_t, ino_t>> input_identities_;
 };
 
 }  // namespace

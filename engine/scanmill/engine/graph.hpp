@@ -7,25 +7,13 @@
 /// written where before anything runs; an executor, or an export to another scheduler, only has to follow it.
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "scanmill/engine/plan.hpp"
+#include "scanmill/engine/request.hpp"
 
 namespace scanmill {
-
-struct RunRequest {
-    std::vector<std::filesystem::path> scans;  ///< feed the workflow's first input, one at a time
-    std::map<std::string, std::vector<std::filesystem::path>> inputs;  ///< feed the other inputs
-    std::filesystem::path output_folder;
-    LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: what the workflow or the file says
-    std::uint64_t seed = 0;
-    std::vector<std::string> only;  ///< variants; empty: all
-    std::string until;  ///< last step to run; empty: all
-    std::vector<std::string> save;  ///< steps (or step.port) to write in addition to the outputs
-};
 
 struct NodeInput {
     std::string port;

@@ -55,6 +55,8 @@ void check_template(const std::string& file, Position position, Diagnostics& dia
             fmt::format("'{}' lies outside the output folder; expected a path below it, as \"{{scan}}.stl\"", file));
     else if (names_a_folder(file))
         diagnostics.error(position, fmt::format("'{}' names a folder; expected a file, as \"{{scan}}.stl\"", file));
+    else if (const std::string normal = std::filesystem::path(file).lexically_normal().string(); normal != file)
+        diagnostics.error(position, fmt::format("'{}' is a roundabout path; expected '{}'", file, normal));
 }
 
 std::string expand_template(const std::string& file, const TemplateValues& values) {
@@ -71,7 +73,7 @@ std::string expand_template(const std::string& file, const TemplateValues& value
     }
     if (leaves_folder(name) || names_a_folder(name))
         throw Error("'{}' becomes '{}', which is no file below the output folder", file, name).hint("rename the scan");
-    return name;
+    return std::filesystem::path(name).lexically_normal().string();
 }
 
 }  // namespace scanmill

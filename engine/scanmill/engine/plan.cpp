@@ -29,11 +29,12 @@ public:
 
     Plan plan(const Settings& settings) {
         complain_of_repeated_inputs();
-        const std::vector<Variant> variants = expand(plan_.workflow, settings, diagnostics_);
-        for (const Variant& variant : variants) plan_.variants.push_back(plan_variant(variant));
+        expand(plan_.workflow, settings, diagnostics_,
+               [this](const Variant& variant) { plan_.variants.push_back(plan_variant(variant)); });
         for (const WorkflowOutput& output : plan_.workflow.outputs) {
             check_template(output.file, output.position, diagnostics_);
             complain_of_shared_file(output);
+            complain_of_folder(output);
         }
         return std::move(plan_);
     }
@@ -121,38 +122,37 @@ private:
     }
 
     std::size_t add_step(const ExpandedStep& step, const FilterSpec& spec, const WiringScope& scope) {
-        PlannedStep planned;
-        planned.label = step.syntax->id.empty() ? spec.name : step.syntax->id;
-        planned.position = step.syntax->position;
-        planned.spec = spec;
-        planned.parameters = parameters(step, spec);
-        planned.inputs = wire(*step.syntax, spec, scope, diagnostics_);
-        for (const Expectation& written : step.syntax->expect)
-            if (auto expectation = plan_expectation(written, spec, diagnostics_))
-                planned.expectations.push_back(std::move(*expectation));
-        planned.structure_key = structure_key(planned);
-        const auto [place, is_new] = step_of_key_.emplace(planned.structure_key, plan_.steps.size());
-        if (is_new) {
-            plan_.steps.push_back(std::move(planned));
-            return place->second;
-        }
+        ParameterSet set = parameters(step, spec);
+        std::vector<PlannedInput> inputs = wire(*step.syntax, spec, scope, diagnostics_);
+        std::string key = structure_key(spec, set, inputs);
+        const auto [place, is_new] = step_of_key_.emplace(key, plan_.steps.size());
+        if (is_new)
+            plan_.steps.push_back({step.syntax->id.empty() ? spec.name : step.syntax->id,
+                                   step.syntax->position,
+                                   spec,
+                                   std::move(set),
+                                   std::move(inputs),
+                                   {},
+                                   std::move(key)});
         std::vector<PlannedExpectation>& expectations = plan_.steps[place->second].expectations;
-        for (PlannedExpectation& expectation : planned.expectations)
-            if (std::ranges::find(expectations, expectation.position, &PlannedExpectation::position) ==
-                expectations.end())
-                expectations.push_back(std::move(expectation));
+        for (const Expectation& written : step.syntax->expect) {
+            if (std::ranges::find(expectations, written.position, &PlannedExpectation::position) != expectations.end())
+                continue;  // of the same step in an earlier variant
+            if (auto expectation = plan_expectation(written, spec, diagnostics_))
+                expectations.push_back(std::move(*expectation));
+        }
         return place->second;
     }
 
     ParameterSet parameters(const ExpandedStep& step, const FilterSpec& spec) {
         std::vector<std::string> known;
         for (const ParameterSpec& parameter : spec.parameters) known.push_back(parameter.name);
-        for (const WrittenArgument& argument : step.arguments)
-            if (!spec.parameter(argument.name))
-                diagnostics_.error(argument.name_position,
-                                   fmt::format("{} has no parameter '{}'; {}{}", spec.name, argument.name,
+        for (const NamedExpression& written : step.syntax->parameters)
+            if (!spec.parameter(written.name))
+                diagnostics_.error(written.position,
+                                   fmt::format("{} has no parameter '{}'; {}{}", spec.name, written.name,
                                                known.empty() ? "it has none" : "it has " + enumerated(known),
-                                               did_you_mean(argument.name, known)));
+                                               did_you_mean(written.name, known)));
         ParameterSet set;
         for (const ParameterSpec& parameter : spec.parameters)
             set.values.emplace_back(parameter.name, parameter_value(step, parameter));
@@ -160,7 +160,8 @@ private:
     }
 
     ParameterValue parameter_value(const ExpandedStep& step, const ParameterSpec& parameter) {
-        const auto argument = std::ranges::find(step.arguments, parameter.name, &WrittenArgument::name);
+        const auto argument = std::ranges::find(step.arguments, parameter.name,
+                                                [](const ChosenArgument& given) { return given.parameter->name; });
         if (argument == step.arguments.end()) {
             const bool attempted = std::ranges::find(step.syntax->parameters, parameter.name, &NamedExpression::name) !=
                                    step.syntax->parameters.end();  // its text was wrong, and reported
@@ -171,20 +172,22 @@ private:
             return parameter.default_value;
         }
         try {
-            return parse(parameter, argument->value);
+            return parse(parameter, argument->value->literal);
         } catch (const Error& error) {
-            const std::string through = argument->reference.empty() ? "" : " (from $" + argument->reference + ")";
-            diagnostics_.error(argument->value_position,
+            const WrittenValue& written = *argument->written;
+            const std::string through = written.reference.empty() ? "" : " (from $" + written.reference + ")";
+            diagnostics_.error(written.position,
                                fmt::format("{}{}: {}", parameter.name, through, error.sentence()));
             return parameter.default_value;
         }
     }
 
-    std::string structure_key(const PlannedStep& step) const {
+    std::string structure_key(const FilterSpec& spec, const ParameterSet& parameters,
+                              const std::vector<PlannedInput>& inputs) const {
         KeyBuilder key;
-        key.field("filter", step.spec.name).field("version", std::to_string(step.spec.version));
-        for (const auto& [name, value] : step.parameters.values) key.field("parameter " + name, canonical_text(value));
-        for (const PlannedInput& input : step.inputs)
+        key.field("filter", spec.name).field("version", std::to_string(spec.version));
+        for (const auto& [name, value] : parameters.values) key.field("parameter " + name, canonical_text(value));
+        for (const PlannedInput& input : inputs)
             for (const ValueSource& source : input.sources)
                 key.field("port " + input.port, source.step
                                                     ? plan_.steps[*source.step].structure_key + "." + source.port
@@ -224,6 +227,13 @@ private:
                 first = &variant;
                 source = &planned.source;
             }
+    }
+
+    void complain_of_folder(const WorkflowOutput& output) {
+        for (const WorkflowOutput& other : plan_.workflow.outputs)
+            if (other.file.starts_with(output.file + "/"))
+                diagnostics_.error(output.position, fmt::format("'{}' would be a file, and the folder of '{}' too",
+                                                                output.file, other.file));
     }
 
     const FilterLibrary& library_;

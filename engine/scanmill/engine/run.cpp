@@ -27,9 +27,14 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 class ScratchFolder {
 public:
     ScratchFolder() {
-        std::string name = (fs::temp_directory_path() / "scanmill-XXXXXX").string();
-        if (!::mkdtemp(name.data()))
-            throw Error("no scratch folder could be made in '{}'", fs::temp_directory_path().string());
+        std::error_code unusable;
+        const fs::path parent = fs::temp_directory_path(unusable);
+        std::string name = (parent / "scanmill-XXXXXX").string();
+        if (unusable || !::mkdtemp(name.data())) {
+            const char* told = std::getenv("TMPDIR");
+            throw Error("no scratch folder could be made in '{}'", told ? told : "/tmp")
+                .hint("set TMPDIR to a folder that can be written to");
+        }
         path_ = name;
     }
     ~ScratchFolder() {

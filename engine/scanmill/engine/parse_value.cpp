@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/parse_value.hpp"
+
+#include "scanmill/engine/grammar.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::string_view value_forms = "a value, a list of values, $name or {sweep: [value, …]}";
+
+std::optional<WrittenValue> written_value(const YamlNode& node, Diagnostics& diagnostics) {
+    WrittenValue result;
+    result.position = node.position;
+    if (node.is_sequence()) {
+        result.literal.list = true;
+        for (const YamlNode& item : node.items) {
+            const auto text = require_text(item, "a value", diagnostics);
+            if (!text) return std::nullopt;
+            result.literal.items.push_back(*text);
+        }
+        return result;
+    }
+    const auto text = require_text(node, value_forms, diagnostics);
+    if (!text) return std::nullopt;
+    if (text->starts_with("$$"))
+        result.literal.items.push_back(text->substr(1));  // a text that begins with one $
+    else if (text->starts_with('$'))
+        result.reference = text->substr(1);
+    else
+        result.literal.items.push_back(*text);
+    return result;
+}
+
+}  // namespace
+
+ValueExpression value_expression(const YamlNode& node, Diagnostics& diagnostics) {
+    ValueExpression result;
+    result.position = node.position;
+    if (node.is_map()) {
+        MapReader keys(node, "a value", diagnostics);
+        const YamlEntry* sweep = keys.find("sweep");
+        keys.complain_of_others();
+        if (!sweep || !require_list(sweep->value, "a list of values to sweep over", diagnostics)) return result;
+        result.sweep = true;
+        for (const YamlNode& item : sweep->value.items)
+            if (auto written = written_value(item, diagnostics)) result.values.push_back(std::move(*written));
+        if (sweep->value.items.empty()) diagnostics.error(sweep->position, "a sweep over no values");
+    } else if (auto written = written_value(node, diagnostics)) {
+        result.values.push_back(std::move(*written));
+    }
+    return result;
+}
+
+std::optional<Reference> reference(const YamlNode& node, Diagnostics& diagnostics) {
+    const auto text = require_text(node, "the name of a step or an input, or step.port", diagnostics);
+    if (!text) return std::nullopt;
+    return Reference{*text, node.position};
+}
+
+ValueExpression parse_value_expression(const std::string& text, Diagnostics& diagnostics) {
+    const YamlNode root = parse_yaml(text, diagnostics);
+    if (diagnostics.has_errors()) return {};
+    return value_expression(root, diagnostics);
+}
+
+}  // namespace scanmill

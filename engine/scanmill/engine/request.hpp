@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What is asked of a plan: over which files it runs, how much of it, and where its results go.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scanmill/engine/plan.hpp"
+
+namespace scanmill {
+
+struct RunRequest {
+    std::vector<std::filesystem::path> scans;  ///< feed the workflow's first input, one at a time
+    std::map<std::string, std::vector<std::filesystem::path>> inputs;  ///< feed the other inputs
+    std::filesystem::path output_folder;
+    LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: what the workflow or the file says
+    std::uint64_t seed = 0;
+    std::vector<std::string> only;  ///< variants; empty: all
+    std::string until;  ///< last step to run; empty: all
+    std::vector<std::string> save;  ///< steps (or step.port) to write in addition to the outputs
+};
+
+/// Throws Error for inputs that are not fed or not there, and for variants and steps that the plan does not have.
+void require_fits(const RunRequest& request, const Plan& plan);
+
+}  // namespace scanmill
