@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "error_output.hpp"
 #include "load.hpp"
 #include "plan_output.hpp"
 #include "scanmill/filter/error.hpp"
@@ -18,21 +19,11 @@ struct Options {
     std::string format = "text";
 };
 
-nlohmann::ordered_json to_json(const Diagnostics& diagnostics) {
-    auto json = nlohmann::ordered_json::array();
-    for (const Diagnostic& diagnostic : diagnostics.sorted())
-        json.push_back({{"severity", diagnostic.severity == Diagnostic::Severity::error ? "error" : "warning"},
-                        {"line", diagnostic.position.line},
-                        {"column", diagnostic.position.column},
-                        {"message", diagnostic.message}});
-    return json;
-}
-
 int check(const Options& options) {
     const FilterLibrary library = open_library();
     const Settings settings = parse_settings(options.settings);
-    nlohmann::ordered_json json{{"scanmill", 1}, {"files", nlohmann::ordered_json::array()}};
-    const bool as_json = options.json || (options.plan && options.format == "json");
+    auto files = nlohmann::ordered_json::array();
+    const bool as_json = options.json || options.format == "json";
     int code = done;
     for (const std::string& file : options.files) {
         try {
@@ -40,10 +31,9 @@ int check(const Options& options) {
             const bool sound = !checked.diagnostics.has_errors();
             if (!sound) code = bad_request;
             if (as_json) {
-                nlohmann::ordered_json entry{
-                    {"file", file}, {"ok", sound}, {"diagnostics", to_json(checked.diagnostics)}};
+                nlohmann::ordered_json entry = to_json(checked.diagnostics);
                 if (sound && options.plan) entry["plan"] = nlohmann::ordered_json::parse(plan_json(checked.plan));
-                json["files"].push_back(std::move(entry));
+                files.push_back(std::move(entry));
                 continue;
             }
             print(checked.diagnostics);
@@ -57,16 +47,12 @@ int check(const Options& options) {
         } catch (const Error& error) {
             code = bad_request;
             if (as_json)
-                json["files"].push_back(
-                    {{"file", file},
-                     {"ok", false},
-                     {"diagnostics",
-                      {{{"severity", "error"}, {"line", 0}, {"column", 0}, {"message", error.sentence()}}}}});
+                files.push_back(unreadable_json(file, error));
             else
-                fmt::print(stderr, "error: {}\n", error.what());
+                print(error, false);
         }
     }
-    if (as_json) fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    if (as_json) print_files_json(std::move(files));
     return code;
 }
 
@@ -77,8 +63,10 @@ void add_check(CLI::App& app, Action& chosen) {
     auto options = std::make_shared<Options>();
     command->add_option("FILE", options->files, "Workflow files")->required();
     command->add_option("--set", options->settings, "A workflow parameter's value, NAME=VALUE")->take_all();
-    command->add_flag("--plan", options->plan, "Print the steps of every variant and what feeds them");
+    CLI::Option* plan =
+        command->add_flag("--plan", options->plan, "Print the steps of every variant and what feeds them");
     command->add_option("--format", options->format, "Of the plan: text, dot (for Graphviz) or json")
+        ->needs(plan)
         ->check(CLI::IsMember({"text", "dot", "json"}));
     command->add_flag("--json", options->json, "Print the findings as JSON");
     command->callback([&chosen, options] { chosen = [options] { return check(*options); }; });

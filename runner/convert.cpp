@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "error_output.hpp"
 #include "load.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/convert.hpp"
@@ -16,14 +17,22 @@ struct Options {
     bool drop_invalid = false;
 };
 
-/// Positions and origin multiplied, so that the numbers are in `unit`.
+/// With its lengths told in another unit. Throws Error for coordinates that leave double's range.
 template <class T>
-std::shared_ptr<const T> rescaled(const T& value, LengthUnit unit, double factor) {
+std::shared_ptr<const T> rescaled(const T& value, LengthUnit unit) {
+    const auto convert = [&](const Vec3& p) {
+        return Vec3(p.unaryExpr([&](double length) { return in_unit(length, value.frame.unit, unit); }));
+    };
     T scaled = value;
     Array<Vec3> positions(value.positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = factor * value.positions[i];
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        positions[i] = convert(value.positions[i]);
+        if (value.positions[i].allFinite() && !positions[i].allFinite())
+            throw Error("--to-unit {}: point {} has a coordinate beyond what a number can hold in that unit",
+                        symbol(unit), i);
+    }
     scaled.positions = std::move(positions);
-    scaled.frame.origin *= factor;
+    scaled.frame.origin = convert(value.frame.origin);
     scaled.frame.unit = unit;
     return std::make_shared<const T>(std::move(scaled));
 }
@@ -42,19 +51,16 @@ Value without_invalid(const Value& value, const std::function<void(std::string)>
     return tell_dropped(without_invalid_points(*std::get<std::shared_ptr<const PointCloud>>(value)), warn);
 }
 
-Value in_unit(const Value& value, LengthUnit unit) {
-    const LengthUnit from = frame_of(value)->unit;
-    if (from == LengthUnit::unknown)
+Value to_unit(const Value& value, LengthUnit unit) {
+    if (frame_of(value)->unit == LengthUnit::unknown)
         throw Error("--to-unit {}: the unit of the input is not known", symbol(unit)).hint("say it with --unit");
-    const double factor = metres(from) / metres(unit);
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
-        return rescaled(**mesh, unit, factor);
-    return rescaled(*std::get<std::shared_ptr<const PointCloud>>(value), unit, factor);
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value)) return rescaled(**mesh, unit);
+    return rescaled(*std::get<std::shared_ptr<const PointCloud>>(value), unit);
 }
 
 int convert(const Options& options) {
     const auto warn = [](const std::string& text) { fmt::print(stderr, "warning: {}\n", text); };
-    const LengthUnit to_unit = parse_unit(options.to_unit);
+    const LengthUnit unit = parse_unit(options.to_unit);
     ReadOptions read;
     read.on_warning = warn;
     read.unit = parse_unit(options.unit);
@@ -63,12 +69,12 @@ int convert(const Options& options) {
             throw Error("'{}' is the input; the output must not replace it", options.to);
         Value value = read_file(options.from, read).value;
         if (options.drop_invalid) value = without_invalid(value, warn);
-        if (to_unit != LengthUnit::unknown) value = in_unit(value, to_unit);
+        if (unit != LengthUnit::unknown) value = to_unit(value, unit);
         WriteOptions write;
         write.on_warning = warn;
         write_file(options.to, value, write);
     } catch (const Error& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
+        print(error, false);
         return some_failed;
     }
     return done;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "error_output.hpp"
 #include "load.hpp"
 #include "scanmill/engine/facts.hpp"
 #include "scanmill/filter/error.hpp"
@@ -111,7 +112,7 @@ int info(const std::vector<std::string>& files, bool as_json) {
             if (as_json)
                 all["files"].push_back({{"file", file}, {"error", error.what()}});
             else
-                fmt::print(stderr, "error: {}\n", error.what());
+                print(error, false);
         }
     }
     if (as_json) fmt::print("{}\n", all.dump(2, ' ', false, Json::error_handler_t::replace));

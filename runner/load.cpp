@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "scanmill/filter/error.hpp"
 
@@ -14,19 +13,20 @@ namespace scanmill::runner {
 
 namespace {
 
-constexpr std::uintmax_t largest_workflow = 16u << 20;
+constexpr std::size_t largest_workflow = 16u << 20;
 
 std::string read_text(const std::string& file) {
     std::error_code trouble;
     if (std::filesystem::is_directory(file, trouble)) throw Error("'{}' is a folder; expected a workflow file", file);
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw Error("'{}' cannot be opened; expected a workflow file", file);
-    const std::uintmax_t size = std::filesystem::file_size(file, trouble);
-    if (!trouble && size > largest_workflow)
-        throw Error("'{}' has {} bytes; a workflow has at most {}", file, size, largest_workflow);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
+    std::string text, block(1u << 16, '\0');
+    while (stream.read(block.data(), static_cast<std::streamsize>(block.size())), stream.gcount() > 0) {
+        text.append(block, 0, static_cast<std::size_t>(stream.gcount()));
+        if (text.size() > largest_workflow)
+            throw Error("'{}' has more than {} bytes, the most that a workflow may have", file, largest_workflow);
+    }
+    return text;
 }
 
 }  // namespace
@@ -62,14 +62,6 @@ Settings parse_settings(const std::vector<std::string>& pairs) {
             throw Error("--set {} is given twice", pair.substr(0, equals));
     }
     return settings;
-}
-
-void print(const Diagnostics& diagnostics) {
-    for (const Diagnostic& diagnostic : diagnostics.sorted())
-        fmt::print(stderr, "{}\n", text(diagnostic, diagnostics.file()));
-    if (diagnostics.has_errors())
-        fmt::print(stderr, "{} error{} in '{}'\n", diagnostics.errors(), diagnostics.errors() == 1 ? "" : "s",
-                   diagnostics.file());
 }
 
 LengthUnit parse_unit(const std::string& symbol) {

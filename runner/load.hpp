@@ -23,9 +23,6 @@ CheckedWorkflow check_workflow(const std::string& file, const FilterLibrary& lib
 /// NAME=VALUE pairs of --set. Throws Error for what is no such pair.
 Settings parse_settings(const std::vector<std::string>& pairs);
 
-/// Every diagnostic on stderr, a line each, then how many errors there are.
-void print(const Diagnostics& diagnostics);
-
 /// Throws Error for anything but a unit's symbol; empty is unknown.
 LengthUnit parse_unit(const std::string& symbol);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <new>
+#include <string_view>
 
 #include "commands.hpp"
+#include "error_output.hpp"
 #include "scanmill/filter/error.hpp"
 
 int main(int argc, char** argv) {
@@ -13,6 +15,7 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", "scanmill " SCANMILL_VERSION);
     app.require_subcommand(1);
     app.set_help_all_flag("--help-all", "Help of every command");
+    const bool json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
     Action chosen;
     add_run(app, chosen);
     add_check(app, chosen);
@@ -24,8 +27,10 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        fmt::print(stderr, "error: {}\nhint: scanmill {}--help\n", error.what(),
-                   app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+        const auto commands = app.get_subcommands();
+        print(scanmill::Error(std::string(error.what()))
+                  .hint("scanmill " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help"),
+              json);
         return bad_request;
     }
     try {
@@ -36,10 +41,10 @@ int main(int argc, char** argv) {
         }
         return code;
     } catch (const scanmill::Error& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
+        print(error, json);
         return bad_request;
     } catch (const std::exception& error) {
-        fmt::print(stderr, "error: an unexpected error: {}\n", error.what());
+        print(scanmill::Error("an unexpected error: {}", error.what()), json);
         return our_fault;
     }
 }

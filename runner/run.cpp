@@ -7,9 +7,11 @@
 #include <csignal>
 #include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "commands.hpp"
+#include "error_output.hpp"
 #include "load.hpp"
 #include "progress.hpp"
 #include "run_output.hpp"
@@ -54,7 +56,10 @@ int run_workflow(const Options& options) {
     FilterLibrary library = open_library();
     const CheckedWorkflow checked = check_workflow(options.workflow, library, parse_settings(options.settings));
     print(checked.diagnostics);
-    if (checked.diagnostics.has_errors()) return bad_request;
+    if (checked.diagnostics.has_errors()) {
+        if (options.json) print_files_json({to_json(checked.diagnostics)});
+        return bad_request;
+    }
 
     RunRequest request;
     request.scans.assign(options.scans.begin(), options.scans.end());

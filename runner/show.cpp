@@ -59,23 +59,26 @@ std::string sample(const ParameterSpec& parameter) {
 }
 
 /// A whole workflow with this filter alone, every parameter at its default: passes `scanmill check`.
-void print_example(const FilterSpec& spec) {
-    fmt::print("scanmill: 1\nname: {}-example\n", spec.name);
-    std::string wiring;
-    if (!spec.inputs.empty()) fmt::print("inputs:\n");
+std::string example_of(const FilterSpec& spec) {
+    std::string example = fmt::format("scanmill: 1\nname: {}-example\n", spec.name);
+    const auto add = [&]<class... Arguments>(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+        example += fmt::format(format, std::forward<Arguments>(arguments)...);
+    };
+    if (!spec.inputs.empty()) add("inputs:\n");
     for (const PortSpec& port : spec.inputs) {
         const bool readable = port.kind == Kind::points || port.kind == Kind::mesh;
-        fmt::print("  {}{}: {}{}\n", readable ? "" : "# from an earlier step: ", port.name,
-                   port.list ? "[" + std::string(name_of(port.kind)) + "]" : name_of(port.kind), "");
+        add("  {}{}: {}\n", readable ? "" : "# from an earlier step: ", port.name,
+            port.list ? "[" + std::string(name_of(port.kind)) + "]" : std::string(name_of(port.kind)));
     }
-    fmt::print("steps:\n  - {}:\n", spec.name);
+    add("steps:\n  - {}:\n", spec.name);
     for (const ParameterSpec& parameter : spec.parameters) {
         const std::string value = text(parameter.default_value);
         const bool given = !value.empty() || parameter.required;
-        fmt::print("      {}{}: {}\n", given ? "" : "# ", parameter.name, value.empty() ? sample(parameter) : value);
+        add("      {}{}: {}\n", given ? "" : "# ", parameter.name, value.empty() ? sample(parameter) : value);
     }
     const Kind kind = spec.outputs.front().kind;
-    if (kind == Kind::points || kind == Kind::mesh) fmt::print("outputs:\n  \"{{scan}}.ply\": {}\n", spec.name);
+    if (kind == Kind::points || kind == Kind::mesh) add("outputs:\n  \"{{scan}}.ply\": {}\n", spec.name);
+    return example;
 }
 
 int show(const std::string& name, bool json, bool example) {
@@ -87,8 +90,11 @@ int show(const std::string& name, bool json, bool example) {
                 throw Error("the filter '{}' cannot be used: '{}' {}", name, module.manifest.string(), module.reason);
         throw Error("there is no filter '{}'{}", name, did_you_mean(name, library.names())).hint("scanmill list");
     }
-    if (example) {
-        print_example(*spec);
+    if (example && json) {
+        const nlohmann::ordered_json described{{"scanmill", 1}, {"filter", spec->name}, {"example", example_of(*spec)}};
+        fmt::print("{}\n", described.dump(2));
+    } else if (example) {
+        fmt::print("{}", example_of(*spec));
     } else if (json) {
         auto described = nlohmann::ordered_json::parse(to_json_text({"", *spec}));
         described.erase("scanmill-manifest");

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <span>
 
 #include "scanmill/filter/parallel.hpp"
 
@@ -24,6 +25,26 @@ void walk(const TetMesh& tets, std::vector<u32>& stack, u32 seed, const Enter& e
     }
 }
 
+bool is_less(const Vec3& a, const Vec3& b) {
+    return std::ranges::lexicographical_compare(std::span(a.data(), 3), std::span(b.data(), 3));
+}
+
+/// What decides which piece is the largest; the order of the points does not.
+struct Piece {
+    std::size_t points = 0;
+    Vec3 lowest, highest;  // by x, then y, then z
+
+    void add(const Vec3& p) {
+        if (points == 0 || is_less(p, lowest)) lowest = p;
+        if (points == 0 || is_less(highest, p)) highest = p;
+        ++points;
+    }
+    bool is_larger_than(const Piece& other) const {
+        if (points != other.points || points == 0) return points > other.points;
+        return lowest == other.lowest ? is_less(highest, other.highest) : is_less(lowest, other.lowest);
+    }
+};
+
 }  // namespace
 
 void keep_largest_piece(const TetMesh& tets, std::span<u8> labels) {
@@ -31,21 +52,22 @@ void keep_largest_piece(const TetMesh& tets, std::span<u8> labels) {
     Array<u32> last_piece(tets.positions.size());
     std::ranges::fill(last_piece, 0);
     u32 piece = 0, best_seed = 0;
-    std::size_t most = 0;
+    Piece best;
     const auto unseen = [&](u32 cell) { return labels[cell] == solid && (labels[cell] = left_out, true); };
     for (u32 seed = 0; seed < labels.size(); ++seed) {
         if (!unseen(seed)) continue;
         ++piece;
-        std::size_t points = 0;
+        Piece found;
         walk(tets, stack, seed, unseen, [&](u32 cell) {
-            for (u32 vertex : tets.cells[cell]) points += std::exchange(last_piece[vertex], piece) != piece;
+            for (u32 vertex : tets.cells[cell])
+                if (std::exchange(last_piece[vertex], piece) != piece) found.add(tets.positions[vertex]);
         });
-        if (points > most) {
-            most = points;
+        if (found.is_larger_than(best)) {
+            best = found;
             best_seed = seed;
         }
     }
-    if (most == 0) return;
+    if (best.points == 0) return;
     const auto keep = [&](u32 cell) { return labels[cell] == left_out && (labels[cell] = solid, true); };
     keep(best_seed);
     walk(tets, stack, best_seed, keep, [](u32) {});

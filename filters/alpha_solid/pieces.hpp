@@ -9,7 +9,7 @@
 namespace scanmill::alpha {
 
 /// Keeps, of the solid cells, those of the piece (joined across facets) with the most points, of equals the one with
-/// the smallest cell; labels the others `left_out`.
+/// the lowest point (by x, then y, then z; then the one whose highest point is lower); labels the others `left_out`.
 void keep_largest_piece(const TetMesh& tets, std::span<u8> labels);
 
 /// Makes solid what the solid encloses: cells that are not solid and cannot be reached from outside the hull through

@@ -135,6 +135,17 @@ TEST(StlWriter_File, HasUnitNormalsFromDoublePositions_AndZeroForDegenerate) {
     EXPECT_THAT(normal(3), ElementsAre(0, -1, 0));
 }
 
+TEST(StlWriter_Losses, TrianglesThatCollapseInSinglePrecision_AreCounted) {
+    const TemporaryFolder folder;
+    Told told;
+    TriangleMesh mesh;
+    // Far below the precision that is told by itself: a millionth of the diagonal.
+    mesh.positions = {Vec3(0, 0, 0), Vec3(1000, 0, 0), Vec3(0, 1000, 0), Vec3(1000 + 1e-5, 0, 0)};
+    mesh.triangles = {Triangle{0, 1, 2}, Triangle{1, 3, 2}, Triangle{1, 1, 2}};
+    write_file(folder / "a.stl", std::make_shared<const TriangleMesh>(mesh), told.writing());
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 triangle collapsed")));
+}
+
 TEST(StlWriter_Mesh, OfFloats_ComesBackTheSameWithItsFrame) {
     const TemporaryFolder folder;
     Told told;

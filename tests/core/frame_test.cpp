@@ -20,13 +20,17 @@ TEST(LengthUnit, EverySymbol_NamesItsUnitAndBack) {
     EXPECT_EQ(symbol(foot), "ft");
 }
 
-TEST(LengthUnit, Metres_AreTheDefinitions) {
-    EXPECT_EQ(metres(LengthUnit::metre), 1);
-    EXPECT_EQ(metres(LengthUnit::centimetre) * 100, 1);
-    EXPECT_EQ(metres(LengthUnit::millimetre) * 1000, 1);
-    EXPECT_EQ(metres(LengthUnit::micrometre) * 1e6, 1);
-    EXPECT_EQ(metres(LengthUnit::inch), 0.0254);
-    EXPECT_DOUBLE_EQ(metres(LengthUnit::foot), 12 * metres(LengthUnit::inch));
+TEST(LengthUnit, Conversions_AreTheDefinitionsToTheLastBit) {
+    using enum LengthUnit;
+    EXPECT_EQ(in_unit(1, metre, micrometre), 1e6);
+    EXPECT_EQ(in_unit(1, micrometre, metre), 1e-6);
+    EXPECT_EQ(in_unit(0.1, millimetre, micrometre), 100);
+    EXPECT_EQ(in_unit(3, millimetre, metre), 0.003);
+    EXPECT_EQ(in_unit(7, centimetre, millimetre), 70);
+    EXPECT_EQ(in_unit(1, inch, millimetre), 25.4);
+    EXPECT_EQ(in_unit(1, foot, inch), 12);
+    EXPECT_EQ(in_unit(6, inch, foot), 0.5);
+    EXPECT_EQ(in_unit(1.25, foot, foot), 1.25);
 }
 
 TEST(LengthUnit, WhatIsNoUnitOfTheWorld_NamesNone) {

@@ -41,7 +41,7 @@ TEST(RequireFinite, NanAndInfinity_AreCountedAndTheFirstIsNamed) {
     const std::vector<Vec3> positions{{0, 0, 0}, {1, nan, 2}, {3, 4, 5}, {-infinity, 0, 0}};
     const Error error = error_of([&] { require_finite(positions, "vertices"); });
     EXPECT_EQ(error.sentence(),
-              "needs finite coordinates; 2 of 4 vertices have a NaN or an infinity, the first is number 1 (1 nan 2)");
+              "needs finite coordinates; 2 of 4 vertices have a NaN or an infinity, the first is number 1 (y is nan)");
     EXPECT_THAT(error.hint(), testing::HasSubstr("--drop-invalid"));
 }
 

@@ -220,6 +220,8 @@ TEST_F(Check, Expect_KnowsFactsAndMetricsOfTheStep) {
                 ElementsAre(HasSubstr("expect closed: '1' is neither true nor false"),
                             HasSubstr("expect alpha: '2' has no unit")));
     EXPECT_THAT(steps("  - thin:\n    expect: {kept: [1, 2, 3]}\n"), ElementsAre(HasSubstr("a range has two ends")));
+    EXPECT_THAT(steps("  - thin:\n    expect: {kept: [9, 1]}\n"), ElementsAre(HasSubstr("the lower end first")));
+    EXPECT_THAT(steps("  - thin:\n    expect: {kept: 0.5}\n"), ElementsAre(HasSubstr("a count is never 0.5")));
 }
 
 TEST_F(Check, OutputTemplates_AreCheckedBeforeTheRun) {
@@ -232,6 +234,9 @@ TEST_F(Check, OutputTemplates_AreCheckedBeforeTheRun) {
     EXPECT_THAT(findings(head + "  '{scan}.stl': thin\n"),
                 ElementsAre(AllOf(HasSubstr("no '.stl' file can hold"), HasSubstr("ply"))));
     EXPECT_THAT(findings(head + "  '{scan}.ply': tetrahedralise\n"), ElementsAre(HasSubstr("is tets")));
+    EXPECT_THAT(findings(head + "  'a//b/../{scan}.ply': thin\n"), ElementsAre(HasSubstr("expected 'a/{scan}.ply'")));
+    EXPECT_THAT(findings(head + "  '{scan}.ply': thin\n  '{scan}.ply/x/y.ply': thin\n"),
+                ElementsAre(AllOf(StartsWith("w:5:3: "), HasSubstr("and the folder of '{scan}.ply/x/y.ply' too"))));
     EXPECT_THAT(findings(head + "  '{scan}.ply': thn\n"), ElementsAre(HasSubstr("did you mean 'thin'?")));
 }
 

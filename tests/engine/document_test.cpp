@@ -78,7 +78,12 @@ TEST(YamlDocument, DeepNesting_IsRefusedNotFollowed) {
     ASSERT_FALSE(parsed.findings.empty());
 }
 
-TEST(YamlDocument, SecondDocument_IsRefused) { EXPECT_EQ(parse("a: 1\n---\nb: 2\n").findings.size(), 1u); }
+TEST(YamlDocument, FurtherDocuments_AreRefused) {
+    EXPECT_EQ(parse("a: 1\n---\nb: 2\n").findings.size(), 1u);
+    EXPECT_EQ(parse("a: 1\n---\n---\nb: 2\n").findings.size(), 1u);
+    EXPECT_EQ(parse("a: 1\n---\nb: 2\n---\nc: 3\n").findings.size(), 2u);
+    EXPECT_EQ(parse("a: 1\n---\n").findings.size(), 0u);
+}
 
 TEST(YamlDocument, ListAsKey_IsRefused) { EXPECT_FALSE(parse("? [a, b]\n: 1\n").findings.empty()); }
 

@@ -171,6 +171,18 @@ PointCloud random_cube(std::size_t count, std::uint64_t seed, double edge) {
     return cloud;
 }
 
+PointCloud flat_square(double thickness) {
+    Random random(4);
+    Array<Vec3> positions(500);
+    for (Vec3& p : positions) {
+        const double x = random.uniform(), y = random.uniform();
+        p = {x, y, random.uniform(0, thickness)};
+    }
+    PointCloud cloud;
+    cloud.positions = std::move(positions);
+    return cloud;
+}
+
 PointCloud random_sphere(std::size_t count, std::uint64_t seed, double radius) {
     Random random(seed);
     Array<Vec3> positions(count);

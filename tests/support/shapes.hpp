@@ -41,6 +41,8 @@ PointCloud cloud_of(std::initializer_list<Vec3> positions);
 PointCloud vertices_of(const TriangleMesh& mesh);
 /// `count` seeded points, uniform in [0, edge)³.
 PointCloud random_cube(std::size_t count, std::uint64_t seed, double edge = 1);
+/// 500 points in the unit square, up to `thickness` above it.
+PointCloud flat_square(double thickness);
 /// `count` seeded points, uniform on the sphere of `radius` around 0.
 PointCloud random_sphere(std::size_t count, std::uint64_t seed, double radius = 1);
 

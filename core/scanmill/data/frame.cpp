@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cassert>
+#include <cstdint>
+#include <numeric>
 
 namespace scanmill {
 
@@ -10,17 +12,20 @@ namespace {
 struct UnitRow {
     LengthUnit unit;
     std::string_view symbol;
-    double metres;
+    std::int64_t micrometres;  // whole numbers, so that ratios of units are exact
 };
 constexpr std::array<UnitRow, 7> units{{
     {LengthUnit::unknown, "u", 0},
-    {LengthUnit::micrometre, "um", 1e-6},
-    {LengthUnit::millimetre, "mm", 1e-3},
-    {LengthUnit::centimetre, "cm", 1e-2},
-    {LengthUnit::metre, "m", 1},
-    {LengthUnit::inch, "in", 0.0254},
-    {LengthUnit::foot, "ft", 0.3048},
+    {LengthUnit::micrometre, "um", 1},
+    {LengthUnit::millimetre, "mm", 1'000},
+    {LengthUnit::centimetre, "cm", 10'000},
+    {LengthUnit::metre, "m", 1'000'000},
+    {LengthUnit::inch, "in", 25'400},
+    {LengthUnit::foot, "ft", 304'800},
 }};
+
+std::int64_t micrometres(LengthUnit unit) { return units[static_cast<std::size_t>(unit)].micrometres; }
+
 }  // namespace
 
 std::string_view symbol(LengthUnit unit) { return units[static_cast<std::size_t>(unit)].symbol; }
@@ -33,9 +38,11 @@ std::optional<LengthUnit> length_unit(std::string_view symbol) {
 
 std::string_view length_unit_symbols() { return "um, mm, cm, m, in, ft"; }
 
-double metres(LengthUnit unit) {
-    assert(unit != LengthUnit::unknown);
-    return units[static_cast<std::size_t>(unit)].metres;
+double in_unit(double length, LengthUnit from, LengthUnit to) {
+    assert(from != LengthUnit::unknown && to != LengthUnit::unknown);
+    const std::int64_t numerator = micrometres(from), denominator = micrometres(to);
+    const std::int64_t common = std::gcd(numerator, denominator);
+    return length * static_cast<double>(numerator / common) / static_cast<double>(denominator / common);
 }
 
 }  // namespace scanmill

@@ -23,8 +23,8 @@ std::string_view symbol(LengthUnit unit);
 std::optional<LengthUnit> length_unit(std::string_view symbol);
 /// Every symbol a user may declare, for messages: "um, mm, cm, m, in, ft".
 std::string_view length_unit_symbols();
-/// Metres in one unit. Pre: unit is not unknown.
-double metres(LengthUnit unit);
+/// The same length in another unit; correctly rounded between metric units. Pre: neither unit is unknown.
+double in_unit(double length, LengthUnit from, LengthUnit to);
 
 struct Frame {
     LengthUnit unit = LengthUnit::unknown;

@@ -30,8 +30,9 @@ void require_finite(std::span<const Vec3> positions, std::string_view what) {
         if (!positions[i].allFinite() && bad++ == 0) first = i;
     if (bad == 0) return;
     const Vec3& p = positions[first];
-    throw Error("needs finite coordinates; {} of {} {} have a NaN or an infinity, the first is number {} ({} {} {})",
-                bad, positions.size(), what, first, p.x(), p.y(), p.z())
+    const int axis = !std::isfinite(p.x()) ? 0 : !std::isfinite(p.y()) ? 1 : 2;
+    throw Error("needs finite coordinates; {} of {} {} have a NaN or an infinity, the first is number {} ({} is {})",
+                bad, positions.size(), what, first, "xyz"[axis], p[axis])
         .hint("'scanmill convert --drop-invalid IN OUT' writes a copy without them");
 }
 

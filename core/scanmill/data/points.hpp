@@ -33,7 +33,7 @@ struct BoundingBox {
 
     bool empty() const { return !(low.array() <= high.array()).all(); }
     /// Length of the diagonal; 0 when empty.
-    double diagonal() const { return empty() ? 0 : (high - low).norm(); }
+    double diagonal() const { return empty() ? 0 : (high - low).stableNorm(); }
 };
 BoundingBox bounding_box(std::span<const Vec3> positions);
 

@@ -11,16 +11,14 @@
 /// std::optional of any of these for a parameter that may be left out or replaced by its word (then nullopt).
 
 #include <concepts>
-#include <filesystem>
 #include <functional>
-#include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "scanmill/filter/constraint.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/member.hpp"
 #include "scanmill/filter/ports.hpp"
 #include "scanmill/filter/spec.hpp"
 
@@ -32,47 +30,6 @@ struct FilterDeclaration {
     /// Pre: every declared parameter has a value (resolved, in range) and every non-optional input is wired.
     std::function<Outputs(const Inputs&, const ParameterSet&, Context&)> run;
 };
-
-namespace constraint {
-struct Low {
-    Bound bound;
-    void apply(ParameterSpec& spec) const { spec.low = bound; }
-};
-struct High {
-    Bound bound;
-    void apply(ParameterSpec& spec) const { spec.high = bound; }
-};
-struct InPlaceOfAValue {
-    std::string text;
-    void apply(ParameterSpec& spec) const {
-        spec.word = text;
-        spec.default_value = ParameterScalar(Word{text});
-    }
-};
-struct Required {
-    void apply(ParameterSpec& spec) const {
-        spec.required = true;
-        spec.default_value = std::monostate{};
-    }
-};
-struct Size {
-    std::size_t count;
-    void apply(ParameterSpec& spec) const { spec.size = count; }
-};
-}  // namespace constraint
-
-/// Lengths are compared as written, whatever their unit, so their bounds should be 0; angles in degrees, ratios as
-/// fractions.
-inline constraint::Low above(double value) { return {{value, false}}; }
-inline constraint::Low at_least(double value) { return {{value, true}}; }
-inline constraint::High below(double value) { return {{value, false}}; }
-inline constraint::High at_most(double value) { return {{value, true}}; }
-/// A word that may stand in place of a value, and is the default. Pre: the member is a std::optional, empty by default.
-inline constraint::InPlaceOfAValue word(std::string text) { return {std::move(text)}; }
-/// There is no sensible default: the workflow must give a value.
-inline constexpr constraint::Required required{};
-/// A list of exactly this many values.
-inline constraint::Size size(std::size_t count) { return {count}; }
 
 /// Port options, none, one or both: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points", "…", list)`.
 enum class PortOption { optional, list };
@@ -90,106 +47,6 @@ struct Alternative {
     Enum value;
     std::string help;
 };
-
-namespace detail {
-
-template <class T>
-struct Member;  // not a type that a parameter can have
-
-template <>
-struct Member<bool> {
-    static constexpr ParameterType type = ParameterType::boolean;
-    using Stored = bool;
-};
-template <std::integral T>
-struct Member<T> {
-    static constexpr ParameterType type = ParameterType::integer;
-    using Stored = std::int64_t;
-};
-template <>
-struct Member<double> {
-    static constexpr ParameterType type = ParameterType::number;
-    using Stored = double;
-};
-template <>
-struct Member<std::string> {
-    static constexpr ParameterType type = ParameterType::text;
-    using Stored = std::string;
-};
-template <>
-struct Member<std::filesystem::path> {
-    static constexpr ParameterType type = ParameterType::path;
-    using Stored = std::string;
-};
-template <>
-struct Member<Length> {
-    static constexpr ParameterType type = ParameterType::length;
-    using Stored = Length;
-};
-template <>
-struct Member<Angle> {
-    static constexpr ParameterType type = ParameterType::angle;
-    using Stored = Angle;
-};
-template <>
-struct Member<Ratio> {
-    static constexpr ParameterType type = ParameterType::ratio;
-    using Stored = Ratio;
-};
-
-/// Between a member of the params struct and the ParameterValue that stands for it.
-template <class T>
-struct Convert {
-    static void describe(ParameterSpec& spec, const T& value) {
-        spec.type = Member<T>::type;
-        spec.default_value = ParameterScalar(typename Member<T>::Stored(value));
-    }
-    static T from(const ParameterScalar& value) {
-        const auto& stored = std::get<typename Member<T>::Stored>(value);
-        if constexpr (Member<T>::type == ParameterType::integer)
-            if (!std::in_range<T>(stored))
-                throw Error("{} is out of range; expected a whole number from {} to {}", stored,
-                            std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
-        return static_cast<T>(stored);
-    }
-    static T from(const ParameterValue& value) { return from(std::get<ParameterScalar>(value)); }
-};
-template <>
-inline void Convert<std::filesystem::path>::describe(ParameterSpec& spec, const std::filesystem::path& value) {
-    spec.type = ParameterType::path;
-    spec.default_value = ParameterScalar(value.string());
-}
-template <class T>
-struct Convert<std::vector<T>> {
-    static void describe(ParameterSpec& spec, const std::vector<T>& values) {
-        spec.type = Member<T>::type;
-        spec.list = true;
-        std::vector<ParameterScalar> items;
-        for (const T& value : values) items.emplace_back(typename Member<T>::Stored(value));
-        spec.default_value = std::move(items);
-    }
-    static std::vector<T> from(const ParameterValue& value) {
-        std::vector<T> values;
-        for (const ParameterScalar& item : std::get<std::vector<ParameterScalar>>(value))
-            values.push_back(Convert<T>::from(item));
-        return values;
-    }
-};
-template <class T>
-struct Convert<std::optional<T>> {
-    static void describe(ParameterSpec& spec, const std::optional<T>& value) {
-        Convert<T>::describe(spec, value.value_or(T{}));
-        if (!value) spec.default_value = std::monostate{};
-    }
-    static std::optional<T> from(const ParameterValue& value) {
-        if (std::holds_alternative<std::monostate>(value)) return std::nullopt;
-        if (const auto* one = std::get_if<ParameterScalar>(&value); one && std::holds_alternative<Word>(*one))
-            return std::nullopt;
-        return Convert<T>::from(value);
-    }
-};
-
-}  // namespace detail
 
 template <class Params>
 class Declare {

@@ -119,7 +119,7 @@ Length Length::resolved(const LengthScale& scale) const {
             .hint(
                 "say `--unit mm`, or `inputs: {scan: {kind: points, unit: mm}}` in the workflow, or write the length "
                 "in the scan's own unit, as 0.5 u");
-    return Length(amount_ * metres(suffix.unit) / metres(scale.unit));
+    return Length(in_unit(amount_, suffix.unit, scale.unit));
 }
 
 std::string Length::text() const { return number_text(amount_) + " " + std::string(suffix_of(in_).text); }

@@ -58,7 +58,10 @@ void require_sound_parameter(std::string_view filter, const ParameterSpec& param
     for (const Choice& choice : parameter.choices)
         if (!seen.insert(choice.name).second)
             throw Error("filter {}: parameter '{}' has the choice '{}' twice", filter, parameter.name, choice.name);
-    if (std::holds_alternative<std::monostate>(parameter.default_value)) return;
+    const bool has_default = !std::holds_alternative<std::monostate>(parameter.default_value);
+    if (parameter.type == ParameterType::choice && !has_default && !parameter.required)
+        throw Error("filter {}: the default of '{}' is none of its choices", filter, parameter.name);
+    if (!has_default) return;
     try {
         parse(parameter, written(parameter.default_value));
     } catch (Error& error) {

@@ -25,8 +25,26 @@ Vec3 facet_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     return normal / length;
 }
 
-void put(const Vec3& p, OutputBuffer& out) {
-    for (int axis = 0; axis < 3; ++axis) out.binary(static_cast<float>(p[axis]));
+void put(const Eigen::Vector3f& p, OutputBuffer& out) {
+    for (int axis = 0; axis < 3; ++axis) out.binary(p[axis]);
+}
+
+Eigen::Vector3f written(const TriangleMesh& mesh, u32 vertex) {
+    return world(mesh.frame, mesh.positions[vertex]).cast<float>();
+}
+
+/// Triangles with two corners that differ in the mesh and coincide in single precision.
+std::size_t collapsed_triangles(const TriangleMesh& mesh) {
+    std::size_t count = 0;
+    for (const Triangle& triangle : mesh.triangles) {
+        bool collapsed = false;
+        for (int corner = 0; corner < 3; ++corner) {
+            const u32 a = triangle[corner], b = triangle[(corner + 1) % 3];
+            collapsed |= mesh.positions[a] != mesh.positions[b] && written(mesh, a) == written(mesh, b);
+        }
+        count += collapsed;
+    }
+    return count;
 }
 
 std::size_t unused_vertices(const TriangleMesh& mesh) {
@@ -49,6 +67,11 @@ void write_stl(const Value& value, OutputBuffer& out, const WriteOptions& option
     require_countable(mesh.triangles.size(), "triangles");
     tell_lost_precision(mesh.frame, mesh.positions.span(), true, "STL", options);
     tell_bare_triangles(mesh, "STL", options);
+    if (const std::size_t collapsed = collapsed_triangles(mesh); collapsed > 0)
+        warn(options.on_warning,
+             "{} collapsed: corners that differ are equal in STL's single precision; PLY "
+             "keeps them apart",
+             counted(collapsed, "triangle", "triangles"));
     if (const std::size_t unused = unused_vertices(mesh); unused > 0)
         warn(options.on_warning, "STL left out {} that no triangle uses; PLY keeps them",
              counted(unused, "vertex", "vertices"));
@@ -66,8 +89,8 @@ void write_stl(const Value& value, OutputBuffer& out, const WriteOptions& option
     out.binary(static_cast<u32>(mesh.triangles.size()));
     for (const Triangle& triangle : mesh.triangles) {
         const Vec3 &a = mesh.positions[triangle[0]], &b = mesh.positions[triangle[1]], &c = mesh.positions[triangle[2]];
-        put(facet_normal(a, b, c), out);
-        for (const Vec3* corner : {&a, &b, &c}) put(world(mesh.frame, *corner), out);
+        put(facet_normal(a, b, c).cast<float>(), out);
+        for (u32 vertex : triangle) put(written(mesh, vertex), out);
         out.binary(std::uint16_t(0));
     }
 }

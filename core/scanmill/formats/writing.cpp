@@ -47,12 +47,9 @@ void tell_lost_precision(const Frame& frame, std::span<const Vec3> positions, bo
     }
     const double diagonal = bounding_box(positions).diagonal();
     if (worst <= bearable * diagonal) return;
-    warn(
-        options.on_warning,
-        "coordinates moved by up to {:.2g}, {:.2g} of the diagonal: {} has {} precision and the scan lies far from the "
-        "origin; {}",
-        worst, worst / diagonal, format, as_float ? "single" : "double",
-        as_float ? "PLY keeps them" : "write it in a frame nearer to the scan");
+    warn(options.on_warning, "coordinates moved by up to {:.2g}, {:.2g} of the diagonal: {} has {} precision; {}",
+         worst, worst / diagonal, format, as_float ? "single" : "double",
+         as_float ? "PLY keeps them" : "write it in a frame nearer to the scan");
 }
 
 void tell_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <flann/flann.hpp>
 
 #include "scanmill/filter/error.hpp"
@@ -33,6 +35,44 @@ std::span<const Vec3> positions_of(const Value& value) {
         value);
 }
 
+/// Well mixed 64 bits of the coordinates' values; both zeros are equal.
+std::uint64_t hash_of(const Vec3& p) {
+    std::uint64_t hash = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        hash += std::bit_cast<std::uint64_t>(p[axis] + 0.0) + 0x9e3779b97f4a7c15u;
+        hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;  // the finaliser of splitmix64
+        hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;
+        hash ^= hash >> 31;
+    }
+    return hash;
+}
+
+/// The finite points in an order that scatters them over space, depends on their coordinates alone and puts equal
+/// points side by side.
+std::vector<Vec3> scattered(std::span<const Vec3> positions) {
+    struct Point {
+        std::uint64_t hash;
+        Vec3 position;
+    };
+    std::vector<Point> points;
+    points.reserve(positions.size());
+    for (const Vec3& p : positions)
+        if (p.allFinite()) points.push_back({hash_of(p), p});
+    std::ranges::sort(points, [](const Point& a, const Point& b) {
+        if (a.hash != b.hash) return a.hash < b.hash;
+        return std::ranges::lexicographical_compare(std::span(a.position.data(), 3), std::span(b.position.data(), 3));
+    });
+    std::vector<Vec3> result;
+    result.reserve(points.size());
+    for (const Point& point : points) result.push_back(point.position);
+    return result;
+}
+
+bool has_duplicate(const std::vector<Vec3>& scattered, std::size_t index) {
+    return (index > 0 && scattered[index - 1] == scattered[index]) ||
+           (index + 1 < scattered.size() && scattered[index + 1] == scattered[index]);
+}
+
 double diagonal_of(std::span<const Vec3> positions) {
     const double diagonal = bounding_box(positions).diagonal();
     if (diagonal > 0 || positions.empty()) return diagonal;
@@ -59,10 +99,7 @@ std::function<double()> memoised(std::function<double()> compute) {
 }  // namespace
 
 double point_spacing(std::span<const Vec3> positions) {
-    std::vector<Vec3> finite;
-    finite.reserve(positions.size());
-    for (const Vec3& p : positions)
-        if (p.allFinite()) finite.push_back(p);
+    std::vector<Vec3> finite = scattered(positions);
     if (finite.size() < 2) return 0;
 
     flann::Matrix<double> data(finite.front().data(), finite.size(), 3);
@@ -73,13 +110,17 @@ double point_spacing(std::span<const Vec3> positions) {
     flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED, 0.0f);
     for (std::size_t query = 0; query < queries; ++query) {
         const std::size_t index = query * finite.size() / queries;
+        if (has_duplicate(finite, index)) {
+            distances[query] = 0;  // without asking a tree that may hold millions of it
+            continue;
+        }
         std::size_t neighbours[2];
         double squared[2];
         flann::Matrix<double> point(finite[index].data(), 1, 3);
         flann::Matrix<std::size_t> found(neighbours, 1, 2);
         flann::Matrix<double> found_squared(squared, 1, 2);
         tree.knnSearch(point, found, found_squared, 2, exact);
-        // The point finds itself at distance 0; a duplicate may come first, which is at distance 0 as well.
+        // One of the two is the point itself, at distance 0.
         distances[query] = std::sqrt(std::max(squared[0], squared[1]));
     }
     return median(distances);

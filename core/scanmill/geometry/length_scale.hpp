@@ -8,8 +8,9 @@
 namespace scanmill {
 
 /// Median distance from a point to the nearest other point; duplicates are at distance 0. Clouds of more than 100,000
-/// points are asked at 100,000 evenly strided points (the search still sees all of them). 0 for fewer than two points.
-/// Non-finite points are passed over. Cost: one kd-tree, O(n log n).
+/// points are asked at 100,000 of them (the search still sees all), chosen by a hash of their coordinates, so that the
+/// order of the points does not matter. 0 for fewer than two points. Non-finite points are passed over.
+/// Cost: a sort and a kd-tree, O(n log n).
 double point_spacing(std::span<const Vec3> positions);
 
 /// Median edge length over the mesh's edges, each counted once per triangle that has it; 0 without triangles.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "scanmill/filter/suggestion.hpp"
 
@@ -120,8 +121,7 @@ private:
             if (values.empty()) continue;  // its text was wrong
             const WrittenValue& written = values[choices_.choose(values.size())];
             const std::size_t told = name_parts_.size();
-            const WrittenValue* value =
-                written.reference.empty() ? &written : referenced(step, written.reference);
+            const WrittenValue* value = written.reference.empty() ? &written : referenced(step, written.reference);
             if (!value) continue;  // an unknown parameter, or one whose text was wrong
             if (parameter.value.sweep && name_parts_.size() == told) tell_swept(step, parameter.name, *value);
             all.push_back({&parameter, value, &written});
@@ -148,8 +148,7 @@ private:
 
     void tell_swept(const StepSyntax& step, const std::string& name, const WrittenValue& value) {
         // A second sweep of the same name tells whose it is.
-        const std::string label =
-            swept_.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
+        const std::string label = swept_.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
         swept_.insert(name);
         name_parts_.push_back(file_safe(label + "=" + written_text(value.literal)));
     }
@@ -232,8 +231,9 @@ void expand(const Workflow& workflow, const Settings& settings, Diagnostics& dia
         return;
     }
     std::set<std::string> names;
+    bool told = false;  // one pair is enough: a value that stands twice in a sweep makes many
     visit_all<EveryCombination>(workflow, settings, [&](const Variant& variant) {
-        if (!names.insert(variant.name).second)
+        if (!names.insert(variant.name).second && !std::exchange(told, true))
             diagnostics.error(
                 variant.steps.empty() ? Position{} : variant.steps.back().syntax->position,
                 fmt::format("two variants are called '{}'; give their alternatives different names", variant.name));

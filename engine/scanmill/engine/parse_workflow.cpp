@@ -158,7 +158,8 @@ void WorkflowParser::parameter(const YamlEntry& entry, Workflow& workflow) {
 }
 
 void WorkflowParser::output(const YamlEntry& entry, Workflow& workflow) {
-    if (const auto source = reference(entry.value, diagnostics_)) workflow.outputs.push_back({entry.key, entry.position, *source});
+    if (const auto source = reference(entry.value, diagnostics_))
+        workflow.outputs.push_back({entry.key, entry.position, *source});
 }
 
 }  // namespace

@@ -176,8 +176,7 @@ private:
         } catch (const Error& error) {
             const WrittenValue& written = *argument->written;
             const std::string through = written.reference.empty() ? "" : " (from $" + written.reference + ")";
-            diagnostics_.error(written.position,
-                               fmt::format("{}{}: {}", parameter.name, through, error.sentence()));
+            diagnostics_.error(written.position, fmt::format("{}{}: {}", parameter.name, through, error.sentence()));
             return parameter.default_value;
         }
     }

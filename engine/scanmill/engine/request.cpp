@@ -23,8 +23,7 @@ void require_fed(const RunRequest& request, const Plan& plan) {
     for (const auto& [name, files] : request.inputs) {
         if (std::ranges::find(others, name) == others.end())
             throw Error("--in {}: the workflow has no such input beside the scans; {}{}", name,
-                        others.empty() ? "it has none" : "it has " + enumerated(others),
-                        did_you_mean(name, others));
+                        others.empty() ? "it has none" : "it has " + enumerated(others), did_you_mean(name, others));
         const auto& input = *std::ranges::find(inputs, name, &WorkflowInput::name);
         if (!input.list && files.size() > 1)
             throw Error("--in {}: the input takes one file; found {}", name, files.size());
@@ -43,14 +42,13 @@ void require_known_names(const RunRequest& request, const Plan& plan) {
     }
     for (const std::string& name : request.only)
         if (std::ranges::find(variants, name) == variants.end())
-            throw Error("--only {}: there is no such variant; there {} {}{}", name,
-                        variants.size() == 1 ? "is" : "are", enumerated(variants), did_you_mean(name, variants));
+            throw Error("--only {}: there is no such variant; there {} {}{}", name, variants.size() == 1 ? "is" : "are",
+                        enumerated(variants), did_you_mean(name, variants));
     const std::vector<std::string> step_names(steps.begin(), steps.end());
     const auto require_step = [&](const std::string& option, const std::string& name) {
         if (!steps.contains(name))
             throw Error("{} {}: there is no such step; there {} {}{}", option, name,
-                        step_names.size() == 1 ? "is" : "are", enumerated(step_names),
-                        did_you_mean(name, step_names));
+                        step_names.size() == 1 ? "is" : "are", enumerated(step_names), did_you_mean(name, step_names));
     };
     if (!request.until.empty()) require_step("--until", request.until);
     for (const std::string& name : request.save) require_step("--save", name.substr(0, name.find('.')));

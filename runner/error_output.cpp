@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "error_output.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace scanmill::runner {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void print_json(const Json& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));  // names of files may be no UTF-8
+}
+
+}  // namespace
+
+void print(const Error& error, bool json) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    if (!json) return;
+    Json described{{"message", error.sentence()}, {"where", error.frames()}};
+    if (!error.hint().empty()) described["hint"] = error.hint();
+    print_json({{"scanmill", 1}, {"error", std::move(described)}});
+}
+
+void print(const Diagnostics& diagnostics) {
+    for (const Diagnostic& diagnostic : diagnostics.sorted())
+        fmt::print(stderr, "{}\n", text(diagnostic, diagnostics.file()));
+    if (diagnostics.has_errors())
+        fmt::print(stderr, "{} error{} in '{}'\n", diagnostics.errors(), diagnostics.errors() == 1 ? "" : "s",
+                   diagnostics.file());
+}
+
+Json to_json(const Diagnostics& diagnostics) {
+    Json list = Json::array();
+    for (const Diagnostic& diagnostic : diagnostics.sorted())
+        list.push_back({{"severity", diagnostic.severity == Diagnostic::Severity::error ? "error" : "warning"},
+                        {"line", diagnostic.position.line},
+                        {"column", diagnostic.position.column},
+                        {"message", diagnostic.message}});
+    return {{"file", diagnostics.file()}, {"ok", !diagnostics.has_errors()}, {"diagnostics", std::move(list)}};
+}
+
+Json unreadable_json(const std::string& file, const Error& error) {
+    Diagnostics diagnostics(file);
+    diagnostics.error({}, error.sentence());
+    return to_json(diagnostics);
+}
+
+void print_files_json(Json files) { print_json({{"scanmill", 1}, {"files", std::move(files)}}); }
+
+}  // namespace scanmill::runner

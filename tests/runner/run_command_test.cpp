@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `scanmill run` as its users see it: what it writes and prints, and exit codes.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/program.hpp"
+#include "support/real_data.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+const std::vector<std::string> filters{"alpha-solid", "delaunay", "virtual-scan", "voxel-thin"};
+
+/// A scan of a sphere by the program itself, written to `file`.
+void write_sphere(const TemporaryFolder& folder, const std::string& name) {
+    const auto workflow =
+        folder.write("sphere.yaml", "scanmill: 1\nname: " + name +
+                                        "\nsteps:\n  - virtual-scan: {shape: sphere, views: [8], resolution: 3 %diag}\n"
+                                        "outputs: {\"{scan}.ply\": virtual-scan}\n");
+    const ProgramResult made = scanmill_program({"run", workflow.string(), "-o", folder.path().string()});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+}
+
+std::string quickstart() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml"; }
+
+TEST(RunCommand, Run_WritesAClosedMeshAndATable) {
+    const TemporaryFolder folder;
+    write_sphere(folder, "ball");
+    const ProgramResult ran = scanmill_program(
+        {"run", quickstart(), "ball.ply", "--set", "bin-size=1 %diag", "-o", "out"}, {.folder = folder.path()});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.out, AllOf(HasSubstr("kept"), HasSubstr("triangles"), HasSubstr("out/ball.stl"), HasSubstr("yes")));
+    const json info = json::parse(scanmill_program({"info", "--json", (folder / "out/ball.stl").string()}).out);
+    EXPECT_EQ(info.at("files").at(0).at("closed"), true);
+    EXPECT_EQ(info.at("files").at(0).at("genus"), 0);
+}
+
+TEST(RunCommand, RunJson_IsJsonWithKeysMetricsAndFiles) {
+    const TemporaryFolder folder;
+    write_sphere(folder, "ball");
+    const ProgramResult ran =
+        scanmill_program({"run", quickstart(), "ball.ply", "--json", "-o", "out"}, {.folder = folder.path()});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const json report = json::parse(ran.out);
+    EXPECT_EQ(report.at("scanmill"), 1);
+    ASSERT_EQ(report.at("cells").size(), 1u);
+    const json& cell = report.at("cells").at(0);
+    EXPECT_EQ(cell.at("outcome"), "done");
+    EXPECT_EQ(cell.at("outputs").at(0).at("facts").at("closed"), true);
+    for (const json& step : report.at("steps")) EXPECT_EQ(step.at("key").get<std::string>().size(), 32u);
+}
+
+TEST(RunCommand, RunTwiceWithAnyThreads_WritesEqualBytes) {
+    const TemporaryFolder folder;
+    write_sphere(folder, "ball");
+    for (const char* threads : {"1", "2"})
+        ASSERT_EQ(scanmill_program({"run", quickstart(), "ball.ply", "--threads", threads, "-o", threads},
+                                   {.folder = folder.path()})
+                      .exit_code,
+                  0);
+    EXPECT_EQ(content_of(folder / "1/ball.stl"), content_of(folder / "2/ball.stl"));
+    EXPECT_FALSE(content_of(folder / "1/ball.stl").empty());
+}
+
+TEST(RunCommand, DryRun_WritesNothing) {
+    const TemporaryFolder folder;
+    folder.write("a.xyz", "0 0 0\n1 0 0\n");
+    const ProgramResult ran =
+        scanmill_program({"run", quickstart(), "a.xyz", "--dry-run", "-o", "out"}, {.folder = folder.path()});
+    EXPECT_EQ(ran.exit_code, 0);
+    EXPECT_THAT(ran.out, HasSubstr("out/a.stl"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST(RunCommand, OneBadScanAmongGoodOnes_FailsAloneWith1) {
+    const TemporaryFolder folder;
+    write_sphere(folder, "ball");
+    folder.write("flat.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n");
+    const ProgramResult ran = scanmill_program(
+        {"run", quickstart(), "flat.xyz", "missing.ply", "ball.ply", "-o", "out"}, {.folder = folder.path()});
+    EXPECT_EQ(ran.exit_code, 1);
+    EXPECT_THAT(ran.err,
+                AllOf(HasSubstr("on scan 'flat.xyz'"), HasSubstr("in step 'delaunay'"), HasSubstr("missing.ply")));
+    EXPECT_THAT(ran.out, HasSubstr("2 of 3 failed"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/ball.stl"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/flat.stl"));
+}
+
+TEST(RunCommand, TwoScansOfOneName_AreRefusedBeforeTheRun) {
+    const TemporaryFolder folder;
+    folder.write("a/s.xyz", "0 0 0\n1 0 0\n");
+    folder.write("b/s.xyz", "0 0 0\n2 0 0\n");
+    const ProgramResult ran =
+        scanmill_program({"run", quickstart(), "a/s.xyz", "b/s.xyz", "-o", "out"}, {.folder = folder.path()});
+    EXPECT_EQ(ran.exit_code, 2);
+    EXPECT_THAT(ran.err, AllOf(HasSubstr("a/s.xyz"), HasSubstr("b/s.xyz"), HasSubstr("would both write")));
+}
+
+TEST(RunCommand, Output_NeverReplacesAnInput) {
+    const TemporaryFolder folder;
+    folder.write("s.ply", "ply\n");
+    const auto workflow = folder.write("w.yaml",
+                                       "scanmill: 1\ninputs: {scan: points}\nsteps: [{voxel-thin: {bin-size: 1 "
+                                       "u}}]\noutputs: {\"{scan}.ply\": voxel-thin}\n");
+    const ProgramResult ran = scanmill_program({"run", "w.yaml", "s.ply", "-o", "."}, {.folder = folder.path()});
+    EXPECT_EQ(ran.exit_code, 2);
+    EXPECT_THAT(ran.err, HasSubstr("must not replace it"));
+    EXPECT_EQ(content_of(folder / "s.ply"), "ply\n");
+}
+
+TEST(RunCommand, AbsoluteLengthOnAScanOfUnknownUnit_SaysHowToDeclareIt) {
+    const TemporaryFolder folder;
+    write_sphere(folder, "ball");
+    const std::vector<std::string> run{"run", quickstart(), "ball.ply", "--set", "bin-size=20 um", "-o", "out"};
+    const ProgramResult unknown = scanmill_program(run, {.folder = folder.path()});
+    EXPECT_EQ(unknown.exit_code, 1);
+    EXPECT_THAT(unknown.err, AllOf(HasSubstr("--unit mm"), HasSubstr("unit: mm")));
+    std::vector<std::string> declared = run;
+    declared.insert(declared.end(), {"--unit", "mm"});
+    EXPECT_EQ(scanmill_program(declared, {.folder = folder.path()}).exit_code, 0);
+}
+
+TEST(RunCommand, SaveAndUntil_WriteAndStopAtAStep) {
+    const TemporaryFolder folder;
+    write_sphere(folder, "ball");
+    const ProgramResult ran = scanmill_program(
+        {"run", quickstart(), "ball.ply", "--save", "voxel-thin", "--until", "voxel-thin", "-o", "out"},
+        {.folder = folder.path()});
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/ball.voxel-thin.ply"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/ball.stl"));
+}
+
+TEST(RunCommand, RealScan_ThroughTheQuickstart) {
+    SCANMILL_REAL_SCAN(kitten, fetched_data, "points_3/kitten.xyz");
+    const TemporaryFolder folder;
+    const ProgramResult ran =
+        scanmill_program({"run", quickstart(), kitten.string(), "--json", "-o", "out"}, {.folder = folder.path()});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const json facts = json::parse(ran.out).at("cells").at(0).at("outputs").at(0).at("facts");
+    EXPECT_EQ(facts.at("closed"), true);
+    EXPECT_EQ(facts.at("genus"), 1);
+    EXPECT_EQ(facts.at("components"), 1);
+}
+
+}  // namespace
+}  // namespace scanmill::test
