@@ -3,7 +3,7 @@
 jobs ?= $(shell nproc)
 demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fandisk_large.off
 
-.PHONY: help demo test deps data bench format lint release dev asan tsan
+.PHONY: help demo test deps data bench generate format lint release dev asan tsan
 .DEFAULT_GOAL := help
 
 help: ## list these targets
@@ -31,10 +31,12 @@ asan tsan: deps data ## (make asan, make tsan) build and run the tests under san
 	ctest --preset $@ -j $(jobs)
 
 bench: data ## measure speed side by side with PCL and CGAL
-	tools/deps.sh bench
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs)
 	bench/run.sh build/bench
+
+generate: dev ## write schemas/ and docs/filters/ from the filters' declarations
+	tools/generate.sh build/dev
 
 format: ## format the C++ code
 	tools/deps.sh

@@ -8,3 +8,7 @@ set(SCANMILL_PLUGIN_SUBDIR scanmill/plugins)
 set(SCANMILL_PLUGIN_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/${SCANMILL_PLUGIN_SUBDIR})
 # The same place seen from the folder that holds libscanmill-core.so, in both trees.
 set(SCANMILL_INSTALL_PLUGIN_DIR ${CMAKE_INSTALL_LIBDIR}/${SCANMILL_PLUGIN_SUBDIR})
+# Modules of file formats lie beside those of filters.
+set(SCANMILL_FORMAT_SUBDIR scanmill/formats)
+set(SCANMILL_FORMAT_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/${SCANMILL_FORMAT_SUBDIR})
+set(SCANMILL_INSTALL_FORMAT_DIR ${CMAKE_INSTALL_LIBDIR}/${SCANMILL_FORMAT_SUBDIR})

@@ -19,5 +19,8 @@ void add_list(CLI::App& app, Action& chosen);
 void add_show(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);
 void add_convert(CLI::App& app, Action& chosen);
+void add_schema(CLI::App& app, Action& chosen);
+void add_docs(CLI::App& app, Action& chosen);
+void add_completion(CLI::App& app, Action& chosen);
 
 }  // namespace scanmill::runner

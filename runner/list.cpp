@@ -34,10 +34,14 @@ void print_json(const FilterLibrary& library) {
     fmt::print("{}\n", json.dump(2));
 }
 
-int list(bool json) {
+int list(bool json, bool names) {
     const FilterLibrary library = open_library();
     if (json) {
         print_json(library);
+        return done;
+    }
+    if (names) {
+        for (const std::string& name : library.names()) fmt::print("{}\n", name);
         return done;
     }
     Table table({"filter", "takes", "gives", "what it does"});
@@ -56,9 +60,10 @@ int list(bool json) {
 
 void add_list(CLI::App& app, Action& chosen) {
     CLI::App* command = app.add_subcommand("list", "Lists the filters at hand");
-    auto json = std::make_shared<bool>(false);
+    auto json = std::make_shared<bool>(false), names = std::make_shared<bool>(false);
     command->add_flag("--json", *json, "Print everything the filters declare as JSON");
-    command->callback([&chosen, json] { chosen = [json] { return list(*json); }; });
+    command->add_flag("--names", *names, "Print the names alone, a line each")->excludes("--json");
+    command->callback([&chosen, json, names] { chosen = [json, names] { return list(*json, *names); }; });
 }
 
 }  // namespace scanmill::runner

@@ -23,6 +23,9 @@ int main(int argc, char** argv) {
     add_show(app, chosen);
     add_info(app, chosen);
     add_convert(app, chosen);
+    add_schema(app, chosen);
+    add_docs(app, chosen);
+    add_completion(app, chosen);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

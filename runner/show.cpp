@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "load.hpp"
+#include "scanmill/engine/filter_page.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
 
@@ -41,46 +42,6 @@ void print_text(const FilterSpec& spec) {
         fmt::print("  {} ({})\n      {}\n", metric.name, name_of(metric.unit), metric.help);
 }
 
-/// A value that the parameter would take, for examples of required ones.
-std::string sample(const ParameterSpec& parameter) {
-    switch (parameter.type) {
-        case ParameterType::boolean: return "true";
-        case ParameterType::choice: return parameter.choices.front().name;
-        case ParameterType::length: return "1 %diag";
-        case ParameterType::angle: return "40 deg";
-        case ParameterType::ratio: return "5 %";
-        case ParameterType::text: return "text";
-        case ParameterType::path: return "file";
-        case ParameterType::integer:
-        case ParameterType::number: break;
-    }
-    const double low = parameter.low ? parameter.low->value + (parameter.low->inclusive ? 0 : 1) : 1;
-    return number_text(low);
-}
-
-/// A whole workflow with this filter alone, every parameter at its default: passes `scanmill check`.
-std::string example_of(const FilterSpec& spec) {
-    std::string example = fmt::format("scanmill: 1\nname: {}-example\n", spec.name);
-    const auto add = [&]<class... Arguments>(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-        example += fmt::format(format, std::forward<Arguments>(arguments)...);
-    };
-    if (!spec.inputs.empty()) add("inputs:\n");
-    for (const PortSpec& port : spec.inputs) {
-        const bool readable = port.kind == Kind::points || port.kind == Kind::mesh;
-        add("  {}{}: {}\n", readable ? "" : "# from an earlier step: ", port.name,
-            port.list ? "[" + std::string(name_of(port.kind)) + "]" : std::string(name_of(port.kind)));
-    }
-    add("steps:\n  - {}:\n", spec.name);
-    for (const ParameterSpec& parameter : spec.parameters) {
-        const std::string value = text(parameter.default_value);
-        const bool given = !value.empty() || parameter.required;
-        add("      {}{}: {}\n", given ? "" : "# ", parameter.name, value.empty() ? sample(parameter) : value);
-    }
-    const Kind kind = spec.outputs.front().kind;
-    if (kind == Kind::points || kind == Kind::mesh) add("outputs:\n  \"{{scan}}.ply\": {}\n", spec.name);
-    return example;
-}
-
 int show(const std::string& name, bool json, bool example) {
     const FilterLibrary library = open_library();
     const FilterSpec* spec = library.find(name);
@@ -91,10 +52,11 @@ int show(const std::string& name, bool json, bool example) {
         throw Error("there is no filter '{}'{}", name, did_you_mean(name, library.names())).hint("scanmill list");
     }
     if (example && json) {
-        const nlohmann::ordered_json described{{"scanmill", 1}, {"filter", spec->name}, {"example", example_of(*spec)}};
+        const nlohmann::ordered_json described{
+            {"scanmill", 1}, {"filter", spec->name}, {"example", example_workflow(*spec)}};
         fmt::print("{}\n", described.dump(2));
     } else if (example) {
-        fmt::print("{}", example_of(*spec));
+        fmt::print("{}", example_workflow(*spec));
     } else if (json) {
         auto described = nlohmann::ordered_json::parse(to_json_text({"", *spec}));
         described.erase("scanmill-manifest");

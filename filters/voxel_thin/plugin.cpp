@@ -13,7 +13,7 @@ SCANMILL_FILTER() {
         .out<PointCloud>("points", "The kept points, in input order.")
         .param("bin-size", &P::bin_size, "Edge of a voxel.", required, above(0))
         .param("min-points", &P::min_points, "Voxels with fewer points are noise and keep none; 1 keeps all voxels.",
-               at_least(1), at_most(4294967295.0))
+               at_least(1))
         .param("margin", &P::margin, "The grid begins this far below the bounding box, along every axis.", at_least(0))
         .metric("bin-size", Unit::length, "Edge of a voxel, resolved.")
         .metric("kept", Unit::count, "Points kept.", headline)

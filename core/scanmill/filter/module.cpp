@@ -43,23 +43,33 @@ void require_whole(const std::filesystem::path& module) {
 
 std::string abi_text() { return SCANMILL_ABI_TEXT; }
 
-FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name) {
+const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleKind kind,
+                                    const std::string& expected_name) {
     require_whole(module);
     // Local: two modules may define the same symbol without meeting.
     void* handle = ::dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) throw Error("module '{}' cannot be loaded: {}", module.string(), ::dlerror());
     const auto* descriptor = static_cast<const PluginDescriptor*>(::dlsym(handle, plugin_symbol));
-    if (!descriptor || std::memcmp(descriptor->magic, plugin_magic, sizeof plugin_magic) != 0)
-        throw Error("module '{}' is no filter: it exports no {}", module.string(), plugin_symbol);
+    if (!descriptor) throw Error("module '{}' is no {}: it exports no {}", module.string(), kind.what, plugin_symbol);
+    if (const std::string_view magic(descriptor->magic, ::strnlen(descriptor->magic, sizeof descriptor->magic));
+        magic != kind.magic)
+        throw Error("module '{}' is no {}: its {} begins with '{}'; expected '{}'", module.string(), kind.what,
+                    plugin_symbol, magic, kind.magic);
     if (descriptor->abi != abi_text())
         throw Error("module '{}' was built for another program: it needs '{}', this is '{}'", module.string(),
                     descriptor->abi, abi_text())
             .hint("build the module again with this program's headers and compiler");
     if (descriptor->name != expected_name)
-        throw Error("module '{}' holds the filter '{}', not '{}'", module.string(), descriptor->name, expected_name);
+        throw Error("module '{}' holds the {} '{}', not '{}'", module.string(), kind.what, descriptor->name,
+                    expected_name);
+    return *descriptor;
+}
+
+FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name) {
+    const PluginDescriptor& descriptor = open_module(module, {filter_magic, "filter"}, expected_name);
     FilterDeclaration declaration;
     try {
-        descriptor->declare(&declaration);
+        descriptor.declare(&declaration);
     } catch (const std::exception& error) {
         throw Error("module '{}' fails while it declares itself: {}", module.string(), error.what());
     }
@@ -90,5 +100,7 @@ std::filesystem::path core_library_file() {
 }
 
 std::filesystem::path installed_plugin_folder() { return core_library_file().parent_path() / SCANMILL_PLUGIN_SUBDIR; }
+
+std::filesystem::path installed_format_folder() { return core_library_file().parent_path() / SCANMILL_FORMAT_SUBDIR; }
 
 }  // namespace scanmill

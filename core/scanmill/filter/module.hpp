@@ -1,15 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Loading one filter's module. A loaded module stays loaded: values it made may outlive everything else.
+/// Loading one module. A loaded module stays loaded: values it made may outlive everything else.
 
 #include <filesystem>
 
 #include "scanmill/filter/declare.hpp"
+#include "scanmill/filter/plugin_descriptor.hpp"
 
 namespace scanmill {
 
-/// Loads the module and returns what it declares. Throws Error naming the file: not a module, one cut short, another
-/// ABI (both texts), another name than `expected_name`, or whatever its declaration threw.
+/// What kind of module is expected: the descriptor's magic, and the word for it in messages.
+struct ModuleKind {
+    const char* magic;
+    std::string_view what;  ///< "filter"
+};
+
+/// Loads the module and returns its descriptor, whose declare() may then be called. Throws Error naming the file: not a
+/// module, one cut short, of another kind, of another ABI (both texts), of another name.
+const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleKind kind,
+                                    const std::string& expected_name);
+
+/// Loads a filter's module and returns what it declares. Throws Error as open_module(), and whatever the declaration
+/// threw.
 FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name);
 
 /// The ABI text that this program was built with.
@@ -18,8 +30,9 @@ std::string abi_text();
 /// 128-bit content hash of a file as 32 hexadecimal digits: what tells one build of a module from another.
 std::string content_hash(const std::filesystem::path& file);
 
-/// The file that holds this library's code, and the folder of modules that belongs to it.
+/// The file that holds this library's code, and the folders of modules that belong to it.
 std::filesystem::path core_library_file();
 std::filesystem::path installed_plugin_folder();
+std::filesystem::path installed_format_folder();
 
 }  // namespace scanmill

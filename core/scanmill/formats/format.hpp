@@ -28,24 +28,24 @@ enum class Recognition { no, plausible, certain };
 constexpr std::size_t head_size = 4096;
 
 struct Format {
-    using Recognise = Recognition (*)(std::string_view head, u64 file_size);
-    using Read = LoadedFile (*)(const FileBytes& file, const ReadOptions& options);
+    using Recognise = std::function<Recognition(std::string_view head, u64 file_size)>;
+    using Read = std::function<LoadedFile(const FileBytes& file, const ReadOptions& options)>;
     /// Pre: the value is of the kind that the writer is listed for, and has points.
-    using Write = void (*)(const Value& value, OutputBuffer& out, const WriteOptions& options);
+    using Write = std::function<void(const Value& value, OutputBuffer& out, const WriteOptions& options)>;
 
-    std::string_view name;
+    std::string name;
     /// Lower case, without the dot; the first is the one to propose.
-    std::vector<std::string_view> extensions;
+    std::vector<std::string> extensions;
     Recognise recognises;
     Read read;
     std::vector<std::pair<Kind, Write>> writers;
 
     bool has_extension(std::string_view extension) const;
-    /// nullptr when the format cannot carry the kind.
+    /// Empty when the format cannot carry the kind.
     Write writer(Kind kind) const;
 };
 
-/// Every format, in the order in which they are asked and listed.
+/// Every format, in the order in which they are asked and listed: the built-in ones, then those of modules.
 std::span<const Format> formats();
 
 /// "PLY" → "ply", ".Stl" → "stl": the form in which Format lists extensions.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <array>
 #include <cctype>
+#include <iterator>
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/filter/module.hpp"
+#include "scanmill/formats/format_modules.hpp"
 #include "scanmill/formats/off.hpp"
 #include "scanmill/formats/ply.hpp"
 #include "scanmill/formats/reading.hpp"
@@ -12,15 +14,27 @@
 
 namespace scanmill {
 
-std::span<const Format> formats() {
-    static const std::array<Format, 5> table{{
+namespace {
+
+std::vector<Format> built_in() {
+    return {
         {"PLY", {"ply"}, recognise_ply, read_ply, {{Kind::points, write_ply_points}, {Kind::mesh, write_ply_mesh}}},
         {"STL", {"stl"}, recognise_stl, read_stl, {{Kind::mesh, write_stl}}},
         {"OFF", {"off"}, recognise_off, read_off, {{Kind::mesh, write_off}}},
         {"XYZ", {"xyz", "txt"}, recognise_xyz, read_xyz, {{Kind::points, write_xyz}}},
         // Read alike, but not written: commas, a count or normals are expected of them.
         {"CSV", {"csv", "pts", "pwn", "asc"}, recognise_xyz, read_xyz, {}},
-    }};
+    };
+}
+
+}  // namespace
+
+std::span<const Format> formats() {
+    static const std::vector<Format> table = [] {
+        std::vector<Format> rows = built_in();
+        std::ranges::move(format_modules(installed_format_folder()), std::back_inserter(rows));
+        return rows;
+    }();
     return table;
 }
 
@@ -38,7 +52,7 @@ bool Format::has_extension(std::string_view extension) const {
 Format::Write Format::writer(Kind kind) const {
     for (const auto& [written, write] : writers)
         if (written == kind) return write;
-    return nullptr;
+    return {};
 }
 
 const Format& format_of(const FileBytes& file) {
@@ -68,12 +82,12 @@ bool can_write(std::string_view extension, Kind kind) {
 }
 
 std::string writable_extensions(Kind kind) {
-    std::string list;
+    std::string extensions;
     for (const Format& format : formats())
         if (format.writer(kind))
-            for (std::string_view extension : format.extensions)
-                list.append(list.empty() ? "" : ", ").append(extension);
-    return list;
+            for (const std::string& extension : format.extensions)
+                extensions.append(extensions.empty() ? "" : ", ").append(extension);
+    return extensions;
 }
 
 }  // namespace scanmill

@@ -12,9 +12,6 @@
 
 namespace scanmill {
 
-namespace {
-
-/// How a number of this unit is written in a workflow.
 ParameterSpec written_as(Unit unit) {
     ParameterSpec spec;
     switch (unit) {
@@ -26,6 +23,15 @@ ParameterSpec written_as(Unit unit) {
     }
     return spec;
 }
+
+std::vector<MetricSpec> expectable(const FilterSpec& spec) {
+    std::vector<MetricSpec> askable = spec.metrics;
+    for (MetricSpec& fact : fact_specs(spec.outputs.front().kind))
+        if (!spec.metric(fact.name)) askable.push_back(std::move(fact));
+    return askable;
+}
+
+namespace {
 
 /// In the metric's own unit: scan units, radians, fractions, 0 or 1.
 double number_of(const ParameterValue& value, const LengthScale& scale) {
@@ -74,9 +80,7 @@ std::string expectation_text(const Expectation& written) {
 
 std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec,
                                                    Diagnostics& diagnostics) {
-    std::vector<MetricSpec> askable = spec.metrics;
-    for (MetricSpec& fact : fact_specs(spec.outputs.front().kind))
-        if (!spec.metric(fact.name)) askable.push_back(std::move(fact));
+    const std::vector<MetricSpec> askable = expectable(spec);
     const auto asked = std::ranges::find(askable, written.name, &MetricSpec::name);
     if (asked == askable.end()) {
         std::vector<std::string> names;

@@ -11,6 +11,12 @@ namespace scanmill {
 std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec,
                                                    Diagnostics& diagnostics);
 
+/// What `expect` may ask for: the filter's metrics, and the facts about its primary output.
+std::vector<MetricSpec> expectable(const FilterSpec& spec);
+
+/// How a number of this unit is written in a workflow.
+ParameterSpec written_as(Unit unit);
+
 /// Throws Error naming every expectation that `found` does not meet. Lengths are resolved against `scale`.
 void require_met(const std::vector<PlannedExpectation>& expectations, const Metrics& found, const LengthScale& scale);
 

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/filter_page.hpp"
+
+#include <fmt/format.h>
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::string_view generated = "<!-- Written by `scanmill docs` from the filters' declarations. -->\n";
+
+bool is_readable(Kind kind) { return kind == Kind::points || kind == Kind::mesh; }
+
+/// A value that the parameter would take, for examples of required ones.
+std::string sample(const ParameterSpec& parameter) {
+    switch (parameter.type) {
+        case ParameterType::boolean: return "true";
+        case ParameterType::choice: return parameter.choices.front().name;
+        case ParameterType::length: return "1 %diag";
+        case ParameterType::angle: return "40 deg";
+        case ParameterType::ratio: return "5 %";
+        case ParameterType::text: return "text";
+        case ParameterType::path: return "file";
+        case ParameterType::integer:
+        case ParameterType::number: break;
+    }
+    return number_text(parameter.low ? parameter.low->value + (parameter.low->inclusive ? 0 : 1) : 1);
+}
+
+/// In a cell of a table a bar would end it.
+std::string cell(std::string_view text) {
+    std::string escaped;
+    for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+    return escaped;
+}
+
+std::string code(std::string_view text) { return text.empty() ? "" : "`" + cell(text) + "`"; }
+
+std::string ports_table(std::string_view title, std::string_view column, const std::vector<PortSpec>& ports) {
+    if (ports.empty()) return {};
+    std::string table = fmt::format("\n## {}\n\n| {} | kind | what it is |\n|---|---|---|\n", title, column);
+    for (const PortSpec& port : ports)
+        table += fmt::format("| {} | {}{}{} | {} |\n", code(port.name), name_of(port.kind),
+                             port.list ? ", any number" : "", port.optional ? ", optional" : "", cell(port.help));
+    return table;
+}
+
+std::string parameters_table(const std::vector<ParameterSpec>& parameters) {
+    if (parameters.empty()) return {};
+    std::string table = "\n## Parameters\n\n| parameter | default | takes | what it means |\n|---|---|---|---|\n";
+    for (const ParameterSpec& parameter : parameters) {
+        std::string meaning = parameter.help;
+        for (const Choice& choice : parameter.choices) meaning += fmt::format("<br>`{}`: {}", choice.name, choice.help);
+        const std::string value = text(parameter.default_value);
+        table += fmt::format("| {} | {} | {} | {} |\n", code(parameter.name),
+                             parameter.required ? "required"
+                             : value.empty()    ? "none"
+                                                : code(value),
+                             cell(expectation(parameter)), cell(meaning));
+    }
+    return table;
+}
+
+std::string metrics_table(const std::vector<MetricSpec>& metrics) {
+    if (metrics.empty()) return {};
+    std::string table = "\n## Metrics\n\n| metric | unit | what it says |\n|---|---|---|\n";
+    for (const MetricSpec& metric : metrics)
+        table += fmt::format("| {} | {} | {} |\n", code(metric.name), name_of(metric.unit), cell(metric.help));
+    return table;
+}
+
+}  // namespace
+
+std::string example_workflow(const FilterSpec& spec) {
+    std::string example = fmt::format("scanmill: 1\nname: {}-example\n", spec.name);
+    if (!spec.inputs.empty()) example += "inputs:\n";
+    for (const PortSpec& port : spec.inputs)
+        example +=
+            fmt::format("  {}{}: {}\n", is_readable(port.kind) ? "" : "# from an earlier step: ", port.name,
+                        port.list ? "[" + std::string(name_of(port.kind)) + "]" : std::string(name_of(port.kind)));
+    example += fmt::format("steps:\n  - {}:\n", spec.name);
+    for (const ParameterSpec& parameter : spec.parameters) {
+        const std::string value = text(parameter.default_value);
+        const bool given = !value.empty() || parameter.required;
+        example += fmt::format("      {}{}: {}\n", given ? "" : "# ", parameter.name,
+                               value.empty() ? sample(parameter) : value);
+    }
+    if (is_readable(spec.outputs.front().kind)) example += fmt::format("outputs:\n  \"{{scan}}.ply\": {}\n", spec.name);
+    return example;
+}
+
+std::string filter_page(const FilterSpec& spec) {
+    return fmt::format("# {}\n\n{}\n{}\n\nSource: {}. Version {}.\n", spec.name, generated, spec.summary, spec.source,
+                       spec.version) +
+           ports_table("Takes", "port", spec.inputs) +
+           ports_table("Gives (the first is what the step's name alone means)", "port", spec.outputs) +
+           parameters_table(spec.parameters) + metrics_table(spec.metrics) + "\n## Example\n\n```yaml\n" +
+           example_workflow(spec) + "```\n";
+}
+
+std::string filter_index(const std::vector<FilterSpec>& specs) {
+    std::string page = fmt::format("# Filters\n\n{}\n| filter | what it does |\n|---|---|\n", generated);
+    for (const FilterSpec& spec : specs)
+        page += fmt::format("| [{0}]({0}.md) | {1} |\n", spec.name, cell(spec.summary));
+    return page;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/parameter_schema.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace scanmill {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view reference_pattern = R"(^\$[A-Za-z])";
+
+/// A decimal number, of the sign and zeros that the lower bound allows.
+std::string number_pattern(const std::optional<Bound>& low) {
+    const bool no_negative = low && low->value >= 0;
+    const bool no_zero = no_negative && !low->inclusive;
+    return std::string("^") + (no_zero ? R"((?![+]?[0.]+([eE]|[^0-9.]|$)))" : "") + (no_negative ? "[+]?" : "[-+]?") +
+           R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?)";
+}
+
+Json text_with_unit(const ParameterSpec& parameter, std::string_view units) {
+    return {{"type", "string"}, {"pattern", number_pattern(parameter.low) + " *(" + std::string(units) + ")$"}};
+}
+
+void bound(Json& schema, const ParameterSpec& parameter) {
+    if (parameter.low) schema[parameter.low->inclusive ? "minimum" : "exclusiveMinimum"] = parameter.low->value;
+    if (parameter.high) schema[parameter.high->inclusive ? "maximum" : "exclusiveMaximum"] = parameter.high->value;
+}
+
+Json number_of(std::string_view type, const ParameterSpec& parameter) {
+    Json schema{{"type", type}};
+    bound(schema, parameter);
+    return schema;
+}
+
+Json choices_of(const ParameterSpec& parameter) {
+    Json alternatives = Json::array();
+    for (const Choice& choice : parameter.choices)
+        alternatives.push_back({{"const", choice.name}, {"description", choice.help}});
+    return {{"oneOf", std::move(alternatives)}};
+}
+
+/// One value, without words and lists.
+Json scalar_of(const ParameterSpec& parameter) {
+    switch (parameter.type) {
+        case ParameterType::boolean: return {{"type", "boolean"}};
+        case ParameterType::integer: return number_of("integer", parameter);
+        case ParameterType::number: return number_of("number", parameter);
+        case ParameterType::choice: return choices_of(parameter);
+        case ParameterType::length: return text_with_unit(parameter, "u|%diag|spacing|um|mm|cm|m|in|ft");
+        case ParameterType::angle: return text_with_unit(parameter, "deg|rad");
+        case ParameterType::ratio:
+            return {{"anyOf", Json::array({text_with_unit(parameter, "%"), number_of("number", parameter)})}};
+        case ParameterType::text:
+        case ParameterType::path: break;
+    }
+    return {{"type", Json::array({"string", "number", "boolean"})}};
+}
+
+Json list_of(const ParameterSpec& parameter) {
+    Json list{{"type", "array"}, {"items", scalar_of(parameter)}};
+    if (parameter.size) list["minItems"] = list["maxItems"] = *parameter.size;
+    return list;
+}
+
+std::string description_of(const ParameterSpec& parameter) {
+    const std::string value = text(parameter.default_value);
+    return parameter.help + " Takes " + expectation(parameter) + "." +
+           (parameter.required ? " Required."
+            : value.empty()    ? ""
+                               : " Default: " + value + ".");
+}
+
+}  // namespace
+
+Json value_schema(const ParameterSpec& parameter) {
+    Json alternatives = Json::array();
+    if (!parameter.word.empty()) alternatives.push_back({{"const", parameter.word}});
+    // A single value in a list's place is the list of that value, unless the list must have another length.
+    if (!parameter.list || !parameter.size || *parameter.size == 1) alternatives.push_back(scalar_of(parameter));
+    if (parameter.list) alternatives.push_back(list_of(parameter));
+    return alternatives.size() == 1 ? alternatives.front() : Json{{"anyOf", std::move(alternatives)}};
+}
+
+Json parameter_schema(const ParameterSpec& parameter) {
+    const Json value = value_schema(parameter);
+    const Json reference{{"type", "string"}, {"pattern", reference_pattern}};
+    const Json sweep{
+        {"type", "object"},
+        {"description", "Runs everything from here on once for each value."},
+        {"required", Json::array({"sweep"})},
+        {"additionalProperties", false},
+        {"properties",
+         {{"sweep", {{"type", "array"}, {"minItems", 1}, {"items", {{"anyOf", Json::array({value, reference})}}}}}}}};
+    return {{"description", description_of(parameter)}, {"anyOf", Json::array({value, reference, sweep})}};
+}
+
+}  // namespace scanmill

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/workflow_schema.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "scanmill/engine/expectation.hpp"
+#include "scanmill/engine/parameter_schema.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* name_pattern = "^[A-Za-z][A-Za-z0-9_-]*$";
+
+Json name_schema(const char* description) {
+    return {{"type", "string"}, {"pattern", name_pattern}, {"description", description}};
+}
+
+Json text_schema(const char* description) { return {{"type", "string"}, {"description", description}}; }
+
+Json reference_to(const char* definition) { return {{"$ref", std::string("#/definitions/") + definition}}; }
+
+/// An object of exactly these keys.
+Json object_of(Json properties) {
+    return {{"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
+}
+
+Json map_from_names(Json values, const char* description) {
+    return {{"type", "object"},
+            {"description", description},
+            {"propertyNames", {{"pattern", name_pattern}}},
+            {"additionalProperties", std::move(values)}};
+}
+
+Json units() {
+    Json symbols = Json::array();
+    for (const LengthUnit unit : {LengthUnit::micrometre, LengthUnit::millimetre, LengthUnit::centimetre,
+                                  LengthUnit::metre, LengthUnit::inch, LengthUnit::foot})
+        symbols.push_back(symbol(unit));
+    return {{"enum", std::move(symbols)}, {"description", "The unit of the file's numbers."}};
+}
+
+Json input_schema() {
+    const Json kind{{"enum", Json::array({"points", "mesh"})}, {"description", "What the file holds."}};
+    const Json list{{"type", "array"}, {"items", kind}, {"minItems", 1}, {"maxItems", 1}};
+    Json details = object_of({{"kind", {{"anyOf", Json::array({kind, list})}}},
+                              {"list", {{"type", "boolean"}, {"description", "Takes any number of files."}}},
+                              {"unit", units()},
+                              {"frame", text_schema("The name of the coordinate system.")},
+                              {"help", text_schema("What the input is for.")}});
+    details["required"] = Json::array({"kind"});
+    return {{"anyOf", Json::array({kind, list, std::move(details)})}};
+}
+
+/// Of a workflow parameter, whose type only its use decides.
+Json any_value_schema() {
+    const Json scalar{{"type", Json::array({"string", "number", "boolean"})}};
+    const Json value{{"anyOf", Json::array({scalar, Json{{"type", "array"}, {"items", scalar}}})}};
+    Json sweep = object_of({{"sweep", {{"type", "array"}, {"minItems", 1}, {"items", value}}}});
+    sweep["required"] = Json::array({"sweep"});
+    const Json given{{"anyOf", Json::array({value, sweep})}};
+    Json details = object_of({{"default", given}, {"help", text_schema("What the parameter is for.")}});
+    details["required"] = Json::array({"default"});
+    return {{"anyOf", Json::array({value, std::move(sweep), std::move(details)})}};
+}
+
+std::string sentence_of(const FilterSpec& spec) { return spec.summary + " (" + spec.source + ")"; }
+
+Json filter_schema(const FilterSpec& spec) {
+    Json properties = Json::object();
+    Json required = Json::array();
+    for (const ParameterSpec& parameter : spec.parameters) {
+        properties[parameter.name] = parameter_schema(parameter);
+        if (parameter.required) required.push_back(parameter.name);
+    }
+    Json schema = object_of(std::move(properties));
+    schema["description"] = sentence_of(spec);
+    if (required.empty())
+        schema["type"] = Json::array({"object", "null"});
+    else
+        schema["required"] = std::move(required);
+    return schema;
+}
+
+/// `in:` of a filter: a map from its ports, or a name alone when there is one port.
+Json in_schema(const FilterSpec& spec) {
+    const Json reference{{"type", "string"}};
+    Json ports = Json::object();
+    for (const PortSpec& port : spec.inputs) {
+        ports[port.name] = {{"description", std::string(name_of(port.kind)) + ": " + port.help},
+                            {"anyOf", Json::array({reference, Json{{"type", "array"}, {"items", reference}}})}};
+    }
+    Json map = object_of(std::move(ports));
+    return spec.inputs.size() == 1 ? Json{{"anyOf", Json::array({reference, std::move(map)})}} : map;
+}
+
+Json expect_schema(const FilterSpec& spec) {
+    Json properties = Json::object();
+    for (const MetricSpec& metric : expectable(spec)) {
+        const Json value = value_schema(written_as(metric.unit));
+        properties[metric.name] = {
+            {"description", metric.help},
+            {"anyOf", Json::array({value, Json{{"type", "string"}, {"pattern", "^[<>]"}},
+                                   Json{{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}}})}};
+    }
+    return object_of(std::move(properties));
+}
+
+/// A step has one filter; what `in` and `expect` take depends on which.
+Json step_schema(const FilterLibrary& library) {
+    Json properties{{"id", name_schema("How later steps and outputs refer to this step.")},
+                    {"in", {{"description", "Which values feed the ports; without it, the nearest earlier ones."}}},
+                    {"expect", {{"description", "What must be true of the result, else the scan fails."}}}};
+    Json one_filter = Json::array(), by_filter = Json::array();
+    for (const std::string& name : library.names()) {
+        const FilterSpec& spec = *library.find(name);
+        properties[name] = filter_schema(spec);
+        one_filter.push_back({{"required", Json::array({name})}});
+        by_filter.push_back({{"if", {{"required", Json::array({name})}}},
+                             {"then", {{"properties", {{"in", in_schema(spec)}, {"expect", expect_schema(spec)}}}}}});
+    }
+    Json schema = object_of(std::move(properties));
+    schema["oneOf"] = std::move(one_filter);
+    schema["allOf"] = std::move(by_filter);
+    return schema;
+}
+
+Json one_of_schema() {
+    Json named = object_of({{"name", name_schema("How variants are named that take this alternative.")},
+                            {"steps", reference_to("steps")}});
+    named["required"] = Json::array({"steps"});
+    const Json alternative{{"anyOf", Json::array({reference_to("step"), reference_to("one-of"), reference_to("steps"),
+                                                  std::move(named)})}};
+    Json schema =
+        object_of({{"id", name_schema("How later steps and outputs refer to the end of whichever alternative ran.")},
+                   {"one-of",
+                    {{"type", "array"},
+                     {"minItems", 1},
+                     {"description", "Alternatives: everything below runs once for each."},
+                     {"items", alternative}}}});
+    schema["required"] = Json::array({"one-of"});
+    return schema;
+}
+
+}  // namespace
+
+std::string workflow_schema(const FilterLibrary& library) {
+    Json properties{
+        {"scanmill", {{"const", 1}, {"description", "The version of the grammar."}}},
+        {"name", name_schema("The workflow's name.")},
+        {"summary", text_schema("What the workflow does, in a sentence.")},
+        {"inputs", map_from_names(reference_to("input"), "Files; the scans feed the first, --in the others.")},
+        {"parameters", map_from_names(reference_to("parameter"), "Values that steps refer to by $name; --set.")},
+        {"steps", reference_to("steps")},
+        {"outputs",
+         {{"type", "object"},
+          {"description", "Files to write: names over {scan}, {variant} and {workflow}, each with its step."},
+          {"additionalProperties", {{"type", "string"}}}}}};
+    Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
+                {"title", "Scanmill workflow"},
+                {"type", "object"},
+                {"required", Json::array({"scanmill", "steps"})},
+                {"additionalProperties", false},
+                {"properties", std::move(properties)}};
+    schema["definitions"] = {{"input", input_schema()},
+                             {"parameter", any_value_schema()},
+                             {"steps",
+                              {{"type", "array"},
+                               {"minItems", 1},
+                               {"items", {{"anyOf", Json::array({reference_to("step"), reference_to("one-of")})}}}}},
+                             {"step", step_schema(library)},
+                             {"one-of", one_of_schema()}};
+    return schema.dump(2) + "\n";
+}
+
+}  // namespace scanmill

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pcd/pcd_header.hpp"
+
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <optional>
+
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/reading.hpp"
+
+namespace scanmill::pcd {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> encodings{"ascii", "binary", "binary_compressed"};
+constexpr u64 most_row_bytes = 1u << 20;
+
+std::vector<std::string_view> words_of(std::string_view line) {
+    std::vector<std::string_view> words;
+    for (std::size_t at = 0; (at = line.find_first_not_of(" \t\r", at)) != std::string_view::npos;) {
+        const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
+        words.push_back(line.substr(at, end - at));
+        at = end;
+    }
+    return words;
+}
+
+class HeaderParser {
+public:
+    explicit HeaderParser(std::string_view bytes) : bytes_(bytes) {}
+
+    PcdHeader header() {
+        while (next_line())
+            if (read_line()) {
+                finish();
+                return std::move(header_);
+            }
+        throw Error("line {}: the header ends before its DATA line", line_)
+            .hint("the file is truncated: fetch or export it again");
+    }
+
+private:
+    bool next_line() {
+        if (at_ >= bytes_.size()) return false;
+        const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
+        words_ = words_of(bytes_.substr(at_, end - at_));
+        text_ = bytes_.substr(at_, end - at_);
+        at_ = end + 1;
+        ++line_;
+        return true;
+    }
+
+    /// True after the DATA line.
+    bool read_line() {
+        if (words_.empty()) return false;
+        const std::string_view key = words_.front();
+        if (key.starts_with('#')) {
+            if (!text_.starts_with("# .PCD")) header_.comments.emplace_back(text_.substr(text_.find('#') + 1));
+        } else if (key == "FIELDS" || key == "COLUMNS") {
+            fields_ = words_.size() - 1;
+        } else if (key == "SIZE") {
+            sizes_ = numbers();
+        } else if (key == "COUNT") {
+            counts_ = numbers();
+        } else if (key == "WIDTH") {
+            header_.width = number();
+        } else if (key == "HEIGHT") {
+            header_.height = number();
+        } else if (key == "POINTS") {
+            promised_ = number();
+        } else if (key == "VIEWPOINT") {
+            for (std::size_t i = 1; i < words_.size(); ++i)
+                header_.viewpoint.append(i > 1 ? " " : "").append(words_[i]);
+        } else if (key == "DATA") {
+            read_encoding();
+            return true;
+        } else if (key != "VERSION" && key != "TYPE") {
+            throw Error("line {}: {} is no part of a PCD header", line_, quote(key));
+        }
+        return false;
+    }
+
+    void read_encoding() {
+        const std::string_view word = words_.size() > 1 ? words_[1] : std::string_view();
+        const auto found = std::ranges::find(encodings, word);
+        if (found == encodings.end())
+            throw Error("line {}: DATA is {}; expected ascii, binary or binary_compressed", line_, quote(word));
+        header_.encoding = static_cast<PcdHeader::Encoding>(found - encodings.begin());
+        header_.body = std::min(at_, bytes_.size());
+    }
+
+    u64 number(std::size_t word = 1) const {
+        u64 value = 0;
+        if (word < words_.size()) {
+            const std::string_view text = words_[word];
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            if (error == std::errc() && end == text.data() + text.size()) return value;
+        }
+        throw Error("line {}: {} needs a whole number; found {}", line_, words_.front(),
+                    word < words_.size() ? quote(words_[word]) : "nothing");
+    }
+    std::vector<u64> numbers() const {
+        std::vector<u64> values;
+        for (std::size_t word = 1; word < words_.size(); ++word) values.push_back(number(word));
+        return values;
+    }
+
+    void finish() {
+        if (counts_.empty()) counts_.assign(fields_, 1);
+        if (fields_ == 0 || sizes_.size() != fields_ || counts_.size() != fields_)
+            throw Error("its header names {} fields and gives {} sizes and {} counts", fields_, sizes_.size(),
+                        counts_.size());
+        for (std::size_t field = 0; field < fields_; ++field) {
+            if (sizes_[field] != 1 && sizes_[field] != 2 && sizes_[field] != 4 && sizes_[field] != 8)
+                throw Error("its header gives field {} the size {}; expected 1, 2, 4 or 8", field, sizes_[field]);
+            if (counts_[field] > most_row_bytes || header_.row_bytes > most_row_bytes)
+                throw Error("its header promises points of more than {} bytes each", most_row_bytes);
+            header_.row_bytes += sizes_[field] * counts_[field];
+            header_.row_numbers += counts_[field];
+        }
+        // Old files have no WIDTH and HEIGHT.
+        if (header_.width == 0 && promised_) header_.width = *promised_;
+        require_countable(header_.width, "points");
+        require_countable(header_.height, "points");
+        header_.points = header_.width * header_.height;
+        require_countable(header_.points, "points");
+        if (promised_ && *promised_ != header_.points)
+            throw Error("its header promises {} points, and {} × {} of them", *promised_, header_.width,
+                        header_.height);
+        if (header_.points == 0 || header_.row_bytes == 0) throw Error("holds no points");
+        require_room();
+    }
+
+    void require_room() const {
+        const u64 left = bytes_.size() - header_.body;
+        const u64 promised = header_.points * header_.row_bytes;
+        const auto require = [&](bool fits) {
+            if (!fits)
+                throw Error("its header promises {} points of {} bytes; {} bytes follow it", header_.points,
+                            header_.row_bytes, left)
+                    .hint("the file is truncated or its header is wrong: fetch or export it again");
+        };
+        switch (header_.encoding) {
+            case PcdHeader::Encoding::ascii: require((left + 1) / 2 >= header_.points * header_.row_numbers); break;
+            case PcdHeader::Encoding::binary: require(left >= promised); break;
+            case PcdHeader::Encoding::compressed: {
+                constexpr u64 best_ratio = 264;  // LZF makes at most 264 bytes of three; one byte never makes more
+                std::array<std::uint32_t, 2> sizes{};
+                require(left >= sizeof sizes);
+                std::memcpy(sizes.data(), bytes_.data() + header_.body, sizeof sizes);
+                require(left - sizeof sizes >= sizes[0]);
+                if (sizes[1] != promised || promised > best_ratio * sizes[0])
+                    throw Error("its header promises {} points of {} bytes; the compressed block says {} bytes in {}",
+                                header_.points, header_.row_bytes, sizes[1], sizes[0])
+                        .hint("the file is damaged: fetch or export it again");
+            }
+        }
+    }
+
+    std::string_view bytes_, text_;
+    std::vector<std::string_view> words_;
+    std::size_t at_ = 0, line_ = 0;
+    PcdHeader header_;
+    std::size_t fields_ = 0;
+    std::vector<u64> sizes_, counts_;
+    std::optional<u64> promised_;
+};
+
+}  // namespace
+
+PcdHeader checked_header(std::string_view bytes) { return HeaderParser(bytes).header(); }
+
+std::string_view name_of(PcdHeader::Encoding encoding) { return encodings[static_cast<std::size_t>(encoding)]; }
+
+}  // namespace scanmill::pcd

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <pcl/console/print.h>
+#include <pcl/io/pcd_io.h>
+
+#include <sstream>
+
+#include "pcd/pcd.hpp"
+#include "pcd/pcd_fields.hpp"
+#include "pcd/pcd_header.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/reading.hpp"
+
+namespace scanmill::pcd {
+
+namespace {
+
+using Encoding = PcdHeader::Encoding;
+
+pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) {
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // what PCL has to say goes into our own sentence
+    pcl::PCDReader reader;
+    pcl::PCLPointCloud2 cloud;
+    Eigen::Vector4f origin;
+    Eigen::Quaternionf orientation;
+    int version = 0, data_type = 0;
+    unsigned int body = 0;
+    std::istringstream text{std::string(bytes.substr(0, header.body))};
+    int trouble = reader.readHeader(text, cloud, origin, orientation, version, data_type, body);
+    if (trouble >= 0 && cloud.data.size() != header.points * header.row_bytes)
+        throw Error("its header names fields that do not add up to {} bytes per point", header.row_bytes);
+    if (trouble >= 0 && header.encoding == Encoding::ascii) {
+        std::istringstream rows{std::string(bytes.substr(header.body))};
+        trouble = reader.readBodyASCII(rows, cloud, version);
+    } else if (trouble >= 0) {
+        const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
+        trouble = reader.readBodyBinary(from, cloud, version, header.encoding == Encoding::compressed,
+                                        static_cast<unsigned int>(header.body));
+    }
+    if (trouble < 0)
+        throw Error("PCL cannot make {} points of {} bytes of {} data", header.points, bytes.size() - header.body,
+                    name_of(header.encoding))
+            .hint("the file is damaged: fetch or export it again");
+    return cloud;
+}
+
+}  // namespace
+
+LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
+    const PcdHeader header = checked_header(file.bytes);
+    const pcl::PCLPointCloud2 cloud = read_cloud(file.bytes, header);
+    if (header.height > 1 && header.width > 1)
+        warn(options.on_warning, "the grid of {} × {} points became a list in file order", header.width, header.height);
+    if (!header.viewpoint.empty() && header.viewpoint != "0 0 0 1 0 0 0")
+        warn(options.on_warning, "the sensor's pose (VIEWPOINT {}) was left out; coordinates are as in the file",
+             header.viewpoint);
+    LoadedFile loaded;
+    loaded.format = "PCD";
+    loaded.encoding = name_of(header.encoding);
+    loaded.comments = header.comments;
+    PointCloud points;
+    points.frame = declared_frame(loaded.comments, options);
+    Array<Vec3> positions = positions_of(cloud);
+    move_near_origin(positions, bounding_box(positions), points.frame);
+    points.positions = std::move(positions);
+    points.columns = columns_of(cloud);
+    loaded.value = std::make_shared<const PointCloud>(std::move(points));
+    return loaded;
+}
+
+}  // namespace scanmill::pcd

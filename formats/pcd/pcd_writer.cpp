@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <pcl/io/pcd_io.h>
+
+#include "pcd/pcd.hpp"
+#include "pcd/pcd_fields.hpp"
+#include "scanmill/formats/output_buffer.hpp"
+#include "scanmill/formats/reading.hpp"
+#include "scanmill/formats/writing.hpp"
+
+namespace scanmill::pcd {
+
+namespace {
+
+void add_field(pcl::PCLPointCloud2& cloud, std::string name, ScalarType type, std::size_t count) {
+    pcl::PCLPointField field;
+    field.name = std::move(name);
+    field.offset = cloud.point_step;
+    field.datatype = datatype(type);
+    field.count = static_cast<pcl::uindex_t>(count);
+    cloud.point_step += static_cast<pcl::uindex_t>(size_of(type) * count);
+    cloud.fields.push_back(std::move(field));
+}
+
+bool is_normal(const Column& column) { return column.name() == "normal" && column.components() == 3; }
+
+bool is_colour(const Column& column) {
+    return column.name() == "colour" && column.type() == ScalarType::uint8 && column.components() >= 3 &&
+           column.components() <= 4;
+}
+
+/// Fields are separated by blanks, so a name must not hold one.
+std::string field_name(std::string name) {
+    for (char& c : name)
+        if (static_cast<unsigned char>(c) <= ' ' || c == '\x7f') c = '_';
+    return name;
+}
+
+std::vector<const Column*> written_columns(const PointCloud& cloud, const WriteOptions& options) {
+    std::vector<const Column*> columns;
+    for (const Column& column : cloud.columns) {
+        if (column.is_list())
+            warn(options.on_warning, "PCD left out the lists of the column '{}'; PLY keeps them", column.name());
+        else
+            columns.push_back(&column);
+    }
+    return columns;
+}
+
+pcl::PCLPointCloud2 described(const PointCloud& cloud, const std::vector<const Column*>& columns, bool as_float) {
+    pcl::PCLPointCloud2 layout;
+    layout.width = static_cast<pcl::uindex_t>(cloud.size());
+    layout.height = 1;
+    for (const char* axis : {"x", "y", "z"})
+        add_field(layout, axis, as_float ? ScalarType::float32 : ScalarType::float64, 1);
+    for (const Column* column : columns) {
+        if (is_normal(*column))
+            for (const char* axis : {"normal_x", "normal_y", "normal_z"}) add_field(layout, axis, column->type(), 1);
+        else if (is_colour(*column))
+            add_field(layout, column->components() == 4 ? "rgba" : "rgb", ScalarType::uint32, 1);
+        else
+            add_field(layout, field_name(column->name()), column->type(), column->components());
+    }
+    return layout;
+}
+
+void put_row(const Column& column, std::size_t row, OutputBuffer& out) {
+    if (is_colour(column)) {
+        const u8* rgba = column.values<u8>().data() + row * column.components();
+        const u32 alpha = column.components() == 4 ? rgba[3] : 255;
+        out.binary(alpha << 24 | u32(rgba[0]) << 16 | u32(rgba[1]) << 8 | u32(rgba[2]));
+        return;
+    }
+    const std::size_t size = size_of(column.type()) * column.components();
+    std::memcpy(out.room(size), column.bytes().data() + row * size, size);
+}
+
+}  // namespace
+
+void write_pcd(const Value& value, OutputBuffer& out, const WriteOptions& options) {
+    const PointCloud& cloud = *std::get<std::shared_ptr<const PointCloud>>(value);
+    const bool as_float = all_floats(cloud.frame, cloud.positions.span());
+    tell_lost_precision(cloud.frame, cloud.positions.span(), as_float, "PCD", options);
+    const std::vector<const Column*> columns = written_columns(cloud, options);
+    const pcl::PCLPointCloud2 layout = described(cloud, columns, as_float);
+    std::string header =
+        pcl::PCDWriter().generateHeaderBinary(layout, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
+    header.insert(header.find('\n') + 1, comment_lines(cloud.frame));
+    out.text(header);
+    out.text("DATA binary\n");
+    for (std::size_t row = 0; row < cloud.size(); ++row) {
+        const Vec3 p = world(cloud.frame, cloud.positions[row]);
+        for (int axis = 0; axis < 3; ++axis) {
+            if (as_float)
+                out.binary(static_cast<float>(p[axis]));
+            else
+                out.binary(p[axis]);
+        }
+        for (const Column* column : columns) put_row(*column, row, out);
+    }
+}
+
+}  // namespace scanmill::pcd
