@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/colour_fractions.hpp"
 
+#include <fmt/format.h>
+
 #include <cassert>
-#include <charconv>
 #include <cmath>
 
 namespace scanmill {
@@ -24,17 +25,17 @@ bool cuts_to(double value, u8 byte) {
 }
 
 std::string shortest_fraction(u8 byte) {
-    constexpr int most_digits = 16;
-    for (int digits = 0; digits <= most_digits; ++digits) {
-        std::array<char, 32> text;
-        const auto written =
-            std::to_chars(text.data(), text.data() + text.size(), byte / full, std::chars_format::fixed, digits);
-        const std::string_view spelling(text.data(), written.ptr);
-        double value = 0;
-        std::from_chars(spelling.data(), written.ptr, value);
-        if (byte_of_fraction(spelling, value) == byte && cuts_to(value, byte)) return std::string(spelling);
+    constexpr int most_digits = 9;
+    double scale = 1;
+    for (int digits = 0; digits <= most_digits; ++digits, scale *= 10) {
+        const double below = std::floor(byte * scale / full);
+        for (const double numerator : {below, below + 1}) {
+            const double value = numerator / scale;
+            const std::string spelling = fmt::format("{:.{}f}", value, digits);
+            if (byte_of_fraction(spelling, value) == byte && cuts_to(value, byte)) return spelling;
+        }
     }
-    assert(!"all digits of a double are enough");
+    assert(!"one of so many digits is near enough and not below");
     return {};
 }
 
@@ -42,7 +43,7 @@ std::string shortest_fraction(u8 byte) {
 
 std::optional<u8> byte_of_fraction(std::string_view spelling, double value) {
     if (!(value >= 0 && value <= 1)) return std::nullopt;
-    constexpr double single_precision = 0x1p-24;
+    constexpr double single_precision = 0x1p-23;  // a rounded reciprocal, times the byte, rounded
     const double byte = std::round(value * full);
     const double error = std::abs(value - byte / full);
     if (error > single_precision) {

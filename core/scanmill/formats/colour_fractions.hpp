@@ -3,7 +3,7 @@
 /// Bytes of colour written as decimals from 0 to 1, a full channel being 1.
 ///
 /// A decimal stands for the byte b when it is b / 255, rounded to its own digits behind the point, at least three of
-/// them, or to single precision: 0.502, 0.50196 and 0.501960813999 are 128; 0.5 is no byte's.
+/// them, or computed in single precision: 0.502, 0.50196 and 0.501960813999 are 128; 0.5 is no byte's.
 
 #include <array>
 #include <optional>
