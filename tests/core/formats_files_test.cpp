@@ -56,7 +56,7 @@ TEST(ReadFile_Refuses, WhatWeMayNotRead) {
 
 TEST(ReadFile_Format, IsDecidedByContent_NotByExtension) {
     const TemporaryFolder folder;
-    for (const char* extension : {"ply", "stl", "off"}) {
+    for (const char* extension : {"ply", "stl", "off", "obj"}) {
         write_file(folder / (std::string("a.") + extension), one_triangle());
         fs::rename(folder / (std::string("a.") + extension), folder / "misnamed.xyz");
         EXPECT_EQ(plain_extension(read_file(folder / "misnamed.xyz").format), extension);
@@ -86,7 +86,7 @@ TEST(CanWrite_Table, KnowsExtensionsInAnyCase_AndKinds) {
     EXPECT_FALSE(can_write("xyz", Kind::mesh));
     EXPECT_FALSE(can_write("", Kind::mesh));
     EXPECT_FALSE(can_write("ply", Kind::metrics));
-    EXPECT_EQ(writable_extensions(Kind::mesh), "ply, stl, off");
+    EXPECT_EQ(writable_extensions(Kind::mesh), "ply, stl, off, obj");
     EXPECT_EQ(writable_extensions(Kind::points), "ply, xyz, txt");
     EXPECT_EQ(writable_extensions(Kind::metrics), "");
 }

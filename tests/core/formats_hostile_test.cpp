@@ -82,6 +82,15 @@ const std::vector<Defect> defects{
     {"face_length_2_to_40.off", "line 6: face 0 has 3 of its 1099511627776 corners"},
     {"four_dimensions.off", "'4OFF'"},
     {"binary.off", "binary OFF is not read"},
+    {"comments_only.obj", "holds no points: no row is a vertex (v)"},
+    {"object_file_of_a_compiler.obj", "which OBJ does not know"},
+    {"vertex_of_two_numbers.obj", "line 2: a vertex (v) has 3 numbers, here are fewer"},
+    {"word_for_a_number.obj", "line 2: 'nil' is no number"},
+    {"face_index_too_large.obj", "line 4: a face names vertex 4; there are 3"},
+    {"face_index_zero.obj", "line 4: a face names vertex 0"},
+    {"face_index_before_the_first.obj", "line 4: a face names vertex -4"},
+    {"face_index_2_to_40.obj", "line 4: a face names vertex 1099511627776; there are 3"},
+    {"truncated_vertices.obj", "line 2: a face names vertex 4; there are 3"},
     {"blank.xyz", "holds no points"},
     {"two_columns.xyz", "line 1: found 2 columns"},
     {"row_too_short.xyz", "line 5: found 2 columns; the rows before have 3"},
@@ -158,7 +167,7 @@ std::vector<std::pair<std::string, std::string>> seeds() {
     mesh.edge_columns.add(Column("bend", 1, Buffer<u8>{1}));
     mesh.sharp_edges = {Edge{0, 1}};
     const Value value = std::make_shared<const TriangleMesh>(mesh);
-    for (const char* name : {"a.ply", "a.stl", "a.off"}) {
+    for (const char* name : {"a.ply", "a.stl", "a.off", "a.obj"}) {
         write_file(folder / name, value);
         files.emplace_back(name, content_of(folder / name));
     }
@@ -180,6 +189,9 @@ std::vector<std::pair<std::string, std::string>> seeds() {
     files.emplace_back("b.off",
                        "STCNOFF\n3 1 0\n0 0 0 0 0 1 1 2 3 0.5 0.5\n1 0 0 0 0 1 1 2 3 0.5 0.5\n0 1 0 0 0 1 1 2 3 1 1 # "
                        "c\n3 0 1 2 9 9 9\n");
+    files.emplace_back("b.obj",
+                       "# unit mm\nmtllib a.mtl\ng a\nv 0 0 0 1 0.502 0\nv 1 0 0 \\\n 1 1 1\nv 0 1 0 0 0 0\nvt 0 0\n"
+                       "vt 1\nvt 0 1\nvn 0 0 1\nvn 0 0 1\nvn 1 0 0\nf 1/1/1 2/2/2 3/3/-1\nf 3//3 2//1 1\nl 1 2\n");
     files.emplace_back("a.xyz", "# unit mm\nx,y,z,Intensity\n1,2,3,4\n5,6,7,8\n");
     files.emplace_back("a.pts", "2\n1 2 3 0 0 1\n4 5 6 0 1 0\n");
     return files;

@@ -103,18 +103,63 @@ TEST(OffWriter_File, IsThisForOneTriangle) {
     EXPECT_EQ(content_of(folder / "a.off"), "OFF\n# unit mm\n3 1 0\n0.1 0 -2\n1e+21 0 0\n0 1 0\n3 0 1 2\n");
 }
 
+TEST(OffWriter_Columns, AreWrittenUnderTheirPrefixes_AndReadBackEqual) {
+    const Column normal("normal", 3, Buffer<double>{0, 0, 1, 0, 0.6, 0.8, 1.0 / 3, 0, -1});
+    const Column texture("texture", 2, Buffer<double>{0, 0, 1, 0, 0, 0.25});
+    const Column three("colour", 3, Buffer<u8>{0, 1, 255, 1, 0, 0, 9, 8, 7});
+    const Column four("colour", 4, Buffer<u8>{0, 1, 255, 3, 1, 0, 0, 0, 9, 8, 7, 255});
+    const std::vector<std::pair<const char*, std::vector<Column>>> cases{{"NOFF\n", {normal}},
+                                                                         {"COFF\n", {three}},
+                                                                         {"COFF\n", {four}},
+                                                                         {"CNOFF\n", {normal, four}},
+                                                                         {"STOFF\n", {texture}},
+                                                                         {"STCOFF\n", {three, texture}},
+                                                                         {"STNOFF\n", {normal, texture}},
+                                                                         {"STCNOFF\n", {normal, three, texture}}};
+    for (const auto& [keyword, columns] : cases) {
+        const TemporaryFolder folder;
+        Told told;
+        TriangleMesh mesh;
+        mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+        mesh.triangles = {Triangle{0, 1, 2}, Triangle{2, 1, 0}};
+        for (const Column& column : columns) mesh.vertex_columns.add(column);
+        mesh.face_columns.add(Column("colour", 3, Buffer<u8>{1, 2, 3, 4, 5, 6}));
+        write_file(folder / "a.off", std::make_shared<const TriangleMesh>(mesh), told.writing());
+        EXPECT_THAT(content_of(folder / "a.off"), testing::StartsWith(keyword));
+        const auto back = mesh_in(content_of(folder / "a.off"), "a.off", &told);
+        EXPECT_EQ(back->vertex_columns, mesh.vertex_columns) << keyword;
+        EXPECT_EQ(back->face_columns, mesh.face_columns) << keyword;
+        EXPECT_THAT(told.sentences, IsEmpty()) << keyword;
+    }
+}
+
+TEST(OffWriter_File, IsThisForAColouredTriangleWithNormals) {
+    const TemporaryFolder folder;
+    TriangleMesh mesh;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
+    mesh.triangles = {Triangle{0, 1, 2}};
+    mesh.vertex_columns.add(Column("colour", 3, Buffer<u8>{0, 1, 255, 1, 0, 0, 9, 8, 7}));
+    mesh.vertex_columns.add(Column("normal", 3, Buffer<float>{0, 0, 1, 0, 0.6f, 0.8f, 0, 0, -1}));
+    mesh.face_columns.add(Column("colour", 4, Buffer<u8>{1, 2, 3, 4}));
+    write_file(folder / "a.off", std::make_shared<const TriangleMesh>(mesh));
+    EXPECT_EQ(content_of(folder / "a.off"),
+              "CNOFF\n3 1 0\n0 0 0 0 0 1 0 1 255\n1 0 0 0 0.6 0.8 1 0 0\n0 1 0 0 0 -1 9 8 7\n3 0 1 2 1 2 3 4\n");
+}
+
 TEST(OffWriter_Losses, AreTold) {
     const TemporaryFolder folder;
     Told told;
     TriangleMesh mesh;
     mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
     mesh.triangles = {Triangle{0, 1, 2}};
-    mesh.vertex_columns.add(Column("normal", 3, Buffer<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
+    mesh.vertex_columns.add(Column("normal", 3, Buffer<u8>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
+    mesh.vertex_columns.add(Column("colour", 3, Buffer<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
     mesh.vertex_columns.add(Column("weight", 1, Buffer<float>{0, 0, 1}));
+    mesh.face_columns.add(Column("solid", 1, Buffer<u32>{1}));
     mesh.sharp_edges = {Edge{0, 1}};
     write_file(folder / "a.off", std::make_shared<const TriangleMesh>(mesh), told.writing());
-    EXPECT_THAT(told.sentences,
-                ElementsAre(HasSubstr("2 columns of the vertices (normal, weight); PLY"), HasSubstr("1 edge")));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3 columns of the vertices (normal, colour, weight); PLY"),
+                                            HasSubstr("1 column of the faces (solid)"), HasSubstr("1 edge")));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST(Readers_RealScan, ThroughEveryWriter_AMeshComesBack) {
     SCANMILL_REAL_SCAN(path, shared_data, "7-seed-like/femur_gfxmorph.stl");
     const TemporaryFolder folder;
     const auto mesh = read_mesh(path);
-    for (const char* name : {"a.ply", "a.stl", "a.off"}) {
+    for (const char* name : {"a.ply", "a.stl", "a.off", "a.obj"}) {
         Told told;
         write_file(folder / name, mesh, told.writing());
         const auto back = read_mesh(folder / name);

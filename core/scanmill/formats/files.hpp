@@ -65,7 +65,7 @@ void write_file(const std::filesystem::path& path, const Value& value, const Wri
 /// Whether files with this extension ("ply" or ".PLY") can be written from values of this kind.
 bool can_write(std::string_view extension, Kind kind);
 
-/// The extensions that can_write(), for messages: "ply, stl, off". Empty for kinds that no format carries.
+/// The extensions that can_write(), for messages: "ply, stl, off, obj". Empty for kinds that no format carries.
 std::string writable_extensions(Kind kind);
 
 }  // namespace scanmill

@@ -6,6 +6,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/module.hpp"
 #include "scanmill/formats/format_modules.hpp"
+#include "scanmill/formats/obj.hpp"
 #include "scanmill/formats/off.hpp"
 #include "scanmill/formats/ply.hpp"
 #include "scanmill/formats/reading.hpp"
@@ -21,6 +22,7 @@ std::vector<Format> built_in() {
         {"PLY", {"ply"}, recognise_ply, read_ply, {{Kind::points, write_ply_points}, {Kind::mesh, write_ply_mesh}}},
         {"STL", {"stl"}, recognise_stl, read_stl, {{Kind::mesh, write_stl}}},
         {"OFF", {"off"}, recognise_off, read_off, {{Kind::mesh, write_off}}},
+        {"OBJ", {"obj"}, recognise_obj, read_obj, {{Kind::mesh, write_obj}}},
         {"XYZ", {"xyz", "txt"}, recognise_xyz, read_xyz, {{Kind::points, write_xyz}}},
         // Read alike, but not written: commas, a count or normals are expected of them.
         {"CSV", {"csv", "pts", "pwn", "asc"}, recognise_xyz, read_xyz, {}},

@@ -9,7 +9,9 @@
 /// colour. Colours of whole numbers from 0 to 255 become `colour` (3 or 4, uint8), others the columns `red`, `green`,
 /// `blue`, `alpha` (float64); a single number per face becomes `colour_index`. Colours that not every row has are left
 /// out and told. Comments "unit mm" and "frame NAME" give the frame. The number of edges is not used. 4OFF, nOFF and
-/// OFF BINARY are refused. Written: plain OFF with double precision; columns, sharp and described edges are told.
+/// OFF BINARY are refused. Written: with double precision, the vertices' columns `normal` (3 floats), `colour` (3 or 4
+/// × uint8) and `texture` (2 floats) under the prefixes N, C and ST, and the faces' `colour`; other columns, sharp and
+/// described edges are told.
 /// Source: Geomview manual, section 4.1 (OFF files).
 
 #include "scanmill/formats/format.hpp"

@@ -33,6 +33,12 @@ std::string counted(u64 count, std::string_view singular, std::string_view plura
     return fmt::format("{} {}", count, count == 1 ? singular : plural);
 }
 
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    if (text.starts_with(mark)) text.remove_prefix(mark.size());
+    return text;
+}
+
 Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions& options) {
     Frame frame;
     for (const std::string& comment : comments) {

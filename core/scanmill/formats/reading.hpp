@@ -21,6 +21,9 @@ std::string quote(std::string_view bytes);
 /// "1 face", "12 faces".
 std::string counted(u64 count, std::string_view singular, std::string_view plural);
 
+/// Text editors of Windows begin a file with a mark of three bytes.
+std::string_view without_byte_order_mark(std::string_view text);
+
 /// Unit and name as declared by lines "unit mm" and "frame NAME" among the comments; the options' unit counts more. A
 /// unit that is none is told.
 Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions& options);

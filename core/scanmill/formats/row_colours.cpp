@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/row_colours.hpp"
 
+#include <cmath>
+
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/quantity.hpp"
+#include "scanmill/formats/colour_fractions.hpp"
 #include "scanmill/formats/reading.hpp"
 
 namespace scanmill {
@@ -19,6 +22,7 @@ void RowColours::read_row(TextCursor& text, std::size_t leave) {
         if (width == most) throw Error("line {}: more than {} numbers for a colour", text.line(), most);
         // 1.0 is a full channel, 1 the faintest: the spelling decides.
         if (token.find_first_not_of("0123456789") != std::string_view::npos || value > 255) bytes_ = false;
+        if (fractions_ && !byte_of_fraction(token, value)) fractions_ = false;
         values_.push_back(value);
     }
     if (width == 0) return;
@@ -29,9 +33,10 @@ void RowColours::read_row(TextCursor& text, std::size_t leave) {
 std::size_t RowColours::add_columns(ColumnTable& columns) const {
     if (coloured_ == 0) return 0;
     if (!uniform_ || coloured_ != rows_ || width_ == 2) return coloured_;
-    if (bytes_ && width_ >= 3) {
+    if ((bytes_ || fractions_) && width_ >= 3) {
+        const double full = fractions_ ? 255 : 1;
         Array<u8> colours(values_.size());
-        for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = static_cast<u8>(values_[i]);
+        for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = static_cast<u8>(std::lround(values_[i] * full));
         columns.add(Column("colour", static_cast<u32>(width_), Buffer(std::move(colours))));
         return 0;
     }

@@ -23,6 +23,8 @@ bool TextCursor::next_row() {
 
 std::string_view TextCursor::token() {
     const char* const begin = at_;
+    // The first is the token's in any case: a continuation sign inside a line begins one.
+    if (at_ != end_) ++at_;
     while (at_ != end_ && !ends_token(*at_)) ++at_;
     return {begin, at_};
 }
@@ -39,6 +41,10 @@ void TextCursor::pass_comment() {
     const char* const begin = ++at_;
     while (at_ != end_ && !ends_line(*at_)) ++at_;
     if (comments_.size() < most_comments) comments_.emplace_back(begin, at_);
+}
+
+void TextCursor::pass_continuation() {
+    if (++at_ != end_) pass_line_end();
 }
 
 void TextCursor::pass_line_end() {

@@ -3,7 +3,8 @@
 /// Walks through a text of numbers, row by row and token by token, and knows the line it is in.
 ///
 /// A row is a line that holds at least one token; blank lines and comments are passed over. Lines end with LF, CRLF or
-/// CR. Tokens are separated by blanks and tabs, and, where a format allows it, by commas and semicolons. Numbers are
+/// CR; where a format allows it, a sign right before the line's end joins the next line to the row (in a comment it is
+/// text). Tokens are separated by blanks and tabs, and, where a format allows it, by commas and semicolons. Numbers are
 /// read without regard to the locale, every spelling of nan and inf that parse_number() knows included. Nothing is
 /// copied and nothing beyond the text is touched.
 
@@ -18,9 +19,10 @@
 namespace scanmill {
 
 struct TextRules {
-    bool commas = false;     ///< commas and semicolons separate, too
-    char comment = '\0';     ///< begins a comment that lasts until the line's end; none when zero
-    std::size_t line = 1;    ///< number of the first line
+    bool commas = false;  ///< commas and semicolons separate, too
+    char comment = '\0';  ///< begins a comment that lasts until the line's end; none when zero
+    char continuation = '\0';  ///< joins two lines when it stands right before the line's end; none when zero
+    std::size_t line = 1;  ///< number of the first line
 };
 
 class TextCursor {
@@ -66,8 +68,15 @@ private:
         return c == ' ' || c == '\t' || c == '\v' || c == '\f' || (rules_.commas && is_comma(c));
     }
     static bool ends_line(char c) { return c == '\n' || c == '\r'; }
-    bool ends_token(char c) const { return separates(c) || ends_line(c) || (c == rules_.comment && c != '\0'); }
+    bool ends_token(char c) const {
+        return separates(c) || ends_line(c) || (c != '\0' && (c == rules_.comment || c == rules_.continuation));
+    }
     bool at_comment() const { return rules_.comment != '\0' && *at_ == rules_.comment; }
+    bool at_continuation() const {
+        return rules_.continuation != '\0' && at_ != end_ && *at_ == rules_.continuation &&
+               (at_ + 1 == end_ || ends_line(at_[1]));
+    }
+    void pass_continuation();
     void pass_comment();
     void pass_line_end();
     bool unusual_number(double& value);
@@ -86,6 +95,10 @@ inline bool TextCursor::more() {
     const char* const begin = at_;
     int commas = 0;
     for (; at_ != end_ && separates(*at_); ++at_) commas += is_comma(*at_);
+    while (at_continuation()) {
+        pass_continuation();
+        for (; at_ != end_ && separates(*at_); ++at_) commas += is_comma(*at_);
+    }
     if (commas > 1) gaps_ |= empty_field;
     if (at_ == end_ || ends_line(*at_)) return false;
     if (at_comment()) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/writing.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scanmill/filter/error.hpp"
@@ -53,11 +54,11 @@ void tell_lost_precision(const Frame& frame, std::span<const Vec3> positions, bo
 }
 
 void tell_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
-                   const WriteOptions& options, std::string_view kept) {
+                   const WriteOptions& options, std::span<const std::string_view> kept) {
     std::string names;
     std::size_t count = 0;
     for (const Column& column : columns) {
-        if (column.name() == kept) continue;
+        if (std::ranges::find(kept, column.name()) != kept.end()) continue;
         names.append(count++ == 0 ? "" : ", ").append(column.name());
     }
     if (count > 0)
@@ -65,9 +66,11 @@ void tell_left_out(const ColumnTable& columns, std::string_view element, std::st
              counted(count, "column", "columns"), element, names);
 }
 
-void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options) {
-    tell_left_out(mesh.vertex_columns, "vertices", format, options);
-    tell_left_out(mesh.face_columns, "faces", format, options);
+void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options,
+                         std::span<const std::string_view> kept_of_vertices,
+                         std::span<const std::string_view> kept_of_faces) {
+    tell_left_out(mesh.vertex_columns, "vertices", format, options, kept_of_vertices);
+    tell_left_out(mesh.face_columns, "faces", format, options, kept_of_faces);
     tell_left_out(mesh.edge_columns, "edges", format, options);
     if (!mesh.sharp_edges.empty())
         warn(options.on_warning, "{} left out that {} are sharp; PLY keeps it", format,

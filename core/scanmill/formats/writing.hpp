@@ -2,6 +2,7 @@
 #pragma once
 /// What every writer needs: world coordinates, what they lose, and the sentences for what a format cannot carry.
 
+#include <span>
 #include <string_view>
 
 #include "scanmill/data/mesh.hpp"
@@ -22,10 +23,13 @@ void tell_lost_precision(const Frame& frame, std::span<const Vec3> positions, bo
 
 /// Tells that the columns of `element` ("vertices") are left out, by name, but those in `kept`.
 void tell_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
-                   const WriteOptions& options, std::string_view kept = {});
+                   const WriteOptions& options, std::span<const std::string_view> kept = {});
 
-/// Tells all of a mesh that a format of bare triangles leaves out: columns, described and sharp edges.
-void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options);
+/// Tells all of a mesh that a format of little more than triangles leaves out: the columns but those kept, described
+/// and sharp edges.
+void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options,
+                         std::span<const std::string_view> kept_of_vertices = {},
+                         std::span<const std::string_view> kept_of_faces = {});
 
 /// A frame's name fit for a comment: control characters, line ends above all, become blanks.
 std::string one_line(std::string_view name);

@@ -22,13 +22,6 @@ std::vector<std::string_view> tokens_of_row(TextCursor row) {
     return tokens;
 }
 
-/// Text editors of Windows begin a file with these three bytes.
-std::string_view without_byte_order_mark(std::string_view text) {
-    constexpr std::string_view mark = "\xef\xbb\xbf";
-    if (text.starts_with(mark)) text.remove_prefix(mark.size());
-    return text;
-}
-
 bool is_number(std::string_view token) {
     double ignored = 0;
     return parse_number(token, ignored);

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "scanmill/formats/colour_fractions.hpp"
+#include "scanmill/formats/obj.hpp"
+#include "scanmill/formats/output_buffer.hpp"
+#include "scanmill/formats/reading.hpp"
+#include "scanmill/formats/text_columns.hpp"
+#include "scanmill/formats/writing.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// A fourth channel would keep many programs from reading the vertex at all.
+void tell_lost_opacity(const Column& colour, const WriteOptions& options) {
+    if (colour.components() != 4) return;
+    const auto channels = colour.values<u8>();
+    std::size_t see_through = 0;
+    for (std::size_t row = 0; row < colour.rows(); ++row) see_through += channels[4 * row + 3] != 255;
+    if (see_through > 0)
+        warn(options.on_warning, "OBJ left out the opacity (the fourth channel of 'colour') of {}; PLY keeps it",
+             counted(see_through, "vertex", "vertices"));
+}
+
+void put_vertices(const TriangleMesh& mesh, const Column* colour, OutputBuffer& out) {
+    const auto fractions = colour_fractions();
+    for (std::size_t row = 0; row < mesh.positions.size(); ++row) {
+        const Vec3 p = world(mesh.frame, mesh.positions[row]);
+        out.text("v");
+        for (int axis = 0; axis < 3; ++axis) {
+            out.text(" ");
+            out.number(p[axis]);
+        }
+        for (std::size_t channel = 0; channel < 3 && colour; ++channel) {
+            out.text(" ");
+            out.text(fractions[colour->values<u8>()[row * colour->components() + channel]]);
+        }
+        out.text("\n");
+    }
+}
+
+void put_list(std::string_view keyword, const Column* column, OutputBuffer& out) {
+    for (std::size_t row = 0; column && row < column->rows(); ++row) {
+        out.text(keyword);
+        put_row(*column, row, out);
+        out.text("\n");
+    }
+}
+
+}  // namespace
+
+void write_obj(const Value& value, OutputBuffer& out, const WriteOptions& options) {
+    const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    const TextColumns columns(mesh.vertex_columns);
+    tell_lost_precision(mesh.frame, mesh.positions.span(), false, "OBJ", options);
+    tell_bare_triangles(mesh, "OBJ", options, columns.names());
+    if (columns.colour) tell_lost_opacity(*columns.colour, options);
+
+    out.text(comment_lines(mesh.frame));
+    put_vertices(mesh, columns.colour, out);
+    put_list("vt", columns.texture, out);
+    put_list("vn", columns.normal, out);
+    for (const Triangle& triangle : mesh.triangles) {
+        out.text("f");
+        for (u32 vertex : triangle) {
+            const u64 number = u64(vertex) + 1;
+            out.text(" ");
+            out.number(number);
+            if (columns.texture || columns.normal) out.text("/");
+            if (columns.texture) out.number(number);
+            if (columns.normal) {
+                out.text("/");
+                out.number(number);
+            }
+        }
+        out.text("\n");
+    }
+}
+
+}  // namespace scanmill

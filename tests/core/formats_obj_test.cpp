@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats_support.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string right_triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string square = right_triangle + "v 1 1 0\n";
+
+TEST(ObjReader_Face, OfEachForm_NamesTheSameVertices) {
+    const std::string lists = right_triangle + "vt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nvn 0 0 1\nvn 0 0 1\n";
+    for (const char* face : {"f 3 1 2", "f 3/1 1/2 2/3", "f 3//1 1//2 2//3", "f 3/1/1 1/2/2 2/3/3", "f 3/ 1/ 2/",
+                             "f 3// 1// 2//", "f 3/1/ 1/2/ 2/3/", "fo 3 1 2", "\tf  3\t1 2  # the only one"}) {
+        const auto mesh = mesh_in(lists + face + "\n", "a.obj");
+        EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{2, 0, 1})) << face;
+        EXPECT_EQ(mesh->positions[2], Vec3(0, 1, 0)) << face;
+    }
+}
+
+TEST(ObjReader_Face, NumberedBackwards_CountsFromTheVerticesBeforeIt) {
+    const auto mesh = mesh_in(right_triangle + "f -3 -2 -1\nv 5 5 5\nf -4 -1 2\n", "a.obj");
+    EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}, Triangle{0, 3, 1}));
+}
+
+TEST(ObjReader_Face, MayStandBeforeItsVertices) {
+    const auto mesh = mesh_in("f 1 2 3\n" + right_triangle, "a.obj");
+    EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}));
+}
+
+TEST(ObjReader_Face, OfFourCorners_BecomesAFan_OfTwo_IsLeftOut) {
+    Told told;
+    const auto mesh = mesh_in(square + "f 1 2 4 3\nf 1 2\nf 1\nf\nf 1 2 3\n", "a.obj", &told);
+    EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{0, 1, 2}));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 face of more than three corners was cut"),
+                                            HasSubstr("3 faces of fewer than three corners were left out")));
+}
+
+TEST(ObjReader_Face, WithAMissingVertex_IsRefusedWithItsLine) {
+    for (const auto& [face, told] : std::vector<std::pair<const char*, const char*>>{
+             {"f 1 2 4\n", "line 4: a face names vertex 4; there are 3 vertices, numbered from 1"},
+             {"f 1 2 3\nf 9 2 1\nf 1 11 10\n", "line 5: a face names vertex 9; there are 3 vertices"},
+             {"f 1 2 0\n", "line 4: a face names vertex 0; vertices are numbered from 1"},
+             {"f 1 2 -4\n", "line 4: a face names vertex -4, backwards from here; there are 3 vertices before it"},
+             {"f 1 2 4294967297\n", "line 4: a face names vertex 4294967297;"},
+             {"f 1 2 1099511627776\n", "line 4: a face names vertex 1099511627776;"},
+             {"f 1 2 9223372036854775807\n", "line 4: a face names vertex 9223372036854775807;"},
+             {"f 1 2 -9223372036854775808\n", "line 4: a face names vertex -9223372036854775808,"},
+             {"f 1 2 9223372036854775808\n", "line 4: '9223372036854775808' is no corner of a face"},
+             {"f 1 2 three\n", "line 4: 'three' is no corner of a face"},
+             {"f 1 2 3.0\n", "line 4: '3.0' is no corner of a face"},
+             {"f 1 2 3/x/1\n", "line 4: '3/x/1' is no corner"},
+             {"f 1 2 3///1\n", "line 4: '3///1' is no corner"},
+             {"f 1 2 /3\n", "line 4: '/3' is no corner"}})
+        EXPECT_THAT(refusal_of(right_triangle + face, "a.obj"), HasSubstr(told)) << face;
+    // One that is there at the end was only early.
+    EXPECT_THAT(refusal_of("f 1 2 3\nf 1 2 4\n" + right_triangle, "a.obj"), HasSubstr("line 2: a face names vertex 4"));
+}
+
+TEST(ObjReader_Vertex, WithoutThreeNumbers_IsRefusedWithItsLine) {
+    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 0\n", "a.obj"),
+                HasSubstr("line 2: a vertex (v) has 3 numbers, here are fewer"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 O 0\n", "a.obj"), HasSubstr("line 2: 'O' is no number for a vertex (v)"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 0 0 1 1 1 1 1\n", "a.obj"), HasSubstr("line 2: more than 4 numbers"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nvn 1 0\n", "a.obj"), HasSubstr("line 2: a normal (vn) has 3 numbers"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nvt\n", "a.obj"), HasSubstr("line 2: a texture coordinate (vt) has 1 number,"));
+}
+
+TEST(ObjReader_Vertex, Weight_IsToldUnlessItIsOne) {
+    Told told;
+    EXPECT_EQ(points_in("v 1 2 3 1.0\nv 4 5 6 1\n", "a.obj", &told)->positions[1], Vec3(4, 5, 6));
+    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_EQ(points_in("v 1 2 3 0.5\nv 4 5 6 1\n", "a.obj", &told)->positions[0], Vec3(1, 2, 3));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the weights of 1 of 2 vertices are not 1")));
+}
+
+TEST(ObjReader_Vertex, FarFromZero_KeepsItsLastDigits) {
+    const auto cloud = points_in("v 665187.522077 5648349.895035 241.767693\nv 665188.5 5648350.25 242\n", "a.obj");
+    EXPECT_NE(cloud->frame.origin, Vec3(0, 0, 0));
+    EXPECT_EQ(world_of(*cloud, 0), Vec3(665187.522077, 5648349.895035, 241.767693));
+}
+
+TEST(ObjReader_Colours, FractionsOfBytesAreBytes_SoAreWholeNumbers_OthersAreDoubles) {
+    // 128 / 255 = 0.50196…, 1 is a full channel.
+    const auto fractions = points_in("v 0 0 0 0.501961 1 0\nv 1 0 0 0 0.502 1.0\n", "a.obj");
+    EXPECT_THAT(numbers_of<u8>(fractions->columns.find("colour")), ElementsAre(128, 255, 0, 0, 128, 255));
+    const auto whole = points_in("v 0 0 0 255 1 0\nv 1 0 0 0 128 1\n", "a.obj");
+    EXPECT_THAT(numbers_of<u8>(whole->columns.find("colour")), ElementsAre(255, 1, 0, 0, 128, 1));
+    const auto four = points_in("v 0 0 0 1 0 0 0.2\n", "a.obj");
+    EXPECT_THAT(numbers_of<u8>(four->columns.find("colour")), ElementsAre(255, 0, 0, 51));
+    const auto reals = points_in("v 0 0 0 0.5 1 0\nv 1 0 0 0 1 1.0\n", "a.obj");
+    EXPECT_EQ(reals->columns.find("colour"), nullptr);
+    EXPECT_THAT(numbers_of<double>(reals->columns.find("red")), ElementsAre(0.5, 0));
+    EXPECT_THAT(numbers_of<double>(reals->columns.find("blue")), ElementsAre(0, 1));
+}
+
+TEST(ObjReader_Colours, ThatNotEveryVertexHas_AreLeftOutAndTold) {
+    Told told;
+    EXPECT_TRUE(points_in("v 0 0 0 1 0 0\nv 1 0 0\n", "a.obj", &told)->columns.empty());
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the colours of 1 of 2 vertices were left out")));
+}
+
+TEST(ObjReader_Text, EveryLineEndAndByteOrderMark_ReadAlike) {
+    const std::string text = "# unit mm\n# frame part 7\n" + right_triangle + "\n\nf 1 2 3\n";
+    for (const char* end : {"\n", "\r\n", "\r"})
+        for (const char* begin : {"", "\xef\xbb\xbf"}) {
+            std::string other = begin;
+            for (char c : text) other.append(c == '\n' ? std::string(end) : std::string(1, c));
+            const auto mesh = mesh_in(other, "a.obj");
+            EXPECT_EQ(mesh->positions.size(), 3u);
+            EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}));
+            EXPECT_EQ(mesh->frame.unit, LengthUnit::millimetre);
+            EXPECT_EQ(mesh->frame.name, "part 7");
+            EXPECT_THAT(refusal_of(other + "f 1 2 4", "a.obj"), HasSubstr("line 9:"));
+        }
+}
+
+TEST(ObjReader_Text, BackslashAtALinesEnd_ContinuesIt) {
+    for (const char* end : {"\n", "\r\n", "\r"}) {
+        const std::string e = end;
+        const auto mesh = mesh_in(
+            "v 0 0 0" + e + "v 1 \\" + e + " 0 0" + e + "v 0\\" + e + "1 0" + e + "f 1 2\\" + e + "\\" + e + " 3" + e,
+            "a.obj");
+        EXPECT_EQ(mesh->positions[1], Vec3(1, 0, 0));
+        EXPECT_EQ(mesh->positions[2], Vec3(0, 1, 0));
+        EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}));
+    }
+    // In a comment it is text, inside a line a sign like any other, and at the text's end there is nothing to continue.
+    EXPECT_EQ(
+        mesh_in("# C:\\scans\\\n" + right_triangle + "mtllib C:\\a\\b.mtl\nf 1 2 3 \\", "a.obj")->triangles.size(), 1u);
+    EXPECT_THAT(refusal_of(right_triangle + "f 1 2\\\n 4\n", "a.obj"), HasSubstr("line 5: a face names vertex 4"));
+    EXPECT_THAT(refusal_of(right_triangle + "f 1 2\\3\n", "a.obj"), HasSubstr("is no corner of a face"));
+}
+
+TEST(ObjReader_Text, Cut_IsReadOrRefused_ByWhatIsLeft) {
+    const std::string whole = square + "f 1 2 4\nf 1 4 3";
+    EXPECT_EQ(mesh_in(whole, "a.obj")->triangles.size(), 2u);
+    Told told;
+    EXPECT_EQ(mesh_in(whole.substr(0, whole.size() - 2), "a.obj", &told)->triangles.size(), 1u);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 face of fewer than three corners was left out")));
+    EXPECT_EQ(points_in(whole.substr(0, square.size()), "a.obj")->size(), 4u);
+    EXPECT_THAT(refusal_of(whole.substr(0, square.size() - 3), "a.obj"),
+                HasSubstr("line 4: a vertex (v) has 3 numbers"));
+}
+
+TEST(ObjReader_WithoutVertices, IsRefused) {
+    for (const char* text : {"# nothing here\n", "\n\n", "o a\ng b\n", "vn 0 0 1\n"})
+        EXPECT_THAT(refusal_of(text, "a.obj"), AllOf(HasSubstr("holds no points: no row is a vertex (v)"))) << text;
+    EXPECT_THAT(refusal_of("L\x01\x02\n", "a.obj"), HasSubstr("line 1 begins with 'L?\?', which OBJ does not know"));
+}
+
+TEST(ObjReader_WithoutFaces, IsACloudOfAllVertices) {
+    Told told;
+    EXPECT_EQ(points_in(square + "l 1 2 3\nl 3 4\np 1 2\n", "a.obj", &told)->size(), 4u);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("2 lines (l) were left out, first in line 5"),
+                                            HasSubstr("1 row of points (p) was left out, first in line 7")));
+}
+
+TEST(ObjReader_Divisions, AreToldWhenThereIsMoreThanOne) {
+    Told told;
+    mesh_in("o a\ng b c\nusemtl d\ns off\n" + right_triangle + "f 1 2 3\ng b c\nusemtl d\n", "a.obj", &told);
+    EXPECT_THAT(told.sentences, IsEmpty());
+    mesh_in("mtllib a.mtl\no a\ng\ng b c\ng b\nusemtl d\nusemtl e\nusemtl d\ns 1\ns 2\n" + right_triangle + "f 1 2 3\n",
+            "a.obj", &told);
+    EXPECT_THAT(told.sentences,
+                ElementsAre(HasSubstr("3 groups (g), 2 materials (usemtl), 2 smoothing groups (s) were made one"),
+                            HasSubstr("1 material library (mtllib) was not read: materials and their images were left "
+                                      "out, the first of 'a.mtl'")));
+}
+
+TEST(ObjReader_OtherRows, AreCountedAndTold) {
+    Told told;
+    mesh_in(right_triangle + "f 1 2 3\nvp 0.5\ncurv 0 1 1 2\nend\nlod 3\nvc 1 0 0\nvc 1 0 0\nHello\n", "a.obj", &told);
+    EXPECT_THAT(
+        told.sentences,
+        ElementsAre(HasSubstr("3 rows were left out, first in line 5: free-form curves and surfaces are not read "
+                              "('vp', 'curv', 'end')"),
+                    HasSubstr("1 row was left out, first in line 8: they concern the display only ('lod')"),
+                    HasSubstr("3 rows were left out, first in line 9: OBJ does not know what they begin with "
+                              "('vc', 'Hello')")));
+}
+
+TEST(ObjReader_Content, IsRecognisedWithoutItsExtension) {
+    EXPECT_EQ(read_bytes(right_triangle, "a.xyz").format, "OBJ");
+    EXPECT_EQ(read_bytes("# remark\nmtllib a.mtl\ng a\n" + right_triangle, "a").format, "OBJ");
+    // More than recognition looks at, cut inside a row.
+    std::string large;
+    while (large.size() < 10000) large += "v 1.25 -3.5 0.0625\n";
+    EXPECT_EQ(read_bytes(large, "a.ply").format, "OBJ");
+    // Keywords alone do not outdo an extension, a word that OBJ does not know ends the matter.
+    EXPECT_THAT(refusal_of("g a\no b\n", "a"), HasSubstr("no row is a vertex"));
+    EXPECT_THAT(refusal_of("g a\no b\n", "a.xyz"), Not(HasSubstr("no row is a vertex")));
+    EXPECT_THAT(refusal_of("v 1 2 3\nDear reader\n", "a.dat"), HasSubstr("is of no known format"));
+    EXPECT_THAT(refusal_of(std::string("\x7f\0\x01v 1 2 3\n", 11), "a.dat"), HasSubstr("is of no known format"));
+}
+
+}  // namespace
+}  // namespace scanmill::test
