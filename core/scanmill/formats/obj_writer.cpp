@@ -5,7 +5,7 @@
 #include "scanmill/formats/obj.hpp"
 #include "scanmill/formats/output_buffer.hpp"
 #include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/text_columns.hpp"
+#include "scanmill/formats/written_columns.hpp"
 #include "scanmill/formats/writing.hpp"
 
 namespace scanmill {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/output_buffer.hpp"
-#include "scanmill/formats/text_columns.hpp"
+#include "scanmill/formats/written_columns.hpp"
 #include "scanmill/formats/writing.hpp"
 #include "scanmill/formats/xyz.hpp"
 

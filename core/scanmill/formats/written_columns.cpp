@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/formats/text_columns.hpp"
+#include "scanmill/formats/written_columns.hpp"
 
 namespace scanmill {
 
