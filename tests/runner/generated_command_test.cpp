@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the program writes about itself: schema, pages, completion.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+TEST(SchemaCommand, PrintsAndWritesTheSame) {
+    const TemporaryFolder folder;
+    const ProgramResult printed = scanmill_program({"schema"});
+    EXPECT_EQ(printed.exit_code, 0);
+    EXPECT_TRUE(json::parse(printed.out)["definitions"]["step"]["properties"].contains("voxel-thin"));
+    EXPECT_EQ(scanmill_program({"schema", "-o", (folder / "new").string()}).exit_code, 0);
+    EXPECT_EQ(content_of(folder / "new/workflow.schema.json"), printed.out);
+}
+
+TEST(SchemaCommand, FolderThatCannotBeMade_IsOneSentence) {
+    const TemporaryFolder folder;
+    folder.write("file", "x");
+    const ProgramResult refused = scanmill_program({"schema", "-o", (folder / "file/below").string()});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("cannot be made"));
+}
+
+TEST(DocsCommand, WritesAPageForEveryFilter) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(scanmill_program({"docs", "-o", folder.path().string()}).exit_code, 0);
+    const json filters = json::parse(scanmill_program({"list", "--json"}).out)["filters"];
+    for (const json& filter : filters) {
+        const std::string name = filter["name"];
+        const std::string page = content_of(folder / (name + ".md"));
+        EXPECT_TRUE(page.starts_with("# " + name + "\n")) << name;
+        for (const json& parameter : filter["parameters"]) {
+            EXPECT_THAT(page, HasSubstr("`" + parameter["name"].get<std::string>() + "`"));
+            EXPECT_THAT(page, HasSubstr(parameter["help"].get<std::string>()));
+        }
+        EXPECT_THAT(content_of(folder / "README.md"), HasSubstr("[" + name + "](" + name + ".md)"));
+    }
+}
+
+/// What bash proposes behind `scanmill` and these words.
+std::string completed(const TemporaryFolder& folder, const std::string& words, int index) {
+    folder.write("complete", scanmill_program({"completion", "bash"}).out +
+                                 "COMP_WORDS=(scanmill " + words + ")\nCOMP_CWORD=" + std::to_string(index) +
+                                 "\n_scanmill\necho \"${COMPREPLY[@]}\"\n");
+    const std::string programs = std::filesystem::path(SCANMILL_PROGRAM).parent_path().string();
+    const std::string command = "PATH=\"" + programs + ":$PATH\" bash '" + (folder / "complete").string() +
+                                "' > '" + (folder / "proposals").string() + "'";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return content_of(folder / "proposals");
+}
+
+TEST(Completion, Bash_ProposesCommandsOptionsAndFilters) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(completed(folder, "sh", 1), "show\n");
+    EXPECT_EQ(completed(folder, "run --un", 2), "--unit --until\n");
+    EXPECT_EQ(completed(folder, "show vox", 2), "voxel-thin\n");
+}
+
+TEST(Completion, EveryShell_HasEveryCommand) {
+    for (const char* shell : {"bash", "zsh", "fish"}) {
+        const ProgramResult script = scanmill_program({"completion", shell});
+        EXPECT_EQ(script.exit_code, 0);
+        for (const char* command : {"run", "check", "list", "show", "info", "convert", "schema", "docs", "completion"})
+            EXPECT_THAT(script.out, HasSubstr(command)) << shell;
+    }
+    EXPECT_EQ(scanmill_program({"completion", "tcsh"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace scanmill::test
