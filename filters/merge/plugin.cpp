@@ -17,7 +17,7 @@ SCANMILL_FILTER() {
     using P = PosedMergeParams;
     return Declare<P>("merge", 1)
         .summary("Puts several clouds into one, moved by their poses, with one point where they overlap.")
-        .source("the pose files of Turk and Levoy 1994 (zipper), by fact")
+        .source("pose files: Turk and Levoy 1994")
         .in<PointCloud>("points", "Clouds with finite coordinates and one unit; at least one.", list)
         .out<PointCloud>("points", "All points that stay, in input order, with a column `source`.")
         .param("poses", &P::poses_file, "A Stanford .conf or a JSON file that says where each input lies.",

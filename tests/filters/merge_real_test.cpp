@@ -80,8 +80,8 @@ TEST_F(MergeBunny, TenViewsWithTheirPoses_LieOnTheModel) {
     const Merged all = merged(clouds_, posed(poses_));
     EXPECT_EQ(all.points.size(), 362'272u);
     // In metres; the model is 0.25 m long and its triangles' edges are a millimetre.
-    EXPECT_THAT(distances(all.points, 0.5), testing::Each(testing::Lt(0.25e-3)));
-    EXPECT_THAT(distances(all.points, 0.95), testing::Each(testing::Lt(1e-3)));
+    EXPECT_THAT(distances(all.points, 0.5), testing::Each(testing::Lt(0.1e-3)));
+    EXPECT_THAT(distances(all.points, 0.95), testing::Each(testing::Lt(0.5e-3)));
 }
 
 TEST_F(MergeBunny, QuaternionsReadTheUsualWay_PutMostViewsBesideTheModel) {
