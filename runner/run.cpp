@@ -128,7 +128,10 @@ void add_run(CLI::App& app, Action& chosen) {
     CLI::App* command = app.add_subcommand("run", "Runs a workflow over one scan or many");
     auto options = std::make_shared<Options>();
     command->add_option("WORKFLOW", options->workflow, "The workflow file")->required();
-    command->add_option("SCAN", options->scans, "Files that feed the workflow's first input, one run each");
+    command->add_option(
+        "SCAN", options->scans,
+        "Files that feed the workflow's first input: one run each, or all of them one run when that input is a "
+        "list");
     command->add_option("--in", options->inputs, "Files for the other inputs: NAME=FILE[,FILE…]")
         ->take_all()
         ->allow_extra_args(false);

@@ -26,13 +26,17 @@ std::string node_label(const Plan& plan, const RunNode& node) {
 
 /// The numbers worth a column, of one cell, in the order of its steps.
 Metrics headline(const Plan& plan, const RunGraph& graph, const RunReport& report, std::size_t cell) {
-    Metrics shown;
+    Metrics shown, read;
     for (const std::size_t index : graph.cells[cell].nodes) {
         const RunNode& node = graph.nodes[index];
         const NodeReport& done = report.nodes[index];
         if (!node.step) {
-            if (node.input == 0)
-                for (const Metric& fact : done.facts.values) shown.set(fact.name, fact.value, fact.unit);
+            if (node.input != 0) continue;
+            for (const Metric& fact : done.facts.values) {  // a list's scans are counted together
+                const Metric* before = read.find(fact.name);
+                read.set(fact.name, fact.value + (before ? before->value : 0), fact.unit);
+                shown.set(fact.name, read.find(fact.name)->value, fact.unit);
+            }
             continue;
         }
         for (const MetricSpec& metric : plan.steps[*node.step].spec.metrics)

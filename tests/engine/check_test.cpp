@@ -180,8 +180,11 @@ TEST_F(Check, ListInput_FeedsOnlyListPorts) {
     EXPECT_THAT(findings(head + "  - thin:\n    in: {points: others}\n"),
                 ElementsAre(HasSubstr("is a list of points")));
     EXPECT_THAT(findings(head + "  - combine:\n    in: {points: others}\n"), IsEmpty());
-    EXPECT_THAT(findings("scanmill: 1\ninputs: {scans: [points]}\nsteps:\n  - combine:\n"),
-                ElementsAre(HasSubstr("fed one scan at a time")));
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {scans: [points]}\nsteps:\n  - combine:\n"), IsEmpty());
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {scans: [points]}\nsteps:\n  - combine:\noutputs: {x.ply: scans}\n"),
+                ElementsAre(AllOf(StartsWith("w:5:"), HasSubstr("'scans' is a list; a file holds one value"))));
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {s: {kind: points, frame: '{scan}'}}\nsteps:\n  - thin:\n"),
+                ElementsAre(AllOf(StartsWith("w:2:"), HasSubstr("not part of {stem}"))));
 }
 
 TEST_F(Check, IdsAndInputs_HaveDifferentNames) {

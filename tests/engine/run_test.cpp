@@ -6,11 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
+#include "engine/run_fixture.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/files.hpp"
-#include "support/temporary_folder.hpp"
 
 namespace scanmill {
 namespace {
@@ -20,42 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Four points whose bounding box has the diagonal 3.
-const std::string small_scan = "0 0 0\n1 0 0\n0 2 0\n1 2 2\n";
-
-class Run : public testing::Test {
-protected:
-    /// Runs the workflow over the scans; `steps` is the text below `steps:`, `tail` what follows it.
-    RunReport run(const std::string& steps, const std::vector<std::string>& scans, const std::string& tail = "",
-                  const std::string& inputs = "{scan: points}") {
-        Diagnostics diagnostics("w.yaml");
-        plan_ = make_plan(
-            parse_workflow("scanmill: 1\nname: w\ninputs: " + inputs + "\nsteps:\n" + steps + tail, diagnostics),
-            library_, {}, diagnostics);
-        for (const Diagnostic& diagnostic : diagnostics.sorted())
-            if (diagnostic.severity == Diagnostic::Severity::error) ADD_FAILURE() << text(diagnostic, "w.yaml");
-        request_.scans.assign(scans.begin(), scans.end());
-        request_.output_folder = folder_ / "out";
-        graph_ = make_graph(plan_, library_, request_);
-        RunObserver nobody;
-        return scanmill::run(plan_, library_, graph_, request_, settings_, nobody);
-    }
-    std::string scan(const std::string& name, const std::string& content = small_scan) {
-        return folder_.write(name, content).string();
-    }
-    std::string log() const { return (folder_ / "log").string(); }
-    std::size_t runs_logged() const {
-        const std::string text = test::content_of(folder_ / "log");
-        return static_cast<std::size_t>(std::ranges::count(text, '\n'));
-    }
-
-    test::TemporaryFolder folder_;
-    FilterLibrary library_{{SCANMILL_TEST_PLUGIN_DIR}};
-    Plan plan_;
-    RunRequest request_;
-    RunSettings settings_;
-    RunGraph graph_;
-};
+using test::Run;
 
 TEST_F(Run, StepsSharedByVariants_RunOnce) {
     const RunReport report = run("  - test-step: {factor: 2, log: " + log() +
@@ -128,7 +91,7 @@ TEST_F(Run, Expectations_AreComparedWithMetricsAndFacts) {
 TEST_F(Run, Lengths_AreResolvedOnceAgainstTheFirstInput) {
     const auto length_of = [&](const std::string& written) {
         const RunReport report =
-            run("  - test-step: {length: " + written + "}\n", {scan("a.xyz", "# unit mm\n" + small_scan)});
+            run("  - test-step: {length: " + written + "}\n", {scan("a.xyz", "# unit mm\n" + test::small_scan)});
         return report.nodes[1].metrics.find("length")->value;
     };
     EXPECT_DOUBLE_EQ(length_of("10 %diag"), 0.3);
@@ -159,9 +122,10 @@ TEST_F(Run, UnitOfTheWorkflowInput_IsTheScans) {
 }
 
 TEST_F(Run, InputsOfDifferentUnits_AreRefused) {
-    request_.inputs = {{"others", {scan("b.xyz", "# unit m\n" + small_scan)}}};
-    const RunReport report = run("  - test-step:\n    in: {points: scan, more: others}\n",
-                                 {scan("a.xyz", "# unit mm\n" + small_scan)}, "", "{scan: points, others: [points]}");
+    request_.inputs = {{"others", {scan("b.xyz", "# unit m\n" + test::small_scan)}}};
+    const RunReport report =
+        run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz", "# unit mm\n" + test::small_scan)},
+            "", "{scan: points, others: [points]}");
     EXPECT_THAT(report.cells[0].error, HasSubstr("different units: mm at the first port, m at 'more'"));
 }
 

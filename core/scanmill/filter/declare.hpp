@@ -77,8 +77,10 @@ public:
         declaration_.spec.outputs.push_back({std::move(port), kind_of<T>(), std::move(help), false, false});
         return *this;
     }
-    template <class T, class... Constraints>
-    Declare& param(std::string name, T Params::*member, std::string help, const Constraints&... constraints) {
+    /// The member may be one that the params struct inherits.
+    template <class T, class Owner, class... Constraints>
+        requires std::derived_from<Params, Owner>
+    Declare& param(std::string name, T Owner::*member, std::string help, const Constraints&... constraints) {
         ParameterSpec spec;
         detail::Convert<T>::describe(spec, Params{}.*member);
         (constraints.apply(spec), ...);
@@ -87,8 +89,9 @@ public:
         });
         return *this;
     }
-    template <class Enum>
-    Declare& choice(std::string name, Enum Params::*member,
+    template <class Enum, class Owner>
+        requires std::derived_from<Params, Owner>
+    Declare& choice(std::string name, Enum Owner::*member,
                     std::vector<Alternative<std::type_identity_t<Enum>>> alternatives, std::string help) {
         ParameterSpec spec;
         spec.type = ParameterType::choice;

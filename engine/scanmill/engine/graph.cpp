@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "scanmill/engine/input_frame.hpp"
 #include "scanmill/engine/key.hpp"
 #include "scanmill/engine/output_files.hpp"
 #include "scanmill/engine/output_template.hpp"
+#include "scanmill/engine/path_parameters.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/module.hpp"
 #include "scanmill/formats/files.hpp"
@@ -30,9 +32,10 @@ public:
     RunGraph build() {
         require_fits(request_, plan_);
         const std::vector<WorkflowInput>& inputs = plan_.workflow.inputs;
-        if (inputs.empty()) {
-            graph_.scan_names.push_back(plan_.workflow.name.empty() ? "workflow" : plan_.workflow.name);
+        if (inputs.empty() || inputs.front().list) {
+            graph_.scan_names.push_back(workflow_name());
             add_cells(0, {});
+            return std::move(graph_);
         }
         for (std::size_t scan = 0; scan < request_.scans.size(); ++scan) {
             graph_.scan_names.push_back(request_.scans[scan].string());
@@ -42,6 +45,11 @@ public:
     }
 
 private:
+    std::string workflow_name() const {
+        return plan_.workflow.name.empty() ? fs::path(plan_.workflow.file).stem().string() : plan_.workflow.name;
+    }
+
+    /// `file` is the scan; empty when there is none, or a list of them.
     void add_cells(std::size_t scan, const fs::path& file) {
         for (std::size_t variant = 0; variant < plan_.variants.size(); ++variant) {
             const PlannedVariant& planned = plan_.variants[variant];
@@ -53,13 +61,11 @@ private:
                 node_of_step[step] = add_step(step, node_of_step, scan, file, cell);
                 add_to(cell, node_of_step[step]);
             }
-            const TemplateValues values{
-                file.empty() ? graph_.scan_names.back() : file.stem().string(), planned.name,
-                plan_.workflow.name.empty() ? fs::path(plan_.workflow.file).stem().string() : plan_.workflow.name};
+            const TemplateValues values{file.empty() ? graph_.scan_names.back() : file.stem().string(), planned.name,
+                                        workflow_name()};
             for (const auto& [name, source] : outputs(planned)) {
                 if (source.step && !node_of_step.contains(*source.step)) continue;  // beyond --until
-                const std::size_t node =
-                    source.step ? node_of_step[*source.step] : add_leaf(source.input, scan, file, cell);
+                const std::size_t node = sources_of(source, node_of_step, scan, file, cell).front();
                 const std::string writer =
                     fmt::format("scan '{}' under variant '{}'", graph_.scan_names.back(), planned.name);
                 const fs::path target =
@@ -110,8 +116,11 @@ private:
             .field("module", library_.build_id(planned.spec.name))
             .field("core", core_build_)
             .field("seed", std::to_string(request_.seed));
-        for (const auto& [name, value] : planned.parameters.values)
-            key.field("parameter " + name, canonical_text(value));
+        const auto content = [this](const fs::path& parameter) { return content_of(parameter); };
+        for (const auto& [name, value] : planned.parameters.values) {
+            const bool names_files = planned.spec.parameter(name)->type == ParameterType::path;
+            key.field("parameter " + name, names_files ? key_text_of_paths(value, content) : canonical_text(value));
+        }
         for (const PlannedInput& input : planned.inputs)
             for (const ValueSource& source : input.sources)
                 for (const std::size_t from : sources_of(source, node_of_step, scan, file, cell)) {
@@ -126,10 +135,11 @@ private:
                                         const std::map<std::size_t, std::size_t>& node_of_step, std::size_t scan,
                                         const fs::path& file, RunCell& cell) {
         if (source.step) return {node_of_step.at(*source.step)};
-        if (source.input == 0) return {add_leaf(0, scan, file, cell)};
+        const WorkflowInput& input = plan_.workflow.inputs[source.input];
+        if (source.input == 0 && !input.list) return {add_leaf(0, scan, file, cell)};
         std::vector<std::size_t> leaves;
-        for (const fs::path& other : request_.inputs.at(plan_.workflow.inputs[source.input].name))
-            leaves.push_back(add_leaf(source.input, scan, other, cell));
+        for (const fs::path& each : source.input == 0 ? request_.scans : request_.inputs.at(input.name))
+            leaves.push_back(add_leaf(source.input, scan, each, cell));
         return leaves;
     }
 
@@ -141,10 +151,10 @@ private:
         node.scan = scan;
         KeyBuilder key;
         key.field("scheme", key_scheme)
-            .field("content", content_of(file, node.unreadable))
+            .field("content", content_of(file, &node.unreadable))
             .field("kind", name_of(declared.kind))
             .field("unit", symbol(request_.unit != LengthUnit::unknown ? request_.unit : declared.unit))
-            .field("frame", declared.frame);
+            .field("frame", frame_of_file(declared.frame, file));
         node.key = key.key();
         const std::size_t index = add_node(std::move(node));
         add_to(cell, index);
@@ -152,7 +162,7 @@ private:
     }
 
     /// The content's hash; a file that cannot be read stands for itself alone.
-    std::string content_of(const fs::path& file, std::string& unreadable) {
+    std::string content_of(const fs::path& file, std::string* why_unreadable = nullptr) {
         const auto [known, is_new] = contents_.try_emplace(file.string());
         if (is_new) {
             try {
@@ -163,7 +173,7 @@ private:
                 known->second = {"unreadable " + file.string(), error.sentence()};
             }
         }
-        unreadable = known->second.second;
+        if (why_unreadable) *why_unreadable = known->second.second;
         return known->second.first;
     }
 

@@ -45,14 +45,16 @@ struct RunCell {
 };
 
 struct RunGraph {
-    std::vector<std::string> scan_names;  ///< as given; the workflow's name when it has no inputs
+    std::vector<std::string> scan_names;  ///< as given; the workflow's name when scans are not fed one at a time
     std::vector<RunNode> nodes;
     std::vector<RunCell> cells;
 };
 
 /// Throws Error, before anything was computed, for a request that does not fit the plan (inputs that are not fed,
 /// unknown variants or steps), for two cells that would write one file, and for outputs that would replace an input or
-/// leave the output folder. Reads every file once, to hash it; a file that cannot be read only marks its node.
+/// leave the output folder. Reads every file once, to hash it, also those that path
+/// parameters name: a step's key knows their content and not their names. A scan that cannot be read only marks its
+/// node, another file is left to the filter.
 RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request);
 
 }  // namespace scanmill

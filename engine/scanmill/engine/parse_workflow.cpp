@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "scanmill/engine/grammar.hpp"
+#include "scanmill/engine/input_frame.hpp"
 #include "scanmill/engine/parse_steps.hpp"
 #include "scanmill/engine/parse_value.hpp"
 #include "scanmill/engine/workflow.hpp"
@@ -96,6 +97,7 @@ void WorkflowParser::input_details(const YamlNode& node, WorkflowInput& input) {
     keys.find("kind");
     input.help = keys.text("help");
     input.frame = keys.text("frame");
+    if (const YamlNode* frame = node.find("frame")) check_frame_template(input.frame, frame->position, diagnostics_);
     if (const YamlEntry* list = keys.find("list")) {
         if (list->value.text != "true" && list->value.text != "false")
             diagnostics_.error(list->value.position,

@@ -10,6 +10,7 @@
 #include "scanmill/engine/expectation.hpp"
 #include "scanmill/engine/key.hpp"
 #include "scanmill/engine/output_template.hpp"
+#include "scanmill/engine/path_parameters.hpp"
 #include "scanmill/engine/wiring.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
@@ -28,7 +29,7 @@ public:
     }
 
     Plan plan(const Settings& settings) {
-        complain_of_repeated_inputs();
+        settings_ = &settings;
         expand(plan_.workflow, settings, diagnostics_,
                [this](const Variant& variant) { plan_.variants.push_back(plan_variant(variant)); });
         for (const WorkflowOutput& output : plan_.workflow.outputs) {
@@ -53,14 +54,6 @@ private:
             }
         }
     };
-
-    void complain_of_repeated_inputs() {
-        if (plan_.workflow.inputs.empty()) return;
-        if (plan_.workflow.inputs.front().list)
-            diagnostics_.error(
-                plan_.workflow.inputs.front().position,
-                "the first input is fed one scan at a time and cannot be a list; put another input first");
-    }
 
     PlannedVariant plan_variant(const Variant& variant) {
         PlannedVariant planned;
@@ -171,10 +164,13 @@ private:
                                                expectation(parameter)));
             return parameter.default_value;
         }
+        const WrittenValue& written = *argument->written;
         try {
-            return parse(parameter, argument->value->literal);
+            const ParameterValue value = parse(parameter, argument->value->literal);
+            const bool from_outside = settings_->contains(written.reference);  // relative to where we are
+            if (parameter.type != ParameterType::path || from_outside) return value;
+            return with_paths_from(std::filesystem::path(plan_.workflow.file).parent_path(), value);
         } catch (const Error& error) {
-            const WrittenValue& written = *argument->written;
             const std::string through = written.reference.empty() ? "" : " (from $" + written.reference + ")";
             diagnostics_.error(written.position, fmt::format("{}{}: {}", parameter.name, through, error.sentence()));
             return parameter.default_value;
@@ -197,6 +193,11 @@ private:
     void plan_output(const WorkflowOutput& output, const WiringScope& scope, PlannedVariant& variant) {
         const std::optional<ValueSource> source = resolve(output.source, scope, diagnostics_);
         if (!source) return;
+        if (!source->step && plan_.workflow.inputs[source->input].list) {
+            diagnostics_.error(output.source.position,
+                               fmt::format("'{}' is a list; a file holds one value", output.source.text));
+            return;
+        }
         const Kind kind = kind_of(plan_, *source);
         const std::string extension = std::filesystem::path(output.file).extension().string();
         if (!can_write(extension, kind)) {
@@ -237,6 +238,7 @@ private:
 
     const FilterLibrary& library_;
     Diagnostics& diagnostics_;
+    const Settings* settings_ = nullptr;
     Plan plan_;
     std::map<std::string, std::size_t> step_of_key_;
 };

@@ -21,6 +21,8 @@ void require_fed(const RunRequest& request, const Plan& plan) {
     std::vector<std::string> others;
     for (std::size_t i = 1; i < inputs.size(); ++i) others.push_back(inputs[i].name);
     for (const auto& [name, files] : request.inputs) {
+        if (!inputs.empty() && name == inputs.front().name)
+            throw Error("--in {}: the first input is fed by the scans", name).hint("scanmill run WORKFLOW SCAN…");
         if (std::ranges::find(others, name) == others.end())
             throw Error("--in {}: the workflow has no such input beside the scans; {}{}", name,
                         others.empty() ? "it has none" : "it has " + enumerated(others), did_you_mean(name, others));

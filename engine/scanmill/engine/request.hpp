@@ -13,7 +13,7 @@
 namespace scanmill {
 
 struct RunRequest {
-    std::vector<std::filesystem::path> scans;  ///< feed the workflow's first input, one at a time
+    std::vector<std::filesystem::path> scans;  ///< feed the first input: one a run, or all of them one run's list
     std::map<std::string, std::vector<std::filesystem::path>> inputs;  ///< feed the other inputs
     std::filesystem::path output_folder;
     LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: what the workflow or the file says

@@ -5,6 +5,7 @@
 
 #include "scanmill/engine/expectation.hpp"
 #include "scanmill/engine/facts.hpp"
+#include "scanmill/engine/input_frame.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/length_scale.hpp"
@@ -98,12 +99,12 @@ Value read_leaf(const std::filesystem::path& file, const WorkflowInput& declared
         value = read_mesh(file, options);
     else
         value = read_points(file, options);
-    if (declared.frame.empty() || frame_of(value)->name == declared.frame) return value;
+    const std::string name = frame_of_file(declared.frame, file);
+    if (name.empty() || frame_of(value)->name == name) return value;
     Frame frame = *frame_of(value);
     if (!frame.name.empty())
-        on_warning(
-            fmt::format("the frame '{}' of the file is called '{}' by the workflow", frame.name, declared.frame));
-    frame.name = declared.frame;
+        on_warning(fmt::format("the frame '{}' of the file is called '{}' by the workflow", frame.name, name));
+    frame.name = name;
     return reframed(value, frame);
 }
 

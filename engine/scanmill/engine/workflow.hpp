@@ -89,7 +89,7 @@ struct WorkflowInput {
     Kind kind = Kind::points;
     bool list = false;
     LengthUnit unit = LengthUnit::unknown;
-    std::string frame;
+    std::string frame;  ///< may hold {stem}, see input_frame.hpp; empty: what the file says
     std::string help;
 };
 
@@ -110,7 +110,8 @@ struct Workflow {
     std::string file;
     std::string name;
     std::string summary;
-    std::vector<WorkflowInput> inputs;  ///< the first is fed by the scans
+    std::vector<WorkflowInput>
+        inputs;  ///< the first is fed by the scans: one at a time, or all at once when it is a list
     std::vector<WorkflowParameter> parameters;
     std::vector<StepItem> steps;
     std::vector<WorkflowOutput> outputs;

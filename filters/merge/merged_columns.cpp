@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "merge/merged_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "merge/joined_column.hpp"
+
+namespace scanmill::merging {
+
+namespace {
+
+const std::string newest = "source";
+const std::string older = "-of-source";
+
+/// "source", "source-of-source" …
+bool names_a_source(const std::string& name) {
+    if (!name.starts_with(newest)) return false;
+    std::string_view rest = std::string_view(name).substr(newest.size());
+    while (rest.starts_with(older)) rest.remove_prefix(older.size());
+    return rest.empty();
+}
+
+template <class Number>
+Column turned(const Column& normals, const Eigen::Matrix3d& rotation) {
+    Array<Number> values(3 * normals.rows());
+    for (std::size_t row = 0; row < normals.rows(); ++row) {
+        const Vec3 normal = rotation * Vec3(normals.number(row, 0), normals.number(row, 1), normals.number(row, 2));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            values[3 * row + axis] = static_cast<Number>(normal[static_cast<Eigen::Index>(axis)]);
+    }
+    return {normals.name(), 3, Buffer<Number>(std::move(values))};
+}
+
+/// The column as the result will call it, turned when it has directions.
+Column placed(const Column& column, const RigidTransform* pose) {
+    if (names_a_source(column.name())) return column.renamed(column.name() + older);
+    if (!pose || column.name() != "normal" || column.components() != 3) return column;
+    return column.type() == ScalarType::float32 ? turned<float>(column, pose->rotation)
+                                                : turned<double>(column, pose->rotation);
+}
+
+std::string shape(const Column& column) {
+    if (column.is_list()) return fmt::format("lists of {}", name_of(column.type()));
+    return column.components() == 1 ? std::string(name_of(column.type()))
+                                    : fmt::format("{} x {}", column.components(), name_of(column.type()));
+}
+
+class Merger {
+public:
+    Merger(std::vector<ColumnTable> tables, Context& context) : tables_(std::move(tables)), context_(context) {}
+
+    ColumnTable merged() {
+        ColumnTable result;
+        std::vector<std::string> seen;
+        for (const ColumnTable& table : tables_)
+            for (const Column& column : table) {
+                if (std::ranges::find(seen, column.name()) != seen.end()) continue;
+                seen.push_back(column.name());
+                if (const std::vector<Column> parts = parts_of(column.name()); !parts.empty())
+                    result.add(joined(parts));
+            }
+        return result;
+    }
+
+private:
+    /// One column per cloud, fit to be joined; none, and told, when that cannot be.
+    std::vector<Column> parts_of(const std::string& name) {
+        std::vector<Column> parts;
+        for (const ColumnTable& table : tables_)
+            if (const Column* column = table.find(name)) parts.push_back(*column);
+        if (const std::size_t without = tables_.size() - parts.size(); without > 0) {
+            context_.warn(fmt::format("the column '{}' is left out: {} of {} inputs {} it", name, without,
+                                      tables_.size(), without == 1 ? "lacks" : "lack"));
+            return {};
+        }
+        const Column& first = parts.front();
+        const auto other = std::ranges::find_if(parts, [&](const Column& part) {
+            return part.components() != first.components() || part.type() != first.type();
+        });
+        if (other == parts.end()) return parts;
+        const bool joinable = !first.is_list() && std::ranges::all_of(parts, [&](const Column& part) {
+            return part.components() == first.components();
+        });
+        const std::string found = fmt::format("{} in input 0, {} in input {}", shape(first), shape(*other),
+                                              std::distance(parts.begin(), other));
+        if (!joinable) {
+            context_.warn(fmt::format("the column '{}' is left out: it is {}", name, found));
+            return {};
+        }
+        const bool rounds = std::ranges::any_of(parts, [](const Column& part) {
+            return part.type() == ScalarType::int64 || part.type() == ScalarType::uint64;
+        });
+        context_.warn(fmt::format("the column '{}' is carried as float64: it is {}{}", name, found,
+                                  rounds ? "; whole numbers beyond 2^53 are rounded" : ""));
+        return parts;
+    }
+
+    std::vector<ColumnTable> tables_;
+    Context& context_;
+};
+
+Column source_column(std::span<const std::shared_ptr<const PointCloud>> clouds) {
+    Array<u32> source;
+    for (u32 cloud = 0; cloud < clouds.size(); ++cloud) source.insert(source.end(), clouds[cloud]->size(), cloud);
+    return {newest, 1, Buffer<u32>(std::move(source))};
+}
+
+}  // namespace
+
+ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> clouds,
+                           std::span<const RigidTransform> poses, Context& context) {
+    std::vector<ColumnTable> tables(clouds.size());
+    std::size_t with_source = 0;
+    for (std::size_t cloud = 0; cloud < clouds.size(); ++cloud) {
+        for (const Column& column : clouds[cloud]->columns)
+            tables[cloud].add(placed(column, poses.empty() ? nullptr : &poses[cloud]));
+        if (clouds[cloud]->columns.find(newest)) ++with_source;
+    }
+    if (with_source > 0)
+        context.warn(fmt::format("{} of {} inputs {} a column 'source' already; it is called 'source{}' now",
+                                 with_source, clouds.size(), with_source == 1 ? "has" : "have", older));
+    ColumnTable result = Merger(std::move(tables), context).merged();
+    result.add(source_column(clouds));
+    return result;
+}
+
+}  // namespace scanmill::merging

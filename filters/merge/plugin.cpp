@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/filter/plugin.hpp"
+#include "merge/merge.hpp"
+#include "merge/poses.hpp"
+
+using namespace scanmill;
+
+namespace {
+
+struct PosedMergeParams : MergeParams {
+    std::optional<std::filesystem::path> poses_file;
+};
+
+}  // namespace
+
+SCANMILL_FILTER() {
+    using P = PosedMergeParams;
+    return Declare<P>("merge", 1)
+        .summary("Puts several clouds into one, moved by their poses, with one point where they overlap.")
+        .source("pose files: Turk and Levoy 1994")
+        .in<PointCloud>("points", "Clouds with finite coordinates and one unit; at least one.", list)
+        .out<PointCloud>("points", "All points that stay, in input order, with a column `source`.")
+        .param("poses", &P::poses_file, "A Stanford .conf or a JSON file that says where each input lies.",
+               word("none"))
+        .choice(
+            "prefer", &P::prefer,
+            {{"none", P::Prefer::none, "That of the earlier input."},
+             {"lower-uncertainty", P::Prefer::lower_uncertainty,
+              "That with the smaller number in its column `uncertainty`; of equal ones that of the earlier input."}},
+            "Which of two points stays where inputs overlap.")
+        .param("within", &P::within, "Points of different inputs that are this near overlap; 0 keeps all.", at_least(0))
+        .metric("points", Unit::count, "Points that stayed.")
+        .metric("dropped", Unit::count, "Points that gave way to one of another input.", headline)
+        .run([](const Inputs& inputs, P params, Context& context) {
+            const auto clouds = inputs.list<PointCloud>("points");
+            if (params.poses_file) {
+                std::vector<Frame> frames;
+                for (const auto& cloud : clouds) frames.push_back(cloud->frame);
+                params.poses = merging::poses_of(frames, merging::read_poses(*params.poses_file, context), context);
+            }
+            return Outputs().set("points", merge(clouds, params, context).points);
+        });
+}

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "merge/poses.hpp"
+
+#include <algorithm>
+
+#include "merge/pose_files.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/suggestion.hpp"
+#include "scanmill/formats/mapped_file.hpp"
+
+namespace scanmill::merging {
+
+namespace {
+
+bool is_json(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && (text[first] == '{' || text[first] == '[');
+}
+
+bool belongs_to(const ScanPose& pose, const std::string& frame) {
+    const std::filesystem::path scan(pose.scan);
+    return pose.scan == frame || scan.filename() == frame || scan.stem() == frame;
+}
+
+std::vector<std::string> names_of(std::span<const ScanPose> poses) {
+    std::vector<std::string> names;
+    for (const ScanPose& pose : poses) names.push_back(pose.scan);
+    return names;
+}
+
+std::vector<RigidTransform> by_order(std::size_t frames, std::span<const ScanPose> poses) {
+    if (frames != poses.size())
+        throw Error("there are {} poses for {} inputs; inputs whose frames have no name take the poses in order",
+                    poses.size(), frames)
+            .hint(
+                "give as many inputs as there are poses, or name frames after their files: `frame: \"{stem}\"` at "
+                "the workflow's input");
+    std::vector<RigidTransform> result;
+    for (const ScanPose& pose : poses) result.push_back(pose.transform);
+    return result;
+}
+
+std::vector<RigidTransform> by_name(std::span<const Frame> frames, std::span<const ScanPose> poses, Context& context) {
+    std::vector<RigidTransform> result;
+    std::vector<std::string> unused = names_of(poses);
+    for (std::size_t input = 0; input < frames.size(); ++input) {
+        const std::string& name = frames[input].name;
+        const auto fits = [&](const ScanPose& pose) { return belongs_to(pose, name); };
+        const auto found = std::ranges::find_if(poses, fits);
+        if (found == poses.end())
+            throw Error("there is no pose for input {}, whose frame is called '{}'; there are {}{}", input, name,
+                        enumerated(names_of(poses)), did_you_mean(name, names_of(poses)));
+        if (std::ranges::count_if(poses, fits) > 1)
+            throw Error("there are {} poses for input {}, whose frame is called '{}'; one is needed",
+                        std::ranges::count_if(poses, fits), input, name);
+        result.push_back(found->transform);
+        std::erase(unused, found->scan);
+    }
+    if (!unused.empty())
+        context.warn(
+            fmt::format("{} of {} poses belong to no input: {}", unused.size(), poses.size(), enumerated(unused)));
+    return result;
+}
+
+}  // namespace
+
+std::vector<ScanPose> read_poses(const std::filesystem::path& file, Context& context) {
+    if (std::filesystem::is_directory(file)) throw Error("'{}': is a folder; expected a file of poses", file.string());
+    const auto warn = [&](const std::string& sentence) {
+        context.warn(fmt::format("'{}': {}", file.string(), sentence));
+    };
+    try {
+        const MappedFile content(file);
+        return is_json(content.bytes()) ? parse_poses_json(content.bytes(), warn)
+                                        : parse_stanford_conf(content.bytes(), warn);
+    } catch (const Error& error) {
+        throw Error("'{}': {}", file.string(), error.sentence()).hint(error.hint());
+    }
+}
+
+std::vector<RigidTransform> poses_of(std::span<const Frame> frames, std::span<const ScanPose> poses, Context& context) {
+    const auto unnamed = std::ranges::find(frames, "", &Frame::name);
+    if (unnamed == frames.end()) return by_name(frames, poses, context);
+    if (const auto named = std::ranges::find_if(frames, [](const Frame& frame) { return !frame.name.empty(); });
+        named != frames.end())
+        throw Error(
+            "the frame of input {} is called '{}', that of input {} has no name; poses are found by name for "
+            "all inputs or for none",
+            named - frames.begin(), named->name, unnamed - frames.begin())
+            .hint("name frames after their files: `frame: \"{stem}\"` at the workflow's input");
+    return by_order(frames.size(), poses);
+}
+
+}  // namespace scanmill::merging

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "merge/pose_files.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/suggestion.hpp"
+
+namespace scanmill::merging {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// nlohmann's parser lets a key stand twice in one object and keeps one of them.
+class RepeatedKeys {
+public:
+    bool operator()(int, Json::parse_event_t event, Json& value) {
+        if (event == Json::parse_event_t::object_start) open_.emplace_back();
+        if (event == Json::parse_event_t::object_end) open_.pop_back();
+        if (event == Json::parse_event_t::key && !open_.back().insert(value.get<std::string>()).second)
+            throw Error("the key '{}' stands twice in one object", value.get<std::string>());
+        return true;
+    }
+
+private:
+    std::vector<std::set<std::string>> open_;
+};
+
+Json parsed(std::string_view text) {
+    try {
+        return Json::parse(text, RepeatedKeys());
+    } catch (const Json::out_of_range&) {
+        throw Error("holds a number that is too large");
+    } catch (const Json::parse_error& error) {
+        const std::size_t end = std::min(error.byte, text.size());
+        throw Error("line {}: is no JSON", 1 + std::ranges::count(text.substr(0, end), '\n'));
+    }
+}
+
+void require_keys(const Json& object, const std::string& place, const std::vector<std::string>& known) {
+    for (const auto& [key, value] : object.items())
+        if (std::ranges::find(known, key) == known.end())
+            throw Error("{}: the key '{}' is not known; there are {}{}", place, key, enumerated(known),
+                        did_you_mean(key, known));
+}
+
+/// Empty when there is none.
+std::string text_at(const Json& object, const char* key, const std::string& place) {
+    if (!object.contains(key)) return {};
+    if (!object[key].is_string()) throw Error("{}: '{}' is no text", place, key);
+    return object[key].get<std::string>();
+}
+
+template <std::size_t count>
+std::array<double, count> numbers_at(const Json& object, const char* key, const std::string& place) {
+    std::array<double, count> values;
+    const Json list = object.value(key, Json());
+    const bool sound = list.is_array() && list.size() == count &&
+                       std::ranges::all_of(list, [](const Json& item) { return item.is_number(); });
+    if (!sound) throw Error("{}: '{}' is not a list of {} numbers", place, key, count);
+    for (std::size_t i = 0; i < count; ++i) values[i] = list[i].template get<double>();
+    return values;
+}
+
+}  // namespace
+
+std::vector<ScanPose> parse_poses_json(std::string_view text, const Warn& warn) {
+    const Json root = parsed(text);
+    const std::string whole = "the poses";
+    if (!root.is_object()) throw Error("holds no JSON object; expected {{\"scanmill\": 1, \"poses\": […]}}");
+    if (root.value("scanmill", Json()) != Json(1)) throw Error("does not say its grammar; expected \"scanmill\": 1");
+    require_keys(root, whole, {"scanmill", "unit", "frame", "poses"});
+    const std::string unit_text = text_at(root, "unit", whole);
+    const std::optional<LengthUnit> unit = length_unit(unit_text);
+    if (!unit_text.empty() && !unit)
+        throw Error("'{}' is no unit; expected one of {}", unit_text, length_unit_symbols());
+    const Json list = root.value("poses", Json());
+    if (!list.is_array() || list.empty()) throw Error("holds no pose; expected \"poses\" to be a list of them");
+
+    std::vector<ScanPose> poses;
+    for (const Json& item : list) {
+        const std::string place = fmt::format("pose {}", poses.size() + 1);
+        if (!item.is_object()) throw Error("{}: is no JSON object", place);
+        require_keys(item, place, {"scan", "rotation", "translation"});
+        ScanPose pose;
+        pose.scan = text_at(item, "scan", place);
+        pose.transform.rotation = rotation_of(numbers_at<4>(item, "rotation", place), place, warn);
+        pose.transform.translation = Vec3(numbers_at<3>(item, "translation", place).data());
+        pose.transform.unit = unit.value_or(LengthUnit::unknown);
+        pose.transform.to = text_at(root, "frame", whole);
+        poses.push_back(std::move(pose));
+    }
+    return poses;
+}
+
+}  // namespace scanmill::merging

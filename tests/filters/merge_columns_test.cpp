@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What becomes of the columns: nothing is lost or changed in silence.
+#include <gmock/gmock.h>
+
+#include "filters/merge_cases.hpp"
+#include "support/shapes.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+template <class... Columns>
+PointCloud two_points(Columns... columns) {
+    PointCloud cloud = cloud_of({{0, 0, 0}, {1, 0, 0}});
+    (cloud.columns.add(std::move(columns)), ...);
+    return cloud;
+}
+
+std::vector<std::string> names(const ColumnTable& table) {
+    std::vector<std::string> result;
+    for (const Column& column : table) result.push_back(column.name());
+    return result;
+}
+
+TEST(MergeColumns, OfEqualType_AreCarriedInOrder) {
+    const PointCloud a = two_points(Column("b", 1, Buffer<u8>{1, 2}), Column("a", 2, Buffer<double>{1, 2, 3, 4}));
+    const PointCloud b = two_points(Column("a", 2, Buffer<double>{5, 6, 7, 8}), Column("b", 1, Buffer<u8>{3, 4}));
+    const Merged result = merged({a, b});
+    EXPECT_THAT(names(result.points.columns), ElementsAre("b", "a", "source"));
+    EXPECT_THAT(result.points.columns.find("b")->values<u8>(), ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(result.points.columns.find("a")->values<double>(), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+    EXPECT_THAT(result.warnings, IsEmpty());
+}
+
+TEST(MergeColumns, OfDroppedPoints_GoWithThem) {
+    const PointCloud a = two_points(Column("b", 1, Buffer<u8>{1, 2}));
+    PointCloud b = cloud_of({{1, 0, 0}, {5, 0, 0}});
+    b.columns.add(Column("b", 1, Buffer<u8>{3, 4}));
+    const Merged result = merged({a, b}, within(0.5));
+    EXPECT_THAT(result.points.columns.find("b")->values<u8>(), ElementsAre(1, 2, 4));
+    EXPECT_THAT(result.points.columns.find("source")->values<u32>(), ElementsAre(0u, 0u, 1u));
+}
+
+TEST(MergeColumns, ThatSomeInputLacks_IsLeftOutAndTold) {
+    const PointCloud with = two_points(Column("intensity", 1, Buffer<float>{1, 2})), without = two_points();
+    const Merged result = merged({without, with, without});
+    EXPECT_THAT(names(result.points.columns), ElementsAre("source"));
+    EXPECT_THAT(result.warnings, ElementsAre("the column 'intensity' is left out: 2 of 3 inputs lack it"));
+}
+
+TEST(MergeColumns, OfDifferentTypes_BecomeFloat64AndAreTold) {
+    const PointCloud a = two_points(Column("x", 1, Buffer<u8>{1, 255}));
+    const PointCloud b = two_points(Column("x", 1, Buffer<float>{0.5, -3}));
+    const Merged result = merged({a, b});
+    EXPECT_THAT(result.points.columns.find("x")->values<double>(), ElementsAre(1, 255, 0.5, -3));
+    EXPECT_THAT(result.warnings,
+                ElementsAre("the column 'x' is carried as float64: it is uint8 in input 0, float32 in input 1"));
+}
+
+TEST(MergeColumns, OfLargeIntegersAndFloats_TellThatTheyAreRounded) {
+    const PointCloud a = two_points(Column("t", 1, Buffer<u64>{1, 2})),
+                     b = two_points(Column("t", 1, Buffer<float>{1, 2}));
+    EXPECT_THAT(merged({a, b}).warnings, ElementsAre(HasSubstr("beyond 2^53 are rounded")));
+}
+
+TEST(MergeColumns, OfDifferentShapes_AreLeftOutAndTold) {
+    const PointCloud a = two_points(Column("colour", 3, Buffer<u8>{1, 2, 3, 4, 5, 6}));
+    const PointCloud b = two_points(Column("colour", 4, Buffer<u8>{1, 2, 3, 4, 5, 6, 7, 8}));
+    const Merged result = merged({a, a, b});
+    EXPECT_THAT(names(result.points.columns), ElementsAre("source"));
+    EXPECT_THAT(result.warnings,
+                ElementsAre("the column 'colour' is left out: it is 3 x uint8 in input 0, 4 x uint8 in input 2"));
+}
+
+TEST(MergeColumns, Lists_AreCarriedWhenTheirTypesAgree) {
+    const Column first("l", Buffer<u64>{0, 2, 2}, Buffer<u8>{1, 2}),
+        second("l", Buffer<u64>{0, 1, 3}, Buffer<u8>{3, 4, 5});
+    const Column joined = *merged({two_points(first), two_points(second)}).points.columns.find("l");
+    EXPECT_THAT(joined.values<u8>(), ElementsAre(1, 2, 3, 4, 5));
+    EXPECT_THAT(joined.offsets().span(), ElementsAre(0u, 2u, 2u, 3u, 5u));
+    const Column other("l", Buffer<u64>{0, 1, 1}, Buffer<float>{1});
+    EXPECT_THAT(merged({two_points(first), two_points(other)}).warnings,
+                ElementsAre(AllOf(HasSubstr("'l' is left out"), HasSubstr("lists of float32 in input 1"))));
+}
+
+TEST(MergeColumns, EarlierSources_MoveUpByOneName) {
+    const PointCloud once = merged({two_points(), two_points()}).points;
+    const Merged twice = merged({once, once});
+    EXPECT_THAT(names(twice.points.columns), ElementsAre("source-of-source", "source"));
+    EXPECT_THAT(twice.points.columns.find("source-of-source")->values<u32>(),
+                ElementsAre(0u, 0u, 1u, 1u, 0u, 0u, 1u, 1u));
+    EXPECT_THAT(twice.points.columns.find("source")->values<u32>(), ElementsAre(0u, 0u, 0u, 0u, 1u, 1u, 1u, 1u));
+    EXPECT_THAT(twice.warnings, ElementsAre(HasSubstr("2 of 2 inputs have a column 'source' already")));
+    EXPECT_THAT(names(merged({twice.points}).points.columns),
+                ElementsAre("source-of-source-of-source", "source-of-source", "source"));
+    EXPECT_THAT(names(merged({two_points(Column("sources", 1, Buffer<u8>{1, 2}))}).points.columns),
+                ElementsAre("sources", "source"));
+}
+
+TEST(MergeColumns, WholeNumberNormals_BecomeFloat64WhenTurned) {
+    const PointCloud cloud = two_points(Column("normal", 3, Buffer<std::int8_t>{1, 0, 0, 0, 0, 1}));
+    EXPECT_EQ(merged({cloud}, posed({RigidTransform{}})).points.columns.find("normal")->type(), ScalarType::float64);
+    EXPECT_EQ(merged({cloud}).points.columns.find("normal")->type(), ScalarType::int8);
+}
+
+}  // namespace
+}  // namespace scanmill::test

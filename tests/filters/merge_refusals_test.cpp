@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Everything that merge refuses but pose files, which merge_poses_test.cpp is about.
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "filters/merge_cases.hpp"
+#include "support/shapes.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const double infinity = std::numeric_limits<double>::infinity();
+const double nan = std::numeric_limits<double>::quiet_NaN();
+
+Error refusal(const Clouds& clouds, const MergeParams& params = {}) {
+    return error_of([&] { merged(clouds, params); });
+}
+
+PointCloud in_unit(LengthUnit unit) {
+    PointCloud cloud = cloud_of({{0, 0, 0}});
+    cloud.frame.unit = unit;
+    return cloud;
+}
+
+const PointCloud point = in_unit(LengthUnit::unknown);
+
+TEST(MergeRefusals, NoInputs_AreRefused) { EXPECT_THAT(refusal({}).sentence(), HasSubstr("at least one")); }
+
+TEST(MergeRefusals, InputWithoutPoints_IsNamed) {
+    EXPECT_EQ(refusal({point, PointCloud{}}).sentence(), "input 1 of 2 has no points");
+}
+
+TEST(MergeRefusals, NotFinite_IsRefusedWithRowAndInput) {
+    const Error error = refusal({point, cloud_of({{0, 0, 0}, {0, nan, 0}})});
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("1 of 2 points"), HasSubstr("in input 1 of 2")));
+    EXPECT_THAT(refusal({cloud_of({{0, 0, -infinity}})}).what(), HasSubstr("in input 0 of 1"));
+}
+
+TEST(MergeRefusals, DifferentUnits_AreBothNamedWithAWayOut) {
+    const Error error =
+        refusal({in_unit(LengthUnit::millimetre), in_unit(LengthUnit::millimetre), in_unit(LengthUnit::metre)});
+    EXPECT_EQ(error.sentence(), "the inputs have different units: mm in input 0, m in input 2");
+    EXPECT_THAT(error.hint(), HasSubstr("scanmill convert --to-unit"));
+}
+
+TEST(MergeRefusals, KnownAndUnknownUnit_AreDifferent) {
+    const Error error = refusal({point, in_unit(LengthUnit::inch)});
+    EXPECT_EQ(error.sentence(), "the inputs have different units: an unknown unit in input 0, in in input 1");
+    EXPECT_THAT(error.hint(), HasSubstr("--unit mm"));
+    EXPECT_THAT(refusal({in_unit(LengthUnit::inch), point}).hint(), HasSubstr("--unit mm"));
+}
+
+TEST(MergeRefusals, DistanceBelowZeroOrInfinite_IsRefused) {
+    EXPECT_THAT(refusal({point}, within(-1)).sentence(), HasSubstr("-1 u; it must be 0 or more"));
+    EXPECT_THAT(refusal({point}, within(nan)).sentence(), HasSubstr("0 or more"));
+    EXPECT_THAT(refusal({point}, within(infinity)).sentence(), HasSubstr("0 or more"));
+    MergeParams relative;
+    relative.within = Length::spacings(1);
+    EXPECT_THAT(refusal({point}, relative).sentence(), HasSubstr("not resolved"));
+}
+
+TEST(MergeRefusals, AnotherNumberOfPoses_NamesBoth) {
+    EXPECT_EQ(refusal({point, point}, posed({RigidTransform{}})).sentence(),
+              "there are 1 poses for 2 inputs; every input needs one");
+}
+
+TEST(MergeRefusals, PosesInAUnitThatTheScansLack_AskForIt) {
+    RigidTransform pose;
+    pose.unit = LengthUnit::metre;
+    const Error error = refusal({point}, posed({pose}));
+    EXPECT_THAT(error.sentence(), HasSubstr("the poses are in m; the unit of the scans is not declared"));
+    EXPECT_THAT(error.hint(), HasSubstr("--unit"));
+}
+
+TEST(MergeRefusals, PoseOutOfThisWorld_IsRefused) {
+    RigidTransform pose;
+    pose.translation = Vec3(1.5e308, 0, 0);
+    EXPECT_THAT(refusal({cloud_of({{1.5e308, 0, 0}})}, posed({pose})).what(), HasSubstr("after the clouds were moved"));
+}
+
+TEST(MergeRefusals, PointsTooFarApartToMeasure_AreRefused) {
+    EXPECT_THAT(refusal({cloud_of({{-1.5e308, 0, 0}}), cloud_of({{1.5e308, 0, 0}})}, within(1)).sentence(),
+                HasSubstr("distances between them cannot be told"));
+}
+
+TEST(MergeRefusals, MissingUncertainty_IsNamed) {
+    const MergeParams params = within(1, MergeParams::Prefer::lower_uncertainty);
+    const PointCloud with = with_uncertainty(cloud_of({{0, 0, 0}}), {1});
+    const Error error = refusal({with, point}, params);
+    EXPECT_THAT(error.sentence(), HasSubstr("input 1 of 2 has no column 'uncertainty'"));
+    EXPECT_THAT(error.hint(), HasSubstr("prefer: none"));
+    PointCloud wide = cloud_of({{0, 0, 0}});
+    wide.columns.add(Column("uncertainty", 2, Buffer<float>{1, 2}));
+    EXPECT_THAT(refusal({wide}, params).sentence(), HasSubstr("with one number per point"));
+    EXPECT_EQ(merged({point, with}, within(1)).dropped, 1u) << "nobody asked for it here";
+}
+
+TEST(MergeRefusals, UncertaintyThatIsNone_IsNamedWithItsPoint) {
+    const MergeParams params = within(1, MergeParams::Prefer::lower_uncertainty);
+    const PointCloud unknown =
+        with_uncertainty(cloud_of({{0, 0, 0}, {1, 0, 0}}), {1, std::numeric_limits<float>::quiet_NaN()});
+    EXPECT_EQ(refusal({unknown}, params).sentence(), "an uncertainty is 0 or more; point 1 of input 0 has nan");
+    const PointCloud negative = with_uncertainty(cloud_of({{0, 0, 0}}), {-1});
+    EXPECT_THAT(refusal({unknown, negative}, params).sentence(), HasSubstr("input 0 has nan"));
+    EXPECT_THAT(refusal({negative}, params).sentence(), HasSubstr("has -1"));
+}
+
+}  // namespace
+}  // namespace scanmill::test

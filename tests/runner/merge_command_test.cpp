@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Views of one object in one command: the ready workflow merge-views, as its users see it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scanmill/formats/files.hpp"
+#include "support/program.hpp"
+#include "support/real_data.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string merge_views() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/merge-views.yaml"; }
+
+/// Two views, and poses that stand in the other order: a quarter turn about z for `left`, against its quaternion.
+class MergeCommand : public testing::Test {
+protected:
+    MergeCommand() {
+        folder_.write("left.xyz", "1 2 3\n");
+        folder_.write("right.xyz", "-2 1 3\n5 5 5\n");
+        folder_.write("v.conf",
+                      "camera 0 0 0 0 0 0 1\nbmesh right.ply 0 0 0 0 0 0 1\n"
+                      "bmesh left.ply 0 0 0 0 0 -0.70710678 0.70710678\n");
+    }
+    ProgramResult run(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.begin(), {"run", merge_views()});
+        return scanmill_program(arguments, {.folder = folder_.path()});
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(MergeCommand, Views_TakeTheirPosesByName) {
+    const ProgramResult ran =
+        run({"left.xyz", "right.xyz", "--set", "poses=v.conf", "--set", "within=0.001 u", "-o", "out"});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.out, AllOf(HasSubstr("merge-views"), HasSubstr("dropped"), HasSubstr("out/merge-views.ply")));
+    const auto points = read_points(folder_ / "out/merge-views.ply");
+    ASSERT_EQ(points->size(), 2u) << "left's point is turned onto right's first";
+    EXPECT_LT((points->positions[0] - Vec3(-2, 1, 3)).norm(), 1e-7);
+    EXPECT_EQ(points->positions[1], Vec3(5, 5, 5));
+    EXPECT_EQ(points->columns.find("source")->number(1), 1);
+}
+
+TEST_F(MergeCommand, WithoutPoses_KeepsThePlacesAndTellsTheFrames) {
+    const ProgramResult ran = run({"left.xyz", "right.xyz", "-o", "out"});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("1 of 2 inputs have another frame than 'left'"));
+    EXPECT_EQ(read_points(folder_ / "out/merge-views.ply")->size(), 3u);
+}
+
+TEST_F(MergeCommand, ViewWithoutPose_FailsNamingIt) {
+    folder_.write("top.xyz", "0 0 0\n");
+    const ProgramResult ran = run({"left.xyz", "top.xyz", "--set", "poses=v.conf", "-o", "out"});
+    EXPECT_EQ(ran.exit_code, 1);
+    EXPECT_THAT(ran.err,
+                AllOf(HasSubstr("no pose for input 1, whose frame is called 'top'"), HasSubstr("in step 'merge'")));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/merge-views.ply"));
+}
+
+TEST_F(MergeCommand, MissingPoses_FailNamingTheFile) {
+    const ProgramResult ran = run({"left.xyz", "--set", "poses=absent.conf", "-o", "out"});
+    EXPECT_EQ(ran.exit_code, 1);
+    EXPECT_THAT(ran.err, HasSubstr("'absent.conf': there is no such file"));
+}
+
+TEST_F(MergeCommand, ViewsOfDifferentUnits_AreRefused) {
+    folder_.write("mm.xyz", "# unit mm\n0 0 0\n");
+    folder_.write("m.xyz", "# unit m\n0 0 0\n");
+    const ProgramResult ran = run({"mm.xyz", "m.xyz", "-o", "out"});
+    EXPECT_EQ(ran.exit_code, 1);
+    EXPECT_THAT(ran.err, AllOf(HasSubstr("different units: mm"), HasSubstr("--to-unit")));
+    const ProgramResult unknown = run({"mm.xyz", "left.xyz", "-o", "out"});
+    EXPECT_EQ(unknown.exit_code, 1);
+    EXPECT_THAT(unknown.err, AllOf(HasSubstr("mm in input 0, an unknown unit in input 1"), HasSubstr("--unit mm")));
+    EXPECT_EQ(run({"mm.xyz", "left.xyz", "--unit", "mm", "-o", "out"}).exit_code, 0);
+}
+
+TEST_F(MergeCommand, AnyThreads_WriteEqualBytes) {
+    for (const char* threads : {"1", "2"})
+        ASSERT_EQ(
+            run({"left.xyz", "right.xyz", "--set", "poses=v.conf", "--threads", threads, "-o", threads}).exit_code, 0);
+    EXPECT_EQ(content_of(folder_ / "1/merge-views.ply"), content_of(folder_ / "2/merge-views.ply"));
+    EXPECT_FALSE(content_of(folder_ / "1/merge-views.ply").empty());
+}
+
+TEST_F(MergeCommand, BunnysTenViews_AreOneCloud) {
+    SCANMILL_REAL_SCAN(conf, shared_data, "1-bunny/raw/bun.conf");
+    std::vector<std::string> arguments{"--set", "poses=" + conf.string(), "--json", "-o", "out"};
+    std::vector<std::string> views;
+    for (const auto& entry : std::filesystem::directory_iterator(conf.parent_path()))
+        if (entry.path().extension() == ".ply") views.push_back(entry.path().string());
+    std::ranges::sort(views);  // the alphabet's order, which is not the file's
+    ASSERT_EQ(views.size(), 10u);
+    arguments.insert(arguments.end(), views.begin(), views.end());
+    const ProgramResult ran = run(arguments);
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const json report = json::parse(ran.out);
+    ASSERT_EQ(report.at("cells").size(), 1u);
+    EXPECT_EQ(report.at("cells").at(0).at("outputs").at(0).at("facts").at("points"), 362272);
+}
+
+}  // namespace
+}  // namespace scanmill::test
