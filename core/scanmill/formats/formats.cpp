@@ -6,6 +6,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/off.hpp"
 #include "scanmill/formats/ply.hpp"
+#include "scanmill/formats/ptx.hpp"
 #include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/stl.hpp"
 #include "scanmill/formats/xyz.hpp"
@@ -13,13 +14,14 @@
 namespace scanmill {
 
 std::span<const Format> formats() {
-    static const std::array<Format, 5> table{{
+    static const std::array<Format, 6> table{{
         {"PLY", {"ply"}, recognise_ply, read_ply, {{Kind::points, write_ply_points}, {Kind::mesh, write_ply_mesh}}},
         {"STL", {"stl"}, recognise_stl, read_stl, {{Kind::mesh, write_stl}}},
         {"OFF", {"off"}, recognise_off, read_off, {{Kind::mesh, write_off}}},
         {"XYZ", {"xyz", "txt"}, recognise_xyz, read_xyz, {{Kind::points, write_xyz}}},
         // Read alike, but not written: commas, a count or normals are expected of them.
         {"CSV", {"csv", "pts", "pwn", "asc"}, recognise_xyz, read_xyz, {}},
+        {"PTX", {"ptx"}, recognise_ptx, read_ptx, {}},
     }};
     return table;
 }
