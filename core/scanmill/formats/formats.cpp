@@ -4,6 +4,8 @@
 #include <cctype>
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/formats/e57.hpp"
+#include "scanmill/formats/las.hpp"
 #include "scanmill/formats/off.hpp"
 #include "scanmill/formats/ply.hpp"
 #include "scanmill/formats/ptx.hpp"
@@ -14,7 +16,7 @@
 namespace scanmill {
 
 std::span<const Format> formats() {
-    static const std::array<Format, 6> table{{
+    static const std::array<Format, 8> table{{
         {"PLY", {"ply"}, recognise_ply, read_ply, {{Kind::points, write_ply_points}, {Kind::mesh, write_ply_mesh}}},
         {"STL", {"stl"}, recognise_stl, read_stl, {{Kind::mesh, write_stl}}},
         {"OFF", {"off"}, recognise_off, read_off, {{Kind::mesh, write_off}}},
@@ -22,6 +24,8 @@ std::span<const Format> formats() {
         // Read alike, but not written: commas, a count or normals are expected of them.
         {"CSV", {"csv", "pts", "pwn", "asc"}, recognise_xyz, read_xyz, {}},
         {"PTX", {"ptx"}, recognise_ptx, read_ptx, {}},
+        {"LAS", {"las", "laz"}, recognise_las, read_las, {}},
+        {"E57", {"e57"}, recognise_e57, refuse_e57, {}, true},
     }};
     return table;
 }
@@ -57,7 +61,8 @@ const Format& format_of(const FileBytes& file) {
     if (plausible) return *plausible;
 
     std::string known;
-    for (const Format& format : formats()) known.append(known.empty() ? "" : ", ").append(format.name);
+    for (const Format& format : formats())
+        if (!format.is_refused) known.append(known.empty() ? "" : ", ").append(format.name);
     constexpr std::size_t shown = 16;
     throw Error("is of no known format: it begins with {} and has {}", quote(head.substr(0, shown)),
                 extension.empty() ? std::string("no extension") : "the extension '" + extension + "'")
