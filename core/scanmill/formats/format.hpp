@@ -39,6 +39,8 @@ struct Format {
     Recognise recognises;
     Read read;
     std::vector<std::pair<Kind, Write>> writers;
+    /// Listed so that `read` can say what to do instead: it always throws.
+    bool is_refused = false;
 
     bool has_extension(std::string_view extension) const;
     /// Empty when the format cannot carry the kind.

@@ -5,10 +5,13 @@
 
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/module.hpp"
+#include "scanmill/formats/e57.hpp"
 #include "scanmill/formats/format_modules.hpp"
+#include "scanmill/formats/las.hpp"
 #include "scanmill/formats/obj.hpp"
 #include "scanmill/formats/off.hpp"
 #include "scanmill/formats/ply.hpp"
+#include "scanmill/formats/ptx.hpp"
 #include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/stl.hpp"
 #include "scanmill/formats/xyz.hpp"
@@ -26,6 +29,9 @@ std::vector<Format> built_in() {
         {"XYZ", {"xyz", "txt"}, recognise_xyz, read_xyz, {{Kind::points, write_xyz}}},
         // Read alike, but not written: commas, a count or normals are expected of them.
         {"CSV", {"csv", "pts", "pwn", "asc"}, recognise_xyz, read_xyz, {}},
+        {"PTX", {"ptx"}, recognise_ptx, read_ptx, {}},
+        {"LAS", {"las", "laz"}, recognise_las, read_las, {}},
+        {"E57", {"e57"}, recognise_e57, refuse_e57, {}, true},
     };
 }
 
@@ -71,7 +77,8 @@ const Format& format_of(const FileBytes& file) {
     if (plausible) return *plausible;
 
     std::string known;
-    for (const Format& format : formats()) known.append(known.empty() ? "" : ", ").append(format.name);
+    for (const Format& format : formats())
+        if (!format.is_refused) known.append(known.empty() ? "" : ", ").append(format.name);
     constexpr std::size_t shown = 16;
     throw Error("is of no known format: it begins with {} and has {}", quote(head.substr(0, shown)),
                 extension.empty() ? std::string("no extension") : "the extension '" + extension + "'")

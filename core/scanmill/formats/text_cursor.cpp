@@ -17,7 +17,7 @@ bool TextCursor::next_row() {
         pass_line_end();
         gaps_ = 0;
     }
-    gaps_ = gaps_ & (comma_gap | empty_field) ? empty_field : 0;  // what stands before the first token is no gap
+    gaps_ = gaps_ & ~blank_gap ? empty_field : 0;  // what stands before the first token is no gap
     return true;
 }
 
@@ -36,9 +36,19 @@ std::size_t TextCursor::count_tokens() const {
     return count;
 }
 
+std::pair<std::string_view, std::string_view> TextCursor::mixed_separators() const {
+    std::vector<std::string_view> found;
+    if (gaps_ & comma_gap) found.push_back("commas");
+    if (gaps_ & semicolon_gap) found.push_back("semicolons");
+    if (gaps_ & bar_gap) found.push_back("bars");
+    if (gaps_ & blank_gap) found.push_back("blanks");
+    return {found.at(0), found.at(1)};
+}
+
 void TextCursor::pass_comment() {
     constexpr std::size_t most_comments = 1000;
-    const char* const begin = ++at_;
+    at_ += *at_ == '/' ? 2 : 1;
+    const char* const begin = at_;
     while (at_ != end_ && !ends_line(*at_)) ++at_;
     if (comments_.size() < most_comments) comments_.emplace_back(begin, at_);
 }

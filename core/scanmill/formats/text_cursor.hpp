@@ -4,23 +4,26 @@
 ///
 /// A row is a line that holds at least one token; blank lines and comments are passed over. Lines end with LF, CRLF or
 /// CR; where a format allows it, a sign right before the line's end joins the next line to the row (in a comment it is
-/// text). Tokens are separated by blanks and tabs, and, where a format allows it, by commas and semicolons. Numbers are
-/// read without regard to the locale, every spelling of nan and inf that parse_number() knows included. Nothing is
+/// text). Tokens are separated by blanks and tabs, and, where a format allows it, by commas, semicolons and bars. Numbers
+/// are read without regard to the locale, every spelling of nan and inf that parse_number() knows included. Nothing is
 /// copied and nothing beyond the text is touched.
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace scanmill {
 
 struct TextRules {
-    bool commas = false;  ///< commas and semicolons separate, too
+    bool commas = false;  ///< commas, semicolons and bars separate, too
     char comment = '\0';  ///< begins a comment that lasts until the line's end; none when zero
+    bool slashes = false;  ///< two slashes at the beginning of a token begin a comment, too
     char continuation = '\0';  ///< joins two lines when it stands right before the line's end; none when zero
     std::size_t line = 1;  ///< number of the first line
 };
@@ -31,6 +34,7 @@ public:
         : at_(text.data()),
           end_(text.data() + text.size()),
           rules_(rules),
+          separators_(rules.commas ? any_gap : blank_gap),
           line_(rules.line) {}
 
     /// Moves to the next row, passing over what is left of this one; false at the end of the text.
@@ -47,10 +51,12 @@ public:
     std::string_view last_token() const { return last_token_; }
     /// Makes `tail`, the end of the token just read, the next token.
     void put_back(std::string_view tail) { at_ = tail.data(); }
-    /// Between the numbers of this row, as far as it was read, stood blanks here and commas there: "1,5 2,5 3" may mean
-    /// three numbers or five.
-    bool mixes_separators() const { return gaps_ & blank_gap && gaps_ & comma_gap; }
-    /// A comma with nothing before it in this row, as far as it was read.
+    /// Between the numbers of this row, as far as it was read, stood different separators, say commas here and blanks
+    /// there: "1,5 2,5 3" may mean three numbers or five.
+    bool mixes_separators() const { return (gaps_ & any_gap & ((gaps_ & any_gap) - 1)) != 0; }
+    /// The first two kinds that mixes_separators() saw: "commas" and "blanks". Pre: it does.
+    std::pair<std::string_view, std::string_view> mixed_separators() const;
+    /// A comma, semicolon or bar with nothing before it in this row, as far as it was read.
     bool has_empty_field() const { return gaps_ & empty_field; }
     /// Tokens left in this row; does not move.
     std::size_t count_tokens() const;
@@ -61,20 +67,39 @@ public:
     const std::vector<std::string>& comments() const { return comments_; }
 
 private:
-    static constexpr unsigned blank_gap = 1, comma_gap = 2, empty_field = 4;
+    // Bits of gaps_; the first four and line_end are also what a character is.
+    static constexpr unsigned comma_gap = 1, semicolon_gap = 2, bar_gap = 4, blank_gap = 8, any_gap = 15;
+    static constexpr unsigned empty_field = 16, line_end = 32;
+    static constexpr auto kinds = [] {
+        std::array<unsigned char, 256> table{};
+        for (const char c : {' ', '\t', '\v', '\f'}) table[static_cast<unsigned char>(c)] = blank_gap;
+        for (const char c : {'\n', '\r'}) table[static_cast<unsigned char>(c)] = line_end;
+        table[','] = comma_gap;
+        table[';'] = semicolon_gap;
+        table['|'] = bar_gap;
+        return table;
+    }();
 
-    static bool is_comma(char c) { return c == ',' || c == ';'; }
-    bool separates(char c) const {
-        return c == ' ' || c == '\t' || c == '\v' || c == '\f' || (rules_.commas && is_comma(c));
-    }
-    static bool ends_line(char c) { return c == '\n' || c == '\r'; }
+    static unsigned kind(char c) { return kinds[static_cast<unsigned char>(c)]; }
+    static bool ends_line(char c) { return kind(c) == line_end; }
+    unsigned gap_at(char c) const { return kind(c) & separators_; }
     bool ends_token(char c) const {
-        return separates(c) || ends_line(c) || (c != '\0' && (c == rules_.comment || c == rules_.continuation));
+        return (kind(c) & (separators_ | line_end)) != 0 ||
+               (c != '\0' && (c == rules_.comment || c == rules_.continuation));
     }
-    bool at_comment() const { return rules_.comment != '\0' && *at_ == rules_.comment; }
+    bool at_comment() const {
+        if (*at_ == '/') return rules_.slashes && end_ - at_ > 1 && at_[1] == '/';
+        return *at_ == rules_.comment && rules_.comment != '\0';
+    }
     bool at_continuation() const {
         return rules_.continuation != '\0' && at_ != end_ && *at_ == rules_.continuation &&
                (at_ + 1 == end_ || ends_line(at_[1]));
+    }
+    void pass_gap(unsigned& all, int& commas) {
+        for (unsigned gap; at_ != end_ && (gap = gap_at(*at_)) != 0; ++at_) {
+            all |= gap;
+            commas += gap != blank_gap;
+        }
     }
     void pass_continuation();
     void pass_comment();
@@ -84,6 +109,7 @@ private:
     const char* at_;
     const char* end_;
     TextRules rules_;
+    unsigned separators_;
     std::size_t line_;
     unsigned gaps_ = 0;
     bool begun_ = false;
@@ -94,10 +120,11 @@ private:
 inline bool TextCursor::more() {
     const char* const begin = at_;
     int commas = 0;
-    for (; at_ != end_ && separates(*at_); ++at_) commas += is_comma(*at_);
+    unsigned all = 0;
+    pass_gap(all, commas);
     while (at_continuation()) {
         pass_continuation();
-        for (; at_ != end_ && separates(*at_); ++at_) commas += is_comma(*at_);
+        pass_gap(all, commas);
     }
     if (commas > 1) gaps_ |= empty_field;
     if (at_ == end_ || ends_line(*at_)) return false;
@@ -105,7 +132,7 @@ inline bool TextCursor::more() {
         pass_comment();
         return false;
     }
-    if (at_ != begin) gaps_ |= commas == 0 ? blank_gap : comma_gap;
+    if (at_ != begin) gaps_ |= commas == 0 ? blank_gap : all & ~blank_gap;
     return true;
 }
 

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// XYZ and its relatives (.xyz, .txt, .pwn, .pts, .csv, .asc): one point per line, numbers in columns.
+/// XYZ and its relatives (.xyz, .txt, .asc, .csv, .pts, .pwn): one point per line, numbers in columns.
 ///
-/// Read: columns separated by blanks, tabs, commas or semicolons; the first three are x, y, z. Further columns are
-/// `normal` (3, float64) when there are exactly three and every one that is not zero has unit length within a tenth,
-/// else columns c4, c5 … (float64); three that are no unit normals are told. A first line of names (X,Y,Z,Intensity,
-/// perhaps in quotes) names the columns instead. A first line with a single whole number is the number of points. `#`
-/// lines are comments; "unit mm" and "frame NAME" in them give the frame. Every line must have as many numbers as the
-/// first. Written: x y z, and the normals when there are some, as the shortest decimals that read back equal. Other
-/// columns are told.
+/// Read: columns separated by blanks, tabs, commas, semicolons or bars, of one kind in each row; `#` and `//` begin
+/// comments, in which "unit mm" and "frame NAME" give the frame. A line of names (X,Y,Z,Intensity; in a comment, too)
+/// names the columns, in any order; without one the first three are x, y, z. text_columns.hpp says what becomes of the
+/// others. Every line must have as many numbers as the first.
+///
+/// A first line with a single whole number is the number of points. When further such lines follow, each behind as many
+/// points as the one before promised, the blocks are scans: one cloud, with a column `scan` (uint32) from 0, which is
+/// told. A count N before 2 N rows of three numbers means N points and then their normals. Lines of single letters and
+/// numbers, as in "p 1 2 3", are Hoppe's points: see tagged_points.hpp.
+///
+/// Written: x y z, and the normals when there are some, as the shortest decimals that read back equal. Other columns
+/// are told.
 
 #include "scanmill/formats/format.hpp"
 

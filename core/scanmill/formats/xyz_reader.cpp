@@ -1,63 +1,40 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/quantity.hpp"
 #include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/text_cursor.hpp"
+#include "scanmill/formats/tagged_points.hpp"
+#include "scanmill/formats/text_columns.hpp"
+#include "scanmill/formats/text_layout.hpp"
 #include "scanmill/formats/xyz.hpp"
 
 namespace scanmill {
 
 namespace {
 
-constexpr TextRules rules{.commas = true, .comment = '#'};
-constexpr std::size_t most_columns = 1000;
-
-std::vector<std::string_view> tokens_of_row(TextCursor row) {
-    std::vector<std::string_view> tokens;
-    while (row.more() && tokens.size() <= most_columns) tokens.push_back(row.token());
-    return tokens;
-}
-
-bool is_number(std::string_view token) {
-    double ignored = 0;
-    return parse_number(token, ignored);
-}
-
-/// A name without its quotes.
-std::string_view unquoted(std::string_view name) {
-    if (name.size() >= 2 && (name.front() == '"' || name.front() == '\'') && name.back() == name.front())
-        return name.substr(1, name.size() - 2);
-    return name;
-}
-
-bool names_axis(std::string_view name, char axis) {
-    return name.size() == 1 && std::tolower(static_cast<unsigned char>(name[0])) == axis;
-}
-
-/// Whether three components per row are lengths of about one, or zero where there is no normal.
-bool are_unit(const std::vector<Array<double>>& columns) {
-    constexpr double tolerance = 0.1;
-    for (std::size_t row = 0; row < columns[0].size(); ++row) {
-        const double length = std::hypot(columns[0][row], columns[1][row], columns[2][row]);
-        if (std::abs(length - 1) > tolerance && length != 0) return false;
-    }
-    return true;
-}
+constexpr std::string_view count_hint = "the file is truncated or its count is wrong: correct or remove that line";
 
 class XyzReader {
 public:
-    XyzReader(const FileBytes& file, const ReadOptions& options)
-        : text_(without_byte_order_mark(file.bytes), rules),
-          size_(file.bytes.size()),
+    XyzReader(const FileBytes& file, std::string_view text, const ReadOptions& options)
+        : text_(text, text_rules),
+          size_(text.size()),
+          extension_(plain_extension(file.path.extension().string())),
           options_(options) {}
 
     LoadedFile read() {
-        begin();
+        layout_ = read_text_layout(text_);
+        if (!layout_.passed_over.empty())
+            warn(options_.on_warning,
+                 "the comment {} was passed over: it does not name x, y, z and then the rest of {}",
+                 quote(layout_.passed_over), counted(layout_.width, "column", "columns"));
         read_rows();
+        std::optional<Column> normals = normals_behind_points();
+        if (!normals) require_promised();
+        require_countable(positions_.size(), "points");
+
         LoadedFile loaded;
         loaded.format = "XYZ";
         loaded.encoding = "ascii";
@@ -65,130 +42,167 @@ public:
         PointCloud cloud;
         cloud.frame = declared_frame(loaded.comments, options_);
         move_near_origin(positions_, bounding_box(positions_), cloud.frame);
+        if (normals)
+            cloud.columns.add(std::move(*normals));
+        else
+            cloud.columns = columns();
         cloud.positions = std::move(positions_);
-        cloud.columns = columns();
         loaded.value = std::make_shared<const PointCloud>(std::move(cloud));
         return loaded;
     }
 
 private:
-    /// Finds the first row of numbers; what comes before it may be a count and names.
-    void begin() {
-        if (!text_.next_row()) throw Error("holds no points: nothing but blanks and comments");
-        std::vector<std::string_view> tokens = tokens_of_row(text_);
-        if (tokens.size() == 1 && text_.number(promised_)) {
-            counted_ = true;
-            if (!text_.next_row()) throw Error("holds no points: its only line is a count");
-            tokens = tokens_of_row(text_);
-        }
-        if (std::ranges::none_of(tokens, is_number)) {
-            read_names(tokens);
-            if (!text_.next_row()) throw Error("holds no points: its only line has the columns' names");
-            tokens = tokens_of_row(text_);
-        }
-        width_ = tokens.size();
-        if (width_ < 3)
-            throw Error("line {}: found {}; a point has at least the three numbers x, y and z", text_.line(),
-                        counted(width_, "column", "columns"));
-        if (width_ > most_columns) throw Error("line {}: more than {} columns", text_.line(), most_columns);
-        if (!names_.empty() && names_.size() != width_)
-            throw Error("line {}: {} for {} names", text_.line(), counted(width_, "column", "columns"), names_.size());
-    }
-
-    void read_names(const std::vector<std::string_view>& tokens) {
-        constexpr std::string_view axes = "xyz";
-        for (std::size_t i = 0; i < axes.size(); ++i)
-            if (tokens.size() <= i || !names_axis(unquoted(tokens[i]), axes[i]))
-                throw Error("line {}: {} is neither a row of numbers nor names that begin with x, y, z", text_.line(),
-                            quote(tokens.front()));
-        for (std::string_view token : tokens) names_.emplace_back(unquoted(token));
-    }
+    /// Points that a line with their number announces.
+    struct Block {
+        u64 promised;
+        std::size_t line;
+        std::size_t first;  // of its points
+    };
 
     void read_rows() {
+        if (layout_.promised) blocks_.push_back({*layout_.promised, layout_.promised_in_line, 0});
         // A row takes at least two bytes per number: the file's size bounds what may be reserved.
         constexpr std::size_t usual_number_text = 8;
-        const std::size_t guess = size_ / (usual_number_text * width_) + 1;
+        const std::size_t guess = size_ / (usual_number_text * layout_.width) + 1;
         positions_.reserve(guess);
-        further_.resize(width_ - 3);
+        for (std::size_t i = 0; i < layout_.width; ++i)
+            if (std::ranges::find(layout_.axes, i) == layout_.axes.end()) further_places_.push_back(i);
+        further_.resize(further_places_.size());
         for (Array<double>& column : further_) column.reserve(guess);
+        row_.resize(layout_.width);
         do {
-            Vec3 p;
-            for (std::size_t i = 0; i < width_; ++i) {
-                double value = 0;
-                if (!text_.more()) {
-                    require_plain_separators();
-                    throw Error("line {}: found {}; the rows before have {}", text_.line(),
-                                counted(i, "column", "columns"), width_);
-                }
-                if (!text_.number(value))
-                    throw Error("line {}: {} is no number", text_.line(), quote(text_.last_token()));
-                if (i < 3)
-                    p[static_cast<Eigen::Index>(i)] = value;
-                else
-                    further_[i - 3].push_back(value);
-            }
-            if (text_.more())
-                throw Error("line {}: found {}; the rows before have {}", text_.line(),
-                            counted(width_ + text_.count_tokens(), "column", "columns"), width_);
-            require_plain_separators();
-            positions_.push_back(p);
+            if (!read_row()) continue;
+            const auto [x, y, z] = layout_.axes;
+            positions_.push_back({row_[x], row_[y], row_[z]});
+            for (std::size_t i = 0; i < further_.size(); ++i) further_[i].push_back(row_[further_places_[i]]);
         } while (text_.next_row());
-        require_countable(positions_.size(), "points");
-        if (counted_ && promised_ != positions_.size())
-            throw Error("its first line promises {} points; {} follow", promised_, positions_.size())
-                .hint("the file is truncated or its count is wrong: correct or remove the first line");
+    }
+
+    /// Fills row_; false when the row was the count of another block.
+    bool read_row() {
+        const std::size_t width = row_.size();
+        double* const numbers = row_.data();
+        for (std::size_t i = 0; i < width; ++i) {
+            if (!text_.more()) {
+                if (i == 1 && begins_block(numbers[0])) return false;
+                require_plain_separators();
+                throw_width(i);
+            }
+            if (!text_.number(numbers[i]) && !quoted_number(numbers[i]))
+                throw Error("line {}: {} is no number", text_.line(), quote(text_.last_token()));
+        }
+        if (text_.more()) throw_width(width + text_.count_tokens());
+        require_plain_separators();
+        return true;
+    }
+
+    [[noreturn]] void throw_width(std::size_t found) const {
+        throw Error("line {}: found {}; the rows before have {}", text_.line(), counted(found, "column", "columns"),
+                    layout_.width);
+    }
+
+    bool begins_block(double number) {
+        constexpr double most = 1e15;  // whole, and within 64 bits
+        if (blocks_.empty() || !(number >= 0 && number <= most) || number != std::trunc(number)) return false;
+        require_promised();
+        blocks_.push_back({static_cast<u64>(number), text_.line(), positions_.size()});
+        return true;
+    }
+
+    /// Some programs put everything in quotes.
+    bool quoted_number(double& value) const {
+        const std::string_view token = text_.last_token();
+        return token.size() > 2 && token.front() == '"' && token.back() == '"' &&
+               parse_number(token.substr(1, token.size() - 2), value);
     }
 
     /// Of the row as far as it was read.
     void require_plain_separators() const {
+        if (text_.has_empty_field() || text_.mixes_separators()) throw_separators();
+    }
+
+    [[noreturn]] void throw_separators() const {
         if (text_.has_empty_field())
             throw Error("line {}: a field is empty; every point needs a number in every column", text_.line());
-        if (text_.mixes_separators())
-            throw Error("line {}: commas separate some numbers and blanks others", text_.line())
-                .hint("if the commas are decimal ones, write points in their place");
+        throw Error("line {}: {} separate some numbers and {} others", text_.line(), text_.mixed_separators().first,
+                    text_.mixed_separators().second)
+            .hint("if the commas are decimal ones, write points in their place");
+    }
+
+    /// That the last block is as long as its count says.
+    void require_promised() const {
+        if (blocks_.empty()) return;
+        const Block& block = blocks_.back();
+        if (const std::size_t found = positions_.size() - block.first; found != block.promised)
+            throw Error("line {} promises {} points; {} follow", block.line, block.promised, found)
+                .hint(std::string(count_hint));
+    }
+
+    /// The second half of the rows, taken away from them, when the only count says that they are twice as many as there
+    /// are points.
+    std::optional<Column> normals_behind_points() {
+        if (blocks_.size() != 1 || !further_.empty()) return std::nullopt;
+        const std::size_t points = blocks_[0].promised;
+        if (points == 0 || positions_.size() % 2 != 0 || positions_.size() / 2 != points) return std::nullopt;
+        std::array<Array<double>, 3> values;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            for (std::size_t row = points; row < 2 * points; ++row)
+                values[axis].push_back(positions_[row][static_cast<Eigen::Index>(axis)]);
+        const std::array<const Array<double>*, 3> components{&values[0], &values[1], &values[2]};
+        const bool are_unit = are_unit_normals(components);
+        if (!are_unit && extension_ != "pwn") return std::nullopt;
+        if (!are_unit) warn(options_.on_warning, "not all normals have unit length");
+        positions_.resize(points);
+        return joined("normal", components);
     }
 
     ColumnTable columns() {
-        ColumnTable table;
-        if (names_.empty() && further_.size() == 3) {
-            if (are_unit(further_)) {
-                Array<double> normals(3 * positions_count());
-                for (std::size_t row = 0; row < positions_count(); ++row)
-                    for (std::size_t axis = 0; axis < 3; ++axis) normals[3 * row + axis] = further_[axis][row];
-                table.add(Column("normal", 3, Buffer(std::move(normals))));
-                return table;
-            }
-            warn(options_.on_warning, "columns 4 to 6 are no unit normals; they are kept as c4, c5 and c6");
+        std::vector<std::string> names;
+        for (const std::size_t place : further_places_)
+            if (!layout_.names.empty()) names.push_back(layout_.names[place]);
+        ColumnTable table =
+            text_columns(std::move(names), std::move(further_), extension_ == "pts", options_.on_warning);
+        if (blocks_.size() < 2) return table;
+        warn(options_.on_warning, "{} scans were read as one cloud; the column 'scan' tells them apart",
+             blocks_.size());
+        Array<u32> scans(positions_.size());
+        for (std::size_t i = 0; i < blocks_.size(); ++i) {
+            const std::size_t end = i + 1 < blocks_.size() ? blocks_[i + 1].first : scans.size();
+            for (std::size_t row = blocks_[i].first; row < end; ++row) scans[row] = static_cast<u32>(i);
         }
-        for (std::size_t i = 0; i < further_.size(); ++i)
-            table.add(Column(names_.empty() ? "c" + std::to_string(i + 4) : names_[i + 3], 1,
-                             Buffer(std::move(further_[i]))));
+        table.add(Column("scan", 1, Buffer(std::move(scans))));
         return table;
     }
 
-    std::size_t positions_count() const { return further_.front().size(); }
-
     TextCursor text_;
     std::size_t size_;
+    std::string extension_;
     const ReadOptions& options_;
-    bool counted_ = false;
-    u64 promised_ = 0;
-    std::vector<std::string> names_;
-    std::size_t width_ = 0;
+    TextLayout layout_;
+    std::vector<Block> blocks_;
+    Array<double> row_;
     Array<Vec3> positions_;
+    std::vector<std::size_t> further_places_;  // in a row, of what is not x, y or z
     std::vector<Array<double>> further_;
 };
 
 }  // namespace
 
 Recognition recognise_xyz(std::string_view head, u64) {
-    TextCursor text(without_byte_order_mark(head), rules);
-    if (!text.next_row()) return Recognition::no;
-    const std::vector<std::string_view> tokens = tokens_of_row(text);
-    const bool numbers = tokens.size() >= 3 && std::ranges::all_of(tokens, is_number);
-    return numbers ? Recognition::plausible : Recognition::no;
+    const std::string_view text = without_byte_order_mark(head);
+    if (are_tagged_points(text)) return Recognition::plausible;
+    try {
+        TextCursor cursor(text, text_rules);
+        read_text_layout(cursor);
+        return is_row_of_numbers(cursor) ? Recognition::plausible : Recognition::no;
+    } catch (const Error&) {
+        return Recognition::no;
+    }
 }
 
-LoadedFile read_xyz(const FileBytes& file, const ReadOptions& options) { return XyzReader(file, options).read(); }
+LoadedFile read_xyz(const FileBytes& file, const ReadOptions& options) {
+    const std::string_view text = without_byte_order_mark(file.bytes);
+    return are_tagged_points(text) ? read_tagged_points(text, options) : XyzReader(file, text, options).read();
+}
 
 }  // namespace scanmill

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/formats/text_layout.hpp"
+
+#include <algorithm>
+#include <ranges>
+
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/quantity.hpp"
+#include "scanmill/formats/reading.hpp"
+#include "scanmill/formats/text_names.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t most_columns = 1000;
+
+std::vector<std::string_view> tokens_of_row(TextCursor row) {
+    std::vector<std::string_view> tokens;
+    while (row.more() && tokens.size() <= most_columns) tokens.push_back(row.token());
+    return tokens;
+}
+
+bool is_number(std::string_view token) {
+    double ignored = 0;
+    return parse_number(token, ignored);
+}
+
+class LayoutReader {
+public:
+    explicit LayoutReader(TextCursor& text) : text_(text) {}
+
+    TextLayout read() {
+        if (!text_.next_row()) throw Error("holds no points: nothing but blanks and comments");
+        const bool counted = pass_count();
+        if (pass_names() && !counted) pass_count();
+        layout_.width = tokens_of_row(text_).size();
+        if (layout_.width > most_columns) throw Error("line {}: more than {} columns", text_.line(), most_columns);
+        if (layout_.width < 3)
+            throw Error("line {}: found {}; a point has at least the three numbers x, y and z", text_.line(),
+                        counted_columns());
+        if (layout_.names.empty())
+            look_into_comments();
+        else if (layout_.names.size() != layout_.width)
+            throw Error("line {}: {} for {} names", text_.line(), counted_columns(), layout_.names.size());
+        return std::move(layout_);
+    }
+
+private:
+    std::string counted_columns() const { return counted(layout_.width, "column", "columns"); }
+
+    bool pass_count() {
+        TextCursor row = text_;
+        u64 count = 0;
+        if (!row.number(count) || row.more()) return false;
+        layout_.promised = count;
+        layout_.promised_in_line = text_.line();
+        if (!text_.next_row()) throw Error("holds no points: its last line is a count");
+        return true;
+    }
+
+    bool pass_names() {
+        const std::vector<std::string_view> tokens = tokens_of_row(text_);
+        const std::string_view line(tokens.front().begin(), tokens.back().end());
+        std::vector<std::string> names = split_names(line, most_columns);
+        const auto axes = axes_among(names);
+        if (!axes) {
+            if (std::ranges::any_of(tokens, is_number)) return false;
+            throw Error("line {}: {} is neither a row of numbers nor names among which are x, y and z", text_.line(),
+                        quote(tokens.front()));
+        }
+        layout_.axes = *axes;
+        layout_.names = std::move(names);
+        if (!text_.next_row()) throw Error("holds no points: its only line has the columns' names");
+        return true;
+    }
+
+    /// "//X Y Z Intensity" and "# x y z nx ny nz" are comments to most programs and names to some.
+    void look_into_comments() {
+        for (const std::string& comment : std::views::reverse(text_.comments())) {
+            std::vector<std::string> names = split_names(comment, most_columns);
+            const auto axes = axes_among(names);
+            if (!axes) continue;
+            if (names.size() != layout_.width || *axes != layout_.axes) {
+                layout_.passed_over = comment;
+                continue;
+            }
+            layout_.passed_over.clear();
+            layout_.names = std::move(names);
+            return;
+        }
+    }
+
+    TextCursor& text_;
+    TextLayout layout_;
+};
+
+}  // namespace
+
+TextLayout read_text_layout(TextCursor& text) { return LayoutReader(text).read(); }
+
+bool is_row_of_numbers(TextCursor row) {
+    const std::vector<std::string_view> tokens = tokens_of_row(std::move(row));
+    return std::ranges::all_of(tokens, is_number);
+}
+
+}  // namespace scanmill

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What stands around the points of a LAS file: sizes that lie, records, extra bytes, units, compression; E57.
+#include "las_support.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+LasBytes plain(std::size_t extra = 0) {
+    LasBytes las;
+    las.points = {las_point(20 + extra, 1, 2, 3)};
+    return las;
+}
+
+/// The refusal of a plain file with one number of its header replaced.
+template <class T>
+std::string refused_with(std::size_t at, T number) {
+    std::string bytes = plain().file();
+    put_at(bytes, at, number);
+    return refusal_of(bytes, "a.las");
+}
+
+TEST(LasHeader_Refusals, SayWhatIsWrong) {
+    EXPECT_THAT(refusal_of("LASF", "a.las"), HasSubstr("is 4 bytes long"));
+    EXPECT_THAT(refusal_of("LASER", "a.las"), HasSubstr("is no LAS file: it begins with 'LASE'"));
+    EXPECT_THAT(refused_with(24, u8(2)), HasSubstr("is of LAS version 2.2"));
+    EXPECT_THAT(refused_with(25, u8(5)), HasSubstr("is of LAS version 1.5"));
+    EXPECT_THAT(refused_with(94, std::uint16_t(226)), HasSubstr("takes 227 bytes or more; it says 226"));
+    EXPECT_THAT(refused_with(94, std::uint16_t(999)), HasSubstr("it says 999, and the file has 247"));
+    EXPECT_THAT(refused_with(96, u32(226)), HasSubstr("the points begin at byte 226, by the header of 227 bytes"));
+    EXPECT_THAT(refused_with(96, u32(248)), HasSubstr("the points begin at byte 248"));
+    EXPECT_THAT(refused_with(104, u8(11)), HasSubstr("points of format 11; LAS knows 0 to 10"));
+    EXPECT_THAT(refused_with(105, std::uint16_t(19)), HasSubstr("take 20 bytes or more; the header says 19"));
+    EXPECT_THAT(refused_with(131, 0.0), HasSubstr("the scale 0 and the offset 0 of x make no coordinates"));
+    EXPECT_THAT(refused_with(171, std::numeric_limits<double>::infinity()), HasSubstr("the offset inf of z"));
+    EXPECT_THAT(refused_with(107, u32(0)), HasSubstr("holds no points: its header says 0, and 20 bytes follow it"));
+    EXPECT_THAT(refused_with(107, u32(2)), HasSubstr("promises 2 points of 20 bytes; the 20 bytes from byte 227 on"));
+}
+
+TEST(LasHeader_OfVersion14, IsLonger) {
+    LasBytes las = plain();
+    las.minor_version = 4;
+    std::string bytes = las.file();
+    put_at(bytes, 94, std::uint16_t(374));
+    EXPECT_THAT(refusal_of(bytes, "a.las"), HasSubstr("LAS 1.4 takes 375 bytes or more; it says 374"));
+}
+
+TEST(LasHeader_ManyPoints, TakeNoMemory) {
+    LasBytes las = plain();
+    las.minor_version = 4;
+    std::string bytes = las.file();
+    put_at(bytes, 247, u64(1) << 40);
+    EXPECT_THAT(refusal_of(bytes, "a.las"), HasSubstr("promises 1099511627776 points of 20 bytes; the 20 bytes"));
+}
+
+TEST(LasRecords, AreLeftOutAndTold_Once) {
+    LasBytes las = plain();
+    las.add_record("hobu", 1234, "abc");
+    las.add_record("LASF_Projection", 2112, "wkt");
+    Told told;
+    points_in(las.file(), "a.las", &told);
+    EXPECT_THAT(told.sentences,
+                ElementsAre(HasSubstr("2 variable length records were left out (hobu 1234, LASF_Projection 2112)")));
+}
+
+TEST(LasRecords, ThatRunIntoThePoints_AreTold) {
+    LasBytes las = plain();
+    las.add_record("a", 1, "abc");
+    las.record_count = 4000000000u;
+    Told told;
+    EXPECT_EQ(points_in(las.file(), "a.las", &told)->size(), 1u);
+    EXPECT_THAT(told.sentences,
+                ElementsAre(HasSubstr("record 2 of 4000000000 runs into the points"), HasSubstr("1 variable")));
+    std::string bytes = las.file();
+    put_at(bytes, 227 + 20, std::uint16_t(4));
+    told.sentences.clear();
+    points_in(bytes, "a.las", &told);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("record 1 of 4000000000 runs into the points")));
+}
+
+TEST(LasRecords_BehindThePoints, AreTold) {
+    LasBytes las = plain();
+    las.behind = "12345";
+    Told told;
+    points_in(las.file(), "a.las", &told);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("5 bytes were behind the last point and left out")));
+    las.minor_version = 4;
+    std::string bytes = las.file();
+    put_at(bytes, 243, u32(2));
+    told.sentences.clear();
+    points_in(bytes, "a.las", &told);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("2 records behind the points were left out")));
+}
+
+TEST(LasExtraBytes, OfEveryNumber_AreColumnsOfTheirTypes) {
+    LasBytes las = plain(15);
+    put_at(las.points[0], 20, std::int16_t(-300));
+    put_at(las.points[0], 22, 2.5);
+    put_at(las.points[0], 30, u8(1));
+    put_at(las.points[0], 31, std::uint16_t(10));
+    put_at(las.points[0], 33, std::uint16_t(20));
+    // Type 13 is two of type 3.
+    las.add_record("LASF_Spec", 4,
+                   las_extra(4, "range") + las_extra(10, "width", 8 | 16, 2, 100) + las_extra(1, "intensity") +
+                       las_extra(13, "pair"));
+    Told told;
+    const auto cloud = points_in(las.file(), "a.las", &told);
+    EXPECT_THAT(numbers_of<std::int16_t>(cloud->columns.find("range")), ElementsAre(-300));
+    EXPECT_THAT(numbers_of<double>(cloud->columns.find("width")), ElementsAre(105));
+    EXPECT_THAT(numbers_of<u8>(cloud->columns.find("intensity_extra_1")), ElementsAre(1));
+    EXPECT_THAT(numbers_of<std::uint16_t>(cloud->columns.find("pair")), ElementsAre(10, 20));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("'intensity' are called 'intensity_extra_1'")));
+}
+
+TEST(LasExtraBytes, ScaleWithoutItsFlag_IsNotApplied) {
+    LasBytes las = plain(2);
+    put_at(las.points[0], 20, std::uint16_t(7));
+    las.add_record("LASF_Spec", 4, las_extra(3, "raw", 0, 1000, 1000));
+    EXPECT_THAT(numbers_of<std::uint16_t>(points_in(las.file(), "a.las")->columns.find("raw")), ElementsAre(7));
+}
+
+TEST(LasExtraBytes, Undescribed_AreLeftOutAndTold) {
+    LasBytes las = plain(6);
+    put_at(las.points[0], 23, std::uint16_t(8));
+    Told told;
+    points_in(las.file(), "a.las", &told);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("6 extra bytes of each point are of no described type")));
+    // Three bytes of type 0 before the one that is described.
+    las.add_record("LASF_Spec", 4, las_extra(0, "opaque", 3) + las_extra(3, "known"));
+    told.sentences.clear();
+    const auto cloud = points_in(las.file(), "a.las", &told);
+    EXPECT_THAT(numbers_of<std::uint16_t>(cloud->columns.find("known")), ElementsAre(8));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("4 extra bytes of each point are of no described type")));
+}
+
+TEST(LasExtraBytes, BeyondThePoint_AreLeftOutAndTold) {
+    LasBytes las = plain(1);
+    las.add_record("LASF_Spec", 4, las_extra(3, "wide"));
+    Told told;
+    EXPECT_EQ(points_in(las.file(), "a.las", &told)->columns.find("wide"), nullptr);
+    EXPECT_THAT(told.sentences, testing::Contains(HasSubstr("'wide' would lie beyond the 21 bytes of a point")));
+}
+
+struct UnitCase {
+    std::vector<std::pair<int, int>> keys;
+    LengthUnit unit;
+    const char* told;  ///< nothing when null
+};
+
+TEST(LasUnit, IsThatOfTheGeoTiffKeys) {
+    const std::vector<UnitCase> cases{{{{3076, 9001}}, LengthUnit::metre, nullptr},
+                                      {{{1024, 1}, {3076, 9002}, {4099, 9002}}, LengthUnit::foot, nullptr},
+                                      {{{3076, 9003}}, LengthUnit::unknown, "unit 9003"},
+                                      {{{3076, 9001}, {4099, 9002}}, LengthUnit::unknown, "heights of unit 9002"},
+                                      {{{1024, 2}, {3076, 9001}}, LengthUnit::unknown, "degrees"},
+                                      {{{1024, 1}}, LengthUnit::unknown, nullptr}};
+    for (const UnitCase& c : cases) {
+        LasBytes las = plain();
+        las.add_record("LASF_Projection", 34735, geo_keys(c.keys));
+        Told told;
+        EXPECT_EQ(points_in(las.file(), "a.las", &told)->frame.unit, c.unit);
+        ASSERT_EQ(told.sentences.size(), c.told ? 2u : 1u);
+        if (c.told) {
+            EXPECT_THAT(told.sentences.back(), HasSubstr(c.told));
+        }
+    }
+    LasBytes las = plain();
+    las.add_record("LASF_Projection", 34735, geo_keys({{3076, 9001}}));
+    const LoadedFile loaded = read_bytes(las.file(), "a.las", {{}, LengthUnit::millimetre});
+    EXPECT_EQ(std::get<std::shared_ptr<const PointCloud>>(loaded.value)->frame.unit, LengthUnit::millimetre);
+}
+
+std::string hint_for(std::string_view bytes, const char* name) {
+    try {
+        read_bytes(bytes, name);
+    } catch (const Error& error) {
+        return error.hint();
+    }
+    return "it was read";
+}
+
+TEST(CompressedLas, IsRefusedWithACommand) {
+    LasBytes las = plain();
+    las.point_format = 0x80 | 3;
+    EXPECT_THAT(refusal_of(las.file(), "a.laz"), HasSubstr("is a LAZ file, LAS in compressed form"));
+    EXPECT_THAT(hint_for(las.file(), "a.laz"), HasSubstr("'laszip -i a.laz -o out.las'"));
+    // By its content, whatever it is called.
+    EXPECT_THAT(hint_for(las.file(), "a.xyz"), HasSubstr("'pdal translate a.xyz out.las'"));
+    las.add_record("copc", 1, "");
+    EXPECT_THAT(refusal_of(las.file(), "a.laz"), HasSubstr("is a COPC file"));
+    LasBytes by_record = plain();
+    by_record.add_record("laszip encoded", 22204, "");
+    EXPECT_THAT(refusal_of(by_record.file(), "a.las"), HasSubstr("is a LAZ file"));
+}
+
+TEST(E57, IsRefusedWithACommand) {
+    const std::string bytes = "ASTM-E57" + std::string(40, '\0');
+    EXPECT_THAT(refusal_of(bytes, "a.dat"), HasSubstr("is an E57 file; E57 is not read"));
+    EXPECT_THAT(hint_for(bytes, "a.e57"), HasSubstr("'CloudCompare -SILENT -O a.e57 -C_EXPORT_FMT PLY -SAVE_CLOUDS'"));
+    EXPECT_THAT(refusal_of("something", "a.e57"), HasSubstr("is no E57 file"));
+    EXPECT_THAT(hint_for("something else", "a.unknown"), testing::Not(HasSubstr("E57")));
+}
+
+}  // namespace
+}  // namespace scanmill::test
