@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the Debian packages that Scanmill is built from; `deps.sh bench` those of the benches as well.
-# Asks nothing, and touches nothing when all of them are there.
+# Installs the Debian packages that Scanmill is built from; `deps.sh bench`, `deps.sh fuzz` and `deps.sh lint` also
+# those that only they need. Asks nothing, and touches nothing when all of them are there.
 set -euo pipefail
 
 packages=(
@@ -9,6 +9,7 @@ packages=(
     libcgal-dev libeigen3-dev libflann-dev libtbb-dev libyaml-cpp-dev libfmt-dev libxxhash-dev
     libcli11-dev nlohmann-json3-dev libgtest-dev libgmock-dev)
 if [ "${1:-}" = bench ]; then packages+=(libpcl-dev); fi
+if [ "${1:-}" = fuzz ]; then packages+=(clang-16 libclang-rt-16-dev llvm-16); fi
 if [ "${1:-}" = lint ]; then packages+=(clang-tidy-16); fi
 
 missing=()
