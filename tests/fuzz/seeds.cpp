@@ -92,6 +92,7 @@ std::vector<Seed> binary_seeds() {
         {"ply", "mesh_big_endian.ply", ply_mesh(std::endian::big)},
         {"ply", "truncated_in_a_list.ply", points.substr(0, points.size() - 3)},
         {"stl", "two_facets.stl", stl("binary STL by scanmill; unit mm; frame part", 2, 0)},
+        {"stl", "control_character_in_the_name.stl", stl("binary STL by scanmill; frame part  \x16", 2, 0)},
         {"stl", "attribute.stl", stl("solid in name only", 2, 31)},
         {"stl", "more_promised_than_there.stl", stl("", 3, 0)},
     };

@@ -27,7 +27,8 @@ void tell_left_out(const ColumnTable& columns, std::string_view element, std::st
 /// Tells all of a mesh that a format of bare triangles leaves out: columns, described and sharp edges.
 void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options);
 
-/// A frame's name fit for a comment: control characters, line ends above all, become blanks.
+/// A frame's name fit for a comment, and as a reader finds it there: control characters, line ends above all, become
+/// blanks, and those around it go.
 std::string one_line(std::string_view name);
 
 /// "# unit mm" and "# frame NAME", each on its line, as far as known.
