@@ -98,6 +98,10 @@ TEST_F(Check, TwoFiltersInOneStep_SaysHowToBeginAnotherStep) {
                 ElementsAre(AllOf(StartsWith("w:5:5: "), HasSubstr("'make' stands beside 'thin'"))));
 }
 
+TEST_F(Check, StepsThatCannotBeRead_AreNotSaidToShareAnId) {
+    EXPECT_THAT(steps("  - x\n  - y\n"), ElementsAre(HasSubstr("found 'x'"), HasSubstr("found 'y'")));
+}
+
 TEST_F(Check, StepWithoutFilter_IsAnError) {
     EXPECT_THAT(steps("  - id: a\n"), ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("a step without a filter"))));
 }

@@ -95,7 +95,7 @@ private:
     void complain_of_id(const ExpandedStep& step, std::set<std::string>& ids) {
         for (const std::string& name : names_of(step)) {
             const bool given = name == step.syntax->id || std::ranges::find(step.aliases, name) != step.aliases.end();
-            if (!given) continue;
+            if (!given || name.empty()) continue;  // empty: neither id nor filter could be read, and that is reported
             if (!ids.insert(name).second)
                 diagnostics_.error(step.syntax->position, fmt::format("the id '{}' is given twice", name));
             if (std::ranges::find(plan_.workflow.inputs, name, &WorkflowInput::name) != plan_.workflow.inputs.end())
