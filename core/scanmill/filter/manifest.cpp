@@ -67,7 +67,7 @@ Whole whole_number(const Json& json, const char* key) {
     const bool fits = number.is_number_unsigned()  ? std::in_range<Whole>(number.get<std::uint64_t>())
                       : number.is_number_integer() ? std::in_range<Whole>(number.get<std::int64_t>())
                                                    : false;
-    if (!fits) throw Error("'{}' is no whole number that fits", key);
+    if (!fits) throw Error("is no manifest: '{}' is no whole number that fits", key);
     return number.get<Whole>();
 }
 
