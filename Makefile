@@ -3,7 +3,9 @@
 jobs ?= $(shell nproc)
 demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fandisk_large.off
 
-.PHONY: help demo test deps data bench generate format lint release dev asan tsan
+FUZZ_SECONDS ?= 60
+
+.PHONY: help demo test deps data bench fuzz generate format lint release dev asan tsan
 .DEFAULT_GOAL := help
 
 help: ## list these targets
@@ -34,6 +36,13 @@ bench: data ## measure speed side by side with PCL and CGAL
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs)
 	bench/run.sh build/bench
+
+fuzz: ## feed hostile bytes to whatever reads files, FUZZ_SECONDS=60 for each kind, until the first finding
+	tools/deps.sh
+	tools/deps.sh fuzz
+	cmake --preset fuzz >/dev/null
+	cmake --build --preset fuzz -j $(jobs)
+	tests/fuzz/run.sh build/fuzz $(FUZZ_SECONDS)
 
 generate: dev ## write schemas/ and docs/filters/ from the filters' declarations
 	tools/generate.sh build/dev

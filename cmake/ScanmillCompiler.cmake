@@ -11,14 +11,24 @@ if(SCANMILL_SANITIZE)
   add_compile_options(-fsanitize=${SCANMILL_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${SCANMILL_SANITIZE})
   if(SCANMILL_SANITIZE MATCHES undefined)
-    add_compile_options(-fno-sanitize-recover=undefined)
+    add_compile_options(-fno-sanitize-recover=all)
   endif()
+endif()
+if(SCANMILL_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    message(FATAL_ERROR "SCANMILL_FUZZ needs clang; the compiler is ${CMAKE_CXX_COMPILER_ID}. Use `make fuzz`, or "
+                        "`tools/deps.sh fuzz` and `cmake --preset fuzz`")
+  endif()
+  # In every target, so that a fuzzer sees which code its bytes reach.
+  add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
 add_library(scanmill-warnings INTERFACE)
-target_compile_options(scanmill-warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                                                   -Wno-restrict)  # false on "literal" + std::string with GCC 12
-if(SCANMILL_SANITIZE)
+target_compile_options(scanmill-warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(scanmill-warnings INTERFACE -Wno-restrict)  # false on "literal" + std::string with GCC 12
+endif()
+if(SCANMILL_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(scanmill-warnings INTERFACE -Wno-maybe-uninitialized)  # false with instrumentation
 endif()
 if(SCANMILL_WERROR)

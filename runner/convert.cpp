@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "error_output.hpp"
 #include "load.hpp"
+#include "printable.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/convert.hpp"
 #include "scanmill/formats/files.hpp"
@@ -59,7 +60,7 @@ Value to_unit(const Value& value, LengthUnit unit) {
 }
 
 int convert(const Options& options) {
-    const auto warn = [](const std::string& text) { fmt::print(stderr, "warning: {}\n", text); };
+    const auto warn = [](const std::string& text) { fmt::print(stderr, "warning: {}\n", printable(text)); };
     const LengthUnit unit = parse_unit(options.to_unit);
     ReadOptions read;
     read.on_warning = warn;

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "printable.hpp"
+
 namespace scanmill::runner {
 
 namespace {
@@ -19,7 +21,7 @@ void print_json(const Json& json) {
 }  // namespace
 
 void print(const Error& error, bool json) {
-    fmt::print(stderr, "error: {}\n", error.what());
+    fmt::print(stderr, "error: {}\n", printable(error.what()));
     if (!json) return;
     Json described{{"message", error.sentence()}, {"where", error.frames()}};
     if (!error.hint().empty()) described["hint"] = error.hint();
@@ -28,10 +30,10 @@ void print(const Error& error, bool json) {
 
 void print(const Diagnostics& diagnostics) {
     for (const Diagnostic& diagnostic : diagnostics.sorted())
-        fmt::print(stderr, "{}\n", text(diagnostic, diagnostics.file()));
+        fmt::print(stderr, "{}\n", printable_line(text(diagnostic, diagnostics.file())));
     if (diagnostics.has_errors())
         fmt::print(stderr, "{} error{} in '{}'\n", diagnostics.errors(), diagnostics.errors() == 1 ? "" : "s",
-                   diagnostics.file());
+                   printable_line(diagnostics.file()));
 }
 
 Json to_json(const Diagnostics& diagnostics) {

@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "error_output.hpp"
 #include "load.hpp"
+#include "printable.hpp"
 #include "scanmill/engine/facts.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/files.hpp"
@@ -106,7 +107,8 @@ int info(const std::vector<std::string>& files, bool as_json) {
             }
             if (files.size() > 1 && &file != &files.front()) fmt::print("\n");
             for (const auto& [key, value] : described.items())
-                if (!(value.is_array() && value.empty())) fmt::print("{:<15} {}\n", key, value_text(value));
+                if (!(value.is_array() && value.empty()))
+                    fmt::print("{:<15} {}\n", key, printable_line(value_text(value)));
         } catch (const Error& error) {
             code = some_failed;
             if (as_json)

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <string_view>
 
@@ -11,6 +12,8 @@
 
 int main(int argc, char** argv) {
     using namespace scanmill::runner;
+    // Beyond the largest file that the system allows, writing then fails with a reason instead of ending the program.
+    std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app("Scanmill turns libraries of 3D scans into surfaces, unattended.", "scanmill");
     app.set_version_flag("--version", "scanmill " SCANMILL_VERSION);
     app.require_subcommand(1);

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "printable.hpp"
+
 namespace scanmill::runner {
 
 Progress::Progress(const Plan& plan, const RunGraph& graph, bool quiet)
@@ -13,13 +15,13 @@ Progress::Progress(const Plan& plan, const RunGraph& graph, bool quiet)
       terminal_(::isatty(STDERR_FILENO) != 0) {}
 
 std::string Progress::label(const RunNode& node) const {
-    return node.step ? fmt::format("{}: {}", graph_.scan_names[node.scan], plan_.steps[*node.step].label)
-                     : fmt::format("{}: read", node.file.string());
+    return printable_line(node.step ? fmt::format("{}: {}", graph_.scan_names[node.scan], plan_.steps[*node.step].label)
+                                    : fmt::format("{}: read", node.file.string()));
 }
 
 void Progress::say(const std::string& line) {
     if (terminal_ && !quiet_) fmt::print(stderr, "\r\x1b[K");
-    fmt::print(stderr, "{}\n", line);
+    fmt::print(stderr, "{}\n", printable(line));
 }
 
 void Progress::overwrite(const std::string& line) {

@@ -13,6 +13,7 @@
 #include "commands.hpp"
 #include "error_output.hpp"
 #include "load.hpp"
+#include "printable.hpp"
 #include "progress.hpp"
 #include "run_output.hpp"
 #include "scanmill/filter/error.hpp"
@@ -72,7 +73,8 @@ int run_workflow(const Options& options) {
     request.save = options.save;
     const RunGraph graph = make_graph(checked.plan, library, request);
     if (options.dry_run) {
-        fmt::print("{}", options.json ? graph_json(checked.plan, graph) + "\n" : graph_text(checked.plan, graph));
+        fmt::print("{}",
+                   options.json ? graph_json(checked.plan, graph) + "\n" : printable(graph_text(checked.plan, graph)));
         return done;
     }
 

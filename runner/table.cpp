@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "printable.hpp"
+
 namespace scanmill::runner {
 
 namespace {
@@ -17,6 +19,11 @@ bool is_numeric(const std::string& text) {
 }
 
 }  // namespace
+
+void Table::add(std::vector<std::string> row) {
+    for (std::string& cell : row) cell = printable_line(std::move(cell));
+    rows_.push_back(std::move(row));
+}
 
 std::string Table::text() const {
     std::vector<std::size_t> widths(rows_.front().size(), 0);

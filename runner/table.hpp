@@ -10,7 +10,8 @@ namespace scanmill::runner {
 class Table {
 public:
     explicit Table(std::vector<std::string> headers) : rows_{std::move(headers)} {}
-    void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+    /// Control characters in it become '?'.
+    void add(std::vector<std::string> row);
     /// With a trailing newline; no blanks at line ends.
     std::string text() const;
 

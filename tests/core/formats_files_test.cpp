@@ -108,6 +108,17 @@ TEST(WriteFile_Refuses, WhatCannotBe_LeavesNothing) {
     EXPECT_EQ(folder.files(), 2u);
 }
 
+TEST(WriteBytes_OfAValue, GivesWhatTheFileWouldHold_AndRefusesAlike) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a.ply", "a.xyz"}) {
+        write_file(folder / name, one_point());
+        EXPECT_EQ(write_bytes(name, one_point()), content_of(folder / name));
+    }
+    EXPECT_THAT(error_of([&] { write_bytes("a.stl", one_point()); }), HasSubstr("'a.stl': points cannot be written"));
+    EXPECT_THAT(error_of([&] { write_bytes("a.ply", std::make_shared<const PointCloud>()); }),
+                HasSubstr("without a single point"));
+}
+
 TEST(WriteFile_WhenItsWarningThrows, LeavesTheOldFileAndNoOther) {
     const TemporaryFolder folder;
     put_file(folder / "a.xyz", "old");

@@ -105,6 +105,18 @@ TEST(PlyWriter_File, IsThisForOnePoint) {
             bytes_of(1.0f) + bytes_of(2.0f) + bytes_of(3.0f) + "\x09\x08\x07");
 }
 
+TEST(Writers_FrameName, IsWrittenAsItWillBeRead) {
+    for (const auto& [name, kept] : {std::pair("part \x16 ", "part"), {" \x01 a\tb", "a b"}, {"\n\x7f ", ""}})
+        for (const char* file : {"a.ply", "a.xyz"}) {
+            const Value cloud = std::make_shared<const PointCloud>(
+                PointCloud{{LengthUnit::unknown, Vec3::Zero(), name}, {Vec3(1, 2, 3)}, {}});
+            const std::string once = write_bytes(file, cloud);
+            const auto copy = points_in(once, file);
+            EXPECT_EQ(copy->frame.name, kept);
+            EXPECT_EQ(write_bytes(file, copy), once);
+        }
+}
+
 TEST(PlyWriter_Columns, OfLongIntegers_BecomeDoubleAndAreTold) {
     const TemporaryFolder folder;
     Told told;

@@ -76,6 +76,15 @@ std::string verdict(Spoil&& spoil) {
     return sentence_of([&] { parse_manifest(json.dump()); });
 }
 
+TEST(Manifest, NumbersThatAreNoWholeOnesOrDoNotFit_AreRefused) {
+    for (const Json& number : {Json(1e300), Json(1.5), Json(std::int64_t(1) << 40), Json(~std::uint64_t(0))}) {
+        EXPECT_THAT(verdict([&](Json& json) { json["scanmill-manifest"] = number; }), HasSubstr("'scanmill-manifest'"));
+        EXPECT_THAT(verdict([&](Json& json) { json["version"] = number; }), HasSubstr("'version'"));
+    }
+    for (const Json& number : {Json(1e300), Json(-1)})
+        EXPECT_THAT(verdict([&](Json& json) { json["parameters"][9]["size"] = number; }), HasSubstr("'size'"));
+}
+
 TEST(Manifest, SpecThatUsesEverything_ReadsBackEqual) {
     const Manifest manifest = everything();
     ASSERT_NO_THROW(require_sound(manifest.spec)) << "the fixture's own soundness";

@@ -79,6 +79,14 @@ TEST_F(CheckForks, TenThousandVariants_AreNotTooMany) {
     EXPECT_THAT(findings(first + second + ", 101 u]}}\n"), ElementsAre(HasSubstr("more than 10000 variants")));
 }
 
+TEST_F(CheckForks, FewVariantsOfTooManySteps_AreRefusedBeforeTheirMemoryIsTaken) {
+    std::string lines = "  - thin: {count: {sweep: [1, 2, 3, 4, 5, 6, 7, 8, 9]}}\n";
+    lines += "  - {id: b, thin: {count: {sweep: [1, 2, 3, 4, 5, 6, 7, 8, 9]}}}\n";
+    for (int i = 0; i < 6300; ++i) lines += "  - {id: s" + std::to_string(i) + ", thin: }\n";
+    EXPECT_THAT(findings(lines), ElementsAre(HasSubstr("more than 500000 steps in all its variants")));
+    EXPECT_LE(plan_.variants.size(), 9u) << "each swept value once";
+}
+
 TEST_F(CheckForks, ThousandsOfSteps_AreOneAfterTheOther) {
     std::string lines;
     for (int i = 0; i < 5000; ++i) lines += "  - id: s" + std::to_string(i) + "\n    thin:\n";

@@ -98,6 +98,10 @@ TEST_F(Check, TwoFiltersInOneStep_SaysHowToBeginAnotherStep) {
                 ElementsAre(AllOf(StartsWith("w:5:5: "), HasSubstr("'make' stands beside 'thin'"))));
 }
 
+TEST_F(Check, StepsThatCannotBeRead_AreNotSaidToShareAnId) {
+    EXPECT_THAT(steps("  - x\n  - y\n"), ElementsAre(HasSubstr("found 'x'"), HasSubstr("found 'y'")));
+}
+
 TEST_F(Check, StepWithoutFilter_IsAnError) {
     EXPECT_THAT(steps("  - id: a\n"), ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("a step without a filter"))));
 }
@@ -213,6 +217,15 @@ TEST_F(Check, WorkflowParameters_AreTypedWhereTheyAreUsed) {
                 ElementsAre(HasSubstr("no step uses the parameter 's'"), HasSubstr("no parameter 't'; it has s")));
 }
 
+TEST_F(Check, DollarWithoutAName_IsAnError) {
+    EXPECT_THAT(steps("  - thin: {size: $}\n"),
+                ElementsAre(AllOf(StartsWith("w:4:18: "), HasSubstr("'$' names no parameter"))));
+    EXPECT_THAT(steps("  - thin: {count: {sweep: [1, $]}}\n"), ElementsAre(HasSubstr("'$' names no parameter")));
+    Diagnostics diagnostics("--set");
+    EXPECT_TRUE(parse_value_expression("$", diagnostics).values.empty());
+    EXPECT_TRUE(diagnostics.has_errors());
+}
+
 TEST_F(Check, Expect_KnowsFactsAndMetricsOfTheStep) {
     EXPECT_THAT(steps("  - thin:\n    expect: {points: '> 3', kept: [1, 9]}\n"), IsEmpty());
     EXPECT_THAT(steps("  - thin:\n    expect: {keptt: 1}\n"),
@@ -241,6 +254,21 @@ TEST_F(Check, OutputTemplates_AreCheckedBeforeTheRun) {
     EXPECT_THAT(findings(head + "  '{scan}.ply': thin\n  '{scan}.ply/x/y.ply': thin\n"),
                 ElementsAre(AllOf(StartsWith("w:5:3: "), HasSubstr("and the folder of '{scan}.ply/x/y.ply' too"))));
     EXPECT_THAT(findings(head + "  '{scan}.ply': thn\n"), ElementsAre(HasSubstr("did you mean 'thin'?")));
+}
+
+TEST_F(Check, OutputNamesLongerThanAnyFileSystemTakes_AreErrors) {
+    const std::string head = "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin:\noutputs:\n";
+    const auto output = [&](std::size_t bytes) {
+        return findings(head + "  'a/{scan}" + std::string(bytes - 4, 'x') + ".ply': thin\n");
+    };
+    EXPECT_THAT(output(255), IsEmpty());
+    EXPECT_THAT(output(256), ElementsAre(HasSubstr("a file's name has 256 bytes; expected at most 255")));
+}
+
+TEST_F(Check, OutputThatIsAnothersFolder_IsAnError) {
+    const std::string head = "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin:\noutputs:\n";
+    EXPECT_THAT(findings(head + "  'a.ply': thin\n  'a.ply/b.ply': thin\n  'a.ply!.ply': thin\n"),
+                ElementsAre(HasSubstr("'a.ply' would be a file, and the folder of 'a.ply/b.ply' too")));
 }
 
 TEST_F(Check, VariantsThatWouldWriteOneFile_AskForVariantInTheName) {

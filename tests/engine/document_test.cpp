@@ -73,6 +73,45 @@ TEST(YamlDocument, AliasesThatUnfoldWithoutEnd_AreRefused) {
     EXPECT_THAT(parsed.findings[0].message, HasSubstr("unfolds to more than 1000000 nodes"));
 }
 
+TEST(YamlDocument, AnchorsAroundAnchors_CountEveryCopyThatIsKept) {
+    std::string items = "x";
+    for (int i = 1; i < 10'000; ++i) items += ", x";
+    std::string nested = "[" + items + "]";
+    for (int level = 0; level < 200; ++level) nested = "&a" + std::to_string(level) + " [" + nested + "]";
+    const Parsed parsed = parse("a: " + nested + "\n");
+    ASSERT_EQ(parsed.findings.size(), 1u);
+    EXPECT_THAT(parsed.findings[0].message, HasSubstr("unfolds to more than 1000000 nodes"));
+}
+
+TEST(YamlDocument, AliasesOfALongText_AreRefused) {
+    const std::string text(1'000'000, 'x');
+    std::string aliases = "*a";
+    for (int i = 1; i < 100; ++i) aliases += ", *a";
+    const Parsed parsed = parse("a: &a " + text + "\nb: [" + aliases + "]\n");
+    ASSERT_EQ(parsed.findings.size(), 1u);
+    EXPECT_EQ(parsed.findings[0].position.line, 2);
+    EXPECT_THAT(parsed.findings[0].message, HasSubstr("unfolds to more than 67108864 bytes"));
+}
+
+TEST(YamlDocument, AliasesThatNestDeeperThanAFileCan_AreRefused) {
+    const std::string open(400, '['), close(400, ']');
+    const std::string first = "a: &a " + open + "x" + close + "\n";
+    EXPECT_TRUE(parse(first + "b: *a\n").findings.empty());
+    const Parsed parsed = parse(first + "b: " + open + "*a" + close + "\n");
+    ASSERT_EQ(parsed.findings.size(), 1u);
+    EXPECT_THAT(parsed.findings[0].message, HasSubstr("unfolds to more than 500 levels"));
+}
+
+TEST(YamlDocument, ZeroByte_IsRefusedAtItsPlace) {
+    for (const auto& [text, line, column] :
+         {std::tuple(std::string("\0a: 1", 5), 1, 1), std::tuple(std::string("a: 1\nb: \0", 9), 2, 4)}) {
+        const Parsed parsed = parse(text);
+        ASSERT_EQ(parsed.findings.size(), 1u);
+        EXPECT_EQ(parsed.findings[0].position, (Position{line, column}));
+        EXPECT_THAT(parsed.findings[0].message, HasSubstr("a zero byte"));
+    }
+}
+
 TEST(YamlDocument, DeepNesting_IsRefusedNotFollowed) {
     const Parsed parsed = parse(std::string(100'000, '[') + std::string(100'000, ']'));
     ASSERT_FALSE(parsed.findings.empty());
@@ -83,6 +122,15 @@ TEST(YamlDocument, FurtherDocuments_AreRefused) {
     EXPECT_EQ(parse("a: 1\n---\n---\nb: 2\n").findings.size(), 1u);
     EXPECT_EQ(parse("a: 1\n---\nb: 2\n---\nc: 3\n").findings.size(), 2u);
     EXPECT_EQ(parse("a: 1\n---\n").findings.size(), 0u);
+}
+
+TEST(YamlDocument, CommaOutsideAList_IsRefusedOnceAtItsPlace) {
+    for (const char* text : {",", "\n,x", "a: 1\n---\n,"}) {
+        const Parsed parsed = parse(text);
+        ASSERT_EQ(parsed.findings.size(), 1u) << text;
+        EXPECT_THAT(parsed.findings[0].message, HasSubstr("is no YAML")) << text;
+        EXPECT_EQ(parsed.findings[0].position.column, 1) << text;
+    }
 }
 
 TEST(YamlDocument, ListAsKey_IsRefused) { EXPECT_FALSE(parse("? [a, b]\n: 1\n").findings.empty()); }

@@ -24,10 +24,15 @@ namespace {
     ::dup2(output, STDOUT_FILENO);
     ::dup2(errors, STDERR_FILENO);
     if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(126);
-    if (options.memory_limit > 0) {
-        const rlimit limit{options.memory_limit, options.memory_limit};
-        ::setrlimit(RLIMIT_AS, &limit);
-    }
+    const auto limit = [](__rlimit_resource resource, std::size_t most) {
+        const rlimit both{most, most};
+        if (most > 0) ::setrlimit(resource, &both);
+    };
+    limit(RLIMIT_AS, options.memory_limit);
+    limit(RLIMIT_FSIZE, options.file_limit);
+    limit(RLIMIT_CPU, options.seconds_limit);
+    constexpr unsigned nobody = 65534;
+    if (options.without_rights && ::geteuid() == 0 && (::setgid(nobody) != 0 || ::setuid(nobody) != 0)) ::_exit(126);
     for (const std::string& variable : options.environment) {
         const std::size_t equals = variable.find('=');
         ::setenv(variable.substr(0, equals).c_str(), variable.substr(equals + 1).c_str(), 1);

@@ -17,6 +17,9 @@ struct ProgramOptions {
     std::filesystem::path folder{};               ///< to run in; empty: this one
     std::vector<std::string> environment{};       ///< NAME=VALUE, added
     std::size_t memory_limit = 0;                 ///< bytes of address space; 0: none
+    std::size_t file_limit = 0;                   ///< bytes of any file that it writes; 0: none
+    std::size_t seconds_limit = 0;                ///< of processor time, then it is killed; 0: none
+    bool without_rights = false;                  ///< as the user `nobody`, when we are root
 };
 
 /// Runs SCANMILL_PROGRAM with these arguments and no standard input.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/manifest.hpp"
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "scanmill/filter/error.hpp"
 
@@ -58,6 +60,17 @@ T required_name(const std::optional<T>& named, std::string_view what, const std:
     return *named;
 }
 
+/// The library would cut 1e300 and 1.5 to what fits.
+template <class Whole>
+Whole whole_number(const Json& json, const char* key) {
+    const Json& number = json.at(key);
+    const bool fits = number.is_number_unsigned()  ? std::in_range<Whole>(number.get<std::uint64_t>())
+                      : number.is_number_integer() ? std::in_range<Whole>(number.get<std::int64_t>())
+                                                   : false;
+    if (!fits) throw Error("is no manifest: '{}' is no whole number that fits", key);
+    return number.get<Whole>();
+}
+
 PortSpec port_from(const Json& json) {
     const std::string kind = json.at("kind");
     return {json.at("name"), required_name(kind_named(kind), "kind", kind), json.at("help"), json.value("list", false),
@@ -76,7 +89,7 @@ ParameterSpec parameter_from(const Json& json) {
     parameter.type = required_name(parameter_type_named(type), "parameter type", type);
     parameter.help = json.at("help");
     parameter.list = json.value("list", false);
-    if (json.contains("size")) parameter.size = json["size"].get<std::size_t>();
+    if (json.contains("size")) parameter.size = whole_number<std::size_t>(json, "size");
     parameter.required = json.value("required", false);
     parameter.word = json.value("word", "");
     parameter.low = bound_from(json, "low");
@@ -121,13 +134,13 @@ std::string to_json_text(const Manifest& manifest) {
 
 Manifest parse_manifest(std::string_view text) try {
     const Json json = Json::parse(text);
-    if (const int version = json.at("scanmill-manifest"); version != manifest_version)
+    if (const int version = whole_number<int>(json, "scanmill-manifest"); version != manifest_version)
         throw Error("is a manifest of version {}; this program reads version {}", version, manifest_version);
     Manifest manifest;
     manifest.abi = json.at("abi");
     FilterSpec& spec = manifest.spec;
     spec.name = json.at("name");
-    spec.version = json.at("version");
+    spec.version = whole_number<int>(json, "version");
     spec.summary = json.at("summary");
     spec.source = json.at("source");
     for (const Json& port : json.at("inputs")) spec.inputs.push_back(port_from(port));

@@ -19,6 +19,8 @@ template <class... Actions>
 struct Overloaded : Actions... {
     using Actions::operator()...;
 };
+template <class... Actions>
+Overloaded(Actions...) -> Overloaded<Actions...>;  // clang 16 needs it said
 
 std::string range_text(const ParameterSpec& spec) {
     const std::string unit = spec.type == ParameterType::angle ? " deg" : "";

@@ -2,6 +2,7 @@
 #include "scanmill/formats/files.hpp"
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/formats/atomic_file.hpp"
 #include "scanmill/formats/convert.hpp"
 #include "scanmill/formats/format.hpp"
 #include "scanmill/formats/mapped_file.hpp"
@@ -47,6 +48,24 @@ bool is_empty(const Value& value) {
         value);
 }
 
+Format::Write writer_for(const std::filesystem::path& path, const Value& value) {
+    const Kind kind = kind_of(value);
+    const std::string extension = path.extension().string();
+    for (const Format& format : formats()) {
+        const Format::Write write = format.has_extension(extension) ? format.writer(kind) : nullptr;
+        if (!write) continue;
+        if (is_empty(value)) throw Error("nothing to write: the {} without a single point", name_of(kind));
+        return write;
+    }
+    const std::string choices = writable_extensions(kind);
+    Error error("{} cannot be written with the extension '{}'", name_of(kind), extension);
+    if (choices.empty())
+        error.set_hint("no format here carries this kind");
+    else
+        error.set_hint("extensions for it: " + choices);
+    throw error;
+}
+
 }  // namespace
 
 LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& options) {
@@ -79,26 +98,22 @@ std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path,
 
 void write_file(const std::filesystem::path& path, const Value& value, const WriteOptions& options) {
     naming(path, [&] {
-        const Kind kind = kind_of(value);
-        const std::string extension = path.extension().string();
-        for (const Format& format : formats()) {
-            const Format::Write write = format.has_extension(extension) ? format.writer(kind) : nullptr;
-            if (!write) continue;
-            if (is_empty(value)) throw Error("nothing to write: the {} without a single point", name_of(kind));
-            AtomicFile file(path);
-            OutputBuffer out(file);
-            write(value, out, {naming(path, options.on_warning)});
-            out.flush();
-            file.commit();
-            return;
-        }
-        const std::string choices = writable_extensions(kind);
-        Error error("{} cannot be written with the extension '{}'", name_of(kind), extension);
-        if (choices.empty())
-            error.set_hint("no format here carries this kind");
-        else
-            error.set_hint("extensions for it: " + choices);
-        throw error;
+        const Format::Write write = writer_for(path, value);
+        AtomicFile file(path);
+        OutputBuffer out([&file](std::string_view bytes) { file.write(bytes); });
+        write(value, out, {naming(path, options.on_warning)});
+        out.flush();
+        file.commit();
+    });
+}
+
+std::string write_bytes(const std::filesystem::path& name, const Value& value, const WriteOptions& options) {
+    return naming(name, [&] {
+        std::string bytes;
+        OutputBuffer out([&bytes](std::string_view piece) { bytes += piece; });
+        writer_for(name, value)(value, out, {naming(name, options.on_warning)});
+        out.flush();
+        return bytes;
     });
 }
 

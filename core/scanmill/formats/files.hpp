@@ -62,6 +62,9 @@ struct WriteOptions {
 /// mesh without triangles where the format has nothing but triangles, a target that is no regular file, a full disk.
 void write_file(const std::filesystem::path& path, const Value& value, const WriteOptions& options = {});
 
+/// The bytes that write_file() would write; `name` stands for the path in messages, and its extension counts.
+std::string write_bytes(const std::filesystem::path& name, const Value& value, const WriteOptions& options = {});
+
 /// Whether files with this extension ("ply" or ".PLY") can be written from values of this kind.
 bool can_write(std::string_view extension, Kind kind);
 

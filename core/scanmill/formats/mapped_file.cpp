@@ -22,10 +22,16 @@ struct Descriptor {
     }
 };
 
+[[noreturn]] void throw_irregular() {
+    throw Error("is not a regular file (a pipe, socket or device); scans are read by mapping")
+        .hint("copy the data into a file first");
+}
+
 [[noreturn]] void throw_unopened(int reason) {
     if (reason == ENOENT || reason == ENOTDIR) throw Error("there is no such file");
     if (reason == EACCES || reason == EPERM)
         throw Error("no permission to read this file").hint("ask its owner for read access (chmod +r)");
+    if (reason == ENXIO) throw_irregular();  // a socket
     throw Error("cannot be opened: {}", std::generic_category().message(reason));
 }
 
@@ -39,9 +45,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     if (::fstat(file.number, &facts) != 0) throw_unopened(errno);
     if (S_ISDIR(facts.st_mode))
         throw Error("is a folder, not a file").hint("name one scan, or use a pattern as DIR/*.ply");
-    if (!S_ISREG(facts.st_mode))
-        throw Error("is not a regular file (a pipe, socket or device); scans are read by mapping")
-            .hint("copy the data into a file first");
+    if (!S_ISREG(facts.st_mode)) throw_irregular();
     if (facts.st_size == 0) throw Error("is empty (0 bytes)");
     size_ = static_cast<std::size_t>(facts.st_size);
     // Everything will be read, once: one call that maps all pages beats a fault for every few of them.

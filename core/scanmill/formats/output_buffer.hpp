@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Gathers small pieces of output, binary or text, into large writes to an AtomicFile.
+/// Gathers small pieces of output, binary or text, into large ones for whoever stores them: a file, or memory.
 ///
 /// Binary numbers are little-endian on every machine; text numbers are the shortest that read back equal, whatever the
 /// locale.
@@ -9,10 +9,10 @@
 #include <charconv>
 #include <concepts>
 #include <cstring>
-#include <vector>
+#include <functional>
+#include <string_view>
 
 #include "scanmill/data/array.hpp"
-#include "scanmill/formats/atomic_file.hpp"
 
 namespace scanmill {
 
@@ -28,7 +28,8 @@ T byte_swapped(T number) {
 
 class OutputBuffer {
 public:
-    explicit OutputBuffer(AtomicFile& file) : file_(file), space_(capacity) {}
+    using Sink = std::function<void(std::string_view)>;
+    explicit OutputBuffer(Sink sink) : sink_(std::move(sink)), space_(capacity) {}
 
     void text(std::string_view piece) { std::memcpy(room(piece.size()), piece.data(), piece.size()); }
     /// A number as text.
@@ -53,7 +54,7 @@ public:
         return place;
     }
     void flush() {
-        file_.write({space_.data(), used_});
+        sink_({space_.data(), used_});
         used_ = 0;
     }
 
@@ -64,7 +65,7 @@ private:
     }
 
     static constexpr std::size_t capacity = std::size_t(1) << 18;
-    AtomicFile& file_;
+    Sink sink_;
     Array<char> space_;
     std::size_t used_ = 0;
 };

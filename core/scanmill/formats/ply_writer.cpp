@@ -142,7 +142,8 @@ struct Header {
     std::string text(const Frame& frame) const {
         std::string lines = "ply\nformat binary_little_endian 1.0\ncomment written by scanmill\n";
         if (frame.unit != LengthUnit::unknown) lines += fmt::format("comment unit {}\n", symbol(frame.unit));
-        if (!frame.name.empty()) lines += fmt::format("comment frame {}\n", one_line(frame.name));
+        if (const std::string name = one_line(frame.name); !name.empty())
+            lines += fmt::format("comment frame {}\n", name);
         return lines + comments + elements + "end_header\n";
     }
 };

@@ -81,13 +81,15 @@ std::string one_line(std::string_view name) {
     std::string line(name);
     for (char& c : line)
         if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
-    return line;
+    const std::size_t begin = line.find_first_not_of(' ');
+    return begin == std::string::npos ? "" : line.substr(begin, line.find_last_not_of(' ') + 1 - begin);
 }
 
 std::string comment_lines(const Frame& frame) {
     std::string lines;
     if (frame.unit != LengthUnit::unknown) lines.append("# unit ").append(symbol(frame.unit)).append("\n");
-    if (!frame.name.empty()) lines.append("# frame ").append(one_line(frame.name)).append("\n");
+    if (const std::string name = one_line(frame.name); !name.empty())
+        lines.append("# frame ").append(name).append("\n");
     return lines;
 }
 

@@ -31,7 +31,8 @@ void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, cons
                          std::span<const std::string_view> kept_of_vertices = {},
                          std::span<const std::string_view> kept_of_faces = {});
 
-/// A frame's name fit for a comment: control characters, line ends above all, become blanks.
+/// A frame's name fit for a comment, and as a reader finds it there: control characters, line ends above all, become
+/// blanks, and those around it go.
 std::string one_line(std::string_view name);
 
 /// "# unit mm" and "# frame NAME", each on its line, as far as known.

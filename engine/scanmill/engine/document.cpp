@@ -16,18 +16,37 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t most_nodes = 1'000'000;
+constexpr std::size_t most_bytes = std::size_t(64) << 20;
+/// Aliases put trees into trees; whoever walks over them recursively must not run out of stack.
+constexpr std::size_t most_levels = 500;
 
-struct TooManyNodes {
+struct TooMuch {
     Position position;
+    std::string what;
+};
+
+/// What a tree costs to copy and to walk over.
+struct Extent {
+    std::size_t nodes = 0;   ///< keys are some, too
+    std::size_t bytes = 0;   ///< of all texts
+    std::size_t levels = 0;  ///< of nesting
 };
 
 Position position_of(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
 
-std::size_t count_nodes(const YamlNode& node) {
-    std::size_t count = 1;
-    for (const YamlNode& item : node.items) count += count_nodes(item);
-    for (const YamlEntry& entry : node.entries) count += 1 + count_nodes(entry.value);
-    return count;
+Extent extent_of(const YamlNode& node) {
+    Extent whole{1, node.text.size(), 1};
+    const auto add = [&whole](const Extent& part) {
+        whole.nodes += part.nodes;
+        whole.bytes += part.bytes;
+        whole.levels = std::max(whole.levels, part.levels + 1);
+    };
+    for (const YamlNode& item : node.items) add(extent_of(item));
+    for (const YamlEntry& entry : node.entries) {
+        add({1, entry.key.size(), 0});
+        add(extent_of(entry.value));
+    }
+    return whole;
 }
 
 /// Builds the tree from the parser's events: keys, values and items arrive one after the other.
@@ -36,8 +55,9 @@ public:
     explicit TreeBuilder(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
     YamlNode root;
+    Position begin;  ///< of the document
 
-    void OnDocumentStart(const YAML::Mark&) override {}
+    void OnDocumentStart(const YAML::Mark& mark) override { begin = position_of(mark); }
     void OnDocumentEnd() override {}
     void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
         finish({.type = YamlNode::Type::null, .position = position_of(mark), .text = "", .items = {}, .entries = {}},
@@ -50,9 +70,9 @@ public:
             finish({}, 0);
             return;
         }
-        YamlNode copy = found->second;
+        count(found->second.extent, position_of(mark));
+        YamlNode copy = found->second.node;
         copy.position = position_of(mark);
-        count(count_nodes(copy), copy.position);
         finish(std::move(copy), 0);
     }
     void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -87,9 +107,19 @@ private:
         std::unordered_map<std::string, int> line_of_key;
     };
 
-    void count(std::size_t nodes, Position position) {
-        nodes_ += nodes;
-        if (nodes_ > most_nodes) throw TooManyNodes{position};
+    struct Anchored {
+        YamlNode node;
+        Extent extent;
+    };
+
+    /// Before a tree is put, or copied, below the open nodes.
+    void count(const Extent& extent, Position position) {
+        nodes_ += extent.nodes;
+        bytes_ += extent.bytes;
+        if (nodes_ > most_nodes) throw TooMuch{position, fmt::format("unfolds to more than {} nodes", most_nodes)};
+        if (bytes_ > most_bytes) throw TooMuch{position, fmt::format("unfolds to more than {} bytes", most_bytes)};
+        if (stack_.size() + extent.levels > most_levels)
+            throw TooMuch{position, fmt::format("unfolds to more than {} levels", most_levels)};
     }
     void open(YamlNode::Type type, const YAML::Mark& mark, YAML::anchor_t anchor) {
         Open level{.node = {}, .anchor = anchor, .has_key = false, .key = {}, .key_position = {}, .line_of_key = {}};
@@ -103,8 +133,12 @@ private:
         finish(std::move(level.node), level.anchor);
     }
     void finish(YamlNode node, YAML::anchor_t anchor) {
-        count(1, node.position);
-        if (anchor != 0) anchors_[anchor] = node;
+        count({1, node.text.size(), 1}, node.position);
+        if (anchor != 0) {
+            const Extent extent = extent_of(node);
+            count(extent, node.position);  // it is kept a second time
+            anchors_[anchor] = {node, extent};
+        }
         if (stack_.empty()) {
             root = std::move(node);
             return;
@@ -137,8 +171,8 @@ private:
 
     Diagnostics& diagnostics_;
     std::vector<Open> stack_;
-    std::map<YAML::anchor_t, YamlNode> anchors_;
-    std::size_t nodes_ = 0;
+    std::map<YAML::anchor_t, Anchored> anchors_;
+    std::size_t nodes_ = 0, bytes_ = 0;
 };
 
 }  // namespace
@@ -160,19 +194,33 @@ std::string YamlNode::described() const {
 }
 
 YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
+    if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
+        const auto before = std::string_view(text).substr(0, zero);
+        const auto line = 1 + std::ranges::count(before, '\n');
+        const auto column = zero - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+        diagnostics.error({static_cast<int>(line), static_cast<int>(column)}, "a zero byte; a workflow is text");
+        return {};
+    }
     TreeBuilder builder(diagnostics);
     try {
         std::istringstream stream(text);
         YAML::Parser parser(stream);
         parser.HandleNextDocument(builder);
-        for (TreeBuilder next(diagnostics); parser.HandleNextDocument(next);)
+        for (Position last = builder.begin;;) {
+            TreeBuilder next(diagnostics);
+            if (!parser.HandleNextDocument(next)) break;
+            if (next.begin <= last) {  // the parser neither takes what stands here nor complains: `,` outside a list
+                diagnostics.error(next.begin, "is no YAML: what stands here belongs to nothing");
+                break;
+            }
             if (!next.root.is_null())
                 diagnostics.error(next.root.position, "a second document begins here; expected one");
+            last = next.begin;
+        }
     } catch (const YAML::Exception& error) {
         diagnostics.error(position_of(error.mark), "is no YAML: " + error.msg);
-    } catch (const TooManyNodes& too_many) {
-        diagnostics.error(too_many.position,
-                          fmt::format("unfolds to more than {} nodes; write fewer aliases", most_nodes));
+    } catch (const TooMuch& too_much) {
+        diagnostics.error(too_much.position, too_much.what + "; write fewer anchors and aliases");
     }
     return std::move(builder.root);
 }

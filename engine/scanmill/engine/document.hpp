@@ -3,7 +3,7 @@
 /// A YAML file as a plain tree with the place of every node. The only file of the engine that meets the YAML library.
 ///
 /// Refused beyond what YAML itself refuses: repeated keys, keys that are no plain text, more than one document, and
-/// files whose aliases unfold to more than a million nodes.
+/// files whose anchors and aliases unfold to more than a million nodes, 64 MiB of text or 500 levels.
 
 #include <string>
 #include <string_view>

@@ -14,6 +14,7 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t most_variants = 10'000;
+constexpr std::size_t most_steps = 500'000;  // of all variants together: each takes time and memory, shared or not
 
 std::string file_safe(std::string_view text) {
     std::string safe;
@@ -202,21 +203,27 @@ private:
     std::set<std::string> used_;
 };
 
-bool has_too_many(const Workflow& workflow, const Settings& settings) {
+/// What there is too many of, as "more than 7 variants"; empty when there is not.
+std::string excess(const Workflow& workflow, const Settings& settings) {
     EveryCombination choices;
-    std::size_t count = 0;
+    std::size_t variants = 0, steps = 0;
     do {
-        Walk(workflow, settings, choices).variant();
-        if (++count > most_variants) return true;
+        steps += Walk(workflow, settings, choices).variant().steps.size();
+        if (++variants > most_variants) return fmt::format("more than {} variants", most_variants);
+        if (steps > most_steps) return fmt::format("more than {} steps in all its variants", most_steps);
     } while (choices.advance());
-    return false;
+    return {};
 }
 
 template <class Order>
 void visit_all(const Workflow& workflow, const Settings& settings, const std::function<void(const Variant&)>& visit) {
     Order choices;
-    do visit(Walk(workflow, settings, choices).variant());
-    while (choices.advance());
+    std::size_t steps = 0;
+    do {
+        const Variant variant = Walk(workflow, settings, choices).variant();
+        visit(variant);
+        steps += variant.steps.size();
+    } while (steps <= most_steps && choices.advance());
 }
 
 }  // namespace
@@ -225,8 +232,8 @@ void expand(const Workflow& workflow, const Settings& settings, Diagnostics& dia
             const std::function<void(const Variant&)>& visit) {
     const References references(workflow, diagnostics);
     for (const auto& [name, value] : settings) references.require_known(name, {});
-    if (has_too_many(workflow, settings)) {
-        diagnostics.error({}, fmt::format("has more than {} variants; sweep over fewer values", most_variants));
+    if (const std::string too_much = excess(workflow, settings); !too_much.empty()) {
+        diagnostics.error({}, "has " + too_much + "; sweep over fewer values");
         visit_all<EachOnce>(workflow, settings, visit);
         return;
     }

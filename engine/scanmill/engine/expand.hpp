@@ -36,9 +36,9 @@ struct Variant {
 };
 
 /// Calls `visit` with every variant, in the order of the file, first fork slowest. Reports unknown parameters, variants
-/// of equal names and workflows of more than 10,000 variants; of those it visits only as many as show every
-/// alternative and every swept value once, so that what is wrong in them is found too.
-/// Costs variants × steps, and the memory of one variant.
+/// of equal names and workflows of more than 10,000 variants or 500,000 steps in all of them; of those it visits only
+/// as many as show every alternative and every swept value once, so that what is wrong in them is found too. Costs
+/// variants × steps, and the memory of one variant.
 void expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics,
             const std::function<void(const Variant&)>& visit);
 

@@ -18,10 +18,17 @@ bool lies_below(const fs::path& path, const fs::path& folder) {
     return end == folder.end() || end->empty();
 }
 
+/// Absolute and without links, as far as it exists.
+fs::path real_path(const fs::path& path) {
+    std::error_code trouble;
+    fs::path real = fs::weakly_canonical(fs::absolute(path), trouble);
+    if (trouble) throw Error("results cannot be put into '{}': {}", path.string(), trouble.message());
+    return real;
+}
+
 }  // namespace
 
-OutputFiles::OutputFiles(const RunRequest& request)
-    : folder_(fs::weakly_canonical(fs::absolute(request.output_folder))) {
+OutputFiles::OutputFiles(const RunRequest& request) : folder_(real_path(request.output_folder)) {
     if (!folder_.has_filename() && folder_ != folder_.root_path()) folder_ = folder_.parent_path();  // "out/"
     for (const fs::path& scan : request.scans) inputs_.insert(identity(scan));
     for (const auto& [name, files] : request.inputs)
@@ -40,7 +47,7 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
     }
     require_no_clash(file, writer);
     for (fs::path part = file.parent_path(); part != folder_; part = part.parent_path()) folders_.emplace(part, writer);
-    if (const fs::path real = fs::weakly_canonical(file.parent_path()); !lies_below(real, folder_))
+    if (const fs::path real = real_path(file.parent_path()); !lies_below(real, folder_))
         throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), real.string())
             .hint("a symbolic link below the output folder leads out of it; remove it");
     if (inputs_.contains(identity(file)))
@@ -58,7 +65,8 @@ void OutputFiles::require_no_clash(const fs::path& file, const std::string& writ
         if (const auto other = files_.find(part); other != files_.end())
             throw Error("{} would write '{}' into a folder that is a file of {}", writer, file.string(),
                         other->second.writer);
-    if (fs::is_directory(file))
+    std::error_code unknown;  // a name too long, say: writing it will fail, and nothing else
+    if (fs::is_directory(file, unknown))
         throw Error("the output '{}' is an existing folder", file.string())
             .hint("remove it, or choose another output folder with -o");
 }

@@ -25,6 +25,19 @@ bool names_a_folder(const std::filesystem::path& path) {
     return !path.has_filename() || path.filename() == "." || path.filename() == "..";
 }
 
+/// Bytes of the longest part between slashes; what the placeholders will stand for does not count.
+std::size_t longest_name(const std::string& file) {
+    std::size_t longest = 0, length = 0;
+    bool inside = false;
+    for (char c : file) {
+        if (c == '{') inside = true;
+        length = c == '/' ? 0 : length + (inside ? 0 : 1);
+        longest = std::max(longest, length);
+        if (c == '}') inside = false;
+    }
+    return longest;
+}
+
 }  // namespace
 
 bool mentions(const std::string& file, const std::string& placeholder) {
@@ -49,6 +62,9 @@ void check_template(const std::string& file, Position position, Diagnostics& dia
         at = end;
     }
     if (file.find('\0') != std::string::npos) diagnostics.error(position, "a file's name has a zero byte");
+    constexpr std::size_t most = 255;  // of nearly every file system
+    if (const std::size_t bytes = longest_name(file); bytes > most)
+        diagnostics.error(position, fmt::format("a file's name has {} bytes; expected at most {}", bytes, most));
     if (leaves_folder(file))
         diagnostics.error(
             position,

@@ -23,6 +23,10 @@ std::optional<WrittenValue> written_value(const YamlNode& node, Diagnostics& dia
     }
     const auto text = require_text(node, value_forms, diagnostics);
     if (!text) return std::nullopt;
+    if (*text == "$") {
+        diagnostics.error(node.position, "'$' names no parameter; expected $name, or $$ for the text '$'");
+        return std::nullopt;
+    }
     if (text->starts_with("$$"))
         result.literal.items.push_back(text->substr(1));  // a text that begins with one $
     else if (text->starts_with('$'))

@@ -32,11 +32,10 @@ public:
         settings_ = &settings;
         expand(plan_.workflow, settings, diagnostics_,
                [this](const Variant& variant) { plan_.variants.push_back(plan_variant(variant)); });
-        for (const WorkflowOutput& output : plan_.workflow.outputs) {
+        for (const WorkflowOutput& output : plan_.workflow.outputs)
             check_template(output.file, output.position, diagnostics_);
-            complain_of_shared_file(output);
-            complain_of_folder(output);
-        }
+        complain_of_shared_files();
+        complain_of_folders();
         return std::move(plan_);
     }
 
@@ -89,7 +88,7 @@ private:
     void complain_of_id(const ExpandedStep& step, std::set<std::string>& ids) {
         for (const std::string& name : names_of(step)) {
             const bool given = name == step.syntax->id || std::ranges::find(step.aliases, name) != step.aliases.end();
-            if (!given) continue;
+            if (!given || name.empty()) continue;  // empty: neither id nor filter could be read, and that is reported
             if (!ids.insert(name).second)
                 diagnostics_.error(step.syntax->position, fmt::format("the id '{}' is given twice", name));
             if (std::ranges::find(plan_.workflow.inputs, name, &WorkflowInput::name) != plan_.workflow.inputs.end())
@@ -210,30 +209,39 @@ private:
         variant.outputs.push_back({output.file, output.position, *source});
     }
 
-    void complain_of_shared_file(const WorkflowOutput& output) {
-        if (mentions(output.file, "variant")) return;
-        const PlannedVariant* first = nullptr;
-        const ValueSource* source = nullptr;
+    void complain_of_shared_files() {
+        struct Writer {
+            const PlannedVariant* variant;
+            const PlannedOutput* output;
+            bool told = false;
+        };
+        std::map<std::string_view, Writer> last_writers;
         for (const PlannedVariant& variant : plan_.variants)
-            for (const PlannedOutput& planned : variant.outputs) {
-                if (planned.file != output.file) continue;
-                if (source && *source != planned.source) {
+            for (const PlannedOutput& output : variant.outputs) {
+                if (mentions(output.file, "variant")) continue;
+                const auto [place, is_new] = last_writers.emplace(output.file, Writer{&variant, &output});
+                Writer& last = place->second;
+                if (!is_new && !last.told && last.output->source != output.source) {
+                    last.told = true;
                     diagnostics_.error(output.position,
                                        fmt::format("the variants '{}' and '{}' would both write '{}'; put "
                                                    "{{variant}} into the name",
-                                                   first->name, variant.name, output.file));
-                    return;
+                                                   last.variant->name, variant.name, output.file));
                 }
-                first = &variant;
-                source = &planned.source;
+                last.variant = &variant;
+                last.output = &output;
             }
     }
 
-    void complain_of_folder(const WorkflowOutput& output) {
-        for (const WorkflowOutput& other : plan_.workflow.outputs)
-            if (other.file.starts_with(output.file + "/"))
-                diagnostics_.error(output.position, fmt::format("'{}' would be a file, and the folder of '{}' too",
-                                                                output.file, other.file));
+    void complain_of_folders() {
+        std::set<std::string_view> files;
+        for (const WorkflowOutput& output : plan_.workflow.outputs) files.insert(output.file);
+        for (const WorkflowOutput& output : plan_.workflow.outputs) {
+            const std::string folder = output.file + "/";
+            if (const auto file = files.lower_bound(folder); file != files.end() && file->starts_with(folder))
+                diagnostics_.error(output.position,
+                                   fmt::format("'{}' would be a file, and the folder of '{}' too", output.file, *file));
+        }
     }
 
     const FilterLibrary& library_;

@@ -191,7 +191,11 @@ private:
         const auto start = std::chrono::steady_clock::now();
         try {
             if (const auto earlier = written_.find(output.file); earlier != written_.end()) return earlier->second;
-            fs::create_directories(output.file.parent_path());
+            std::error_code trouble;
+            fs::create_directories(output.file.parent_path(), trouble);
+            if (trouble)
+                throw Error("the folder '{}' cannot be made: {}", output.file.parent_path().string(),
+                            trouble.message());
             WriteOptions options;
             options.on_warning = [&](std::string text) { written.warnings.push_back(std::move(text)); };
             write_file(output.file, value, options);

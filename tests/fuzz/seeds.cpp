@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fuzz/seeds.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#include "scanmill/formats/output_buffer.hpp"
+
+namespace scanmill::test {
+
+namespace {
+
+/// A text, and binary numbers behind it.
+class Bytes {
+public:
+    Bytes(std::string text, std::endian order) : bytes_(std::move(text)), order_(order) {}
+
+    template <class T>
+    Bytes& put(std::initializer_list<T> numbers) {
+        for (T number : numbers) {
+            if (order_ != std::endian::native) number = byte_swapped(number);
+            const std::size_t at = bytes_.size();
+            bytes_.resize(at + sizeof(T));
+            std::memcpy(bytes_.data() + at, &number, sizeof(T));
+        }
+        return *this;
+    }
+    const std::string& all() const { return bytes_; }
+
+private:
+    std::string bytes_;
+    std::endian order_;
+};
+
+std::string ply_header(std::endian order, const std::string& elements) {
+    const std::string format = order == std::endian::little ? "binary_little_endian" : "binary_big_endian";
+    return "ply\nformat " + format + " 1.0\ncomment unit mm\n" + elements + "end_header\n";
+}
+
+/// Four points with everything that has a meaning: normals, colours, a column of several components, one of lists.
+std::string ply_points(std::endian order) {
+    Bytes file(ply_header(order,
+                          "comment components 2 pair\nelement vertex 4\nproperty float x\nproperty float y\n"
+                          "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+                          "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty short pair_0\n"
+                          "property short pair_1\nproperty list uchar int64 numbers\n"),
+               order);
+    for (const float z : {0.f, 1.f, 2.f, 1000000.f}) {
+        file.put<float>({z, 0.5f, z, 0, 0, 1}).put<std::uint8_t>({255, 128, 0}).put<std::int16_t>({-1, 7});
+        file.put<std::uint8_t>({2}).put<std::int64_t>({-5, 6});
+    }
+    return file.all();
+}
+
+/// A tetrahedron as a quad, two triangles and a strip, with edges; doubles far from zero.
+std::string ply_mesh(std::endian order) {
+    Bytes file(ply_header(order,
+                          "element vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+                          "element face 3\nproperty list uchar int vertex_indices\nproperty uchar part\n"
+                          "element tristrips 1\nproperty list uint int vertex_indices\n"
+                          "element edge 1\nproperty int vertex1\nproperty int vertex2\nproperty float length\n"
+                          "element sharp_edge 1\nproperty uint vertex1\nproperty uint vertex2\n"
+                          "element camera 1\nproperty float focus\n"),
+               order);
+    file.put<double>({1e6, 0, 0, 1e6 + 1, 0, 0, 1e6, 1, 0, 1e6, 0, 1});
+    file.put<std::uint8_t>({4}).put<std::int32_t>({0, 1, 2, 3}).put<std::uint8_t>({1});
+    file.put<std::uint8_t>({3}).put<std::int32_t>({0, 1, 3}).put<std::uint8_t>({2});
+    file.put<std::uint8_t>({2}).put<std::int32_t>({0, 1}).put<std::uint8_t>({3});
+    file.put<std::uint32_t>({6}).put<std::int32_t>({0, 1, 2, -1, 3, 1});
+    file.put<std::int32_t>({1, 0}).put<float>({1}).put<std::uint32_t>({3, 2}).put<float>({35});
+    return file.all();
+}
+
+std::string stl(std::string header, std::uint32_t promised, std::uint16_t attribute) {
+    header.resize(80, ' ');
+    Bytes file(header, std::endian::little);
+    file.put<std::uint32_t>({promised});
+    file.put<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}).put<std::uint16_t>({attribute});
+    file.put<float>({0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 0}).put<std::uint16_t>({0});
+    return file.all();
+}
+
+}  // namespace
+
+std::vector<Seed> binary_seeds() {
+    const std::string points = ply_points(std::endian::little);
+    return {
+        {"ply", "points_little_endian.ply", points},
+        {"ply", "points_big_endian.ply", ply_points(std::endian::big)},
+        {"ply", "mesh_little_endian.ply", ply_mesh(std::endian::little)},
+        {"ply", "mesh_big_endian.ply", ply_mesh(std::endian::big)},
+        {"ply", "truncated_in_a_list.ply", points.substr(0, points.size() - 3)},
+        {"stl", "two_facets.stl", stl("binary STL by scanmill; unit mm; frame part", 2, 0)},
+        {"stl", "control_character_in_the_name.stl", stl("binary STL by scanmill; frame part  \x16", 2, 0)},
+        {"stl", "attribute.stl", stl("solid in name only", 2, 31)},
+        {"stl", "more_promised_than_there.stl", stl("", 3, 0)},
+    };
+}
+
+}  // namespace scanmill::test

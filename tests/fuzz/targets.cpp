@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fuzz/targets.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace scanmill::test {
+
+std::span<const FuzzTarget> fuzz_targets() {
+    static constexpr std::array<FuzzTarget, 9> table{{
+        {"ply", [](std::string_view bytes) { read_scan("ply", bytes); }},
+        {"stl", [](std::string_view bytes) { read_scan("stl", bytes); }},
+        {"off", [](std::string_view bytes) { read_scan("off", bytes); }},
+        {"xyz", [](std::string_view bytes) { read_scan("xyz", bytes); }},
+        {"csv", [](std::string_view bytes) { read_scan("csv", bytes); }},
+        {"pts", [](std::string_view bytes) { read_scan("pts", bytes); }},
+        {"workflow", check_workflow_text},
+        {"setting", check_setting},
+        {"manifest", check_manifest},
+    }};
+    return table;
+}
+
+const FuzzTarget& fuzz_target(std::string_view name) {
+    const auto found = std::ranges::find(fuzz_targets(), name, &FuzzTarget::name);
+    if (found == fuzz_targets().end()) throw std::out_of_range("there is no fuzz target '" + std::string(name) + "'");
+    return *found;
+}
+
+}  // namespace scanmill::test
