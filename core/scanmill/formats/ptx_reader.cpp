@@ -2,6 +2,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/ptx.hpp"
 #include "scanmill/formats/ptx_header.hpp"
+#include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/text_columns.hpp"
 #include "scanmill/formats/text_layout.hpp"
 
