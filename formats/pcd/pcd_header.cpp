@@ -8,6 +8,7 @@
 
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/reading.hpp"
+#include "scanmill/formats/text_cursor.hpp"
 
 namespace scanmill::pcd {
 
@@ -88,6 +89,7 @@ private:
             throw Error("line {}: DATA is {}; expected ascii, binary or binary_compressed", line_, quote(word));
         header_.encoding = static_cast<PcdHeader::Encoding>(found - encodings.begin());
         header_.body = std::min(at_, bytes_.size());
+        header_.lines = line_;
     }
 
     u64 number(std::size_t word = 1) const {
@@ -170,6 +172,23 @@ private:
 }  // namespace
 
 PcdHeader checked_header(std::string_view bytes) { return HeaderParser(bytes).header(); }
+
+void require_rows(std::string_view bytes, const PcdHeader& header) {
+    TextCursor text(bytes.substr(header.body), {.line = header.lines + 1});
+    u64 rows = 0;
+    for (; rows < header.points && text.next_row(); ++rows) {
+        u64 numbers = 0;
+        for (double ignored = 0; text.more(); ++numbers)
+            if (!text.number(ignored)) throw Error("line {}: {} is no number", text.line(), quote(text.last_token()));
+        if (numbers != header.row_numbers)
+            throw Error("line {}: found {}; a point has {}", text.line(), counted(numbers, "number", "numbers"),
+                        header.row_numbers);
+    }
+    if (rows < header.points)
+        throw Error("its header promises {} points; {} follow", header.points, rows)
+            .hint("the file is truncated: fetch or export it again");
+    if (text.next_row()) throw Error("line {}: more rows than the {} points of the header", text.line(), header.points);
+}
 
 std::string_view name_of(PcdHeader::Encoding encoding) { return encodings[static_cast<std::size_t>(encoding)]; }
 

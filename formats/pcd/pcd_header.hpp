@@ -18,12 +18,17 @@ struct PcdHeader {
     u64 row_bytes = 0;    ///< of one point
     u64 row_numbers = 0;  ///< in one point
     std::size_t body = 0;  ///< where the points begin
+    std::size_t lines = 0;  ///< of the header
     std::vector<std::string> comments;
     std::string viewpoint;  ///< as written; empty when there is none
 };
 
 /// Throws Error when the header is broken, contradicts itself, or promises more than the file's bytes can hold.
 PcdHeader checked_header(std::string_view bytes);
+
+/// PCL takes what it cannot read of an ascii row for zeros: throws Error unless every row holds as many numbers as the
+/// header says, and there are as many rows. Pre: the header is checked_header() of the bytes.
+void require_rows(std::string_view bytes, const PcdHeader& header);
 
 std::string_view name_of(PcdHeader::Encoding encoding);
 

@@ -29,6 +29,7 @@ pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) 
     if (trouble >= 0 && cloud.data.size() != header.points * header.row_bytes)
         throw Error("its header names fields that do not add up to {} bytes per point", header.row_bytes);
     if (trouble >= 0 && header.encoding == Encoding::ascii) {
+        require_rows(bytes, header);
         std::istringstream rows{std::string(bytes.substr(header.body))};
         trouble = reader.readBodyASCII(rows, cloud, version);
     } else if (trouble >= 0) {

@@ -47,7 +47,9 @@ TEST(LoadModule, AnotherAbi_IsRefusedWithBothTextsAndWithoutACall) {
     EXPECT_THAT(error.hint(), HasSubstr("build the module again"));
 }
 
-TEST(LoadModule, AnotherMagic_IsNoFilter) { EXPECT_THAT(refusal("other-magic"), AllOf(HasSubstr("is no filter"), HasSubstr("begins with"))); }
+TEST(LoadModule, AnotherMagic_IsNoFilter) {
+    EXPECT_THAT(refusal("other-magic"), AllOf(HasSubstr("is no filter"), HasSubstr("begins with")));
+}
 
 TEST(LoadModule, OrdinaryLibrary_IsNoFilter) {
     EXPECT_THAT(refusal("exports-nothing"), EndsWith("is no filter: it exports no scanmill_plugin"));

@@ -52,12 +52,11 @@ TEST(DocsCommand, WritesAPageForEveryFilter) {
 
 /// What bash proposes behind `scanmill` and these words.
 std::string completed(const TemporaryFolder& folder, const std::string& words, int index) {
-    folder.write("complete", scanmill_program({"completion", "bash"}).out +
-                                 "COMP_WORDS=(scanmill " + words + ")\nCOMP_CWORD=" + std::to_string(index) +
-                                 "\n_scanmill\necho \"${COMPREPLY[@]}\"\n");
+    folder.write("complete", scanmill_program({"completion", "bash"}).out + "COMP_WORDS=(scanmill " + words +
+                                 ")\nCOMP_CWORD=" + std::to_string(index) + "\n_scanmill\necho \"${COMPREPLY[@]}\"\n");
     const std::string programs = std::filesystem::path(SCANMILL_PROGRAM).parent_path().string();
-    const std::string command = "PATH=\"" + programs + ":$PATH\" bash '" + (folder / "complete").string() +
-                                "' > '" + (folder / "proposals").string() + "'";
+    const std::string command = "PATH=\"" + programs + ":$PATH\" bash '" + (folder / "complete").string() + "' > '" +
+                                (folder / "proposals").string() + "'";
     EXPECT_EQ(std::system(command.c_str()), 0);
     return content_of(folder / "proposals");
 }

@@ -5,8 +5,8 @@
 #include "scanmill/formats/obj.hpp"
 #include "scanmill/formats/output_buffer.hpp"
 #include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/written_columns.hpp"
 #include "scanmill/formats/writing.hpp"
+#include "scanmill/formats/written_columns.hpp"
 
 namespace scanmill {
 

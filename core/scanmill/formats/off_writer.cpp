@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/off.hpp"
 #include "scanmill/formats/output_buffer.hpp"
-#include "scanmill/formats/written_columns.hpp"
 #include "scanmill/formats/writing.hpp"
+#include "scanmill/formats/written_columns.hpp"
 
 namespace scanmill {
 

@@ -4,9 +4,9 @@
 ///
 /// A row is a line that holds at least one token; blank lines and comments are passed over. Lines end with LF, CRLF or
 /// CR; where a format allows it, a sign right before the line's end joins the next line to the row (in a comment it is
-/// text). Tokens are separated by blanks and tabs, and, where a format allows it, by commas, semicolons and bars. Numbers
-/// are read without regard to the locale, every spelling of nan and inf that parse_number() knows included. Nothing is
-/// copied and nothing beyond the text is touched.
+/// text). Tokens are separated by blanks and tabs, and, where a format allows it, by commas, semicolons and bars.
+/// Numbers are read without regard to the locale, every spelling of nan and inf that parse_number() knows included.
+/// Nothing is copied and nothing beyond the text is touched.
 
 #include <array>
 #include <charconv>

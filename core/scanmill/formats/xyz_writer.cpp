@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/output_buffer.hpp"
-#include "scanmill/formats/written_columns.hpp"
 #include "scanmill/formats/writing.hpp"
+#include "scanmill/formats/written_columns.hpp"
 #include "scanmill/formats/xyz.hpp"
 
 namespace scanmill {
