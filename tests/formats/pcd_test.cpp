@@ -140,10 +140,10 @@ TEST(PcdReader_Refuses, WhatItsHeaderCannotMean) {
     EXPECT_THAT(refusal(with("x y z", "x y w")), HasSubstr("no field 'z'"));
     EXPECT_THAT(refusal(with("HEIGHT 1", "LENGTH 1")), HasSubstr("no part of a PCD header"));
     EXPECT_THAT(refusal(xyz_header(0, "ascii")), HasSubstr("holds no points"));
-    EXPECT_THAT(refusal(with("4 5 6\n", "4 5  \n")), HasSubstr("line 12: found 2 numbers; a point has 3"));
-    EXPECT_THAT(refusal(with("4 5 6\n", "4 5 x\n")), HasSubstr("line 12: 'x' is no number"));
-    EXPECT_THAT(refusal(with("4 5 6\n", "7 8 9 10\n")), HasSubstr("line 12: found 4 numbers"));
-    EXPECT_THAT(refusal(with("4 5 6\n", "4 5 6\n7 8 9\n")), HasSubstr("line 13: more rows than the 2 points"));
+    EXPECT_THAT(refusal(with("4 5 6\n", "4 5  \n")), HasSubstr("line 13: found 2 numbers; a point has 3"));
+    EXPECT_THAT(refusal(with("4 5 6\n", "4 5 x\n")), HasSubstr("line 13: 'x' is no number"));
+    EXPECT_THAT(refusal(with("4 5 6\n", "7 8 9 10\n")), HasSubstr("line 13: found 4 numbers"));
+    EXPECT_THAT(refusal(with("4 5 6\n", "4 5 6\n7 8 9\n")), HasSubstr("line 14: more rows than the 2 points"));
     EXPECT_THAT(refusal(with("4 5 6\n", "\n\n\n\n\n\n\n")), HasSubstr("promises 2 points; 1 follow"));
 }
 
