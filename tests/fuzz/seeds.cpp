@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/las_support.hpp"
 #include "scanmill/formats/output_buffer.hpp"
 
 namespace scanmill::test {
@@ -81,6 +82,19 @@ std::string stl(std::string header, std::uint32_t promised, std::uint16_t attrib
     return file.all();
 }
 
+/// Two points of the format, with extra bytes described and the unit of a survey.
+std::string las(u32 minor_version, u32 point_format, std::size_t point_size) {
+    LasBytes file;
+    file.minor_version = minor_version;
+    file.point_format = point_format;
+    file.scale = {0.001, 0.001, 0.01};
+    file.offset = {500000, 4900000, 0};
+    file.add_record("LASF_Projection", 34735, geo_keys({{3076, 9001}}));
+    file.add_record("LASF_Spec", 4, las_extra(3, "range", 8, 0.5));
+    file.points = {las_point(point_size + 2, 1, -2, 3), las_point(point_size + 2, 4000, 5000, -6000)};
+    return file.file();
+}
+
 }  // namespace
 
 std::vector<Seed> binary_seeds() {
@@ -95,6 +109,11 @@ std::vector<Seed> binary_seeds() {
         {"stl", "control_character_in_the_name.stl", stl("binary STL by scanmill; frame part  \x16", 2, 0)},
         {"stl", "attribute.stl", stl("solid in name only", 2, 31)},
         {"stl", "more_promised_than_there.stl", stl("", 3, 0)},
+        {"las", "oldest.las", las(0, 0, 20)},
+        {"las", "colours.las", las(2, 3, 34)},
+        {"las", "newest.las", las(4, 8, 38)},
+        {"las", "waves.las", las(4, 10, 67)},
+        {"las", "compressed.las", las(2, 128, 20)},
     };
 }
 
