@@ -8,7 +8,6 @@
 
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/text_cursor.hpp"
 
 namespace scanmill::pcd {
 
@@ -60,6 +59,7 @@ private:
             if (!text_.starts_with("# .PCD")) header_.comments.emplace_back(text_.substr(text_.find('#') + 1));
         } else if (key == "FIELDS" || key == "COLUMNS") {
             fields_ = words_.size() - 1;
+            padded_ = std::ranges::find(words_, "_") != words_.end();
         } else if (key == "SIZE") {
             sizes_ = numbers();
         } else if (key == "COUNT") {
@@ -130,6 +130,9 @@ private:
         if (promised_ && *promised_ != header_.points)
             throw Error("its header promises {} points, and {} × {} of them", *promised_, header_.width,
                         header_.height);
+        if (padded_ && header_.encoding == PcdHeader::Encoding::compressed)
+            throw Error("its compressed points have padding (the field _), which PCL does not read rightly")
+                .hint("save it as binary or ascii");
         if (header_.points == 0 || header_.row_bytes == 0) throw Error("holds no points");
         require_room();
     }
@@ -165,6 +168,7 @@ private:
     std::size_t at_ = 0, line_ = 0;
     PcdHeader header_;
     std::size_t fields_ = 0;
+    bool padded_ = false;
     std::vector<u64> sizes_, counts_;
     std::optional<u64> promised_;
 };
@@ -172,23 +176,6 @@ private:
 }  // namespace
 
 PcdHeader checked_header(std::string_view bytes) { return HeaderParser(bytes).header(); }
-
-void require_rows(std::string_view bytes, const PcdHeader& header) {
-    TextCursor text(bytes.substr(header.body), {.line = header.lines + 1});
-    u64 rows = 0;
-    for (; rows < header.points && text.next_row(); ++rows) {
-        u64 numbers = 0;
-        for (double ignored = 0; text.more(); ++numbers)
-            if (!text.number(ignored)) throw Error("line {}: {} is no number", text.line(), quote(text.last_token()));
-        if (numbers != header.row_numbers)
-            throw Error("line {}: found {}; a point has {}", text.line(), counted(numbers, "number", "numbers"),
-                        header.row_numbers);
-    }
-    if (rows < header.points)
-        throw Error("its header promises {} points; {} follow", header.points, rows)
-            .hint("the file is truncated: fetch or export it again");
-    if (text.next_row()) throw Error("line {}: more rows than the {} points of the header", text.line(), header.points);
-}
 
 std::string_view name_of(PcdHeader::Encoding encoding) { return encodings[static_cast<std::size_t>(encoding)]; }
 

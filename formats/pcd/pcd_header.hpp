@@ -26,10 +26,6 @@ struct PcdHeader {
 /// Throws Error when the header is broken, contradicts itself, or promises more than the file's bytes can hold.
 PcdHeader checked_header(std::string_view bytes);
 
-/// PCL takes what it cannot read of an ascii row for zeros: throws Error unless every row holds as many numbers as the
-/// header says, and there are as many rows. Pre: the header is checked_header() of the bytes.
-void require_rows(std::string_view bytes, const PcdHeader& header);
-
 std::string_view name_of(PcdHeader::Encoding encoding);
 
 }  // namespace scanmill::pcd

@@ -7,6 +7,7 @@
 #include "pcd/pcd.hpp"
 #include "pcd/pcd_fields.hpp"
 #include "pcd/pcd_header.hpp"
+#include "pcd/pcd_rows.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/reading.hpp"
 
@@ -29,9 +30,7 @@ pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) 
     if (trouble >= 0 && cloud.data.size() != header.points * header.row_bytes)
         throw Error("its header names fields that do not add up to {} bytes per point", header.row_bytes);
     if (trouble >= 0 && header.encoding == Encoding::ascii) {
-        require_rows(bytes, header);
-        std::istringstream rows{std::string(bytes.substr(header.body))};
-        trouble = reader.readBodyASCII(rows, cloud, version);
+        read_rows(bytes, header, cloud);
     } else if (trouble >= 0) {
         const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
         trouble = reader.readBodyBinary(from, cloud, version, header.encoding == Encoding::compressed,
@@ -44,6 +43,15 @@ pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) 
     return cloud;
 }
 
+/// "0 0 0 1 0 0 0", however written: no translation, and the quaternion w x y z of no rotation.
+bool is_identity(const std::string& viewpoint) {
+    std::istringstream numbers(viewpoint);
+    numbers.imbue(std::locale::classic());
+    for (const double expected : {0, 0, 0, 1, 0, 0, 0})
+        if (double number = 0; numbers >> number && number != expected) return false;
+    return true;
+}
+
 }  // namespace
 
 LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
@@ -51,7 +59,7 @@ LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     const pcl::PCLPointCloud2 cloud = read_cloud(file.bytes, header);
     if (header.height > 1 && header.width > 1)
         warn(options.on_warning, "the grid of {} × {} points became a list in file order", header.width, header.height);
-    if (!header.viewpoint.empty() && header.viewpoint != "0 0 0 1 0 0 0")
+    if (!is_identity(header.viewpoint))
         warn(options.on_warning, "the sensor's pose (VIEWPOINT {}) was left out; coordinates are as in the file",
              header.viewpoint);
     LoadedFile loaded;

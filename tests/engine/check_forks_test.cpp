@@ -69,6 +69,24 @@ TEST_F(CheckForks, TooManyVariants_AreStillCheckedInEveryAlternative) {
                                              AllOf(StartsWith("w:34:"), HasSubstr("30 is out of range"))));
 }
 
+TEST_F(CheckForks, ForksWithinForksOfTooManyVariants_AreCheckedInEveryAlternative) {
+    std::string lines =
+        "  - one-of:\n      - thin:\n      - name: two\n        steps:\n"
+        "          - one-of: [{id: bad, no-such-filter: }, {id: good, thin: }]\n";
+    for (int i = 0; i < 14; ++i) lines += "  - id: s" + std::to_string(i) + "\n    thin: {count: {sweep: [1, 2]}}\n";
+    EXPECT_THAT(findings(lines), Contains(HasSubstr("no filter 'no-such-filter'")));
+}
+
+TEST_F(CheckForks, DefaultThatIsAReference_IsAnErrorAndNotUsed) {
+    Diagnostics diagnostics("w");
+    make_plan(parse_workflow("scanmill: 1\ninputs: {scan: points}\nparameters: {b: $b}\n"
+                             "steps: [{thin: {size: $b}}]\n",
+                             diagnostics),
+              library_, {}, diagnostics);
+    ASSERT_EQ(diagnostics.errors(), 1u);
+    EXPECT_THAT(diagnostics.sorted().front().message, HasSubstr("cannot refer to another parameter"));
+}
+
 TEST_F(CheckForks, TenThousandVariants_AreNotTooMany) {
     std::string sweep;
     for (int i = 1; i <= 100; ++i) sweep += (i > 1 ? ", " : "") + std::to_string(i) + " u";

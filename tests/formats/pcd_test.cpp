@@ -141,10 +141,44 @@ TEST(PcdReader_Refuses, WhatItsHeaderCannotMean) {
     EXPECT_THAT(refusal(with("HEIGHT 1", "LENGTH 1")), HasSubstr("no part of a PCD header"));
     EXPECT_THAT(refusal(xyz_header(0, "ascii")), HasSubstr("holds no points"));
     EXPECT_THAT(refusal(with("4 5 6\n", "4 5  \n")), HasSubstr("line 13: found 2 numbers; a point has 3"));
-    EXPECT_THAT(refusal(with("4 5 6\n", "4 5 x\n")), HasSubstr("line 13: 'x' is no number"));
+    EXPECT_THAT(refusal(with("4 5 6\n", "4 5 x\n")), HasSubstr("line 13: 'x' is no float32 for the field 'z'"));
     EXPECT_THAT(refusal(with("4 5 6\n", "7 8 9 10\n")), HasSubstr("line 13: found 4 numbers"));
     EXPECT_THAT(refusal(with("4 5 6\n", "4 5 6\n7 8 9\n")), HasSubstr("line 14: more rows than the 2 points"));
     EXPECT_THAT(refusal(with("4 5 6\n", "\n\n\n\n\n\n\n")), HasSubstr("promises 2 points; 1 follow"));
+}
+
+TEST(PcdReader, BlankLinesOfAnAsciiFile_AreNoPoints) {
+    const auto cloud = points_in(xyz_header(3, "ascii") + "1 2 3\r\n\r\n4 5 6\r\n  \r\n7 8 9\r\n", "a.pcd");
+    EXPECT_EQ(world_of(*cloud, 1), Vec3(4, 5, 6));
+    EXPECT_EQ(world_of(*cloud, 2), Vec3(7, 8, 9));
+}
+
+TEST(PcdReader, AsciiIntegers_KeepEveryDigitAndNoneIsBent) {
+    const std::string good = header("x y z id", "4 4 4 8", "F F F U", 1, "ascii");
+    const auto cloud = points_in(good + "1 2 3 9007199254740993\n", "a.pcd");
+    EXPECT_THAT(cloud->columns.find("id")->values<std::uint64_t>(), ElementsAre(9007199254740993u));
+    const std::string bytes = header("x y z id", "4 4 4 1", "F F F U", 1, "ascii");
+    for (const char* number : {"300", "-1", "1.5", "nan"})
+        EXPECT_THAT(sentence_of([&] { read_bytes(bytes + "1 2 3 " + number + "\n", "a.pcd"); }),
+                    HasSubstr("is no uint8 for the field 'id'"))
+            << number;
+}
+
+TEST(PcdReader, ViewpointOfNoRotation_IsNotTold) {
+    Told told;
+    std::string text = xyz_header(1, "ascii") + "1 2 3\n";
+    text.replace(text.find("0 0 0 1 0 0 0"), 13, "0.0 0 0 1.0 0 0 0");
+    points_in(text, "a.pcd", &told);
+    EXPECT_THAT(told.sentences, IsEmpty());
+}
+
+TEST(PcdReader_Refuses, PaddingInCompressedFiles) {
+    EXPECT_THAT(sentence_of([] {
+                    read_bytes(header("x _ y z", "4 1 4 4", "F U F F", 1, "binary_compressed") +
+                                   compressed_block(std::string(13, '\0')),
+                               "a.pcd");
+                }),
+                HasSubstr("padding"));
 }
 
 TEST(PcdReader_Refuses, MorePointsThanTheFileCanHold_WithoutTakingMemoryForThem) {

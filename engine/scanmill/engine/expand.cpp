@@ -39,14 +39,14 @@ std::string written_text(const WrittenParameter& value) {
 class Choices {
 public:
     virtual ~Choices() = default;
-    /// One of 0 … count - 1.
-    virtual std::size_t choose(std::size_t count) = 0;
+    /// One of 0 … count - 1; `fork` tells one fork of the workflow from another.
+    virtual std::size_t choose(const void* fork, std::size_t count) = 0;
 };
 
 /// Every combination once, the last fork fastest.
 class EveryCombination : public Choices {
 public:
-    std::size_t choose(std::size_t count) override {
+    std::size_t choose(const void*, std::size_t count) override {
         if (count <= 1) return 0;
         if (next_ == made_.size()) made_.push_back({0, count});
         return made_[next_++].choice;
@@ -68,17 +68,24 @@ private:
     std::size_t next_ = 0;  // the fork that is asked for next
 };
 
-/// The first way everywhere, then the second, and so on round: each way of each fork at least once.
+/// At every fork the first way, then, whenever it is reached again, the next: each way of each fork at least once.
 class EachOnce : public Choices {
 public:
-    std::size_t choose(std::size_t count) override {
-        widest_ = std::max(widest_, count);
-        return count <= 1 ? 0 : round_ % count;
+    std::size_t choose(const void* fork, std::size_t count) override {
+        Fork& known = forks_.try_emplace(fork, Fork{0, count}).first->second;
+        return known.reached++ % count;
     }
-    bool advance() { return ++round_ < std::min(widest_, most_variants); }
+    bool advance() {
+        const auto is_done = [](const auto& fork) { return fork.second.reached >= fork.second.count; };
+        return ++rounds_ < most_variants && !std::ranges::all_of(forks_, is_done);
+    }
 
 private:
-    std::size_t round_ = 0, widest_ = 1;
+    struct Fork {
+        std::size_t reached, count;
+    };
+    std::map<const void*, Fork> forks_;
+    std::size_t rounds_ = 0;
 };
 
 /// One way through the workflow's forks.
@@ -108,7 +115,7 @@ private:
 
     void follow(const OneOfSyntax& fork) {
         if (fork.alternatives.empty()) return;
-        const AlternativeSyntax& taken = fork.alternatives[choices_.choose(fork.alternatives.size())];
+        const AlternativeSyntax& taken = fork.alternatives[choices_.choose(&fork, fork.alternatives.size())];
         if (!taken.name.empty()) name_parts_.push_back(file_safe(taken.name));
         const std::size_t before = variant_.steps.size();
         follow(taken.steps);
@@ -120,7 +127,7 @@ private:
         for (const NamedExpression& parameter : step.parameters) {
             const std::vector<WrittenValue>& values = parameter.value.values;
             if (values.empty()) continue;  // its text was wrong
-            const WrittenValue& written = values[choices_.choose(values.size())];
+            const WrittenValue& written = values[choices_.choose(&values, values.size())];
             const std::size_t told = name_parts_.size();
             const WrittenValue* value = written.reference.empty() ? &written : referenced(step, written.reference);
             if (!value) continue;  // an unknown parameter, or one whose text was wrong
@@ -139,7 +146,7 @@ private:
         const std::vector<WrittenValue>& values =
             setting != settings_.end() ? setting->second.values : parameter->value.values;
         if (values.empty()) return nullptr;
-        const WrittenValue* chosen = &values[choices_.choose(values.size())];
+        const WrittenValue* chosen = &values[choices_.choose(&values, values.size())];
         if (values.size() > 1) {
             bound_.emplace(name, chosen);
             tell_swept(step, name, *chosen);

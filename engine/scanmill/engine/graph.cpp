@@ -11,6 +11,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/module.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/formats/format.hpp"
 
 namespace scanmill {
 
@@ -31,6 +32,7 @@ public:
 
     RunGraph build() {
         require_fits(request_, plan_);
+        protect_parameter_files();
         const std::vector<WorkflowInput>& inputs = plan_.workflow.inputs;
         if (inputs.empty() || inputs.front().list) {
             graph_.scan_names.push_back(workflow_name());
@@ -45,6 +47,16 @@ public:
     }
 
 private:
+    void protect_parameter_files() {
+        for (const PlannedStep& step : plan_.steps)
+            for (const auto& [name, value] : step.parameters.values)
+                if (step.spec.parameter(name)->type == ParameterType::path)
+                    key_text_of_paths(value, [this](const fs::path& file) {
+                        output_files_.protect(file);
+                        return std::string();
+                    });
+    }
+
     std::string workflow_name() const {
         return plan_.workflow.name.empty() ? fs::path(plan_.workflow.file).stem().string() : plan_.workflow.name;
     }
@@ -55,6 +67,7 @@ private:
             const PlannedVariant& planned = plan_.variants[variant];
             if (!request_.only.empty() && std::ranges::find(request_.only, planned.name) == request_.only.end())
                 continue;
+            if (!request_.until.empty() && !planned.steps_by_name.contains(request_.until)) continue;
             RunCell cell{scan, variant, {}, {}};
             std::map<std::size_t, std::size_t> node_of_step;
             for (const std::size_t step : steps_to_run(planned)) {
@@ -152,6 +165,7 @@ private:
         KeyBuilder key;
         key.field("scheme", key_scheme)
             .field("content", content_of(file, &node.unreadable))
+            .field("extension", plain_extension(file.extension().string()))  // it may decide how the bytes are read
             .field("kind", name_of(declared.kind))
             .field("unit", symbol(request_.unit != LengthUnit::unknown ? request_.unit : declared.unit))
             .field("frame", frame_of_file(declared.frame, file));

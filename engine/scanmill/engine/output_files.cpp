@@ -33,7 +33,6 @@ OutputFiles::OutputFiles(const RunRequest& request) : folder_(real_path(request.
     for (const fs::path& scan : request.scans) inputs_.insert(identity(scan));
     for (const auto& [name, files] : request.inputs)
         for (const fs::path& file : files) inputs_.insert(identity(file));
-    inputs_.erase({0, 0});
 }
 
 fs::path OutputFiles::add(const std::string& name, const OutputContent& content, const std::string& writer) {
@@ -50,7 +49,7 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
     if (const fs::path real = real_path(file.parent_path()); !lies_below(real, folder_))
         throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), real.string())
             .hint("a symbolic link below the output folder leads out of it; remove it");
-    if (inputs_.contains(identity(file)))
+    if (const Identity existing = identity(file); existing != Identity() && inputs_.contains(existing))
         throw Error("'{}' is an input; an output must not replace it", file.string())
             .hint("choose another output folder with -o");
     return file;

@@ -22,6 +22,9 @@ class OutputFiles {
 public:
     explicit OutputFiles(const RunRequest& request);
 
+    /// No output may replace this file either. Pre: nothing was added yet.
+    void protect(const std::filesystem::path& file) { inputs_.insert(identity(file)); }
+
     /// The absolute path of `name` (relative to the output folder, in normal form). `writer` says in messages who
     /// writes it. Throws Error when another content has the same path, when one output's path is another's folder, when
     /// the file would replace an input, and when it would leave the output folder through a link.

@@ -153,9 +153,11 @@ void WorkflowParser::parameter(const YamlEntry& entry, Workflow& workflow) {
     } else {
         parameter.value = value_expression(entry.value, diagnostics_);
     }
-    for (const WrittenValue& written : parameter.value.values)
+    std::erase_if(parameter.value.values, [&](const WrittenValue& written) {
         if (!written.reference.empty())
             diagnostics_.error(written.position, "a default cannot refer to another parameter; write the value");
+        return !written.reference.empty();
+    });
     workflow.parameters.push_back(std::move(parameter));
 }
 

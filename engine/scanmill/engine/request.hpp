@@ -19,7 +19,7 @@ struct RunRequest {
     LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: what the workflow or the file says
     std::uint64_t seed = 0;
     std::vector<std::string> only;  ///< variants; empty: all
-    std::string until;  ///< last step to run; empty: all
+    std::string until;  ///< last step to run, in the variants that have it; empty: all
     std::vector<std::string> save;  ///< steps (or step.port) to write in addition to the outputs
 };
 
