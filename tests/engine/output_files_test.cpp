@@ -71,6 +71,14 @@ TEST_F(OutputFilesTest, Input_IsNotReplacedByWhateverName) {
     EXPECT_NO_THROW(outputs.add("other.ply", {"k", ""}, "A"));
 }
 
+TEST_F(OutputFilesTest, ProtectedFile_IsNotReplaced) {
+    OutputFiles outputs = files();
+    outputs.protect(folder_.write("out/poses.txt", "x"));
+    outputs.protect(folder_ / "out/not-there");
+    EXPECT_THAT(sentence_of([&] { outputs.add("poses.txt", {"k", ""}, "A"); }), HasSubstr("is an input"));
+    EXPECT_NO_THROW(outputs.add("not-there", {"k", ""}, "A"));
+}
+
 TEST_F(OutputFilesTest, LinkOutOfTheFolder_IsRefused) {
     fs::create_directories(folder_ / "out");
     fs::create_directories(folder_ / "elsewhere");

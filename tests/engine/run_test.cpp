@@ -31,6 +31,24 @@ TEST_F(Run, StepsSharedByVariants_RunOnce) {
     EXPECT_EQ(points->positions[1] + points->frame.origin, Vec3(8, 0, 0));
 }
 
+TEST_F(Run, EqualContentUnderTwoExtensions_IsReadAsEachSays) {
+    // Four columns of a PTS file are x, y, z and an intensity.
+    const std::string rows = "2\n1 2 3 4\n5 6 7 8\n";
+    run("  - test-step:\n", {scan("a.xyz", rows), scan("b.pts", rows)}, "outputs: {'{scan}.ply': test-step}\n");
+    EXPECT_TRUE(read_points(folder_ / "out/a.ply")->columns.find("c4"));
+    EXPECT_TRUE(read_points(folder_ / "out/b.ply")->columns.find("intensity"));
+}
+
+TEST_F(Run, Until_LeavesOutVariantsWithoutTheStep) {
+    request_.until = "a";
+    const RunReport report =
+        run("  - one-of: [{id: a, test-step: }, {id: b, test-step: {factor: 2}}]\n"
+            "  - id: last\n    test-step: {factor: 3}\n",
+            {scan("x.xyz")}, "outputs: {'{scan}-{variant}.xyz': last}\n");
+    EXPECT_EQ(report.cells.size(), 1u);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
 TEST_F(Run, TwoFilesOfEqualContent_AreComputedOnceAndWrittenTwice) {
     const RunReport report =
         run("  - test-step: {log: " + log() + "}\n", {scan("a.xyz"), scan("b.xyz"), scan("c.xyz", "0 0 0\n1 1 1\n")},
