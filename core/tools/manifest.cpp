@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     }
     const std::filesystem::path module = std::filesystem::absolute(arguments[0]);
     try {
-        const std::string name = module.stem().string().substr(std::string_view("scanmill-").size());
+        const std::string name = scanmill::module_name(module);
         const std::string text = is_format ? format_manifest(module, name) : filter_manifest(module, name);
         std::ofstream file(arguments[1], std::ios::binary | std::ios::trunc);
         file << text;

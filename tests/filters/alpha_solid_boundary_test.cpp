@@ -147,16 +147,20 @@ TEST(GrowingSolid, RepairOfRandomCellSets_IsManifoldAndOnlyAdds) {
     }
 }
 
-TEST(Pieces, LargestPiece_IsTheOneWithTheMostPoints) {
-    const TetMesh tets = tets_of(joined(fibonacci_sphere(100), moved(lattice_cube(3), 0.2, Vec3(9, 0, 0))));
-    // Solid: cells within one of the two clouds; 100 points against 64.
+/// Solid: the cells within one of two clouds, which `is_first(vertex)` tells apart.
+template <class IsFirst>
+Array<u8> solid_in_each(const TetMesh& tets, const IsFirst& is_first) {
     Array<u8> labels(tets.cells.size());
-    for (u32 c = 0; c < labels.size(); ++c) {
-        const auto in_first = [](u32 vertex) { return vertex < 100; };
-        labels[c] = std::ranges::all_of(tets.cells[c], in_first) || std::ranges::none_of(tets.cells[c], in_first)
+    for (u32 c = 0; c < labels.size(); ++c)
+        labels[c] = std::ranges::all_of(tets.cells[c], is_first) || std::ranges::none_of(tets.cells[c], is_first)
                         ? solid
                         : outside;
-    }
+    return labels;
+}
+
+TEST(Pieces, LargestPiece_IsTheOneWithTheMostPoints) {
+    const TetMesh tets = tets_of(joined(fibonacci_sphere(100), moved(lattice_cube(3), 0.2, Vec3(9, 0, 0))));
+    Array<u8> labels = solid_in_each(tets, [](u32 vertex) { return vertex < 100; });  // against 64
     EXPECT_EQ(covered_points(tets, labels), 164u);
     keep_largest_piece(tets, labels);
     EXPECT_EQ(covered_points(tets, labels), 100u);
@@ -170,11 +174,7 @@ TEST(Pieces, OfEqualPieces_TheLowestIsKeptInWhateverOrderTheyCome) {
     for (const bool low_first : {true, false}) {
         const TetMesh tets = tets_of(low_first ? joined(low, high) : joined(high, low));
         const auto is_low = [&](u32 vertex) { return tets.positions[vertex].x() < 5; };
-        Array<u8> labels(tets.cells.size());
-        for (u32 c = 0; c < labels.size(); ++c)
-            labels[c] = std::ranges::all_of(tets.cells[c], is_low) || std::ranges::none_of(tets.cells[c], is_low)
-                            ? solid
-                            : outside;
+        Array<u8> labels = solid_in_each(tets, is_low);
         ASSERT_EQ(covered_points(tets, labels), 120u);
         keep_largest_piece(tets, labels);
         EXPECT_EQ(covered_points(tets, labels), 60u);

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "support/program.hpp"
-#include "support/real_data.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {

@@ -16,10 +16,6 @@ namespace {
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-
-const std::vector<std::string> filters{"alpha-solid", "delaunay", "merge", "virtual-scan", "voxel-thin"};
 
 /// A scan of a sphere by the program itself, written to `file`.
 void write_sphere(const TemporaryFolder& folder, const std::string& name) {

@@ -14,8 +14,6 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::string_view module_prefix = "scanmill-";
-
 Manifest read_manifest(const std::filesystem::path& file, const std::string& name) {
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
@@ -49,14 +47,8 @@ FilterLibrary::FilterLibrary(const std::vector<std::filesystem::path>& folders) 
 }
 
 void FilterLibrary::read_folder(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> manifests;
-    std::error_code absent;
-    for (const auto& file : std::filesystem::directory_iterator(folder, absent))
-        if (file.path().extension() == ".json" && file.path().stem().string().starts_with(module_prefix))
-            manifests.push_back(file.path());
-    std::ranges::sort(manifests);
-    for (const std::filesystem::path& file : manifests) {
-        const std::string name = file.stem().string().substr(module_prefix.size());
+    for (const std::filesystem::path& file : module_manifests(folder)) {
+        const std::string name = module_name(file);
         if (entries_.contains(name)) continue;
         try {
             Entry entry;

@@ -5,6 +5,7 @@
 #include <link.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -16,6 +17,8 @@
 namespace scanmill {
 
 namespace {
+
+constexpr std::string_view module_prefix = "scanmill-";
 
 /// The loader maps what a library's header promises; where the file ends earlier, the first touch ends the program. So
 /// a file that was cut short is refused before the loader sees it. What is no library at all is left to the loader.
@@ -79,6 +82,18 @@ FilterDeclaration load_module(const std::filesystem::path& module, const std::st
     if (!declaration.run) throw Error("module '{}' declares nothing to run", module.string());
     return declaration;
 }
+
+std::vector<std::filesystem::path> module_manifests(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> manifests;
+    std::error_code absent;
+    for (const auto& file : std::filesystem::directory_iterator(folder, absent))
+        if (file.path().extension() == ".json" && file.path().stem().string().starts_with(module_prefix))
+            manifests.push_back(file.path());
+    std::ranges::sort(manifests);
+    return manifests;
+}
+
+std::string module_name(const std::filesystem::path& file) { return file.stem().string().substr(module_prefix.size()); }
 
 std::string content_hash(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);

@@ -24,6 +24,11 @@ const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleK
 /// threw.
 FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name);
 
+/// The manifests in a folder of modules, scanmill-<name>.json, sorted; none when the folder is not there.
+std::vector<std::filesystem::path> module_manifests(const std::filesystem::path& folder);
+/// The <name> of scanmill-<name>.json or scanmill-<name>.so.
+std::string module_name(const std::filesystem::path& file);
+
 /// The ABI text that this program was built with.
 std::string abi_text();
 

@@ -14,8 +14,6 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::string_view module_prefix = "scanmill-";
-
 /// A module that is loaded once, by whichever thread needs it first.
 class LazyModule {
 public:
@@ -113,15 +111,9 @@ FormatDeclaration load_format_module(const std::filesystem::path& module, const 
 }
 
 std::vector<Format> format_modules(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> manifests;
-    std::error_code absent;
-    for (const auto& file : std::filesystem::directory_iterator(folder, absent))
-        if (file.path().extension() == ".json" && file.path().stem().string().starts_with(module_prefix))
-            manifests.push_back(file.path());
-    std::ranges::sort(manifests);
     std::vector<Format> rows;
-    for (const std::filesystem::path& manifest : manifests) {
-        const std::string name = manifest.stem().string().substr(module_prefix.size());
+    for (const std::filesystem::path& manifest : module_manifests(folder)) {
+        const std::string name = module_name(manifest);
         try {
             rows.push_back(row_of(manifest, name));
         } catch (const Error& error) {

@@ -6,19 +6,10 @@
 #include <cstring>
 
 #include "scanmill/data/frame.hpp"
-#include "scanmill/formats/output_buffer.hpp"
+#include "scanmill/formats/little_endian.hpp"
 #include "scanmill/formats/reading.hpp"
 
 namespace scanmill {
-
-/// A little-endian number. Pre: sizeof(T) bytes are there.
-template <class T>
-T little_endian(const char* source) {
-    T number;
-    std::memcpy(&number, source, sizeof(T));
-    if constexpr (std::endian::native == std::endian::big) number = byte_swapped(number);
-    return number;
-}
 
 struct LasHeader {
     u32 minor_version = 0;

@@ -6,7 +6,7 @@
 
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/corner_merger.hpp"
-#include "scanmill/formats/output_buffer.hpp"
+#include "scanmill/formats/little_endian.hpp"
 #include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/stl.hpp"
 #include "scanmill/formats/text_cursor.hpp"
@@ -14,14 +14,6 @@
 namespace scanmill {
 
 namespace {
-
-template <class T>
-T little_endian(const char* source) {
-    T number;
-    std::memcpy(&number, source, sizeof(T));
-    if constexpr (std::endian::native == std::endian::big) number = byte_swapped(number);
-    return number;
-}
 
 bool same_word(std::string_view text, std::string_view lower) {
     return std::ranges::equal(text, lower, [](unsigned char a, unsigned char b) { return std::tolower(a) == b; });
