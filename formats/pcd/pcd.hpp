@@ -11,7 +11,8 @@
 /// `# frame NAME` lines in the header give the frame.
 ///
 /// Written: DATA binary, positions as float where that loses nothing, else as double (which PCL's viewers do not show);
-/// list columns are told. Cost: the file is copied once, and its rows are walked once per field.
+/// list columns, and columns that need another name, are told. Cost: the file is copied once, and its rows are walked
+/// once per field.
 
 #include "scanmill/formats/format.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <pcl/io/pcd_io.h>
 
+#include <set>
+
 #include "pcd/pcd.hpp"
 #include "pcd/pcd_fields.hpp"
 #include "scanmill/formats/output_buffer.hpp"
@@ -35,30 +37,44 @@ std::string field_name(std::string name) {
     return name;
 }
 
-std::vector<const Column*> written_columns(const PointCloud& cloud, const WriteOptions& options) {
-    std::vector<const Column*> columns;
+struct WrittenColumn {
+    const Column* column;
+    std::string field;  ///< for columns without a meaning of their own
+};
+
+/// Every column under a name that no other field has; names that had to change are told.
+std::vector<WrittenColumn> written_columns(const PointCloud& cloud, const WriteOptions& options) {
+    std::set<std::string> taken{"x", "y", "z", "_", "normal_x", "normal_y", "normal_z", "rgb", "rgba"};
+    std::vector<WrittenColumn> columns;
     for (const Column& column : cloud.columns) {
-        if (column.is_list())
+        if (column.is_list()) {
             warn(options.on_warning, "PCD left out the lists of the column '{}'; PLY keeps them", column.name());
-        else
-            columns.push_back(&column);
+            continue;
+        }
+        std::string field = field_name(column.name());
+        if (!is_normal(column) && !is_colour(column)) {
+            while (!taken.insert(field).second) field += "_2";
+            if (field != column.name())
+                warn(options.on_warning, "PCD holds the column '{}' under the name '{}'", column.name(), field);
+        }
+        columns.push_back({&column, std::move(field)});
     }
     return columns;
 }
 
-pcl::PCLPointCloud2 described(const PointCloud& cloud, const std::vector<const Column*>& columns, bool as_float) {
+pcl::PCLPointCloud2 described(const PointCloud& cloud, const std::vector<WrittenColumn>& columns, bool as_float) {
     pcl::PCLPointCloud2 layout;
     layout.width = static_cast<pcl::uindex_t>(cloud.size());
     layout.height = 1;
     for (const char* axis : {"x", "y", "z"})
         add_field(layout, axis, as_float ? ScalarType::float32 : ScalarType::float64, 1);
-    for (const Column* column : columns) {
+    for (const auto& [column, name] : columns) {
         if (is_normal(*column))
             for (const char* axis : {"normal_x", "normal_y", "normal_z"}) add_field(layout, axis, column->type(), 1);
         else if (is_colour(*column))
             add_field(layout, column->components() == 4 ? "rgba" : "rgb", ScalarType::uint32, 1);
         else
-            add_field(layout, field_name(column->name()), column->type(), column->components());
+            add_field(layout, name, column->type(), column->components());
     }
     return layout;
 }
@@ -80,7 +96,7 @@ void write_pcd(const Value& value, OutputBuffer& out, const WriteOptions& option
     const PointCloud& cloud = *std::get<std::shared_ptr<const PointCloud>>(value);
     const bool as_float = all_floats(cloud.frame, cloud.positions.span());
     tell_lost_precision(cloud.frame, cloud.positions.span(), as_float, "PCD", options);
-    const std::vector<const Column*> columns = written_columns(cloud, options);
+    const std::vector<WrittenColumn> columns = written_columns(cloud, options);
     const pcl::PCLPointCloud2 layout = described(cloud, columns, as_float);
     std::string header =
         pcl::PCDWriter().generateHeaderBinary(layout, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
@@ -95,7 +111,7 @@ void write_pcd(const Value& value, OutputBuffer& out, const WriteOptions& option
             else
                 out.binary(p[axis]);
         }
-        for (const Column* column : columns) put_row(*column, row, out);
+        for (const WrittenColumn& written : columns) put_row(*written.column, row, out);
     }
 }
 

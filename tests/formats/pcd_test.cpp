@@ -262,6 +262,21 @@ TEST(PcdWriter, Positions_AreDoublesOnlyWhereFloatsWouldLose) {
     EXPECT_THAT(content_of(folder / "b.pcd"), HasSubstr("SIZE 4 4 4"));
 }
 
+TEST(PcdWriter_Losses, NamesThatPcdNeedsForItself_AreChangedAndTold) {
+    const TemporaryFolder folder;
+    Told told;
+    PointCloud cloud;
+    cloud.positions = {Vec3(1, 2, 3)};
+    for (const char* name : {"_", "normal_x", "rgb", "a b", "a_b", "plain"})
+        cloud.columns.add(Column(name, 1, Buffer<float>{7}));
+    write_file(folder / "a.pcd", std::make_shared<const PointCloud>(cloud), told.writing());
+    EXPECT_EQ(told.sentences.size(), 5u);
+    const auto back = read_points(folder / "a.pcd");
+    EXPECT_EQ(back->columns.size(), 6u);
+    for (const char* name : {"__2", "normal_x_2", "rgb_2", "a_b", "a_b_2", "plain"})
+        EXPECT_TRUE(back->columns.find(name)) << name;
+}
+
 TEST(PcdWriter_Losses, ListsAreTold) {
     const TemporaryFolder folder;
     Told told;
