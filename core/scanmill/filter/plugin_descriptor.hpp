@@ -4,6 +4,7 @@
 /// in the module is called.
 
 #include <Eigen/Core>
+#include <string>
 
 #define SCANMILL_TEXT_OF(x) #x
 #define SCANMILL_TEXT(x) SCANMILL_TEXT_OF(x)
@@ -14,12 +15,17 @@
 #else
 #define SCANMILL_ABI_SANITIZER ""
 #endif
+#if defined(_GLIBCXX_DEBUG)
+#define SCANMILL_ABI_DEBUG " debug"
+#else
+#define SCANMILL_ABI_DEBUG ""
+#endif
 /// Everything that must agree for C++ objects to cross the border.
-#define SCANMILL_ABI_TEXT \
-    "scanmill " SCANMILL_VERSION ", compiler abi " SCANMILL_TEXT(__GXX_ABI_VERSION) ", libstdc++ "  \
-    SCANMILL_TEXT(_GLIBCXX_RELEASE) ", c++ " SCANMILL_TEXT(__cplusplus) ", eigen "                  \
-    SCANMILL_TEXT(EIGEN_WORLD_VERSION) "." SCANMILL_TEXT(EIGEN_MAJOR_VERSION) " aligned to "        \
-    SCANMILL_TEXT(EIGEN_MAX_STATIC_ALIGN_BYTES) SCANMILL_ABI_SANITIZER
+#define SCANMILL_ABI_TEXT                                                                                         \
+    "scanmill " SCANMILL_VERSION ", compiler abi " SCANMILL_TEXT(__GXX_ABI_VERSION) ", libstdc++ " SCANMILL_TEXT( \
+        _GLIBCXX_RELEASE) " strings " SCANMILL_TEXT(_GLIBCXX_USE_CXX11_ABI) SCANMILL_ABI_DEBUG                    \
+        ", c++ " SCANMILL_TEXT(__cplusplus) ", eigen " SCANMILL_TEXT(EIGEN_WORLD_VERSION) "." SCANMILL_TEXT(      \
+            EIGEN_MAJOR_VERSION) " aligned to " SCANMILL_TEXT(EIGEN_MAX_STATIC_ALIGN_BYTES) SCANMILL_ABI_SANITIZER
 
 namespace scanmill {
 
