@@ -1,30 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // OBJ and OFF files from other programs' collections, ordinary and odd. Their counts and areas were found with another
 // program: polygons cut into fans, the triangles' areas summed.
-#include <Eigen/Geometry>
-
-#include "formats_support.hpp"
-#include "support/real_data.hpp"
+#include "mesh_samples_support.hpp"
 
 namespace scanmill::test {
 namespace {
-
-using testing::HasSubstr;
-
-struct Sample {
-    const char* file;
-    const char* what;
-    std::size_t vertices, triangles;
-    double area;
-    const char* told =
-        "";  // a part of what is told or, without vertices, of the refusal; nothing may be told when empty
-};
 
 const double nan = std::numeric_limits<double>::quiet_NaN();
 const char* const no_points = "holds no points: no row is a vertex (v)";
 const char* const normals_differ = "the normals (vn) were left out: at 8 of 8 vertices they differ";
 
-const std::vector<Sample> obj_samples{
+const std::vector<MeshSample> obj_samples{
     {"odd/draco_degenerate_mesh.obj", "three corners at one place", 3, 1, 0},
     {"odd/draco_eof_test.obj", "the last line has no end", 3, 1, 0.095},
     {"odd/draco_extra_vertex.obj", "a vertex that no face names; all normals are zero", 10, 3, 0.012797993365},
@@ -72,7 +58,7 @@ const std::vector<Sample> obj_samples{
      "9 objects (o), 9 groups (g) were made one"},
 };
 
-const std::vector<Sample> off_samples{
+const std::vector<MeshSample> off_samples{
     {"odd/cgal_P.off", "the letter P as a ring of triangles to hexagons", 26, 52, 36.742640687119284,
      "23 faces of more"},
     {"odd/cgal_blobby-shuffled.off", "comments before the keyword; the triangles are turned at random", 2027, 4050,
@@ -106,60 +92,14 @@ const std::vector<Sample> off_samples{
     {"ok/cgal_torus_quad.off", "a torus of quads", 25, 50, 7.605695223781142, "25 faces of more"},
 };
 
-double area_of(const TriangleMesh& mesh) {
-    double sum = 0;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
-        sum += (b - a).cross(c - a).norm() / 2;
-    }
-    return sum;
-}
-
-void expect_as_stated(const Sample& sample, const fs::path& folder) {
-    SCOPED_TRACE(std::string(sample.file) + ": " + sample.what);
-    Told told;
-    try {
-        const LoadedFile loaded = read_file(folder / sample.file, told.reading());
-        if (const auto* cloud = std::get_if<std::shared_ptr<const PointCloud>>(&loaded.value)) {
-            EXPECT_EQ((*cloud)->size(), sample.vertices);
-            EXPECT_EQ(sample.triangles, 0u);
-        } else {
-            const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(loaded.value);
-            require_consistent(mesh);
-            EXPECT_EQ(mesh.positions.size(), sample.vertices);
-            EXPECT_EQ(mesh.triangles.size(), sample.triangles);
-            if (std::isnan(sample.area))
-                EXPECT_TRUE(std::isnan(area_of(mesh)));
-            else
-                EXPECT_NEAR(area_of(mesh), sample.area, 1e-12 * sample.area);
-        }
-    } catch (const Error& error) {
-        EXPECT_EQ(sample.vertices, 0u) << error.what();
-        told.sentences.push_back(error.sentence());
-    }
-    if (std::string_view(sample.told).empty())
-        EXPECT_THAT(told.sentences, testing::IsEmpty());
-    else
-        EXPECT_THAT(told.sentences, testing::Contains(HasSubstr(sample.told)));
-}
-
-/// Every file of the folder is in the table, so that a new one is not passed over.
-void expect_complete(const std::vector<Sample>& samples, const fs::path& folder) {
-    std::size_t files = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) files += entry.is_regular_file();
-    EXPECT_EQ(files, samples.size());
-}
-
 TEST(ObjReader_Samples, AreReadOrRefused_AsAnotherProgramFoundThem) {
     SCANMILL_REAL_SCAN(folder, shared_data, "6-formats/obj");
-    for (const Sample& sample : obj_samples) expect_as_stated(sample, folder);
-    expect_complete(obj_samples, folder);
+    expect_as_stated(obj_samples, folder);
 }
 
 TEST(OffReader_Samples, AreReadOrRefused_AsAnotherProgramFoundThem) {
     SCANMILL_REAL_SCAN(folder, shared_data, "6-formats/off");
-    for (const Sample& sample : off_samples) expect_as_stated(sample, folder);
-    expect_complete(off_samples, folder);
+    expect_as_stated(off_samples, folder);
 }
 
 TEST(ObjReader_Samples, ColumnsOfSome_AreThese) {

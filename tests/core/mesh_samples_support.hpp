@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Tables of meshes, and of points in the formats of meshes, that others wrote, and what another program found in them.
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "formats_support.hpp"
+#include "support/real_data.hpp"
+
+namespace scanmill::test {
+
+struct MeshSample {
+    const char* file;
+    const char* what;
+    std::size_t vertices;  ///< 0: the file is refused
+    std::size_t triangles;  ///< 0: the file is read as points
+    double area;
+    /// A part of what is told or, without vertices, of the refusal; nothing may be told when empty.
+    const char* told = "";
+};
+
+inline double area_of(const TriangleMesh& mesh) {
+    double sum = 0;
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+        sum += (b - a).cross(c - a).norm() / 2;
+    }
+    return sum;
+}
+
+inline void expect_as_stated(const MeshSample& sample, const fs::path& folder) {
+    SCOPED_TRACE(std::string(sample.file) + ": " + sample.what);
+    Told told;
+    try {
+        const LoadedFile loaded = read_file(folder / sample.file, told.reading());
+        if (const auto* cloud = std::get_if<std::shared_ptr<const PointCloud>>(&loaded.value)) {
+            EXPECT_EQ((*cloud)->size(), sample.vertices);
+            EXPECT_EQ(sample.triangles, 0u);
+        } else {
+            const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(loaded.value);
+            require_consistent(mesh);
+            EXPECT_EQ(mesh.positions.size(), sample.vertices);
+            EXPECT_EQ(mesh.triangles.size(), sample.triangles);
+            if (std::isnan(sample.area))
+                EXPECT_TRUE(std::isnan(area_of(mesh)));
+            else
+                EXPECT_NEAR(area_of(mesh), sample.area, 1e-12 * sample.area);
+        }
+    } catch (const Error& error) {
+        EXPECT_EQ(sample.vertices, 0u) << error.what();
+        told.sentences.push_back(error.sentence());
+    }
+    if (std::string_view(sample.told).empty())
+        EXPECT_THAT(told.sentences, testing::IsEmpty());
+    else
+        EXPECT_THAT(told.sentences, testing::Contains(testing::HasSubstr(sample.told)));
+}
+
+/// Every sample as stated; every file of the folder is in the table, so that a new one is not passed over.
+inline void expect_as_stated(const std::vector<MeshSample>& samples, const fs::path& folder) {
+    for (const MeshSample& sample : samples) expect_as_stated(sample, folder);
+    std::size_t files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) files += entry.is_regular_file();
+    EXPECT_EQ(files, samples.size());
+}
+
+}  // namespace scanmill::test
