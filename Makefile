@@ -32,7 +32,8 @@ asan tsan: deps data ## (make asan, make tsan) build and run the tests under san
 	cmake --build --preset $@ -j $(jobs)
 	ctest --preset $@ -j $(jobs)
 
-bench: data ## measure speed side by side with PCL and CGAL
+bench: data ## measure speed side by side with PCL, CGAL, meshio, VTK and trimesh
+	tools/deps.sh bench
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs)
 	bench/run.sh build/bench

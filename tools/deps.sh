@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the Debian packages that Scanmill is built from; `deps.sh fuzz` and `deps.sh lint` also those that only they
+# Installs the Debian packages that Scanmill is built from; `deps.sh bench`, `fuzz` and `lint` also those that only they
 # need. Asks nothing, and touches nothing when all of them are there.
 set -euo pipefail
 
@@ -8,6 +8,7 @@ packages=(
     build-essential cmake ninja-build ccache clang-format-16
     libcgal-dev libeigen3-dev libflann-dev libtbb-dev libyaml-cpp-dev libfmt-dev libxxhash-dev
     libcli11-dev nlohmann-json3-dev libvalijson-dev libgtest-dev libgmock-dev libpcl-dev)
+if [ "${1:-}" = bench ]; then packages+=(python3 python3-venv); fi
 if [ "${1:-}" = fuzz ]; then packages+=(clang-16 libclang-rt-16-dev llvm-16); fi
 if [ "${1:-}" = lint ]; then packages+=(clang-tidy-16); fi
 
