@@ -60,6 +60,19 @@ TEST(LoadModule, DeclarationThatThrows_IsRefusedWithItsReason) {
                 EndsWith("fails while it declares itself: the table of 7 magic numbers is missing"));
 }
 
+TEST(LoadModule, DeclarationThatThrowsANumber_IsRefused) {
+    EXPECT_THAT(refusal("throwing-a-number"), EndsWith("with an exception of a foreign type"));
+}
+
+TEST(LoadModule, StaticObjectThatThrows_IsRefusedWithItsReason) {
+    EXPECT_THAT(refusal("throwing-at-load"), AllOf(HasSubstr("would end this program while it is loaded: signal 6"),
+                                                   EndsWith("it said: what():  the licence has run out")));
+}
+
+TEST(LoadModule, StaticObjectThatExits_IsRefused) {
+    EXPECT_THAT(refusal("exiting-at-load"), EndsWith("while it is loaded: it calls exit(3)"));
+}
+
 TEST(LoadModule, DeclarationOfAnotherName_IsRefused) {
     EXPECT_THAT(refusal("two-names"), EndsWith("declares the filter 'another-name', not 'two-names'"));
 }

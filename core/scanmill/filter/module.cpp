@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/filter/module_trial.hpp"
 #include "scanmill/filter/plugin.hpp"
 
 namespace scanmill {
@@ -49,6 +50,7 @@ std::string abi_text() { return SCANMILL_ABI_TEXT; }
 const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleKind kind,
                                     const std::string& expected_name) {
     require_whole(module);
+    require_harmless_loading(module);
     // Local: two modules may define the same symbol without meeting.
     void* handle = ::dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) throw Error("module '{}' cannot be loaded: {}", module.string(), ::dlerror());
@@ -68,14 +70,19 @@ const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleK
     return *descriptor;
 }
 
-FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name) {
-    const PluginDescriptor& descriptor = open_module(module, {filter_magic, "filter"}, expected_name);
-    FilterDeclaration declaration;
+void declare(const PluginDescriptor& descriptor, const std::filesystem::path& module, void* declaration) {
     try {
-        descriptor.declare(&declaration);
+        descriptor.declare(declaration);
     } catch (const std::exception& error) {
         throw Error("module '{}' fails while it declares itself: {}", module.string(), error.what());
+    } catch (...) {
+        throw Error("module '{}' fails while it declares itself, with an exception of a foreign type", module.string());
     }
+}
+
+FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name) {
+    FilterDeclaration declaration;
+    declare(open_module(module, {filter_magic, "filter"}, expected_name), module, &declaration);
     if (declaration.spec.name != expected_name)
         throw Error("module '{}' declares the filter '{}', not '{}'", module.string(), declaration.spec.name,
                     expected_name);

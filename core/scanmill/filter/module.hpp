@@ -16,12 +16,15 @@ struct ModuleKind {
 };
 
 /// Loads the module and returns its descriptor, whose declare() may then be called. Throws Error naming the file: not a
-/// module, one cut short, of another kind, of another ABI (both texts), of another name.
+/// module, one cut short, one that would end this program while it is loaded, of another kind, of another ABI (both
+/// texts), of another name.
 const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleKind kind,
                                     const std::string& expected_name);
 
-/// Loads a filter's module and returns what it declares. Throws Error as open_module(), and whatever the declaration
-/// threw.
+/// Calls the descriptor's declare(). Whatever it throws becomes an Error that names the module.
+void declare(const PluginDescriptor& descriptor, const std::filesystem::path& module, void* declaration);
+
+/// Loads a filter's module and returns what it declares. Throws Error as open_module() and declare().
 FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name);
 
 /// The manifests in a folder of modules, scanmill-<name>.json, sorted; none when the folder is not there.

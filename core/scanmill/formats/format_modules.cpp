@@ -96,13 +96,8 @@ Format unusable_row(const std::string& name, const std::filesystem::path& manife
 }  // namespace
 
 FormatDeclaration load_format_module(const std::filesystem::path& module, const std::string& name) {
-    const PluginDescriptor& descriptor = open_module(module, {format_magic, "file format"}, name);
     FormatDeclaration declaration;
-    try {
-        descriptor.declare(&declaration);
-    } catch (const std::exception& error) {
-        throw Error("module '{}' fails while it declares itself: {}", module.string(), error.what());
-    }
+    declare(open_module(module, {format_magic, "file format"}, name), module, &declaration);
     std::vector<Kind> written;
     for (const auto& [kind, write] : declaration.writers) written.push_back(kind);
     if (!declaration.read || written != declaration.spec.writes)
