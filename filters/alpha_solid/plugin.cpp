@@ -11,6 +11,9 @@ SCANMILL_FILTER() {
             "Finds the solid that the points enclose: every cell that a ball of radius alpha cannot enter from "
             "outside.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
+        .ties(
+            "Facets that open at equal alpha open together; of pieces with equally many points the one with the lowest "
+            "point stays.")
         .in<TetMesh>("tets", "A Delaunay tetrahedralisation.")
         .out<TriangleMesh>("mesh", "The solid's boundary, closed and outward.")
         .out<TetMesh>("tets", "The cells, labelled inside or outside.")

@@ -9,6 +9,11 @@ SCANMILL_FILTER() {
     return Declare<P>("delaunay", 1)
         .summary("Tetrahedralises the points so that no point lies inside the circumsphere of any cell.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
+        .ties(
+            "Points on one empty sphere are parted by a symbolic perturbation of their coordinates, whatever their "
+            "order; "
+            "of duplicates the first stays.")
+        .not_finite("Refused, with their number and the first of them.")
         .in<PointCloud>(
             "points",
             "Finite coordinates, at least 4 distinct points that are not coplanar; every column is carried along.")

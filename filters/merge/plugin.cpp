@@ -18,6 +18,8 @@ SCANMILL_FILTER() {
     return Declare<P>("merge", 1)
         .summary("Puts several clouds into one, moved by their poses, with one point where they overlap.")
         .source("pose files: Turk and Levoy 1994")
+        .ties("Of points that overlap and are equally good the one of the earlier input stays.")
+        .not_finite("Refused, with the input, their number and the first of them.")
         .in<PointCloud>("points", "Clouds with finite coordinates and one unit; at least one.", list)
         .out<PointCloud>("points", "All points that stay, in input order, with a column `source`.")
         .param("poses", &P::poses_file, "A Stanford .conf or a JSON file that says where each input lies.",

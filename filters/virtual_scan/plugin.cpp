@@ -9,6 +9,8 @@ SCANMILL_FILTER() {
     return Declare<P>("virtual-scan", 1)
         .summary("Scans a mesh or a shape as a real scanner would: from views, with noise, outliers and hidden parts.")
         .source("z-buffer: Catmull 1974; edge functions: Pineda 1988")
+        .ties("Where two triangles are equally near along a ray, the one that comes first is hit.")
+        .not_finite("Refused, with their number and the first of them.")
         .in<TriangleMesh>("mesh", "What is scanned, of any topology; leave it out to scan a shape.", optional)
         .out<PointCloud>("points", "The hits, view by view, with columns `normal` and `view`; outliers at the end.")
         .choice("shape", &P::shape,

@@ -9,6 +9,8 @@ SCANMILL_FILTER() {
     return Declare<P>("voxel-thin", 1)
         .summary("Keeps, in every voxel, the one point nearest the voxel's centre.")
         .source("Wang 2006, chapter 3")
+        .ties("Of points equally near a centre the one that comes first stays; a duplicate is a point like any other.")
+        .not_finite("Refused, with their number and the first of them.")
         .in<PointCloud>("points", "Finite coordinates; every column is carried along.")
         .out<PointCloud>("points", "The kept points, in input order.")
         .param("bin-size", &P::bin_size, "Edge of a voxel.", required, above(0))

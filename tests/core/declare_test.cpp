@@ -48,6 +48,8 @@ Declare<AllParams> declaration() {
     return Declare<P>("all-sorts", 7)
         .summary("Has a parameter of every type.")
         .source("Hand-made")
+        .ties("There are none.")
+        .not_finite(help)
         .in<PointCloud>("points", help)
         .in<TriangleMesh>("mesh", help, optional)
         .in<PointCloud>("others", help, list)
@@ -106,6 +108,8 @@ TEST(Declare, FilterAndItsPorts_AreAsDeclaredAndInOrder) {
     EXPECT_EQ(spec.name, "all-sorts");
     EXPECT_EQ(spec.version, 7);
     EXPECT_EQ(spec.summary, "Has a parameter of every type.");
+    EXPECT_EQ(spec.ties, "There are none.");
+    EXPECT_EQ(spec.not_finite, help);
     EXPECT_EQ(spec.source, "Hand-made");
     EXPECT_THAT(spec.inputs, ElementsAre(PortSpec{"points", Kind::points, help, false, false},
                                          PortSpec{"mesh", Kind::mesh, help, false, true},

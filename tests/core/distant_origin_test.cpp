@@ -124,6 +124,12 @@ TEST(DistantOrigin, BoxWithoutAMiddle_HasTheOriginZero) {
     EXPECT_EQ(distant_origin(BoundingBox{}), Vec3::Zero());
     const double largest = std::numeric_limits<double>::max();
     EXPECT_EQ(distant_origin({Vec3::Constant(-largest), Vec3::Constant(largest)}), Vec3::Zero());
+    const double infinity = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3 beyond(1e9, 1e9, 1e9);
+        beyond[axis] = infinity;
+        EXPECT_EQ(distant_origin({beyond, beyond}), Vec3::Zero()) << axis;
+    }
 }
 
 TEST(DistantOrigin, SmallestNumbers_StayFiniteAndExact) {

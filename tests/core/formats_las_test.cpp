@@ -49,6 +49,15 @@ TEST(LasReader, NegativeScale_IsRead) {
     EXPECT_EQ(world_of(*points_in(las.file(), "a.las"), 0), Vec3(999999, 2, 3));
 }
 
+TEST(LasReader, ScaleThatTakesCoordinatesBeyondDouble_LeavesThemInfinite_AroundAFiniteOrigin) {
+    LasBytes las;
+    las.scale = {1, 1, 1e300};
+    las.points = {las_point(20, 1, 2, 2'000'000'000)};
+    const auto cloud = points_in(las.file(), "a.las");
+    EXPECT_EQ(cloud->frame.origin, Vec3::Zero());
+    EXPECT_EQ(cloud->positions[0], Vec3(1, 2, std::numeric_limits<double>::infinity()));
+}
+
 TEST(LasReader_OldPointFormats, HaveTheirFields) {
     LasBytes las = one_point(3);
     std::string& point = las.points[0];

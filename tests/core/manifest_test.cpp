@@ -34,6 +34,8 @@ Manifest everything() {
     spec.version = 12;
     spec.summary = "Uses \\ everything, \n and ünïcode.";
     spec.source = "Hand-made";
+    spec.ties = "The first of equals stays.";
+    spec.not_finite = "Refused with their number.";
     for (const Kind kind : {Kind::points, Kind::mesh, Kind::tets, Kind::features, Kind::transform, Kind::metrics})
         spec.outputs.push_back({std::string(name_of(kind)), kind, "Gives one of these.", false, false});
     spec.inputs = {{"plain", Kind::points, "Takes points.", false, false},
@@ -100,6 +102,8 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     };
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.version = 13; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.source = "?"; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.ties = "?"; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.not_finite = "?"; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.inputs[0].list = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.inputs[0].optional = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[2].low->inclusive = false; }));
@@ -132,8 +136,8 @@ TEST(Manifest, AnotherVersion_IsRefusedWithBothNumbers) {
 }
 
 TEST(Manifest, MissingField_IsNamed) {
-    for (const char* field : {"scanmill-manifest", "abi", "name", "version", "summary", "source", "inputs", "outputs",
-                              "parameters", "metrics"})
+    for (const char* field : {"scanmill-manifest", "abi", "name", "version", "summary", "source", "ties", "not-finite",
+                              "inputs", "outputs", "parameters", "metrics"})
         EXPECT_THAT(verdict([&](Json& json) { json.erase(field); }), HasSubstr(field));
     EXPECT_THAT(verdict([](Json& json) { json["parameters"][0].erase("help"); }), HasSubstr("help"));
     EXPECT_THAT(verdict([](Json& json) { json["parameters"][2]["low"].erase("inclusive"); }), HasSubstr("inclusive"));

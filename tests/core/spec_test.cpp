@@ -26,6 +26,8 @@ FilterSpec sound_spec() {
     spec.name = "voxel-thin";
     spec.summary = "Keeps one point in every voxel.";
     spec.source = "Wang 2006";
+    spec.ties = "The first of equals stays.";
+    spec.not_finite = "Refused with their number.";
     spec.inputs = {{"points", Kind::points, help, false, false}};
     spec.outputs = {{"points", Kind::points, help, false, false}, {"rest", Kind::points, help, false, false}};
     spec.parameters = {number_parameter("bin-size"), number_parameter("k2")};
@@ -111,6 +113,35 @@ TEST(RequireSound, HelpThatOnlyRepeatsTheName_IsRefused) {
     EXPECT_NO_THROW([] {
         FilterSpec spec = sound_spec();
         spec.parameters[0].help = "Bin size, in x.";
+        require_sound(spec);
+    }());
+}
+
+TEST(RequireSound, TiesAndNan_AreSpokenOfWhereTheyCanCome) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.ties = ""; }), "filter voxel-thin: nothing is said of ties");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.not_finite = ""; }), "filter voxel-thin: nothing is said of NaN");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.ties = "lowest"; }),
+              "filter voxel-thin: the help of remark on 'ties' is no sentence: 'lowest'");
+    FilterSpec spec = sound_spec();
+    spec.inputs.clear();
+    spec.ties = spec.not_finite = "";
+    EXPECT_NO_THROW(require_sound(spec));
+    spec.inputs.push_back({"tets", Kind::tets, help, false, false});
+    spec.ties = "The first of equals stays.";
+    EXPECT_NO_THROW(require_sound(spec));
+}
+
+TEST(RequireSound, NumberOfNeighbours_SaysWhetherThePointItselfIsOne) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) {
+                  spec.parameters[0].name = "neighbours";
+                  spec.parameters[0].help = "How many points are looked at.";
+              }),
+              "filter voxel-thin: the help of parameter 'neighbours' leaves open whether the point itself is counted: "
+              "'How many points are looked at.'");
+    EXPECT_NO_THROW([] {
+        FilterSpec spec = sound_spec();
+        spec.parameters[0].name = "neighbours";
+        spec.parameters[0].help = "How many points are looked at, the point itself included.";
         require_sound(spec);
     }());
 }

@@ -29,14 +29,17 @@ struct SimplifyParams {
     double target = 0;
 };
 
+const char* const help = "As its name says.";
+
 template <class Params>
 Declare<Params> declare(std::string name) {
     Declare<Params> declaration(std::move(name), 1);
-    declaration.summary("Does what its name says.").source("Hand-made for tests");
+    declaration.summary("Does what its name says.")
+        .source("Hand-made for tests")
+        .ties("There are none.")
+        .not_finite(help);
     return declaration;
 }
-
-const char* const help = "As its name says.";
 
 }  // namespace
 

@@ -49,7 +49,7 @@ BoundingBox bounding_box(std::span<const Vec3> positions) {
 Vec3 distant_origin(const BoundingBox& box) {
     Vec3 origin = Vec3::Zero();
     const double diagonal = box.diagonal();
-    if (box.empty() || !std::isfinite(diagonal)) return origin;
+    if (box.empty() || !box.low.allFinite() || !box.high.allFinite() || !std::isfinite(diagonal)) return origin;
     constexpr double far = 16;  // diagonals away from zero; nearer, doubles have bits to spare
     for (int axis = 0; axis < 3; ++axis) {
         const double middle = 0.5 * box.low[axis] + 0.5 * box.high[axis];

@@ -39,7 +39,7 @@ BoundingBox bounding_box(std::span<const Vec3> positions);
 
 /// A good origin for world positions inside `box`: along every axis whose coordinates are large against the diagonal, a
 /// coarse power-of-two multiple near the middle, else 0. Chosen so that p - origin, and origin + (p - origin), are
-/// exact in double for every p in the box.
+/// exact in double for every p in the box. Zero for a box without points or with an infinite bound.
 Vec3 distant_origin(const BoundingBox& box);
 
 /// Adds `shift` to every position.

@@ -64,6 +64,16 @@ public:
         declaration_.spec.source = std::move(text);
         return *this;
     }
+    /// What decides between equals: needed by every filter that takes something.
+    Declare& ties(std::string text) {
+        declaration_.spec.ties = std::move(text);
+        return *this;
+    }
+    /// What becomes of NaN and infinite coordinates: needed by every filter that takes points or meshes.
+    Declare& not_finite(std::string text) {
+        declaration_.spec.not_finite = std::move(text);
+        return *this;
+    }
     template <class T, std::same_as<PortOption>... Options>
     Declare& in(std::string port, std::string help, Options... options) {
         declaration_.spec.inputs.push_back({std::move(port), kind_of<T>(), std::move(help),

@@ -125,6 +125,8 @@ std::string to_json_text(const Manifest& manifest) {
                     {"version", spec.version},
                     {"summary", spec.summary},
                     {"source", spec.source},
+                    {"ties", spec.ties},
+                    {"not-finite", spec.not_finite},
                     {"inputs", list_of(spec.inputs)},
                     {"outputs", list_of(spec.outputs)},
                     {"parameters", list_of(spec.parameters)},
@@ -143,6 +145,8 @@ Manifest parse_manifest(std::string_view text) try {
     spec.version = whole_number<int>(json, "version");
     spec.summary = json.at("summary");
     spec.source = json.at("source");
+    spec.ties = json.at("ties");
+    spec.not_finite = json.at("not-finite");
     for (const Json& port : json.at("inputs")) spec.inputs.push_back(port_from(port));
     for (const Json& port : json.at("outputs")) spec.outputs.push_back(port_from(port));
     for (const Json& parameter : json.at("parameters")) spec.parameters.push_back(parameter_from(parameter));

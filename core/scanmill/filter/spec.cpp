@@ -48,16 +48,27 @@ void require_names(std::string_view filter, std::string_view what, const Items& 
         if (!seen.insert(item.name).second)
             throw Error("filter {}: {} '{}' is declared twice", filter, what, item.name);
         require_sentence(filter, what, item.name, item.help);
+        if (item.name.find("neighbours") != std::string::npos && item.help.find("itself") == std::string::npos)
+            throw Error("filter {}: the help of {} '{}' leaves open whether the point itself is counted: '{}'", filter,
+                        what, item.name, item.help);
     }
+}
+
+/// What must be said once for the whole filter.
+void require_said(std::string_view filter, std::string_view subject, std::string_view said) {
+    if (said.empty()) throw Error("filter {}: nothing is said of {}", filter, subject);
+    require_sentence(filter, "remark on", subject, said);
 }
 
 void require_sound_parameter(std::string_view filter, const ParameterSpec& parameter) {
     if (parameter.type == ParameterType::choice && parameter.choices.size() < 2)
         throw Error("filter {}: parameter '{}' has fewer than two choices", filter, parameter.name);
     std::set<std::string_view> seen;
-    for (const Choice& choice : parameter.choices)
+    for (const Choice& choice : parameter.choices) {
+        require_sentence(filter, fmt::format("choice of '{}':", parameter.name), choice.name, choice.help);
         if (!seen.insert(choice.name).second)
             throw Error("filter {}: parameter '{}' has the choice '{}' twice", filter, parameter.name, choice.name);
+    }
     const bool has_default = !std::holds_alternative<std::monostate>(parameter.default_value);
     if (parameter.type == ParameterType::choice && !has_default && !parameter.required)
         throw Error("filter {}: the default of '{}' is none of its choices", filter, parameter.name);
@@ -86,6 +97,11 @@ void require_sound(const FilterSpec& spec) {
     require_names(spec.name, "output", spec.outputs);
     require_names(spec.name, "parameter", spec.parameters);
     require_names(spec.name, "metric", spec.metrics);
+    if (!spec.inputs.empty()) require_said(spec.name, "ties", spec.ties);
+    const auto has_coordinates = [](const PortSpec& port) {
+        return port.kind == Kind::points || port.kind == Kind::mesh;
+    };
+    if (std::ranges::any_of(spec.inputs, has_coordinates)) require_said(spec.name, "NaN", spec.not_finite);
     for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec.name, parameter);
 }
 

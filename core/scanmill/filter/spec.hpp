@@ -36,6 +36,8 @@ struct FilterSpec {
     int version = 1;  ///< grows when equal inputs and parameters give other bytes
     std::string summary;
     std::string source;
+    std::string ties;  ///< what decides between equals, so that the result is one
+    std::string not_finite;  ///< what becomes of NaN and infinite coordinates
     std::vector<PortSpec> inputs;
     std::vector<PortSpec> outputs;  ///< the first is the primary one: what the step alone means
     std::vector<ParameterSpec> parameters;
@@ -49,7 +51,9 @@ struct FilterSpec {
 };
 
 /// Throws Error when a declaration is unsound: names that repeat or are not lower-case-with-hyphens, help that is no
-/// sentence or only repeats the name, a default outside its own range, no output.
+/// sentence or only repeats the name, a default outside its own range, no output; nothing said of ties by a filter with
+/// inputs, or of NaN by one that takes points or meshes; a number of neighbours that leaves open whether the point
+/// itself is one of them.
 void require_sound(const FilterSpec& spec);
 
 }  // namespace scanmill

@@ -69,6 +69,13 @@ std::string metrics_table(const std::vector<MetricSpec>& metrics) {
     return table;
 }
 
+std::string remarks(const FilterSpec& spec) {
+    std::string list;
+    if (!spec.ties.empty()) list += fmt::format("- Ties: {}\n", spec.ties);
+    if (!spec.not_finite.empty()) list += fmt::format("- NaN and infinity: {}\n", spec.not_finite);
+    return list.empty() ? list : "\n" + list;
+}
+
 }  // namespace
 
 std::string example_workflow(const FilterSpec& spec) {
@@ -92,7 +99,7 @@ std::string example_workflow(const FilterSpec& spec) {
 std::string filter_page(const FilterSpec& spec) {
     return fmt::format("# {}\n\n{}\n{}\n\nSource: {}. Version {}.\n", spec.name, generated, spec.summary, spec.source,
                        spec.version) +
-           ports_table("Takes", "port", spec.inputs) +
+           remarks(spec) + ports_table("Takes", "port", spec.inputs) +
            ports_table("Gives (the first is what the step's name alone means)", "port", spec.outputs) +
            parameters_table(spec.parameters) + metrics_table(spec.metrics) + "\n## Example\n\n```yaml\n" +
            example_workflow(spec) + "```\n";

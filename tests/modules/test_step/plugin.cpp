@@ -9,6 +9,8 @@ SCANMILL_FILTER() {
     return Declare<P>("test-step", 1)
         .summary("Passes a cloud through, or misbehaves as it is told to; for tests only.")
         .source("Hand-made")
+        .ties("Nothing is compared.")
+        .not_finite("Passed through as they are.")
         .in<PointCloud>("points", "Any cloud; without one, the corners of the unit tetrahedron.", optional)
         .in<PointCloud>("more", "More clouds, which are only counted.", list, optional)
         .out<PointCloud>("points", "The cloud times the factor, with its columns and its frame.")
