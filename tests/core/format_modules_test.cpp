@@ -63,6 +63,7 @@ TEST(FormatModules, OnesThatCannotBeUsed_SayWhyToWhomNeedsThem) {
     const std::vector<Format> rows = format_modules(folder.path());
     ASSERT_EQ(rows.size(), 3u);
     EXPECT_THAT(refusal(rows[0]), AllOf(HasSubstr("ALONE cannot be read"), HasSubstr("no module beside it")));
+    EXPECT_THAT(rows[0].unusable, AllOf(HasSubstr("scanmill-alone.json"), HasSubstr("no module beside it")));
     EXPECT_THAT(refusal(rows[1]), AllOf(HasSubstr("'another compiler'"), HasSubstr(abi_text())));
     EXPECT_THAT(refusal(rows[2]), HasSubstr("is no manifest"));
     EXPECT_TRUE(rows[2].has_extension("torn"));

@@ -293,6 +293,8 @@ struct Sample {
     std::vector<std::string> columns;
 };
 
+void PrintTo(const Sample& sample, std::ostream* stream) { *stream << sample.file; }
+
 class PcdSamples : public testing::TestWithParam<Sample> {};
 
 TEST_P(PcdSamples, AreReadWithEveryColumn) {

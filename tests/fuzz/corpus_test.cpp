@@ -12,6 +12,10 @@
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
+
+/// gtest's own way would print addresses, which no two builds share.
+static void PrintTo(const FuzzTarget& target, std::ostream* stream) { *stream << target.name; }
+
 namespace {
 
 namespace fs = std::filesystem;

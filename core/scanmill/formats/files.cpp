@@ -58,6 +58,8 @@ Format::Write writer_for(const std::filesystem::path& path, const Value& value) 
         return write;
     }
     const std::string choices = writable_extensions(kind);
+    if (const std::string reason = why_unusable(extension); !reason.empty())
+        throw Error("{} cannot be written with the extension '{}': {}", name_of(kind), extension, reason);
     Error error("{} cannot be written with the extension '{}'", name_of(kind), extension);
     if (choices.empty())
         error.set_hint("no format here carries this kind");

@@ -68,6 +68,10 @@ std::string write_bytes(const std::filesystem::path& name, const Value& value, c
 /// Whether files with this extension ("ply" or ".PLY") can be written from values of this kind.
 bool can_write(std::string_view extension, Kind kind);
 
+/// Why files with this extension cannot be written although there is a format for them: its module cannot be used.
+/// Empty otherwise.
+std::string why_unusable(std::string_view extension);
+
 /// The extensions that can_write(), for messages: "ply, stl, off, obj". Empty for kinds that no format carries.
 std::string writable_extensions(Kind kind);
 

@@ -41,6 +41,8 @@ struct Format {
     std::vector<std::pair<Kind, Write>> writers;
     /// Listed so that `read` can say what to do instead: it always throws.
     bool is_refused = false;
+    /// Why its module cannot be used, as a part of a sentence; `read` throws with it.
+    std::string unusable = {};
 
     bool has_extension(std::string_view extension) const;
     /// Empty when the format cannot carry the kind.

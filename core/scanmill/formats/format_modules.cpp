@@ -87,8 +87,9 @@ Format unusable_row(const std::string& name, const std::filesystem::path& manife
     for (char& c : row.name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     row.extensions = {name};
     row.recognises = [](std::string_view, u64) { return Recognition::no; };
-    row.read = [format = row.name, manifest, reason](const FileBytes&, const ReadOptions&) -> LoadedFile {
-        throw Error("{} cannot be read: the module's manifest '{}' {}", format, manifest.string(), reason);
+    row.unusable = fmt::format("the module's manifest '{}' {}", manifest.string(), reason);
+    row.read = [format = row.name, why = row.unusable](const FileBytes&, const ReadOptions&) -> LoadedFile {
+        throw Error("{} cannot be read: {}", format, why);
     };
     return row;
 }

@@ -90,6 +90,12 @@ bool can_write(std::string_view extension, Kind kind) {
         formats(), [&](const Format& format) { return format.has_extension(extension) && format.writer(kind); });
 }
 
+std::string why_unusable(std::string_view extension) {
+    for (const Format& format : formats())
+        if (format.has_extension(extension) && !format.unusable.empty()) return format.unusable;
+    return {};
+}
+
 std::string writable_extensions(Kind kind) {
     std::string extensions;
     for (const Format& format : formats())

@@ -200,11 +200,12 @@ private:
         const Kind kind = kind_of(plan_, *source);
         const std::string extension = std::filesystem::path(output.file).extension().string();
         if (!can_write(extension, kind)) {
-            const std::string writable = writable_extensions(kind);
-            diagnostics_.error(
-                output.position,
-                fmt::format("'{}' is {}, which no '{}' file can hold; {}", output.source.text, name_of(kind), extension,
-                            writable.empty() ? "this kind cannot be written yet" : "expected " + writable));
+            const std::string writable = writable_extensions(kind), unusable = why_unusable(extension);
+            diagnostics_.error(output.position, fmt::format("'{}' is {}, which no '{}' file can hold; {}",
+                                                            output.source.text, name_of(kind), extension,
+                                                            !unusable.empty()  ? unusable
+                                                            : writable.empty() ? "this kind cannot be written yet"
+                                                                               : "expected " + writable));
         }
         variant.outputs.push_back({output.file, output.position, *source});
     }
