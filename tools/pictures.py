@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws the picture of every filter's page, filters/*/picture.svg: the method in the plane, computed, not traced."""
+import itertools
+import math
+import pathlib
+import random
+
+INK, PALE, BRIGHT, SOLID = "#333333", "#b8b8b8", "#d1495b", "#cfe3ee"
+
+
+class Picture:
+    """An SVG drawing in units of our own, y upwards."""
+
+    def __init__(self, width, height, scale=60):
+        self.width, self.height, self.scale = width, height, scale
+        self.rows = []
+
+    def place(self, p):
+        return round(p[0] * self.scale, 1), round((self.height - p[1]) * self.scale, 1)
+
+    def add(self, row):
+        self.rows.append("  " + row)
+
+    def dot(self, p, colour=INK, radius=4, hollow=False):
+        x, y = self.place(p)
+        fill = f'fill="white" stroke="{colour}" stroke-width="1.5"' if hollow else f'fill="{colour}"'
+        self.add(f'<circle cx="{x}" cy="{y}" r="{radius}" {fill}/>')
+
+    def circle(self, centre, radius, colour=INK, fill="none", dash=""):
+        x, y = self.place(centre)
+        self.add(
+            f'<circle cx="{x}" cy="{y}" r="{round(radius * self.scale, 1)}" fill="{fill}" stroke="{colour}"'
+            f' stroke-width="1.5"{dash and f" stroke-dasharray={chr(34)}{dash}{chr(34)}"}/>'
+        )
+
+    def line(self, p, q, colour=INK, width=1, dash=""):
+        (x, y), (u, v) = self.place(p), self.place(q)
+        self.add(
+            f'<line x1="{x}" y1="{y}" x2="{u}" y2="{v}" stroke="{colour}" stroke-width="{width}"'
+            f'{dash and f" stroke-dasharray={chr(34)}{dash}{chr(34)}"}/>'
+        )
+
+    def polygon(self, corners, fill, colour=PALE, width=1):
+        places = " ".join("{},{}".format(*self.place(p)) for p in corners)
+        self.add(f'<polygon points="{places}" fill="{fill}" stroke="{colour}" stroke-width="{width}"/>')
+
+    def cross(self, p, size=0.06, colour=PALE):
+        self.line((p[0] - size, p[1]), (p[0] + size, p[1]), colour)
+        self.line((p[0], p[1] - size), (p[0], p[1] + size), colour)
+
+    def text(self, p, words, colour=INK):
+        x, y = self.place(p)
+        self.add(f'<text x="{x}" y="{y}" font-family="sans-serif" font-size="15" fill="{colour}">{words}</text>')
+
+    def arrow(self, p, q, colour=INK):
+        self.line(p, q, colour, 1.5)
+        turn = math.atan2(q[1] - p[1], q[0] - p[0])
+        for side in (2.7, -2.7):
+            self.line(q, (q[0] + 0.15 * math.cos(turn + side), q[1] + 0.15 * math.sin(turn + side)), colour, 1.5)
+
+    def write(self, path):
+        width, height = round(self.width * self.scale), round(self.height * self.scale)
+        head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}">\n'
+        ground = f'  <rect width="{width}" height="{height}" fill="white"/>\n'
+        path.write_text(head + ground + "\n".join(self.rows) + "\n</svg>\n")
+
+
+def circumcircle(a, b, c):
+    """Centre and radius of the circle through three points; None when they lie on a line."""
+    bx, by, cx, cy = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
+    twice = 2 * (bx * cy - by * cx)
+    if abs(twice) < 1e-12:
+        return None
+    x = (cy * (bx * bx + by * by) - by * (cx * cx + cy * cy)) / twice
+    y = (bx * (cx * cx + cy * cy) - cx * (bx * bx + by * by)) / twice
+    return (a[0] + x, a[1] + y), math.hypot(x, y)
+
+
+def delaunay(points):
+    """All triangles with an empty circumcircle, by trying every three points."""
+    triangles = []
+    for corners in itertools.combinations(points, 3):
+        circle = circumcircle(*corners)
+        if circle and all(p in corners or math.dist(p, circle[0]) >= circle[1] for p in points):
+            triangles.append((corners, circle))
+    return triangles
+
+
+def scattered(source, count, least, width, height, inside=lambda p: True):
+    """Points at least so far from each other."""
+    points = []
+    while len(points) < count:
+        p = (source.uniform(0.2, width - 0.2), source.uniform(0.2, height - 0.2))
+        if inside(p) and all(math.dist(p, q) > least for q in points):
+            points.append(p)
+    return points
+
+
+def voxel_thin():
+    picture = Picture(8, 4)
+    points = scattered(random.Random(4), 110, 0.12, 8, 4)
+    bins = {}
+    for p in points:
+        bins.setdefault((math.floor(p[0]), math.floor(p[1])), []).append(p)
+    for x in range(9):
+        picture.line((x, 0), (x, 4), PALE)
+    for y in range(5):
+        picture.line((0, y), (8, y), PALE)
+    for (x, y), members in bins.items():
+        centre = (x + 0.5, y + 0.5)
+        picture.cross(centre, colour=INK)
+        kept = min(members, key=lambda p: math.dist(p, centre))
+        for p in members:
+            picture.dot(p, BRIGHT if p == kept else PALE, 5 if p == kept else 3)
+    return picture
+
+
+def delaunay_filter():
+    picture = Picture(8, 4)
+    points = scattered(random.Random(9), 26, 0.6, 8, 4)
+    triangles = delaunay(points)
+    for corners, _ in triangles:
+        picture.polygon(corners, "none", INK)
+    whole = [t for t in triangles if all(r < v < s - r for v, s, r in zip(t[1][0], (8, 4), (t[1][1], t[1][1])))]
+    corners, (centre, radius) = max(whole, key=lambda t: t[1][1])
+    picture.polygon(corners, SOLID, INK)
+    picture.circle(centre, radius, BRIGHT)
+    for p in points:
+        picture.dot(p)
+    return picture
+
+
+def alpha_solid():
+    picture = Picture(8, 5)
+    body = lambda p: 1.1 < math.dist(p, (3.6, 2.5)) < 2.2 and not (p[0] > 3.6 and abs(p[1] - 2.5) < 0.75)
+    points = scattered(random.Random(2), 150, 0.22, 8, 5, body)
+    triangles = delaunay(points)
+    alpha = 0.45
+    edges = {}
+    for index, (corners, _) in enumerate(triangles):
+        for edge in itertools.combinations(sorted(corners), 2):
+            edges.setdefault(edge, []).append(index)
+    open_edge = lambda edge: math.dist(*edge) > 2 * alpha
+    outside, queue = set(), []
+    for edge, sides in edges.items():
+        if len(sides) == 1 and open_edge(edge):
+            queue.append(sides[0])
+    while queue:
+        index = queue.pop()
+        if index in outside or triangles[index][1][1] <= alpha:
+            continue
+        outside.add(index)
+        for edge in itertools.combinations(sorted(triangles[index][0]), 2):
+            queue.extend(side for side in edges[edge] if side != index and open_edge(edge))
+    for index, (corners, _) in enumerate(triangles):
+        picture.polygon(corners, "none" if index in outside else SOLID, PALE, 0.7)
+    for edge, sides in edges.items():
+        if sum(side not in outside for side in sides) == 1:
+            picture.line(*edge, INK, 2)
+    for p in points:
+        picture.dot(p, INK, 2.5)
+    for centre in ((6.4, 2.5), (4.4, 2.5)):
+        picture.circle(centre, alpha, BRIGHT)
+    picture.line((6.4, 2.5), (6.4 + alpha, 2.5), BRIGHT, 1.5)
+    picture.text((6.9, 2.4), "alpha", BRIGHT)
+    return picture
+
+
+def merge():
+    picture = Picture(9, 4)
+    source = random.Random(6)
+    curve = lambda t: (t, 1.5 + 0.9 * math.sin(t))
+    first = [curve(0.4 + 0.16 * i + source.uniform(-0.02, 0.02)) for i in range(28)]
+    second = [curve(3.2 + 0.16 * i + source.uniform(-0.02, 0.02)) for i in range(28)]
+    turn, middle = 0.15, (5.4, 1.1)
+    moved = lambda p: (
+        middle[0] - 0.4 + (p[0] - middle[0]) * math.cos(turn) - (p[1] - middle[1]) * math.sin(turn),
+        middle[1] + 1.2 + (p[0] - middle[0]) * math.sin(turn) + (p[1] - middle[1]) * math.cos(turn),
+    )
+    for p in second:
+        picture.dot(moved(p), PALE, 3)
+    picture.arrow(moved(second[-6]), second[-6], INK)
+    picture.text((6.6, 2.75), "pose")
+    for p in first:
+        picture.dot(p, INK, 4)
+    for p in second:
+        near = min(math.dist(p, q) for q in first) < 0.13
+        picture.dot(p, BRIGHT, 4, hollow=near)
+    return picture
+
+
+def virtual_scan():
+    picture = Picture(9, 4.4)
+    centre, radius = (5.6, 2.2), 1.5
+    picture.circle(centre, radius, PALE, SOLID)
+    source = random.Random(8)
+    for i in range(22):
+        y = 0.2 + 0.19 * i
+        across = radius**2 - (y - centre[1]) ** 2
+        end = centre[0] - math.sqrt(across) if across > 0 else 8.8
+        picture.line((1.0, y), (end, y), PALE, 0.8)
+        if across > 0.25:
+            picture.dot((end + source.gauss(0, 0.05), y), BRIGHT, 4)
+    picture.dot((3.1, 3.6), BRIGHT, 4, hollow=True)
+    picture.text((2.0, 3.72), "outlier")
+    picture.polygon(((0.2, 1.7), (0.8, 1.7), (0.8, 2.7), (0.2, 2.7)), "white", INK, 1.5)
+    picture.text((0.2, 1.4), "sensor")
+    picture.text((7.25, 2.1), "hidden")
+    return picture
+
+
+def main():
+    filters = pathlib.Path(__file__).resolve().parent.parent / "filters"
+    for name, draw in (
+        ("alpha_solid", alpha_solid),
+        ("delaunay", delaunay_filter),
+        ("merge", merge),
+        ("virtual_scan", virtual_scan),
+        ("voxel_thin", voxel_thin),
+    ):
+        draw().write(filters / name / "picture.svg")
+
+
+main()
