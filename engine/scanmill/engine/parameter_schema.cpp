@@ -21,8 +21,12 @@ std::string number_pattern(const std::optional<Bound>& low) {
            R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?)";
 }
 
-Json text_with_unit(const ParameterSpec& parameter, std::string_view units) {
-    return {{"type", "string"}, {"pattern", number_pattern(parameter.low) + " *(" + std::string(units) + ")$"}};
+/// The last two keys are for editors: what they say instead of the pattern, and what they propose.
+Json text_with_unit(const ParameterSpec& parameter, std::string_view units, Json examples) {
+    return {{"type", "string"},
+            {"pattern", number_pattern(parameter.low) + " *(" + std::string(units) + ")$"},
+            {"patternErrorMessage", "Expected " + expectation(parameter) + "."},
+            {"examples", std::move(examples)}};
 }
 
 void bound(Json& schema, const ParameterSpec& parameter) {
@@ -50,10 +54,11 @@ Json scalar_of(const ParameterSpec& parameter) {
         case ParameterType::integer: return number_of("integer", parameter);
         case ParameterType::number: return number_of("number", parameter);
         case ParameterType::choice: return choices_of(parameter);
-        case ParameterType::length: return text_with_unit(parameter, "u|%diag|spacing|um|mm|cm|m|in|ft");
-        case ParameterType::angle: return text_with_unit(parameter, "deg|rad");
+        case ParameterType::length:
+            return text_with_unit(parameter, "u|%diag|spacing|um|mm|cm|m|in|ft", {"0.2 mm", "0.1 %diag", "3 spacing"});
+        case ParameterType::angle: return text_with_unit(parameter, "deg|rad", {"40 deg"});
         case ParameterType::ratio:
-            return {{"anyOf", Json::array({text_with_unit(parameter, "%"), number_of("number", parameter)})}};
+            return {{"anyOf", Json::array({text_with_unit(parameter, "%", {"5 %"}), number_of("number", parameter)})}};
         case ParameterType::text:
         case ParameterType::path: break;
     }
