@@ -37,6 +37,9 @@ std::vector<Command> commands_of(const CLI::App& app) {
 
 bool completes_filters(const Command& command) { return command.name == "show"; }
 
+/// Words that the command takes in place of files; none where it takes files.
+std::string_view words_of(const Command& command) { return command.name == "completion" ? "bash zsh fish" : ""; }
+
 /// The text without what would end a quoted word of a shell, or has a meaning of its own in zsh's descriptions.
 std::string plain(std::string_view text) {
     std::string result;
@@ -53,22 +56,19 @@ std::string bash(const std::vector<Command>& commands) {
         names += (names.empty() ? "" : " ") + command.name;
         std::string options;
         for (const Option& option : command.options) options += (options.empty() ? "" : " ") + option.name;
-        cases +=
-            fmt::format("        {}:-*) COMPREPLY=($(compgen -W \"{}\" -- \"$word\")) ;;\n", command.name, options);
+        cases += fmt::format("        {}:-*) words=\"{}\" ;;\n", command.name, options);
+        if (!words_of(command).empty())
+            cases += fmt::format("        {}:*) words=\"{}\" ;;\n", command.name, words_of(command));
         if (completes_filters(command))
-            cases += fmt::format(
-                "        {}:*) COMPREPLY=($(compgen -W \"$(scanmill list --names 2>/dev/null)\" -- \"$word\")) ;;\n",
-                command.name);
+            cases += fmt::format("        {}:*) words=$(scanmill list --names 2>/dev/null) ;;\n", command.name);
     }
     return fmt::format(R"(_scanmill() {{
-    local word=${{COMP_WORDS[COMP_CWORD]}}
-    if [ "$COMP_CWORD" = 1 ]; then
-        COMPREPLY=($(compgen -W "{} --help --version" -- "$word"))
-        return
-    fi
-    case ${{COMP_WORDS[1]}}:$word in
-{}        *) COMPREPLY=($(compgen -f -- "$word")) ;;
+    local word=${{COMP_WORDS[COMP_CWORD]}} words
+    case $([ "$COMP_CWORD" -gt 1 ] && echo "${{COMP_WORDS[1]}}"):$word in
+        :*) words="{} --help --version" ;;
+{}        *) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     esac
+    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
 }}
 complete -o filenames -F _scanmill scanmill
 )",
@@ -83,8 +83,9 @@ std::string zsh(const std::vector<Command>& commands) {
         for (const Option& option : command.options)
             cases +=
                 fmt::format(" '*{}[{}]{}'", option.name, plain(option.help), option.takes_value ? ":value:_files" : "");
-        cases += completes_filters(command) ? " \"*:filter:($(scanmill list --names 2>/dev/null))\" ;;\n"
-                                            : " '*:file:_files' ;;\n";
+        cases += completes_filters(command)   ? " \"*:filter:($(scanmill list --names 2>/dev/null))\" ;;\n"
+                 : !words_of(command).empty() ? fmt::format(" '1:word:({})' ;;\n", words_of(command))
+                                              : " '*:file:_files' ;;\n";
     }
     return fmt::format(R"(#compdef scanmill
 _scanmill() {{
@@ -111,6 +112,7 @@ std::string fish(const std::vector<Command>& commands) {
         text += fmt::format("complete -c scanmill -n __fish_use_subcommand -f -a {} -d '{}'\n", command.name,
                             plain(command.help));
         const std::string here = fmt::format("complete -c scanmill -n '__fish_seen_subcommand_from {}'", command.name);
+        if (!words_of(command).empty()) text += fmt::format("{} -f -a '{}'\n", here, words_of(command));
         if (completes_filters(command)) text += here + " -f -a '(scanmill list --names 2>/dev/null)'\n";
         for (const Option& option : command.options)
             text += fmt::format("{} -l {}{} -d '{}'\n", here, option.name.substr(2), option.takes_value ? " -r" : "",

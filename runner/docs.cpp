@@ -1,26 +1,46 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
 #include "commands.hpp"
 #include "load.hpp"
 #include "scanmill/engine/filter_page.hpp"
+#include "scanmill/filter/error.hpp"
 #include "text_file.hpp"
 
 namespace scanmill::runner {
 
 namespace {
 
+/// Throws Error for a file that somebody else wrote, and for what is no file.
+void require_replaceable(const std::filesystem::path& file) {
+    std::error_code absent;
+    if (!std::filesystem::exists(file, absent)) return;
+    std::string text;
+    if (std::ifstream stream(file); std::filesystem::is_regular_file(file, absent))
+        text.assign(std::istreambuf_iterator<char>(stream), {});
+    if (!is_filter_page(text))
+        throw Error("'{}' is there and was not written by scanmill docs", file.string())
+            .hint("choose another folder, or move it away");
+}
+
 int docs(const std::string& folder) {
     const FilterLibrary library = open_library();
     std::vector<FilterSpec> specs;
     for (const std::string& name : library.names()) specs.push_back(*library.find(name));
     if (folder.empty()) {
-        for (const FilterSpec& spec : specs) fmt::print("{}\n", filter_page(spec));
+        for (const FilterSpec& spec : specs) fmt::print("{}\n", filter_page(spec, library));
         return done;
     }
+    std::vector<std::pair<std::filesystem::path, std::string>> pages;
     for (const FilterSpec& spec : specs)
-        write_text(std::filesystem::path(folder) / (spec.name + ".md"), filter_page(spec));
-    write_text(std::filesystem::path(folder) / "README.md", filter_index(specs));
+        pages.emplace_back(std::filesystem::path(folder) / (spec.name + ".md"), filter_page(spec, library));
+    pages.emplace_back(std::filesystem::path(folder) / "README.md", filter_index(specs));
+    for (const auto& [file, page] : pages) require_replaceable(file);
+    for (const auto& [file, page] : pages) write_text(file, page);
     return done;
 }
 

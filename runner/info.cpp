@@ -32,7 +32,7 @@ std::size_t count_unfinite(std::span<const Vec3> positions) {
     return static_cast<std::size_t>(std::ranges::count_if(positions, [](const Vec3& p) { return !p.allFinite(); }));
 }
 
-/// Everything that `info` knows of a file; the text form prints the same.
+/// Everything that `info` knows of a file; the text form prints the same, numbers rounded.
 Json describe(const std::string& file) {
     std::vector<std::string> warnings;
     ReadOptions options;
@@ -72,11 +72,13 @@ Json describe(const std::string& file) {
     return json;
 }
 
-std::string value_text(const Json& value) {
+/// Coordinates have more digits than lengths: micrometres at a distance of 10^6 m.
+std::string value_text(const Json& value, int digits = 9) {
+    constexpr int digits_of_coordinates = 13;
     if (value.is_null()) return "not declared";
     if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
     if (value.is_string()) return value.get<std::string>();
-    if (value.is_number_float()) return fmt::format("{:.9g}", value.get<double>());
+    if (value.is_number_float()) return fmt::format("{:.{}g}", value.get<double>(), digits);
     if (!value.is_array()) return value.dump();
     std::string text;
     for (const Json& item : value) {
@@ -88,7 +90,7 @@ std::string value_text(const Json& value) {
                                : components == 1 ? ""
                                                  : " x " + std::to_string(components));
         } else {
-            part = value_text(item);
+            part = value_text(item, digits_of_coordinates);
         }
         text += (text.empty() ? "" : item.is_number() ? " " : ", ") + part;
     }

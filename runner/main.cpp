@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "error_output.hpp"
 #include "scanmill/filter/error.hpp"
+#include "scanmill/filter/suggestion.hpp"
 
 int main(int argc, char** argv) {
     using namespace scanmill::runner;
@@ -34,6 +35,15 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
         const auto commands = app.get_subcommands();
+        if (const std::string word = argc > 1 ? argv[1] : ""; commands.empty() && !word.empty() && word[0] != '-') {
+            std::vector<std::string> names;
+            for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+                names.push_back(command->get_name());
+            print(scanmill::Error("there is no command '{}'{}", word, scanmill::did_you_mean(word, names))
+                      .hint("scanmill --help"),
+                  json);
+            return bad_request;
+        }
         print(scanmill::Error(std::string(error.what()))
                   .hint("scanmill " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help"),
               json);

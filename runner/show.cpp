@@ -55,10 +55,10 @@ int show(const std::string& name, bool json, bool example) {
     }
     if (example && json) {
         const nlohmann::ordered_json described{
-            {"scanmill", 1}, {"filter", spec->name}, {"example", example_workflow(*spec)}};
+            {"scanmill", 1}, {"filter", spec->name}, {"example", example_workflow(*spec, library)}};
         fmt::print("{}\n", described.dump(2));
     } else if (example) {
-        fmt::print("{}", example_workflow(*spec));
+        fmt::print("{}", example_workflow(*spec, library));
     } else if (json) {
         auto described = nlohmann::ordered_json::parse(to_json_text({"", *spec}));
         described.erase("scanmill-manifest");

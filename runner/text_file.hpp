@@ -15,9 +15,13 @@ inline void write_text(const std::filesystem::path& path, std::string_view text)
     std::error_code trouble;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), trouble);
     if (trouble) throw Error("the folder '{}' cannot be made: {}", path.parent_path().string(), trouble.message());
-    AtomicFile file(path);
-    file.write(text);
-    file.commit();
+    try {
+        AtomicFile file(path);
+        file.write(text);
+        file.commit();
+    } catch (const Error& error) {
+        throw Error("'{}' {}", path.string(), error.sentence()).hint(error.hint());
+    }
 }
 
 }  // namespace scanmill::runner

@@ -50,6 +50,7 @@ def main():
     contenders += [harness.Contender(name, [sys.executable, driver, name]) for name in ("meshio", "vtk", "trimesh")]
     names = [contender.name for contender in contenders]
     memory = pathlib.Path("/dev/shm")
+    failed = False
     with tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None) as folder:
         folder = pathlib.Path(folder)
         for name, make, what in (
@@ -62,11 +63,14 @@ def main():
             reading = harness.Row(f"read {what}, {size}", names)
             harness.run_in_turn(reading, contenders, rounds, lambda one: one.ask(f"read {path}"))
             print(reading.text(names[0]))
+            failed = failed or names[0] in reading.failures
             writing = harness.Row(f"write {what}, {size}", names)
             harness.run_in_turn(writing, contenders, rounds, lambda one: one.ask(f"write {folder / one.name}{path.suffix}"))
             print(writing.text(names[0]))
+            failed = failed or names[0] in writing.failures
     for contender in contenders:
         contender.close()
+    return 1 if failed else 0
 
 
-main()
+sys.exit(main())

@@ -58,7 +58,7 @@ class Row:
                 continue
             line = f"  {name:<9} {1e3 * statistics.median(seconds):8.1f} ms"
             line += f"  ({1e3 * min(seconds):.1f} to {1e3 * max(seconds):.1f})"
-            if name != ours:
+            if name != ours and ours not in self.failures:
                 line += "   {} / {}: {:.2f} ({:.2f} to {:.2f})".format(ours, name, *self.ratio(ours, name))
             lines.append(f"{line}   {self.results[name]}")
         return "\n".join(lines)

@@ -2,11 +2,13 @@
 #include "merge/poses.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "merge/pose_files.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
 #include "scanmill/formats/mapped_file.hpp"
+#include "scanmill/formats/reading.hpp"
 
 namespace scanmill::merging {
 
@@ -41,7 +43,14 @@ std::vector<RigidTransform> by_order(std::size_t frames, std::span<const ScanPos
 }
 
 std::vector<RigidTransform> by_name(std::span<const Frame> frames, std::span<const ScanPose> poses, Context& context) {
+    if (std::ranges::all_of(poses, [](const ScanPose& pose) { return pose.scan.empty(); }))
+        throw Error("the inputs' frames have names, as '{}', but none of the {} poses says which scan it is of",
+                    frames.front().name, poses.size())
+            .hint(
+                "name the scans in the file, \"scan\": \"…\", or leave the frames without names; then inputs take the "
+                "poses in order");
     std::vector<RigidTransform> result;
+    std::map<const ScanPose*, std::size_t> taken;
     std::vector<std::string> unused = names_of(poses);
     for (std::size_t input = 0; input < frames.size(); ++input) {
         const std::string& name = frames[input].name;
@@ -53,6 +62,9 @@ std::vector<RigidTransform> by_name(std::span<const Frame> frames, std::span<con
         if (std::ranges::count_if(poses, fits) > 1)
             throw Error("there are {} poses for input {}, whose frame is called '{}'; one is needed",
                         std::ranges::count_if(poses, fits), input, name);
+        if (const auto [earlier, is_new] = taken.emplace(&*found, input); !is_new)
+            context.warn(fmt::format("inputs {} and {} are both in the frame '{}' and take the same pose, that of '{}'",
+                                     earlier->second, input, name, found->scan));
         result.push_back(found->transform);
         std::erase(unused, found->scan);
     }
@@ -64,6 +76,11 @@ std::vector<RigidTransform> by_name(std::span<const Frame> frames, std::span<con
 
 }  // namespace
 
+std::vector<ScanPose> parse_poses(std::string_view content, const std::function<void(std::string)>& warn) {
+    const std::string_view text = without_byte_order_mark(content);
+    return is_json(text) ? parse_poses_json(text, warn) : parse_stanford_conf(text, warn);
+}
+
 std::vector<ScanPose> read_poses(const std::filesystem::path& file, Context& context) {
     if (std::filesystem::is_directory(file)) throw Error("'{}': is a folder; expected a file of poses", file.string());
     const auto warn = [&](const std::string& sentence) {
@@ -71,8 +88,7 @@ std::vector<ScanPose> read_poses(const std::filesystem::path& file, Context& con
     };
     try {
         const MappedFile content(file);
-        return is_json(content.bytes()) ? parse_poses_json(content.bytes(), warn)
-                                        : parse_stanford_conf(content.bytes(), warn);
+        return parse_poses(content.bytes(), warn);
     } catch (const Error& error) {
         throw Error("'{}': {}", file.string(), error.sentence()).hint(error.hint());
     }

@@ -14,6 +14,7 @@
 /// may be left out. Coordinates are world coordinates.
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,8 +37,11 @@ struct ScanPose {
 /// explain is told; all quaternions are scaled to length 1.
 std::vector<ScanPose> read_poses(const std::filesystem::path& file, Context& context);
 
+/// The same from a file's content; errors and warnings come without the file's name.
+std::vector<ScanPose> parse_poses(std::string_view content, const std::function<void(std::string)>& warn);
+
 /// The pose of every frame. Frames with names take the pose whose scan is called so, with or without folder and
-/// extension; poses that nobody takes are told. When no frame has a name, the n-th takes the n-th pose.
+/// extension; poses that nobody takes, or several, are told. When no frame has a name, the n-th takes the n-th pose.
 /// Throws Error when only some frames have names, when a named one has no pose or several, and without names when the
 /// numbers of frames and poses differ.
 std::vector<RigidTransform> poses_of(std::span<const Frame> frames, std::span<const ScanPose> poses, Context& context);

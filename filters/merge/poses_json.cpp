@@ -13,10 +13,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// nlohmann's parser lets a key stand twice in one object and keeps one of them.
-class RepeatedKeys {
+/// nlohmann's parser lets a key stand twice in one object and keeps one of them, and nests as deep as the text does,
+/// which is too deep for what walks through the result.
+class StrictStructure {
 public:
-    bool operator()(int, Json::parse_event_t event, Json& value) {
+    bool operator()(int depth, Json::parse_event_t event, Json& value) {
+        if (depth > deepest) throw Error("is nested more than {} levels deep", deepest);
         if (event == Json::parse_event_t::object_start) open_.emplace_back();
         if (event == Json::parse_event_t::object_end) open_.pop_back();
         if (event == Json::parse_event_t::key && !open_.back().insert(value.get<std::string>()).second)
@@ -25,12 +27,13 @@ public:
     }
 
 private:
+    static constexpr int deepest = 8;
     std::vector<std::set<std::string>> open_;
 };
 
 Json parsed(std::string_view text) {
     try {
-        return Json::parse(text, RepeatedKeys());
+        return Json::parse(text, StrictStructure());
     } catch (const Json::out_of_range&) {
         throw Error("holds a number that is too large");
     } catch (const Json::parse_error& error) {
@@ -46,17 +49,24 @@ void require_keys(const Json& object, const std::string& place, const std::vecto
                         did_you_mean(key, known));
 }
 
+/// Null when there is none.
+const Json& item_at(const Json& object, const char* key) {
+    static const Json none;
+    const auto found = object.find(key);
+    return found == object.end() ? none : *found;
+}
+
 /// Empty when there is none.
 std::string text_at(const Json& object, const char* key, const std::string& place) {
     if (!object.contains(key)) return {};
-    if (!object[key].is_string()) throw Error("{}: '{}' is no text", place, key);
-    return object[key].get<std::string>();
+    if (!item_at(object, key).is_string()) throw Error("{}: '{}' is no text", place, key);
+    return item_at(object, key).get<std::string>();
 }
 
 template <std::size_t count>
 std::array<double, count> numbers_at(const Json& object, const char* key, const std::string& place) {
     std::array<double, count> values;
-    const Json list = object.value(key, Json());
+    const Json& list = item_at(object, key);
     const bool sound = list.is_array() && list.size() == count &&
                        std::ranges::all_of(list, [](const Json& item) { return item.is_number(); });
     if (!sound) throw Error("{}: '{}' is not a list of {} numbers", place, key, count);
@@ -69,14 +79,14 @@ std::array<double, count> numbers_at(const Json& object, const char* key, const 
 std::vector<ScanPose> parse_poses_json(std::string_view text, const Warn& warn) {
     const Json root = parsed(text);
     const std::string whole = "the poses";
-    if (!root.is_object()) throw Error("holds no JSON object; expected {{\"scanmill\": 1, \"poses\": […]}}");
-    if (root.value("scanmill", Json()) != Json(1)) throw Error("does not say its grammar; expected \"scanmill\": 1");
+    if (!root.is_object()) throw Error("holds no JSON object; expected {}", "{\"scanmill\": 1, \"poses\": […]}");
+    if (item_at(root, "scanmill") != Json(1)) throw Error("does not say its grammar; expected \"scanmill\": 1");
     require_keys(root, whole, {"scanmill", "unit", "frame", "poses"});
     const std::string unit_text = text_at(root, "unit", whole);
     const std::optional<LengthUnit> unit = length_unit(unit_text);
     if (!unit_text.empty() && !unit)
         throw Error("'{}' is no unit; expected one of {}", unit_text, length_unit_symbols());
-    const Json list = root.value("poses", Json());
+    const Json& list = item_at(root, "poses");
     if (!list.is_array() || list.empty()) throw Error("holds no pose; expected \"poses\" to be a list of them");
 
     std::vector<ScanPose> poses;

@@ -5,6 +5,7 @@
 #include "merge/pose_files.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
+#include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/text_cursor.hpp"
 
 namespace scanmill::merging {
@@ -17,14 +18,16 @@ std::array<double, 7> numbers(TextCursor& cursor, std::string_view scan) {
     std::array<double, 7> values;
     const std::size_t found = cursor.count_tokens();
     if (found != fields.size())
-        throw Error("line {}: {} numbers follow '{}'; expected 7: tx ty tz qx qy qz qw", cursor.line(), found, scan);
+        throw Error("line {}: {} words follow {}; expected 7 numbers: tx ty tz qx qy qz qw", cursor.line(), found,
+                    quote(scan))
+            .hint("a file's name with blanks can only stand in JSON: \"scan\": \"…\"");
     for (std::size_t i = 0; i < fields.size(); ++i) {
         cursor.more();
         if (!cursor.number(values[i]))
-            throw Error("line {}: {} of '{}' is '{}', which is no number", cursor.line(), fields[i], scan,
-                        cursor.last_token());
+            throw Error("line {}: {} of {} is {}, which is no number", cursor.line(), fields[i], quote(scan),
+                        quote(cursor.last_token()));
         if (!std::isfinite(values[i]))
-            throw Error("line {}: {} of '{}' is {}; a pose is finite", cursor.line(), fields[i], scan, values[i]);
+            throw Error("line {}: {} of {} is {}; a pose is finite", cursor.line(), fields[i], quote(scan), values[i]);
     }
     return values;
 }
@@ -39,8 +42,8 @@ std::vector<ScanPose> parse_stanford_conf(std::string_view text, const Warn& war
         const std::string keyword(cursor.token());
         if (keyword == "camera") continue;
         if (keyword != "mesh" && keyword != "bmesh")
-            throw Error("line {}: '{}' does not begin a line of poses; expected {}{}", cursor.line(), keyword,
-                        enumerated(keywords), did_you_mean(keyword, keywords));
+            throw Error("line {}: {} does not begin a line of poses; expected one of {}{}", cursor.line(),
+                        quote(keyword), enumerated(keywords), did_you_mean(keyword, keywords));
         if (!cursor.more()) throw Error("line {}: '{}' names no file", cursor.line(), keyword);
         ScanPose pose;
         pose.scan = cursor.token();

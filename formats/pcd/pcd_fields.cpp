@@ -5,6 +5,7 @@
 #include <set>
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/formats/reading.hpp"
 
 namespace scanmill::pcd {
 
@@ -84,6 +85,14 @@ std::vector<const PCLPointField*> triple(const PCLPointCloud2& cloud, std::array
     return fields;
 }
 
+std::string free_name(const ColumnTable& table, const std::string& wanted, const ReadOptions& options) {
+    std::string name = wanted;
+    for (std::size_t number = 2; table.find(name); ++number) name = wanted + "_" + std::to_string(number);
+    if (name != wanted)
+        warn(options.on_warning, "the field {} became the column '{}': its own name is taken", quote(wanted), name);
+    return name;
+}
+
 }  // namespace
 
 std::optional<ScalarType> scalar_type(std::uint8_t datatype) {
@@ -118,19 +127,21 @@ Array<Vec3> positions_of(const PCLPointCloud2& cloud) {
     return positions;
 }
 
-ColumnTable columns_of(const PCLPointCloud2& cloud) {
+ColumnTable columns_of(const PCLPointCloud2& cloud, const ReadOptions& options) {
     ColumnTable table;
     std::set<std::string_view> taken{"x", "y", "z", "_"};
-    if (const auto normal = triple(cloud, {"normal_x", "normal_y", "normal_z"}); !normal.empty()) {
-        table.add(column_of(cloud, normal, "normal", 1));
-        taken.insert({"normal_x", "normal_y", "normal_z"});
-    }
+    using Names = std::array<std::string_view, 3>;
+    for (const Names& names : {Names{"normal_x", "normal_y", "normal_z"}, Names{"nx", "ny", "nz"}})
+        if (const auto normal = triple(cloud, names); !normal.empty() && !table.find("normal")) {
+            table.add(column_of(cloud, normal, "normal", 1));
+            taken.insert(names.begin(), names.end());
+        }
     for (const PCLPointField& field : cloud.fields) {
         if (taken.contains(field.name)) continue;
         if (is_packed_colour(field) && !table.find("colour"))
             table.add(colours_of(cloud, field));
         else
-            table.add(column_of(cloud, std::array{&field}, field.name, field.count));
+            table.add(column_of(cloud, std::array{&field}, free_name(table, field.name, options), field.count));
     }
     return table;
 }

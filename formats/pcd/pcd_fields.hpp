@@ -5,6 +5,7 @@
 #include <pcl/PCLPointCloud2.h>
 
 #include "scanmill/data/points.hpp"
+#include "scanmill/formats/files.hpp"
 
 namespace scanmill::pcd {
 
@@ -19,6 +20,7 @@ const pcl::PCLPointField* field_named(const pcl::PCLPointCloud2& cloud, std::str
 Array<Vec3> positions_of(const pcl::PCLPointCloud2& cloud);
 
 /// Everything else, by the names that pcd.hpp gives.
-ColumnTable columns_of(const pcl::PCLPointCloud2& cloud);
+/// A field whose name another column has taken (beside packed colours and normals) gets one of its own, which is told.
+ColumnTable columns_of(const pcl::PCLPointCloud2& cloud, const ReadOptions& options);
 
 }  // namespace scanmill::pcd

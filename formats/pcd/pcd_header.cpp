@@ -5,8 +5,11 @@
 #include <charconv>
 #include <cstring>
 #include <optional>
+#include <set>
+#include <span>
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/filter/quantity.hpp"
 #include "scanmill/formats/reading.hpp"
 
 namespace scanmill::pcd {
@@ -46,6 +49,7 @@ private:
         const std::size_t end = std::min(bytes_.find('\n', at_), bytes_.size());
         words_ = words_of(bytes_.substr(at_, end - at_));
         text_ = bytes_.substr(at_, end - at_);
+        if (text_.ends_with('\r')) text_.remove_suffix(1);
         at_ = end + 1;
         ++line_;
         return true;
@@ -59,6 +63,7 @@ private:
             if (!text_.starts_with("# .PCD")) header_.comments.emplace_back(text_.substr(text_.find('#') + 1));
         } else if (key == "FIELDS" || key == "COLUMNS") {
             fields_ = words_.size() - 1;
+            require_fields();
             padded_ = std::ranges::find(words_, "_") != words_.end();
         } else if (key == "SIZE") {
             sizes_ = numbers();
@@ -71,8 +76,7 @@ private:
         } else if (key == "POINTS") {
             promised_ = number();
         } else if (key == "VIEWPOINT") {
-            for (std::size_t i = 1; i < words_.size(); ++i)
-                header_.viewpoint.append(i > 1 ? " " : "").append(words_[i]);
+            read_viewpoint();
         } else if (key == "DATA") {
             read_encoding();
             return true;
@@ -80,6 +84,29 @@ private:
             throw Error("line {}: {} is no part of a PCD header", line_, quote(key));
         }
         return false;
+    }
+
+    void require_fields() const {
+        constexpr std::size_t most_fields = 1000;
+        if (fields_ > most_fields) throw Error("line {}: {} fields; at most {} are read", line_, fields_, most_fields);
+        std::set<std::string_view> seen;
+        for (const std::string_view name : std::span(words_).subspan(1))
+            if (name != "_" && !seen.insert(name).second)
+                throw Error("line {}: two fields are called {}", line_, quote(name));
+    }
+
+    /// Where the sensor was, and the quaternion w x y z of how it was turned. Old files have no such line.
+    void read_viewpoint() {
+        constexpr std::array<double, 7> nowhere{0, 0, 0, 1, 0, 0, 0};
+        if (words_.size() != nowhere.size() + 1)
+            throw Error("line {}: VIEWPOINT has {} numbers; expected {}", line_, words_.size() - 1, nowhere.size());
+        for (std::size_t i = 0; i < nowhere.size(); ++i) {
+            double number = 0;
+            if (!parse_number(words_[i + 1], number))
+                throw Error("line {}: {} is no number for VIEWPOINT", line_, quote(words_[i + 1]));
+            header_.has_viewpoint |= number != nowhere[i];
+            header_.viewpoint.append(i > 0 ? " " : "").append(words_[i + 1]);
+        }
     }
 
     void read_encoding() {
@@ -137,7 +164,7 @@ private:
         require_room();
     }
 
-    void require_room() const {
+    void require_room() {
         const u64 left = bytes_.size() - header_.body;
         const u64 promised = header_.points * header_.row_bytes;
         const auto require = [&](bool fits) {
@@ -148,19 +175,29 @@ private:
         };
         switch (header_.encoding) {
             case PcdHeader::Encoding::ascii: require((left + 1) / 2 >= header_.points * header_.row_numbers); break;
-            case PcdHeader::Encoding::binary: require(left >= promised); break;
+            case PcdHeader::Encoding::binary:
+                require(left >= promised);
+                header_.bytes_behind = without_padding(left - promised);
+                break;
             case PcdHeader::Encoding::compressed: {
                 constexpr u64 best_ratio = 264;  // LZF makes at most 264 bytes of three; one byte never makes more
                 std::array<std::uint32_t, 2> sizes{};
                 require(left >= sizeof sizes);
                 std::memcpy(sizes.data(), bytes_.data() + header_.body, sizeof sizes);
                 require(left - sizeof sizes >= sizes[0]);
+                header_.bytes_behind = without_padding(left - sizeof sizes - sizes[0]);
                 if (sizes[1] != promised || promised > best_ratio * sizes[0])
                     throw Error("its header promises {} points of {} bytes; the compressed block says {} bytes in {}",
                                 header_.points, header_.row_bytes, sizes[1], sizes[0])
                         .hint("the file is damaged: fetch or export it again");
             }
         }
+    }
+
+    /// PCL's own writer fills the last page of the file with zeros; those say nothing.
+    u64 without_padding(u64 behind) const {
+        const bool is_padding = bytes_.substr(bytes_.size() - behind).find_first_not_of('\0') == std::string_view::npos;
+        return is_padding ? 0 : behind;
     }
 
     std::string_view bytes_, text_;

@@ -21,6 +21,8 @@ struct PcdHeader {
     std::size_t lines = 0;  ///< of the header
     std::vector<std::string> comments;
     std::string viewpoint;  ///< as written; empty when there is none
+    bool has_viewpoint = false;  ///< one that is not at the origin, or turned
+    u64 bytes_behind = 0;  ///< the last point, but for zeros; in text there are none
 };
 
 /// Throws Error when the header is broken, contradicts itself, or promises more than the file's bytes can hold.

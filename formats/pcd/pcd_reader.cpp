@@ -43,15 +43,6 @@ pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) 
     return cloud;
 }
 
-/// "0 0 0 1 0 0 0", however written: no translation, and the quaternion w x y z of no rotation.
-bool is_identity(const std::string& viewpoint) {
-    std::istringstream numbers(viewpoint);
-    numbers.imbue(std::locale::classic());
-    for (const double expected : {0, 0, 0, 1, 0, 0, 0})
-        if (double number = 0; numbers >> number && number != expected) return false;
-    return true;
-}
-
 }  // namespace
 
 LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
@@ -59,7 +50,10 @@ LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     const pcl::PCLPointCloud2 cloud = read_cloud(file.bytes, header);
     if (header.height > 1 && header.width > 1)
         warn(options.on_warning, "the grid of {} × {} points became a list in file order", header.width, header.height);
-    if (!is_identity(header.viewpoint))
+    if (header.bytes_behind > 0)
+        warn(options.on_warning, "{} behind the last point and left out",
+             counted(header.bytes_behind, "byte was", "bytes were"));
+    if (header.has_viewpoint)
         warn(options.on_warning, "the sensor's pose (VIEWPOINT {}) was left out; coordinates are as in the file",
              header.viewpoint);
     LoadedFile loaded;
@@ -71,7 +65,7 @@ LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     Array<Vec3> positions = positions_of(cloud);
     move_near_origin(positions, bounding_box(positions), points.frame);
     points.positions = std::move(positions);
-    points.columns = columns_of(cloud);
+    points.columns = columns_of(cloud, options);
     loaded.value = std::make_shared<const PointCloud>(std::move(points));
     return loaded;
 }

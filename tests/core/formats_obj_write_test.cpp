@@ -137,5 +137,19 @@ TEST(ObjWriter_Points, AreNotWritten) {
     EXPECT_THROW(write_file(folder / "a.obj", std::make_shared<const PointCloud>(cloud)), Error);
 }
 
+TEST(ObjWriter_Colours, ThatAreNoBytes_ComeBack) {
+    const TemporaryFolder folder;
+    Told told;
+    const auto mesh = read_mesh(
+        folder.write("a.obj", "v 0 0 0 0.5 0.25 1\nv 1 0 0 0 0.1 0.7\nv 0 1 0 1 1 1\nf 1 2 3\n"), told.reading());
+    EXPECT_THAT(told.sentences, testing::ElementsAre(testing::HasSubstr("are no bytes; they are kept as columns")));
+    told.sentences.clear();
+    write_file(folder / "b.obj", mesh, told.writing());
+    EXPECT_THAT(told.sentences, testing::IsEmpty());
+    const auto back = read_mesh(folder / "b.obj");
+    for (const char* channel : {"red", "green", "blue"})
+        EXPECT_EQ(*back->vertex_columns.find(channel), *mesh->vertex_columns.find(channel));
+}
+
 }  // namespace
 }  // namespace scanmill::test

@@ -227,5 +227,16 @@ TEST(PlyReader_Trailing, TextOrBytesBehindTheLastElement_AreTold) {
     EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("from line 9 on"), HasSubstr("3 bytes after")));
 }
 
+TEST(PlyReader_ListsOfFaces, ThatWereCut_AreDoubtfulAndTold) {
+    Told told;
+    mesh_in(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
+        "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n",
+        "a.ply", &told);
+    EXPECT_THAT(told.sentences, testing::ElementsAre(testing::HasSubstr("cut into fans"),
+                                                     testing::HasSubstr("'texcoord' has a list for every face")));
+}
+
 }  // namespace
 }  // namespace scanmill::test

@@ -109,5 +109,29 @@ TEST(XyzWriter_File, IsThisForOnePoint_OtherColumnsAreTold) {
     EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 column of the points (weight)")));
 }
 
+TEST(XyzReader_Numbers, OfMicrosoftsLibraries_AreInfinityAndNan) {
+    const auto cloud = points_in("0 0 -1.#IND\n1.#INF -1.#INF00 1.#QNAN0\n5 5 5#glued\n", "a.xyz");
+    ASSERT_EQ(cloud->size(), 3u);
+    EXPECT_TRUE(std::isnan(cloud->positions[0].z()));
+    EXPECT_EQ(cloud->positions[1].x(), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(cloud->positions[1].y(), -std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(std::isnan(cloud->positions[1].z()));
+    EXPECT_EQ(world_of(*cloud, 2), Vec3(5, 5, 5));
+    EXPECT_EQ(points_in("1.#QNAN 0 0\n1 2 3\n", "a.xyz")->size(), 2u) << "its first row is no count";
+    EXPECT_THAT(refusal_of("0 0 2.#INF\n", "a.xyz"), testing::HasSubstr("'2.#INF'"));
+}
+
+TEST(Reader_Units, ThatContradictEachOther_AreTold) {
+    Told told;
+    EXPECT_EQ(points_in("# unit mm\n# unit in\n0 0 0\n", "a.xyz", &told)->frame.unit, LengthUnit::inch);
+    EXPECT_THAT(told.sentences, testing::ElementsAre(testing::HasSubstr("both 'unit mm' and 'unit in'")));
+    told.sentences.clear();
+    ReadOptions asked = told.reading();
+    asked.unit = LengthUnit::metre;
+    read_bytes("# unit mm\n0 0 0\n", "a.xyz", asked);
+    EXPECT_THAT(told.sentences,
+                testing::ElementsAre(testing::HasSubstr("says 'unit mm'; it was taken to be in m, as was asked for")));
+}
+
 }  // namespace
 }  // namespace scanmill::test

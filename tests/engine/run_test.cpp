@@ -144,7 +144,7 @@ TEST_F(Run, InputsOfDifferentUnits_AreRefused) {
     const RunReport report =
         run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz", "# unit mm\n" + test::small_scan)},
             "", "{scan: points, others: [points]}");
-    EXPECT_THAT(report.cells[0].error, HasSubstr("different units: mm at the first port, m at 'more'"));
+    EXPECT_THAT(report.cells[0].error, HasSubstr("different units: mm at 'points', m at 'more'"));
 }
 
 TEST_F(Run, ListInput_ReachesThePortWhole) {

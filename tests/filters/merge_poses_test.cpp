@@ -54,6 +54,17 @@ TEST_F(PoseFiles, Conf_TurnsAgainstItsQuaternion) {
     EXPECT_THAT(context_.warnings(), IsEmpty());
 }
 
+TEST_F(PoseFiles, ByteOrderMark_IsNoPartOfThem) {
+    EXPECT_EQ(read("\xEF\xBB\xBFmesh b.ply 0 0 0 0 0 0 1\n").size(), 1u);
+    EXPECT_EQ(read("\xEF\xBB\xBF" + json("{\"rotation\": [0, 0, 0, 1], \"translation\": [0, 0, 0]}")).size(), 1u);
+}
+
+TEST_F(PoseFiles, JsonOfAnyDepth_IsRefusedWhereItIsTooDeep) {
+    for (const std::size_t depth : {10u, 1'000'000u})
+        EXPECT_EQ(sentence("{\"poses\": " + std::string(depth, '[') + std::string(depth, ']') + "}"),
+                  "is nested more than 8 levels deep");
+}
+
 TEST_F(PoseFiles, Json_TurnsWithItsQuaternion) {
     const auto poses = read(
         "\n {\"scanmill\": 1, \"unit\": \"mm\", \"frame\": \"part\", \"poses\": [{\"scan\": \"a\", \"rotation\": "
@@ -93,11 +104,12 @@ TEST_F(PoseFiles, QuaternionOfAnotherLength_IsRefused) {
 TEST_F(PoseFiles, BadConf_NamesTheLine) {
     const std::string good = "camera 0 0 0 0 0 0 1\nbmesh a.ply 0 0 0 0 0 0 1\n";
     EXPECT_EQ(sentence(good + "bmseh b.ply 0 0 0 0 0 0 1\n"),
-              "line 3: 'bmseh' does not begin a line of poses; expected camera, mesh and bmesh; did you mean 'bmesh'?");
+              "line 3: 'bmseh' does not begin a line of poses; expected one of camera, mesh and bmesh; did you mean "
+              "'bmesh'?");
     EXPECT_EQ(sentence(good + "\nbmesh\n"), "line 4: 'bmesh' names no file");
     EXPECT_EQ(sentence(good + "bmesh b.ply 0 0 0 0 0 1\n"),
-              "line 3: 6 numbers follow 'b.ply'; expected 7: tx ty tz qx qy qz qw");
-    EXPECT_THAT(sentence(good + "bmesh b.ply 0 0 0 0 0 0 1 0\n"), HasSubstr("line 3: 8 numbers"));
+              "line 3: 6 words follow 'b.ply'; expected 7 numbers: tx ty tz qx qy qz qw");
+    EXPECT_THAT(sentence(good + "bmesh b.ply 0 0 0 0 0 0 1 0\n"), HasSubstr("line 3: 8 words"));
     EXPECT_EQ(sentence(good + "bmesh b.ply 0 1,5 0 0 0 0 1\n"), "line 3: ty of 'b.ply' is '1,5', which is no number");
     EXPECT_EQ(sentence(good + "bmesh b.ply 0 0 0 nan 0 0 1\n"), "line 3: qx of 'b.ply' is nan; a pose is finite");
     EXPECT_THAT(sentence("camera 0 0 0 0 0 0 1\n"), HasSubstr("holds no pose"));
@@ -169,10 +181,24 @@ TEST(PosesOf, FramesWithoutNames_TakeThemInOrder) {
 
 TEST(PosesOf, FramesWithNames_TakeTheirOwnWhateverTheOrder) {
     Context context;
-    EXPECT_THAT(taken(frames({"a", "b", "c.d", "a"}), poses({"raw/b.ply", "c.d", "a"}), context),
-                ElementsAre(2, 0, 1, 2));
+    EXPECT_THAT(taken(frames({"a", "b", "c.d"}), poses({"raw/b.ply", "c.d", "a"}), context), ElementsAre(2, 0, 1));
     EXPECT_THAT(taken(frames({"b.ply"}), poses({"raw/b.ply"}), context), ElementsAre(0));
     EXPECT_THAT(context.warnings(), IsEmpty());
+}
+
+TEST(PosesOf, InputsInOneFrame_TakeOnePose_WhichIsTold) {
+    Context context;
+    EXPECT_THAT(taken(frames({"a", "b", "a"}), poses({"b", "a.ply"}), context), ElementsAre(1, 0, 1));
+    EXPECT_THAT(context.warnings(),
+                ElementsAre("inputs 0 and 2 are both in the frame 'a' and take the same pose, that of 'a.ply'"));
+}
+
+TEST(PosesOf, NamedFramesAndPosesWithoutScans_AreRefusedWithAWayOut) {
+    Context context;
+    const Error error = error_of([&] { taken(frames({"a"}), poses({"", ""}), context); });
+    EXPECT_EQ(error.sentence(),
+              "the inputs' frames have names, as 'a', but none of the 2 poses says which scan it is of");
+    EXPECT_THAT(error.hint(), HasSubstr("\"scan\""));
 }
 
 TEST(PosesOf, PosesThatNobodyTakes_AreTold) {

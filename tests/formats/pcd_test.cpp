@@ -5,7 +5,6 @@
 #include <random>
 
 #include "core/formats_support.hpp"
-#include "support/real_data.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"
 
@@ -277,6 +276,57 @@ TEST(PcdWriter_Losses, NamesThatPcdNeedsForItself_AreChangedAndTold) {
         EXPECT_TRUE(back->columns.find(name)) << name;
 }
 
+const std::string pcd_head = "SIZE 4 4 4 4 4 4\nTYPE F F F F F F\nCOUNT 1 1 1 1 1 1\nWIDTH 1\nHEIGHT 1\n";
+
+TEST(PcdReader_Normals, AreKnownByEitherOfTheirNames) {
+    const auto cloud = points_in("FIELDS x y z nx ny nz\n" + pcd_head + "POINTS 1\nDATA ascii\n1 2 3 0 0 1\n", "a.pcd");
+    ASSERT_EQ(cloud->columns.size(), 1u);
+    EXPECT_EQ(cloud->columns.find("normal")->number(0, 2), 1);
+}
+
+TEST(PcdReader_Fields, ThatTakeAnothersColumn_AreRenamedAndTold) {
+    Told told;
+    const auto cloud =
+        points_in("FIELDS x y z rgb colour label\n" + pcd_head + "POINTS 1\nDATA ascii\n1 2 3 0 5 6\n", "a.pcd", &told);
+    EXPECT_EQ(cloud->columns.find("colour_2")->number(0), 5);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the field 'colour' became the column 'colour_2'")));
+    EXPECT_THAT(refusal_of("FIELDS x y z x a b\n" + pcd_head + "DATA ascii\n1 2 3 4 5 6\n", "a.pcd"),
+                HasSubstr("line 1: two fields are called 'x'"));
+    std::string many = "FIELDS x y z";
+    for (int i = 0; i < 998; ++i) many += " a" + std::to_string(i);
+    EXPECT_THAT(refusal_of(many + "\n" + pcd_head + "DATA ascii\n", "a.pcd"), HasSubstr("1001 fields; at most 1000"));
+}
+
+TEST(PcdReader_Viewpoint, IsSevenNumbers) {
+    const std::string fields = "FIELDS x y z a b c\n" + pcd_head;
+    EXPECT_THAT(refusal_of(fields + "VIEWPOINT 0 0 0 one 0 0 0\nDATA ascii\n1 2 3 4 5 6\n", "a.pcd"),
+                HasSubstr("line 7: 'one' is no number for VIEWPOINT"));
+    EXPECT_THAT(refusal_of(fields + "VIEWPOINT 0 0 0\nDATA ascii\n1 2 3 4 5 6\n", "a.pcd"),
+                HasSubstr("line 7: VIEWPOINT has 3 numbers; expected 7"));
+}
+
+TEST(PcdReader_WindowsLineEnds, AreNoPartOfCommentsAndNames) {
+    Told told;
+    std::string text =
+        "# unit mm\n# frame part\nFIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA ascii\n1 2 3 4 5 6\n";
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.replace(at, 1, "\r\n");
+    const auto cloud = points_in(text, "a.pcd", &told);
+    EXPECT_EQ(cloud->frame.unit, LengthUnit::millimetre);
+    EXPECT_EQ(cloud->frame.name, "part");
+    EXPECT_TRUE(cloud->columns.find("c"));
+    EXPECT_THAT(told.sentences, IsEmpty());
+}
+
+TEST(PcdReader_BytesBehindTheLastPoint, AreTold) {
+    Told told;
+    points_in("FIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA binary\n" + std::string(24, '\0') + "later", "a.pcd",
+              &told);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("5 bytes were behind the last point and left out")));
+    told.sentences.clear();
+    points_in("FIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA binary\n" + std::string(4096, '\0'), "a.pcd", &told);
+    EXPECT_THAT(told.sentences, IsEmpty()) << "a page filled with zeros";
+}
+
 TEST(PcdWriter_Losses, ListsAreTold) {
     const TemporaryFolder folder;
     Told told;
@@ -286,45 +336,6 @@ TEST(PcdWriter_Losses, ListsAreTold) {
     write_file(folder / "a.pcd", std::make_shared<const PointCloud>(cloud), told.writing());
     EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the lists of the column 'seen_by'")));
 }
-
-struct Sample {
-    const char* file;
-    std::size_t points;
-    std::vector<std::string> columns;
-};
-
-void PrintTo(const Sample& sample, std::ostream* stream) { *stream << sample.file; }
-
-class PcdSamples : public testing::TestWithParam<Sample> {};
-
-TEST_P(PcdSamples, AreReadWithEveryColumn) {
-    SCANMILL_REAL_SCAN(file, shared_data, GetParam().file);
-    const auto cloud = read_points(file);
-    EXPECT_EQ(cloud->size(), GetParam().points);
-    std::vector<std::string> names;
-    for (const Column& column : cloud->columns) names.push_back(column.name());
-    EXPECT_EQ(names, GetParam().columns);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Shared, PcdSamples,
-    testing::Values(Sample{"6-formats/pcd/ok/loadersgl_simple-ascii.pcd", 213, {"colour"}},  // ascii, packed float rgb
-                    Sample{"6-formats/pcd/ok/pcl_car6.pcd", 10031, {}},  // compressed
-                    Sample{"6-formats/pcd/ok/pcl_colored_cloud.pcd", 1000, {"normal", "colour", "curvature"}},
-                    Sample{"6-formats/pcd/ok/pcl_curve3d.pcd", 110, {}},
-                    Sample{"6-formats/pcd/ok/pcl_ism_test.pcd", 3400, {}},
-                    Sample{"6-formats/pcd/ok/pcl_lamppost.pcd", 1771, {}},
-                    Sample{"6-formats/pcd/ok/pcl_nhood_test.pcd", 36, {"intensity"}},  // version .5, no viewpoint
-                    Sample{"6-formats/pcd/ok/pcl_octants.pcd", 8, {}},
-                    Sample{"6-formats/pcd/odd/pcl_noisy_slice_displaced.pcd", 3782, {}},
-                    Sample{"6-formats/pcd/odd/pcl_sac_plane_test.pcd", 3283, {"normal", "curvature"}},
-                    Sample{"5-raw/milk_cartoon_all_small_clorox.pcd", 307200, {"colour"}}),  // organised, NaN
-    [](const auto& sample) {
-        std::string name = std::filesystem::path(sample.param.file).stem().string();
-        for (char& c : name)
-            if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-        return name;
-    });
 
 }  // namespace
 }  // namespace scanmill::test

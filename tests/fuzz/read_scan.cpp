@@ -82,14 +82,14 @@ void require_coming_back(const Value& value, const Format& format) {
 
 }  // namespace
 
-void read_scan(std::string_view extension, std::string_view bytes) {
+bool read_scan(std::string_view extension, std::string_view bytes) {
     const std::string name = "scan." + std::string(extension);
     LoadedFile loaded;
     try {
         loaded = read_bytes(bytes, name, {[](const std::string&) {}});
     } catch (const Error& error) {
         require_law(error.sentence().starts_with("'" + name + "': "), "an error that does not name its file");
-        return;
+        return false;
     }
     with_geometry(loaded.value, [](const auto& geometry) {
         require_sound(geometry);
@@ -99,6 +99,7 @@ void read_scan(std::string_view extension, std::string_view bytes) {
     require_lasting_ply(loaded.value);
     for (const Format& format : formats())
         if (format.writer(kind_of(loaded.value)) && format.name != "PLY") require_coming_back(loaded.value, format);
+    return true;
 }
 
 }  // namespace scanmill::test

@@ -7,19 +7,22 @@
 namespace scanmill::test {
 
 std::span<const FuzzTarget> fuzz_targets() {
-    static constexpr std::array<FuzzTarget, 12> table{{
-        {"ply", [](std::string_view bytes) { read_scan("ply", bytes); }},
-        {"stl", [](std::string_view bytes) { read_scan("stl", bytes); }},
-        {"off", [](std::string_view bytes) { read_scan("off", bytes); }},
-        {"xyz", [](std::string_view bytes) { read_scan("xyz", bytes); }},
-        {"csv", [](std::string_view bytes) { read_scan("csv", bytes); }},
-        {"pts", [](std::string_view bytes) { read_scan("pts", bytes); }},
-        {"obj", [](std::string_view bytes) { read_scan("obj", bytes); }},
-        {"ptx", [](std::string_view bytes) { read_scan("ptx", bytes); }},
-        {"las", [](std::string_view bytes) { read_scan("las", bytes); }},
+    static constexpr std::array<FuzzTarget, 15> table{{
+        {"ply", [](std::string_view bytes) { return read_scan("ply", bytes); }},
+        {"stl", [](std::string_view bytes) { return read_scan("stl", bytes); }},
+        {"off", [](std::string_view bytes) { return read_scan("off", bytes); }},
+        {"xyz", [](std::string_view bytes) { return read_scan("xyz", bytes); }},
+        {"csv", [](std::string_view bytes) { return read_scan("csv", bytes); }},
+        {"pts", [](std::string_view bytes) { return read_scan("pts", bytes); }},
+        {"obj", [](std::string_view bytes) { return read_scan("obj", bytes); }},
+        {"ptx", [](std::string_view bytes) { return read_scan("ptx", bytes); }},
+        {"las", [](std::string_view bytes) { return read_scan("las", bytes); }},
+        {"pcd", [](std::string_view bytes) { return read_scan("pcd", bytes); }},
         {"workflow", check_workflow_text},
         {"setting", check_setting},
         {"manifest", check_manifest},
+        {"format-manifest", check_format_manifest},
+        {"poses", check_poses},
     }};
     return table;
 }

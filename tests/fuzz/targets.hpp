@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What hostile bytes are fed to: everything that reads what strangers wrote. A target returns whatever the bytes are,
-/// and throws LawBroken when what it read contradicts itself; a crash, a leak or any other exception is a finding too.
+/// What hostile bytes are fed to: everything that reads what strangers wrote. A target says whether the bytes were
+/// accepted, and throws LawBroken when what it read contradicts itself; a crash, a leak or any other exception is a
+/// finding too.
 ///
 /// The targets are rows of one table (targets.cpp); each has seeds in corpus/<name>/ and perhaps words in <name>.dict.
 /// With clang, SCANMILL_FUZZ makes a fuzzer of them; without, a test feeds them the seeds.
@@ -15,7 +16,7 @@ namespace scanmill::test {
 
 struct FuzzTarget {
     std::string_view name;
-    void (*run)(std::string_view bytes);
+    bool (*run)(std::string_view bytes);
 };
 
 std::span<const FuzzTarget> fuzz_targets();
@@ -32,12 +33,16 @@ inline void require_law(bool holds, const std::string& law) {
 
 /// Reads the bytes as a scan called "scan.EXTENSION"; what was read is consistent, and comes back from every format
 /// that can carry it.
-void read_scan(std::string_view extension, std::string_view bytes);
+bool read_scan(std::string_view extension, std::string_view bytes);
 /// Parses and plans a workflow, against filters that exist only as declarations.
-void check_workflow_text(std::string_view bytes);
+bool check_workflow_text(std::string_view bytes);
 /// Reads the bytes as the VALUE of `--set NAME=VALUE`, as every type of parameter, and plans a workflow with it.
-void check_setting(std::string_view bytes);
+bool check_setting(std::string_view bytes);
 /// Reads the bytes as a filter's manifest.
-void check_manifest(std::string_view bytes);
+bool check_manifest(std::string_view bytes);
+/// Reads the bytes as the manifest of a file format's module.
+bool check_format_manifest(std::string_view bytes);
+/// Reads the bytes as a file of poses, in either syntax.
+bool check_poses(std::string_view bytes);
 
 }  // namespace scanmill::test

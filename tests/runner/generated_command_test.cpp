@@ -50,10 +50,21 @@ TEST(DocsCommand, WritesAPageForEveryFilter) {
     }
 }
 
+TEST(DocsCommand, FilesOfOthers_AreNotReplaced_AndNothingIsWritten) {
+    const TemporaryFolder folder;
+    folder.write("README.md", "mine\n");
+    const ProgramResult refused = scanmill_program({"docs", "-o", folder.path().string()});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("README.md' is there and was not written by scanmill docs"));
+    EXPECT_EQ(content_of(folder / "README.md"), "mine\n");
+    EXPECT_EQ(folder.files(), 1u);
+}
+
 /// What bash proposes behind `scanmill` and these words.
 std::string completed(const TemporaryFolder& folder, const std::string& words, int index) {
     folder.write("complete", scanmill_program({"completion", "bash"}).out + "COMP_WORDS=(scanmill " + words +
-                                 ")\nCOMP_CWORD=" + std::to_string(index) + "\n_scanmill\necho \"${COMPREPLY[@]}\"\n");
+                                 ")\nCOMP_CWORD=" + std::to_string(index) +
+                                 "\n_scanmill\nprintf '%s ' \"${COMPREPLY[@]}\" | sed 's/ $//'; echo\n");
     const std::string programs = std::filesystem::path(SCANMILL_PROGRAM).parent_path().string();
     const std::string command = "PATH=\"" + programs + ":$PATH\" bash '" + (folder / "complete").string() + "' > '" +
                                 (folder / "proposals").string() + "'";
@@ -66,6 +77,15 @@ TEST(Completion, Bash_ProposesCommandsOptionsAndFilters) {
     EXPECT_EQ(completed(folder, "sh", 1), "show\n");
     EXPECT_EQ(completed(folder, "run --un", 2), "--unit --until\n");
     EXPECT_EQ(completed(folder, "show vox", 2), "voxel-thin\n");
+    EXPECT_EQ(completed(folder, "completion f", 2), "fish\n");
+}
+
+TEST(Completion, Bash_ProposesFilesWithBlanksWhole) {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.write("my scan.ply", "");
+    folder.write("my notes.txt", "");
+    const std::string word = "\"" + (folder / "my s").string() + "\"";
+    EXPECT_EQ(completed(folder, "info " + word, 2), file.string() + "\n");
 }
 
 TEST(Completion, EveryShell_HasEveryCommand) {

@@ -17,6 +17,7 @@ namespace {
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string merge_views() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/merge-views.yaml"; }
 
@@ -77,10 +78,18 @@ TEST_F(MergeCommand, ViewsOfDifferentUnits_AreRefused) {
     const ProgramResult ran = run({"mm.xyz", "m.xyz", "-o", "out"});
     EXPECT_EQ(ran.exit_code, 1);
     EXPECT_THAT(ran.err, AllOf(HasSubstr("different units: mm"), HasSubstr("--to-unit")));
-    const ProgramResult unknown = run({"mm.xyz", "left.xyz", "-o", "out"});
-    EXPECT_EQ(unknown.exit_code, 1);
-    EXPECT_THAT(unknown.err, AllOf(HasSubstr("mm in input 0, an unknown unit in input 1"), HasSubstr("--unit mm")));
-    EXPECT_EQ(run({"mm.xyz", "left.xyz", "--unit", "mm", "-o", "out"}).exit_code, 0);
+}
+
+TEST_F(MergeCommand, ViewWithoutAUnit_IsTakenToBeInThatOfTheOthers_WhereverItStands) {
+    folder_.write("mm.xyz", "# unit mm\n0 0 0\n");
+    for (const std::vector<std::string>& views :
+         {std::vector<std::string>{"mm.xyz", "left.xyz"}, std::vector<std::string>{"left.xyz", "mm.xyz"}}) {
+        const ProgramResult ran = run({views[0], views[1], "-o", "out"});
+        EXPECT_EQ(ran.exit_code, 0);
+        EXPECT_THAT(ran.err, HasSubstr("declares no unit and was taken to be in that of the others: mm"));
+        EXPECT_EQ(read_points(folder_ / "out/merge-views.ply")->frame.unit, LengthUnit::millimetre);
+    }
+    EXPECT_THAT(run({"mm.xyz", "left.xyz", "--unit", "mm", "-o", "out"}).err, Not(HasSubstr("declares no unit")));
 }
 
 TEST_F(MergeCommand, AnyThreads_WriteEqualBytes) {

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/manifest.hpp"
 
-#include <cstdint>
-#include <nlohmann/json.hpp>
-#include <utility>
-
 #include "scanmill/filter/error.hpp"
+#include "scanmill/filter/manifest_json.hpp"
 
 namespace scanmill {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int manifest_version = 1;
 
@@ -58,17 +53,6 @@ template <class T>
 T required_name(const std::optional<T>& named, std::string_view what, const std::string& name) {
     if (!named) throw Error("'{}' is no {}", name, what);
     return *named;
-}
-
-/// The library would cut 1e300 and 1.5 to what fits.
-template <class Whole>
-Whole whole_number(const Json& json, const char* key) {
-    const Json& number = json.at(key);
-    const bool fits = number.is_number_unsigned()  ? std::in_range<Whole>(number.get<std::uint64_t>())
-                      : number.is_number_integer() ? std::in_range<Whole>(number.get<std::int64_t>())
-                                                   : false;
-    if (!fits) throw Error("is no manifest: '{}' is no whole number that fits", key);
-    return number.get<Whole>();
 }
 
 PortSpec port_from(const Json& json) {
@@ -136,8 +120,7 @@ std::string to_json_text(const Manifest& manifest) {
 
 Manifest parse_manifest(std::string_view text) try {
     const Json json = Json::parse(text);
-    if (const int version = whole_number<int>(json, "scanmill-manifest"); version != manifest_version)
-        throw Error("is a manifest of version {}; this program reads version {}", version, manifest_version);
+    require_manifest_version(json, "scanmill-manifest", manifest_version);
     Manifest manifest;
     manifest.abi = json.at("abi");
     FilterSpec& spec = manifest.spec;

@@ -20,6 +20,10 @@ std::string reason_of(int number) { return std::generic_category().message(numbe
 
 fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
+fs::path temporary_name(const fs::path& folder, unsigned attempt) {
+    return folder / fmt::format(".scanmill-{}-{}.part", ::getpid(), attempt);
+}
+
 /// The rename itself must survive a power cut. Some network file systems cannot sync a folder: then nothing is lost
 /// that could be saved.
 void sync_folder(const fs::path& folder) {
@@ -40,12 +44,20 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_symlink(status))
         throw Error("cannot be written: a {} has this name", fs::is_directory(status) ? "folder" : "pipe or device");
 
+    descriptor_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) open_named(folder);
+}
+
+void AtomicFile::open_named(const fs::path& folder) {
     // O_EXCL instead of mkstemp(): the file gets the permissions that the user's umask gives any new file.
     for (unsigned attempt = 0;; ++attempt) {
-        temporary_ = folder / fmt::format(".scanmill-{}-{}.part", ::getpid(), attempt);
+        temporary_ = temporary_name(folder, attempt);
         descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor_ >= 0) return;
-        if (errno != EEXIST) throw Error("cannot be written in '{}': {}", folder.string(), reason_of(errno));
+        if (errno != EEXIST) {
+            temporary_.clear();
+            throw Error("cannot be written in '{}': {}", folder.string(), reason_of(errno));
+        }
     }
 }
 
@@ -65,6 +77,15 @@ void AtomicFile::write(std::string_view bytes) {
 
 void AtomicFile::commit() {
     if (::fsync(descriptor_) != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
+    // linkat() replaces nothing, so the way to the target's name is by another one.
+    for (unsigned attempt = 0; temporary_.empty(); ++attempt) {
+        const fs::path name = temporary_name(folder_of(target_), attempt);
+        const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);
+        if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
+            temporary_ = name;
+        else if (errno != EEXIST)
+            throw Error("cannot be written in '{}': {}", name.parent_path().string(), reason_of(errno));
+    }
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));

@@ -2,9 +2,10 @@
 #pragma once
 /// A file that appears whole or not at all.
 ///
-/// Bytes go to a temporary file in the target's folder; commit() makes them durable (fsync), renames the file onto the
-/// target and makes the rename durable. Without commit() the destructor removes the temporary file; only a process that
-/// is killed in between leaves one (`.scanmill-….part`).
+/// Bytes go to a file without a name on the target's file system; commit() makes them durable (fsync), names the file,
+/// renames it onto the target and makes the rename durable. Without commit() nothing is left, however the process ends.
+/// On file systems that know no such files a temporary one (`.scanmill-….part`) takes its place, which only a process
+/// that is killed in between leaves.
 
 #include <filesystem>
 #include <string_view>
@@ -24,7 +25,10 @@ public:
     void commit();
 
 private:
-    std::filesystem::path target_, temporary_;
+    void open_named(const std::filesystem::path& folder);
+
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;  ///< empty while the file has no name
     int descriptor_ = -1;
 };
 

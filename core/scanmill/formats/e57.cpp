@@ -2,6 +2,7 @@
 #include "scanmill/formats/e57.hpp"
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/formats/reading.hpp"
 
 namespace scanmill {
 
@@ -16,10 +17,9 @@ Recognition recognise_e57(std::string_view head, u64) {
 LoadedFile refuse_e57(const FileBytes& file, const ReadOptions&) {
     if (!file.bytes.starts_with(magic)) throw Error("is no E57 file: it does not begin with {}", magic);
     throw Error("is an E57 file; E57 is not read")
-        .hint(
-            fmt::format("convert it with a free program: 'CloudCompare -SILENT -O {0} -C_EXPORT_FMT PLY -SAVE_CLOUDS' "
-                        "or 'pdal translate {0} out.las'",
-                        file.path.string()));
+        .hint(fmt::format("convert it with a free program: CloudCompare -SILENT -O {0} -C_EXPORT_FMT PLY -SAVE_CLOUDS, "
+                          "or: pdal translate {0} out.las",
+                          shell_word(file.path)));
 }
 
 }  // namespace scanmill

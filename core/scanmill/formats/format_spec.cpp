@@ -4,12 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/filter/manifest_json.hpp"
 
 namespace scanmill {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int manifest_version = 1;
 
@@ -25,8 +24,7 @@ std::string to_json_text(const FormatManifest& manifest) {
 
 FormatManifest parse_format_manifest(std::string_view text) try {
     const Json json = Json::parse(text);
-    if (const int version = json.at("scanmill-format"); version != manifest_version)
-        throw Error("is a manifest of version {}; this program reads version {}", version, manifest_version);
+    require_manifest_version(json, "scanmill-format", manifest_version);
     FormatManifest manifest;
     manifest.abi = json.at("abi");
     FormatSpec& spec = manifest.spec;

@@ -135,13 +135,14 @@ std::vector<LasRecord> read_las_records(const LasHeader& header, std::string_vie
     return records;
 }
 
+bool holds_geo_keys(const LasRecord& record) { return record.user == "LASF_Projection" && record.id == 34735; }
+
 LengthUnit las_unit(const std::vector<LasRecord>& records, const ReadOptions& options) {
-    constexpr u32 directory = 34735;
     constexpr u32 model_type = 1024, linear_unit = 3076, height_unit = 4099;
     constexpr u32 geographic = 2, metre = 9001, foot = 9002;
     u32 model = 0, unit = 0, height = 0;
     for (const LasRecord& record : records) {
-        if (record.user != "LASF_Projection" || record.id != directory) continue;
+        if (!holds_geo_keys(record)) continue;
         // Four numbers of 16 bits each: key, where its value is (0: here), how many, the value.
         for (std::size_t at = 8; at + 8 <= record.content.size(); at += 8) {
             const auto number = [&](std::size_t i) -> u32 {

@@ -50,6 +50,9 @@ struct LasRecord {
 /// The records between header and points. When they would run into the points, those that do are left out and told.
 std::vector<LasRecord> read_las_records(const LasHeader& header, std::string_view bytes, const ReadOptions& options);
 
+/// Whether the record is the directory of GeoTIFF keys.
+bool holds_geo_keys(const LasRecord& record);
+
 /// The unit of x, y and z: the options' when known, else by the GeoTIFF keys among the records metre or foot, else
 /// unknown. What is doubtful is told: degrees, other units, another unit for heights.
 LengthUnit las_unit(const std::vector<LasRecord>& records, const ReadOptions& options);

@@ -19,21 +19,20 @@ bool is_compressed(const LasHeader& header, const std::vector<LasRecord>& record
 [[noreturn]] void refuse_compressed(const FileBytes& file, const std::vector<LasRecord>& records) {
     const bool is_copc = std::ranges::any_of(records, [](const LasRecord& record) { return record.user == "copc"; });
     throw Error("is {} file, LAS in compressed form; it is not read", is_copc ? "a COPC" : "a LAZ")
-        .hint(
-            fmt::format("decompress it with a free program: 'pdal translate {0} out.las' or 'laszip -i {0} -o out.las'",
-                        file.path.string()));
+        .hint(fmt::format("decompress it with a free program: pdal translate {0} out.las, or: laszip -i {0} -o out.las",
+                          shell_word(file.path)));
 }
 
 void tell_left_out(const LasHeader& header, const std::vector<LasRecord>& records, std::string_view bytes,
-                   const ReadOptions& options) {
+                   bool unit_is_used, const ReadOptions& options) {
     std::string list;
     constexpr std::size_t most_listed = 6;
     std::size_t count = 0;
     for (const LasRecord& record : records) {
         if (describes_extra_bytes(record)) continue;
         if (++count <= most_listed)
-            list +=
-                fmt::format("{}{} {}", list.empty() ? "" : ", ", record.user.empty() ? "?" : record.user, record.id);
+            list += fmt::format("{}{} {}{}", list.empty() ? "" : ", ", record.user.empty() ? "?" : record.user,
+                                record.id, unit_is_used && holds_geo_keys(record) ? " but for its unit" : "");
     }
     if (count > most_listed) list += ", …";
     if (count > 0)
@@ -60,7 +59,9 @@ LoadedFile read_las(const FileBytes& file, const ReadOptions& options) {
     const std::vector<LasRecord> records = read_las_records(header, file.bytes, options);
     if (is_compressed(header, records)) refuse_compressed(file, records);
     require_las_points(header, file.bytes);
-    tell_left_out(header, records, file.bytes, options);
+    const LengthUnit unit = las_unit(records, options);
+    const bool unit_is_used = unit != LengthUnit::unknown && options.unit == LengthUnit::unknown;
+    tell_left_out(header, records, file.bytes, unit_is_used, options);
     const std::vector<LasExtra> extras = read_las_extra(header, records, options);
 
     LoadedFile loaded;
@@ -70,7 +71,7 @@ LoadedFile read_las(const FileBytes& file, const ReadOptions& options) {
     for (const std::string& remark : {header.system, header.software})
         if (!remark.empty()) loaded.comments.push_back(remark);
     PointCloud cloud = read_las_points(header, extras, file.bytes, options);
-    cloud.frame.unit = las_unit(records, options);
+    cloud.frame.unit = unit;
     loaded.value = std::make_shared<const PointCloud>(std::move(cloud));
     return loaded;
 }

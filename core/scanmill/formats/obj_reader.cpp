@@ -150,10 +150,7 @@ private:
     ColumnTable vertex_columns() {
         ColumnTable columns;
         normals_.add_column(columns, corners_, positions_.size(), options_.on_warning);
-        if (const std::size_t rows = colours_.add_columns(columns); rows > 0)
-            warn(options_.on_warning,
-                 "the colours of {} of {} vertices were left out: not all have one of the same form", rows,
-                 positions_.size());
+        colours_.add_columns(columns, "vertices", options_.on_warning);
         textures_.add_column(columns, corners_, positions_.size(), options_.on_warning);
         return columns;
     }

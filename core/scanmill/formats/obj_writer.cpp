@@ -23,7 +23,19 @@ void tell_lost_opacity(const Column& colour, const WriteOptions& options) {
              counted(see_through, "vertex", "vertices"));
 }
 
-void put_vertices(const TriangleMesh& mesh, const Column* colour, OutputBuffer& out) {
+/// Colours that are no bytes, as they were read: red, green and blue; empty when they are not all there.
+std::vector<const Column*> plain_colours(const ColumnTable& columns) {
+    std::vector<const Column*> channels;
+    for (const char* name : {"red", "green", "blue"}) {
+        const Column* column = columns.find(name);
+        if (!column || !is_plain_number(*column)) return {};
+        channels.push_back(column);
+    }
+    return channels;
+}
+
+void put_vertices(const TriangleMesh& mesh, const Column* colour, std::span<const Column* const> channels,
+                  OutputBuffer& out) {
     const auto fractions = colour_fractions();
     for (std::size_t row = 0; row < mesh.positions.size(); ++row) {
         const Vec3 p = world(mesh.frame, mesh.positions[row]);
@@ -36,6 +48,7 @@ void put_vertices(const TriangleMesh& mesh, const Column* colour, OutputBuffer& 
             out.text(" ");
             out.text(fractions[colour->values<u8>()[row * colour->components() + channel]]);
         }
+        for (const Column* channel : channels) put_row(*channel, row, out);
         out.text("\n");
     }
 }
@@ -54,11 +67,15 @@ void write_obj(const Value& value, OutputBuffer& out, const WriteOptions& option
     const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
     const TextColumns columns(mesh.vertex_columns);
     tell_lost_precision(mesh.frame, mesh.positions.span(), false, "OBJ", options);
-    tell_bare_triangles(mesh, "OBJ", options, columns.names());
+    std::vector<std::string_view> kept = columns.names();
+    const std::vector<const Column*> channels =
+        columns.colour ? std::vector<const Column*>() : plain_colours(mesh.vertex_columns);
+    for (const Column* channel : channels) kept.push_back(channel->name());
+    tell_bare_triangles(mesh, "OBJ", options, kept);
     if (columns.colour) tell_lost_opacity(*columns.colour, options);
 
     out.text(comment_lines(mesh.frame));
-    put_vertices(mesh, columns.colour, out);
+    put_vertices(mesh, columns.colour, channels, out);
     put_list("vt", columns.texture, out);
     put_list("vn", columns.normal, out);
     for (const Triangle& triangle : mesh.triangles) {

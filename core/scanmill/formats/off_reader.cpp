@@ -130,9 +130,7 @@ private:
                 texture[2 * row + i] = number(row, "texture coordinates");
         }
         if (keyword_.normal) vertex_columns_.add(Column("normal", 3, Buffer(std::move(normals))));
-        if (const std::size_t rows = colours.add_columns(vertex_columns_); rows > 0)
-            warn(options_.on_warning,
-                 "the colours of {} of {} vertices were left out: not all have one of the same form", rows, vertices_);
+        colours.add_columns(vertex_columns_, "vertices", options_.on_warning);
         if (keyword_.texture) vertex_columns_.add(Column("texture", 2, Buffer(std::move(texture))));
     }
 
@@ -164,9 +162,7 @@ private:
             offsets.push_back(corners.size());
             colours.read_row(text_);
         }
-        if (const std::size_t rows = colours.add_columns(face_columns_); rows > 0)
-            warn(options_.on_warning, "the colours of {} of {} faces were left out: not all have one of the same form",
-                 rows, faces_);
+        colours.add_columns(face_columns_, "faces", options_.on_warning);
         fans_ = triangulated(Column("corners", Buffer(std::move(offsets)), Buffer(std::move(corners))), vertices_);
     }
 

@@ -134,8 +134,8 @@ private:
         decode(element, slots);
         if (element.count > 0)
             warn(options_.on_warning,
-                 "the element {} with its {} was left out: only vertex, face, tristrips and edge "
-                 "have a meaning here",
+                 "the element {} with its {} was left out: only vertex, face, tristrips, edge "
+                 "and sharp_edge have a meaning here",
                  quote(element.name), counted(element.count, "row", "rows"));
     }
 

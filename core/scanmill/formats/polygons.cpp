@@ -104,6 +104,13 @@ void put_faces(TriangleMesh& mesh, Fans fans, const ColumnTable& columns,
         warn(on_warning, "{} cut into fans; the mesh has {}",
              counted(fans.polygons, "face of more than three corners was", "faces of more than three corners were"),
              counted(fans.triangles.size(), "triangle", "triangles"));
+    if (fans.polygons > 0)
+        for (const Column& column : columns)
+            if (column.is_list())
+                warn(on_warning,
+                     "the column '{}' has a list for every face: the triangles of a face that was cut carry its whole "
+                     "list, so what it says of the corners no longer fits theirs",
+                     column.name());
     if (fans.left_out > 0)
         warn(on_warning, "{} left out",
              counted(fans.left_out, "face of fewer than three corners was", "faces of fewer than three corners were"));

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/reading.hpp"
 
+#include <algorithm>
+#include <cctype>
+
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill {
@@ -29,6 +32,18 @@ std::string quote(std::string_view bytes) {
     return text + (bytes.size() > longest ? "…'" : "'");
 }
 
+std::string shell_word(const std::filesystem::path& path) {
+    const std::string text = path.string();
+    const auto plain = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) ||
+               std::string_view("/._-+,%@:=").find(c) != std::string::npos;
+    };
+    if (!text.empty() && text.front() != '-' && std::ranges::all_of(text, plain)) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + "'";
+}
+
 std::string counted(u64 count, std::string_view singular, std::string_view plural) {
     return fmt::format("{} {}", count, count == 1 ? singular : plural);
 }
@@ -43,15 +58,23 @@ Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions
     Frame frame;
     for (const std::string& comment : comments) {
         if (const std::string_view text = declared(comment, "unit"); !text.empty()) {
-            if (const auto unit = length_unit(text))
+            if (const auto unit = length_unit(text)) {
+                if (frame.unit != LengthUnit::unknown && frame.unit != *unit)
+                    warn(options.on_warning, "the file says both 'unit {}' and 'unit {}'; the last counts",
+                         symbol(frame.unit), symbol(*unit));
                 frame.unit = *unit;
-            else if (text.find(' ') == std::string_view::npos)  // else it is prose that happens to begin with "unit"
+            } else if (text.find(' ') == std::string_view::npos)  // else it is prose that happens to begin with "unit"
                 warn(options.on_warning, "the unit {} is unknown and was passed over; known are {}", quote(text),
                      length_unit_symbols());
         }
         if (const std::string_view name = declared(comment, "frame"); !name.empty()) frame.name = name;
     }
-    if (options.unit != LengthUnit::unknown) frame.unit = options.unit;
+    if (options.unit != LengthUnit::unknown) {
+        if (frame.unit != LengthUnit::unknown && frame.unit != options.unit)
+            warn(options.on_warning, "the file says 'unit {}'; it was taken to be in {}, as was asked for",
+                 symbol(frame.unit), symbol(options.unit));
+        frame.unit = options.unit;
+    }
     return frame;
 }
 

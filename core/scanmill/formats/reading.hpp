@@ -18,6 +18,9 @@ void warn(const std::function<void(std::string)>& on_warning, fmt::format_string
 /// Bytes of a file for a message: in quotes, at most a few dozen, everything unprintable as '?'.
 std::string quote(std::string_view bytes);
 
+/// The path as one word of a shell's command line, for hints that hold a command.
+std::string shell_word(const std::filesystem::path& path);
+
 /// "1 face", "12 faces".
 std::string counted(u64 count, std::string_view singular, std::string_view plural);
 

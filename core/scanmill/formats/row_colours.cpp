@@ -30,23 +30,28 @@ void RowColours::read_row(TextCursor& text, std::size_t leave) {
     if (width != width_) uniform_ = false;
 }
 
-std::size_t RowColours::add_columns(ColumnTable& columns) const {
-    if (coloured_ == 0) return 0;
-    if (!uniform_ || coloured_ != rows_ || width_ == 2) return coloured_;
+void RowColours::add_columns(ColumnTable& columns, std::string_view elements,
+                             const std::function<void(std::string)>& on_warning) const {
+    if (coloured_ == 0) return;
+    if (!uniform_ || coloured_ != rows_ || width_ == 2)
+        return warn(on_warning, "the colours of {} of {} {} were left out: not all have one of the same form",
+                    coloured_, rows_, elements);
     if ((bytes_ || fractions_) && width_ >= 3) {
         const double full = fractions_ ? 255 : 1;
         Array<u8> colours(values_.size());
         for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = static_cast<u8>(std::lround(values_[i] * full));
         columns.add(Column("colour", static_cast<u32>(width_), Buffer(std::move(colours))));
-        return 0;
+        return;
     }
+    if (width_ >= 3)
+        warn(on_warning, "the colours of the {} are no bytes; they are kept as columns of numbers: red, green, blue{}",
+             elements, width_ == 4 ? ", alpha" : "");
     constexpr std::array<const char*, 4> channels{"red", "green", "blue", "alpha"};
     for (std::size_t channel = 0; channel < width_; ++channel) {
         Array<double> values(rows_);
         for (std::size_t row = 0; row < rows_; ++row) values[row] = values_[row * width_ + channel];
         columns.add(Column(width_ == 1 ? "colour_index" : channels[channel], 1, Buffer(std::move(values))));
     }
-    return 0;
 }
 
 }  // namespace scanmill

@@ -7,6 +7,8 @@
 /// which count first: 1 is then a full channel unless some number is larger. Others become `red`, `green`, `blue`,
 /// `alpha` (float64), a single one `colour_index`.
 
+#include <functional>
+
 #include "scanmill/data/columns.hpp"
 #include "scanmill/formats/text_cursor.hpp"
 
@@ -21,9 +23,10 @@ public:
     /// may have none. Throws Error with the line for more than four values or for what is no number.
     void read_row(TextCursor& text, std::size_t leave = 0);
 
-    /// Adds the columns for the rows read. Returns the rows with a colour when they are not all of equal
-    /// length, so that nothing was added; else 0.
-    std::size_t add_columns(ColumnTable& columns) const;
+    /// Adds the columns for the rows read, one for each of the `elements` ("vertices"). Tells when the rows with a
+    /// colour are not all of equal length, so that nothing was added, and when three or four numbers are no bytes.
+    void add_columns(ColumnTable& columns, std::string_view elements,
+                     const std::function<void(std::string)>& on_warning) const;
 
 private:
     std::size_t rows_ = 0;

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/text_cursor.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "scanmill/filter/quantity.hpp"
 
 namespace scanmill {
+
+namespace {
+constexpr std::string_view infinite = "#INF";
+constexpr std::array<std::string_view, 4> no_numbers{infinite, "#IND", "#QNAN", "#SNAN"};
+}  // namespace
 
 bool TextCursor::next_row() {
     if (begun_) {
@@ -25,7 +33,7 @@ std::string_view TextCursor::token() {
     const char* const begin = at_;
     // The first is the token's in any case: a continuation sign inside a line begins one.
     if (at_ != end_) ++at_;
-    while (at_ != end_ && !ends_token(*at_)) ++at_;
+    while (at_ != end_ && !ends_token(at_)) ++at_;
     return {begin, at_};
 }
 
@@ -63,9 +71,30 @@ void TextCursor::pass_line_end() {
     ++line_;
 }
 
+bool TextCursor::begins_no_number(std::string_view text) {
+    const auto begins = [text](std::string_view word) { return text.starts_with(word); };
+    return std::ranges::any_of(no_numbers, begins);
+}
+
 bool TextCursor::unusual_number(double& value) {
     last_token_ = token();
-    return parse_number(last_token_, value);
+    return number_of_token(last_token_, value);
+}
+
+bool number_of_token(std::string_view token, double& value) {
+    const std::size_t hash = token.find('#');
+    if (hash == std::string_view::npos) return parse_number(token, value);
+    for (const std::string_view word : no_numbers) {
+        if (!token.substr(hash).starts_with(word)) continue;
+        const std::string_view before = token.substr(0, hash), after = token.substr(hash + word.size());
+        if ((before != "1." && before != "-1." && before != "+1.") ||
+            after.find_first_not_of('0') != std::string_view::npos)
+            return false;
+        value = word == infinite ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+        if (before.front() == '-') value = -value;
+        return true;
+    }
+    return false;
 }
 
 }  // namespace scanmill

@@ -28,6 +28,9 @@ struct TextRules {
     std::size_t line = 1;  ///< number of the first line
 };
 
+/// The number that a token spells: as parse_number(), and infinity and NaN as Microsoft's libraries print them.
+bool number_of_token(std::string_view token, double& value);
+
 class TextCursor {
 public:
     explicit TextCursor(std::string_view text, TextRules rules = {})
@@ -83,10 +86,14 @@ private:
     static unsigned kind(char c) { return kinds[static_cast<unsigned char>(c)]; }
     static bool ends_line(char c) { return kind(c) == line_end; }
     unsigned gap_at(char c) const { return kind(c) & separators_; }
-    bool ends_token(char c) const {
-        return (kind(c) & (separators_ | line_end)) != 0 ||
-               (c != '\0' && (c == rules_.comment || c == rules_.continuation));
+    /// Pre: `at` is not the end.
+    bool ends_token(const char* at) const {
+        if ((kind(*at) & (separators_ | line_end)) != 0) return true;
+        if (*at == '\0') return false;
+        return *at == rules_.continuation || (*at == rules_.comment && !begins_no_number({at, end_}));
     }
+    /// Whether this is the rest of what Microsoft's libraries print for infinity and NaN: 1.#INF, -1.#IND, 1.#QNAN.
+    static bool begins_no_number(std::string_view text);
     bool at_comment() const {
         if (*at_ == '/') return rules_.slashes && end_ - at_ > 1 && at_[1] == '/';
         return *at_ == rules_.comment && rules_.comment != '\0';
@@ -139,7 +146,7 @@ inline bool TextCursor::more() {
 template <class Number>
 bool TextCursor::number(Number& value) {
     const auto [rest, error] = std::from_chars(at_, end_, value);
-    if (error == std::errc() && (rest == end_ || ends_token(*rest))) {
+    if (error == std::errc() && (rest == end_ || ends_token(rest))) {
         at_ = rest;
         return true;
     }

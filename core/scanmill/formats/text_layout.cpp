@@ -23,7 +23,7 @@ std::vector<std::string_view> tokens_of_row(TextCursor row) {
 
 bool is_number(std::string_view token) {
     double ignored = 0;
-    return parse_number(token, ignored);
+    return number_of_token(token, ignored);
 }
 
 class LayoutReader {
@@ -42,12 +42,20 @@ public:
         if (layout_.names.empty())
             look_into_comments();
         else if (layout_.names.size() != layout_.width)
-            throw Error("line {}: {} for {} names", text_.line(), counted_columns(), layout_.names.size());
+            throw names_do_not_fit();
         return std::move(layout_);
     }
 
 private:
     std::string counted_columns() const { return counted(layout_.width, "column", "columns"); }
+
+    /// Twice as many numbers in a row with semicolons as names is what decimal commas look like.
+    Error names_do_not_fit() {
+        Error error("line {}: {} for {} names", text_.line(), counted_columns(), layout_.names.size());
+        if (layout_.width == 2 * layout_.names.size())
+            error.set_hint("if the commas are decimal commas, write points instead: 1.5 for 1,5");
+        return error;
+    }
 
     bool pass_count() {
         TextCursor row = text_;
@@ -66,6 +74,9 @@ private:
         const auto axes = axes_among(names);
         if (!axes) {
             if (std::ranges::any_of(tokens, is_number)) return false;
+            if (const auto twice = repeated_axis(names))
+                throw Error("line {}: two columns are called {}", text_.line(), quote(*twice))
+                    .hint("rename one of them");
             throw Error("line {}: {} is neither a row of numbers nor names among which are x, y and z", text_.line(),
                         quote(tokens.front()));
         }

@@ -105,6 +105,16 @@ std::optional<std::array<std::size_t, 3>> axes_among(std::span<const std::string
     return std::array{found[0], found[1], found[2]};
 }
 
+std::optional<std::string> repeated_axis(std::span<const std::string> names) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const std::string name = plain(names[i]);
+        if (name != "x" && name != "y" && name != "z") continue;
+        for (const std::string& earlier : names.first(i))
+            if (plain(earlier) == name) return names[i];
+    }
+    return std::nullopt;
+}
+
 std::vector<NamedGroup> groups_among(std::span<const std::string> names) {
     using Words = std::vector<std::string_view>;
     std::vector<NamedGroup> groups;

@@ -22,6 +22,9 @@ std::vector<std::string> split_names(std::string_view line, std::size_t most);
 /// Which of the names are x, y and z; nothing unless each of the three occurs exactly once.
 std::optional<std::array<std::size_t, 3>> axes_among(std::span<const std::string> names);
 
+/// The first name that is x, y or z as an earlier one is too.
+std::optional<std::string> repeated_axis(std::span<const std::string> names);
+
 /// Columns that belong together as one of several components.
 struct NamedGroup {
     enum class Kind { normal, colour } kind;

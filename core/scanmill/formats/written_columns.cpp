@@ -36,6 +36,8 @@ std::vector<std::string_view> TextColumns::names() const {
     return names;
 }
 
+bool is_plain_number(const Column& column) { return has_floats(column, 1); }
+
 void put_row(const Column& column, std::size_t row, OutputBuffer& out) {
     switch (column.type()) {
         case ScalarType::float32: return put_numbers<float>(column, row, out);

@@ -23,8 +23,12 @@ struct TextColumns {
     std::vector<std::string_view> names() const;
 };
 
+/// One float32 or float64 for each row.
+bool is_plain_number(const Column& column);
+
 /// A blank and a number for each component of a row, as the shortest decimals that read back equal in the column's own
-/// type: those of a float are fewer than those of the same double. Pre: the column is one of TextColumns'.
+/// type: those of a float are fewer than those of the same double. Pre: the column is one of
+/// TextColumns', or a plain number.
 void put_row(const Column& column, std::size_t row, OutputBuffer& out);
 
 }  // namespace scanmill

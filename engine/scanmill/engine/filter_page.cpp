@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <set>
+
 namespace scanmill {
 
 namespace {
@@ -76,34 +79,68 @@ std::string remarks(const FilterSpec& spec) {
     return list.empty() ? list : "\n" + list;
 }
 
-}  // namespace
+/// The first filter that makes values of this kind from what files hold.
+const FilterSpec* maker_of(Kind kind, const FilterLibrary& library) {
+    for (const std::string& name : library.names()) {
+        const FilterSpec* spec = library.find(name);
+        const auto can_be_fed = [](const PortSpec& port) { return port.optional || is_readable(port.kind); };
+        if (spec->outputs.front().kind == kind && std::ranges::all_of(spec->inputs, can_be_fed)) return spec;
+    }
+    return nullptr;
+}
 
-std::string example_workflow(const FilterSpec& spec) {
-    std::string example = fmt::format("scanmill: 1\nname: {}-example\n", spec.name);
-    if (!spec.inputs.empty()) example += "inputs:\n";
-    for (const PortSpec& port : spec.inputs)
-        example +=
-            fmt::format("  {}{}: {}\n", is_readable(port.kind) ? "" : "# from an earlier step: ", port.name,
-                        port.list ? "[" + std::string(name_of(port.kind)) + "]" : std::string(name_of(port.kind)));
-    example += fmt::format("steps:\n  - {}:\n", spec.name);
+/// The step with its required parameters, or with all of them.
+std::string example_step(const FilterSpec& spec, bool whole) {
+    std::string step = fmt::format("  - {}:\n", spec.name);
     for (const ParameterSpec& parameter : spec.parameters) {
         const std::string value = text(parameter.default_value);
+        if (!whole && !parameter.required) continue;
         const bool given = !value.empty() || parameter.required;
-        example += fmt::format("      {}{}: {}\n", given ? "" : "# ", parameter.name,
-                               value.empty() ? sample(parameter) : value);
+        step += fmt::format("      {}{}: {}\n", given ? "" : "# ", parameter.name,
+                            value.empty() ? sample(parameter) : value);
     }
+    return step;
+}
+
+}  // namespace
+
+std::string example_workflow(const FilterSpec& spec, const FilterLibrary& library) {
+    std::vector<const FilterSpec*> steps;
+    std::vector<const PortSpec*> inputs;
+    for (const PortSpec& port : spec.inputs) {
+        if (is_readable(port.kind)) {
+            inputs.push_back(&port);
+        } else if (const FilterSpec* maker = maker_of(port.kind, library)) {
+            steps.push_back(maker);
+            for (const PortSpec& read : maker->inputs)
+                if (!read.optional) inputs.push_back(&read);
+        }
+    }
+    steps.push_back(&spec);
+    std::string example = fmt::format("scanmill: 1\nname: {}-example\n", spec.name);
+    std::set<std::string_view> fed;
+    if (!inputs.empty()) example += "inputs:\n";
+    for (const PortSpec* port : inputs)
+        if (fed.insert(port->name).second)
+            example += fmt::format(
+                "  {}: {}\n", port->name,
+                port->list ? "[" + std::string(name_of(port->kind)) + "]" : std::string(name_of(port->kind)));
+    example += "steps:\n";
+    for (const FilterSpec* step : steps) example += example_step(*step, step == &spec);
     if (is_readable(spec.outputs.front().kind)) example += fmt::format("outputs:\n  \"{{scan}}.ply\": {}\n", spec.name);
     return example;
 }
 
-std::string filter_page(const FilterSpec& spec) {
+std::string filter_page(const FilterSpec& spec, const FilterLibrary& library) {
     return fmt::format("# {}\n\n{}\n{}\n\nSource: {}. Version {}.\n", spec.name, generated, spec.summary, spec.source,
                        spec.version) +
            remarks(spec) + ports_table("Takes", "port", spec.inputs) +
            ports_table("Gives (the first is what the step's name alone means)", "port", spec.outputs) +
            parameters_table(spec.parameters) + metrics_table(spec.metrics) + "\n## Example\n\n```yaml\n" +
-           example_workflow(spec) + "```\n";
+           example_workflow(spec, library) + "```\n";
 }
+
+bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }
 
 std::string filter_index(const std::vector<FilterSpec>& specs) {
     std::string page = fmt::format("# Filters\n\n{}\n| filter | what it does |\n|---|---|\n", generated);

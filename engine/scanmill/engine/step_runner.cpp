@@ -20,28 +20,39 @@ const Value* first_geometric(const std::vector<StepInput>& inputs) {
     return found == inputs.end() ? nullptr : &found->value;
 }
 
-/// The frame of `other` brought to the origin of `first`; units must agree.
-Frame common_frame(const Frame& first, const Frame& other, const std::string& port, Context& context) {
-    const bool both_known = first.unit != LengthUnit::unknown && other.unit != LengthUnit::unknown;
-    if (both_known && first.unit != other.unit)
-        throw Error("the inputs have different units: {} at the first port, {} at '{}'", symbol(first.unit),
-                    symbol(other.unit), port)
-            .hint("convert one of them: scanmill convert --to-unit mm IN OUT");
-    if (first.unit != other.unit)
-        context.warn(fmt::format("the unit of the value at '{}' was taken to be that of the first input: {}", port,
-                                 symbol(first.unit != LengthUnit::unknown ? first.unit : other.unit)));
-    Frame frame = other;
-    frame.origin = first.origin;
-    return frame;
-}
-
-Inputs rebased(const std::vector<StepInput>& inputs, const Frame* first, Context& context) {
-    Inputs result;
+/// The unit that all inputs are in: those without one are taken to be in that of the others. Throws Error when two are
+/// known and differ.
+LengthUnit common_unit(const std::vector<StepInput>& inputs) {
+    const StepInput* known = nullptr;
     for (const StepInput& input : inputs) {
         const Frame* frame = frame_of(input.value);
-        const bool moves = first && frame && (frame->origin != first->origin || frame->unit != first->unit);
-        result.add(input.port,
-                   moves ? reframed(input.value, common_frame(*first, *frame, input.port, context)) : input.value);
+        if (!frame || frame->unit == LengthUnit::unknown) continue;
+        if (!known) known = &input;
+        if (const LengthUnit unit = frame_of(known->value)->unit; unit != frame->unit)
+            throw Error("the inputs have different units: {} at '{}', {} at '{}'", symbol(unit), known->port,
+                        symbol(frame->unit), input.port)
+                .hint("convert one of them: scanmill convert --to-unit mm IN OUT");
+    }
+    return known ? frame_of(known->value)->unit : LengthUnit::unknown;
+}
+
+/// All inputs in one unit and relative to one origin, that of the first.
+Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, Context& context) {
+    const LengthUnit unit = common_unit(inputs);
+    Inputs result;
+    for (const StepInput& input : inputs) {
+        const Frame* own = frame_of(input.value);
+        if (!own) {
+            result.add(input.port, input.value);
+            continue;
+        }
+        if (own->unit != unit)
+            context.warn(fmt::format("the value at '{}' declares no unit and was taken to be in that of the others: {}",
+                                     input.port, symbol(unit)));
+        Frame frame = *own;
+        frame.unit = unit;
+        frame.origin = frame_of(*first)->origin;
+        result.add(input.port, frame == *own ? input.value : reframed(input.value, frame));
     }
     return result;
 }
@@ -119,7 +130,7 @@ Outputs run_step(const PlannedStep& step, const FilterDeclaration& filter, const
                 report.metrics.set(declared.name, metric->value, declared.unit);
     };
     try {
-        const Inputs ports = rebased(inputs, first ? frame_of(*first) : nullptr, context);
+        const Inputs ports = rebased(inputs, first, context);
         report.resolved = resolved_parameters(step, first);
         Outputs outputs = filter.run(ports, report.resolved, context);
         require_whole(outputs, step.spec);

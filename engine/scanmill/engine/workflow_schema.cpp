@@ -19,7 +19,10 @@ Json name_schema(const char* description) {
     return {{"type", "string"}, {"pattern", name_pattern}, {"description", description}};
 }
 
-Json text_schema(const char* description) { return {{"type", "string"}, {"description", description}}; }
+/// Any scalar is a text in YAML, quoted or not.
+Json text_schema(const char* description) {
+    return {{"type", Json::array({"string", "number", "boolean"})}, {"description", description}};
+}
 
 Json reference_to(const char* definition) { return {{"$ref", std::string("#/definitions/") + definition}}; }
 
@@ -29,7 +32,7 @@ Json object_of(Json properties) {
 }
 
 Json map_from_names(Json values, const char* description) {
-    return {{"type", "object"},
+    return {{"type", Json::array({"object", "null"})},
             {"description", description},
             {"propertyNames", {{"pattern", name_pattern}}},
             {"additionalProperties", std::move(values)}};
@@ -103,7 +106,7 @@ Json expect_schema(const FilterSpec& spec) {
         const Json value = value_schema(written_as(metric.unit));
         properties[metric.name] = {
             {"description", metric.help},
-            {"anyOf", Json::array({value, Json{{"type", "string"}, {"pattern", "^[<>]"}},
+            {"anyOf", Json::array({value, Json{{"type", "string"}, {"pattern", "^[<>] *[^<>= ]"}},
                                    Json{{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}}})}};
     }
     return object_of(std::move(properties));
@@ -156,7 +159,7 @@ std::string workflow_schema(const FilterLibrary& library) {
         {"parameters", map_from_names(reference_to("parameter"), "Values that steps refer to by $name; --set.")},
         {"steps", reference_to("steps")},
         {"outputs",
-         {{"type", "object"},
+         {{"type", Json::array({"object", "null"})},
           {"description", "Files to write: names over {scan}, {variant} and {workflow}, each with its step."},
           {"additionalProperties", {{"type", "string"}}}}}};
     Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
