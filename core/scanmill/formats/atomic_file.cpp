@@ -44,7 +44,9 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_symlink(status))
         throw Error("cannot be written: a {} has this name", fs::is_directory(status) ? "folder" : "pipe or device");
 
-    descriptor_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+    // Without /proc the file could not be named afterwards.
+    if (::access("/proc/self/fd", X_OK) == 0)
+        descriptor_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
     if (descriptor_ < 0) open_named(folder);
 }
 
