@@ -17,6 +17,19 @@ namespace {
 
 using Encoding = PcdHeader::Encoding;
 
+/// PCL splits the lines of a broken header in another way than we do, and then its fields reach beyond the points.
+void require_fields_inside(const pcl::PCLPointCloud2& cloud, const PcdHeader& header) {
+    bool fits = cloud.point_step == header.row_bytes && cloud.data.size() == header.points * header.row_bytes;
+    for (const pcl::PCLPointField& field : cloud.fields) {
+        const std::optional<ScalarType> type = scalar_type(field.datatype);
+        if (!type) throw Error("the field {} has the unknown type {}", quote(field.name), field.datatype);
+        fits = fits && field.offset + u64(field.count) * size_of(*type) <= cloud.point_step;
+    }
+    if (!fits)
+        throw Error("its header names fields that do not add up to {} bytes per point", header.row_bytes)
+            .hint("SIZE, TYPE and COUNT must have an entry for every field");
+}
+
 pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) {
     pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // what PCL has to say goes into our own sentence
     pcl::PCDReader reader;
@@ -27,8 +40,7 @@ pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) 
     unsigned int body = 0;
     std::istringstream text{std::string(bytes.substr(0, header.body))};
     int trouble = reader.readHeader(text, cloud, origin, orientation, version, data_type, body);
-    if (trouble >= 0 && cloud.data.size() != header.points * header.row_bytes)
-        throw Error("its header names fields that do not add up to {} bytes per point", header.row_bytes);
+    if (trouble >= 0) require_fields_inside(cloud, header);
     if (trouble >= 0 && header.encoding == Encoding::ascii) {
         read_rows(bytes, header, cloud);
     } else if (trouble >= 0) {

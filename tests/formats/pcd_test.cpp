@@ -317,6 +317,13 @@ TEST(PcdReader_WindowsLineEnds, AreNoPartOfCommentsAndNames) {
     EXPECT_THAT(told.sentences, IsEmpty());
 }
 
+TEST(PcdReader_FieldsWithoutTypes_ThatReachBeyondThePoint, AreRefused) {
+    EXPECT_THAT(refusal_of("FIELDS x y z a b c d\nSIZE 2 8  1 1 1 1 2\nWIDTH 3\nHEIGHT 1\nPOINTS 3\nDATA binary\n" +
+                               std::string(100, '\0'),
+                           "a.pcd"),
+                HasSubstr("fields that do not add up to 16 bytes per point"));
+}
+
 TEST(PcdReader_BytesBehindTheLastPoint, AreTold) {
     Told told;
     points_in("FIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA binary\n" + std::string(24, '\0') + "later", "a.pcd",

@@ -41,6 +41,7 @@ const std::set<std::string> refused{
     "obj/row_too_short.obj",
     "off/four_dimensions.off",
     "pcd/no_points.pcd",
+    "pcd/sizes_without_types.pcd",
     "ply/face_names_no_vertex.ply",
     "ply/truncated_in_a_list.ply",
     "poses/nested.json",
