@@ -21,7 +21,8 @@ namespace {
 constexpr unsigned patience = 30;  // seconds
 constexpr int came_back = 113;  // an exit code that a module's own exit() hardly has
 
-[[noreturn]] void load_and_end(const char* module, int said) {
+/// noexcept: what a static object throws must end the copy here, and not let it go on as if it were the program.
+[[noreturn]] void load_and_end(const char* module, int said) noexcept {
     const rlimit no_dump{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_dump);
     ::dup2(said, STDOUT_FILENO);
