@@ -106,7 +106,7 @@ PlyTable::PlyTable(const PlyElement& element, const std::vector<std::string>& co
         }
         if (property.is_list()) {
             slot.lists = &column->lists;
-        } else {
+        } else if (element.count > 0) {  // without rows there is no memory to point into
             const std::size_t width = size_of(property.type);
             slot.place = column->data.data() + component * width;
             slot.stride = components * width;
