@@ -77,8 +77,9 @@ void AtomicFile::write(std::string_view bytes) {
     }
 }
 
-void AtomicFile::commit() {
-    if (::fsync(descriptor_) != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
+void AtomicFile::commit(Sync sync) {
+    if (sync == Sync::yes && ::fsync(descriptor_) != 0)
+        throw Error("writing failed: {}; the file was not made", reason_of(errno));
     // linkat() replaces nothing, so the way to the target's name is by another one.
     for (unsigned attempt = 0; temporary_.empty(); ++attempt) {
         const fs::path name = temporary_name(folder_of(target_), attempt);
@@ -93,7 +94,7 @@ void AtomicFile::commit() {
     if (closed != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw Error("cannot be written: {}", reason_of(errno));
     temporary_.clear();
-    sync_folder(folder_of(target_));
+    if (sync == Sync::yes) sync_folder(folder_of(target_));
 }
 
 }  // namespace scanmill

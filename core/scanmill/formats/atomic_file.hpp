@@ -3,7 +3,8 @@
 /// A file that appears whole or not at all.
 ///
 /// Bytes go to a file without a name on the target's file system; commit() makes them durable (fsync), names the file,
-/// renames it onto the target and makes the rename durable. Without commit() nothing is left, however the process ends.
+/// renames it onto the target and makes the rename durable; nothing is synced when the file can be made again at any
+/// time. Without commit() nothing is left, however the process ends.
 /// On file systems that know no such files a temporary one (`.scanmill-….part`) takes its place, which only a process
 /// that is killed in between leaves.
 
@@ -22,7 +23,8 @@ public:
 
     /// Appends; throws Error when the disk is full or fails.
     void write(std::string_view bytes);
-    void commit();
+    enum class Sync { yes, no };
+    void commit(Sync sync = Sync::yes);
 
 private:
     void open_named(const std::filesystem::path& folder);

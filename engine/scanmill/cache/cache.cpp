@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/cache/cache.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <vector>
+
+#include "scanmill/cache/checked_file.hpp"
+#include "scanmill/engine/key.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/module.hpp"
+
+namespace scanmill {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Grows when a file's layout or a key's meaning changes; other versions are left alone.
+constexpr std::string_view layout = "v1";
+constexpr std::array<std::string_view, 4> kinds{"plans", "steps", "values", "files"};
+
+struct CachedFile {
+    fs::path path;
+    u64 bytes;
+    std::int64_t used;  ///< nanoseconds, the later the younger
+};
+
+/// Marks the file as used now. On a read-only folder nothing happens.
+void touch(const fs::path& file) { ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0); }
+
+/// A file that somebody is about to write; one that nobody finished is an hour old.
+bool is_in_the_making(const fs::path& file, std::int64_t used) {
+    constexpr std::int64_t hour = 3600 * std::int64_t(1'000'000'000);
+    timespec now;
+    ::clock_gettime(CLOCK_REALTIME, &now);
+    return file.filename().string().starts_with('.') && std::int64_t(now.tv_sec) * 1'000'000'000 - used < hour;
+}
+
+std::vector<CachedFile> files_of(const fs::path& folder, std::string_view kind) {
+    std::vector<CachedFile> files;
+    std::error_code gone;  // others may remove what is listed
+    for (fs::recursive_directory_iterator entry(folder / layout / kind, gone), end; !gone && entry != end;
+         entry.increment(gone)) {
+        struct stat facts;
+        if (::stat(entry->path().c_str(), &facts) != 0 || !S_ISREG(facts.st_mode)) continue;
+        const std::int64_t used = std::int64_t(facts.st_mtim.tv_sec) * 1'000'000'000 + facts.st_mtim.tv_nsec;
+        if (is_in_the_making(entry->path(), used)) continue;
+        files.push_back({entry->path(), static_cast<u64>(facts.st_size), used});
+    }
+    return files;
+}
+
+u64 remove(const CachedFile& file) {
+    std::error_code gone;
+    return fs::remove(file.path, gone) ? file.bytes : 0;
+}
+
+/// So that backup programs pass the folder over: https://bford.info/cachedir/
+void mark_as_cache(const fs::path& folder) {
+    const fs::path tag = folder / "CACHEDIR.TAG";
+    std::error_code ignored;
+    if (fs::exists(tag, ignored)) return;
+    std::ofstream(tag) << "Signature: 8a477f597d28d172789f06886806bc55\n# Results that scanmill can compute again.\n";
+}
+
+}  // namespace
+
+fs::path default_cache_folder() {
+    const char* cache_home = std::getenv("XDG_CACHE_HOME");
+    if (cache_home && fs::path(cache_home).is_absolute()) return fs::path(cache_home) / "scanmill";
+    const char* home = std::getenv("HOME");
+    if (home && fs::path(home).is_absolute()) return fs::path(home) / ".cache" / "scanmill";
+    throw Error("there is no folder for the cache: neither XDG_CACHE_HOME nor HOME is an absolute path")
+        .hint("name one: --cache DIR");
+}
+
+Cache::Cache(fs::path folder, u64 limit, OnWarning on_warning)
+    : folder_(std::move(folder)),
+      limit_(limit),
+      on_warning_(std::move(on_warning)) {}
+
+fs::path Cache::place(std::string_view kind, std::string_view name) const {
+    return folder_ / layout / kind / name.substr(0, 2) / name;
+}
+
+void Cache::warn(std::string text) const {
+    const std::scoped_lock one_at_a_time(mutex_);
+    if (on_warning_) on_warning_(std::move(text));
+}
+
+template <class Read>
+auto Cache::read(std::string_view kind, std::string_view name, Read&& read, bool marks_use) const
+    -> decltype(read(fs::path())) {
+    const fs::path file = place(kind, name);
+    try {
+        auto found = read(file);
+        if (found && marks_use) touch(file);
+        return found;
+    } catch (const Error& error) {
+        std::error_code ignored;
+        fs::remove(file, ignored);
+        warn(fmt::format("an entry of the cache was removed and counts as missing: {}", error.sentence()));
+        return std::nullopt;
+    }
+}
+
+std::optional<std::string> Cache::run_key(std::string_view plan_key) const {
+    return read("plans", plan_key, [](const fs::path& file) { return read_checked(file, "plan"); });
+}
+
+std::optional<StepResult> Cache::step(std::string_view run_key) const {
+    return read("steps", run_key, [](const fs::path& file) -> std::optional<StepResult> {
+        const std::optional<std::string> bytes = read_checked(file, "step");
+        if (!bytes) return std::nullopt;
+        return step_result_from(*bytes);
+    });
+}
+
+bool Cache::has_value(std::string_view content) const {
+    std::error_code absent;
+    return fs::is_regular_file(place("values", content), absent);
+}
+
+std::optional<Value> Cache::value(std::string_view content) const {
+    return read("values", content, [](const fs::path& file) -> std::optional<Value> {
+        std::error_code absent;
+        if (!fs::exists(file, absent)) return std::nullopt;
+        return read_value(file);
+    });
+}
+
+template <class Write>
+bool Cache::write(std::string_view kind, std::string_view name, Write&& write, bool replace) {
+    const fs::path file = place(kind, name);
+    try {
+        std::error_code trouble;
+        if (!replace && fs::exists(file, trouble)) return true;  // the same bytes: the name says so
+        fs::create_directories(file.parent_path(), trouble);
+        if (trouble) throw Error("the folder '{}' cannot be made: {}", file.parent_path().string(), trouble.message());
+        mark_as_cache(folder_);
+        write(file);
+        return true;
+    } catch (const Error& error) {
+        const std::scoped_lock one_at_a_time(mutex_);
+        if (!write_failed_ && on_warning_)
+            on_warning_(
+                fmt::format("the cache '{}' does not keep what is new: {}", folder_.string(), error.sentence()));
+        write_failed_ = true;
+        return false;
+    }
+}
+
+bool Cache::keep_run_key(std::string_view plan_key, std::string_view run_key) {
+    return write("plans", plan_key, [&](const fs::path& file) { write_checked(file, "plan", run_key); });
+}
+
+bool Cache::keep_step(std::string_view run_key, const StepResult& result) {
+    return write("steps", run_key, [&](const fs::path& file) { write_checked(file, "step", to_bytes(result)); });
+}
+
+bool Cache::keep_value(const EncodedValue& value) {
+    return write("values", value.content(), [&](const fs::path& file) { value.write(file); });
+}
+
+std::string Cache::file_hash(const fs::path& file) {
+    struct stat facts;
+    std::error_code unknown;
+    const fs::path whole = fs::absolute(file, unknown);
+    if (unknown || ::stat(whole.c_str(), &facts) != 0) return content_hash(file);  // says what is wrong
+    const std::string description =
+        fmt::format("{} {} {} {}.{:09} {}.{:09}", facts.st_dev, facts.st_ino, facts.st_size, facts.st_mtim.tv_sec,
+                    facts.st_mtim.tv_nsec, facts.st_ctim.tv_sec, facts.st_ctim.tv_nsec);
+    const std::string name = KeyBuilder().field("file", whole.string()).key();
+    const auto memo = read(
+        "files", name, [](const fs::path& of) { return read_checked(of, "file"); }, false);
+    if (memo && memo->starts_with(description + " ")) {
+        // By the file system's own clock: ours may be another.
+        struct stat written;
+        constexpr time_t settled = 2;
+        if (::stat(place("files", name).c_str(), &written) == 0 &&
+            written.st_mtim.tv_sec - std::max(facts.st_mtim.tv_sec, facts.st_ctim.tv_sec) > settled)
+            return memo->substr(description.size() + 1);
+    }
+    std::string hash = content_hash(file);
+    write(
+        "files", name, [&](const fs::path& to) { write_checked(to, "file", description + " " + hash); }, true);
+    return hash;
+}
+
+CacheInfo Cache::info() const {
+    CacheInfo info{folder_, 0, 0, 0, limit_};
+    for (const std::string_view kind : kinds) {
+        const std::vector<CachedFile> files = files_of(folder_, kind);
+        if (kind == "steps") info.steps = files.size();
+        if (kind == "values") info.values = files.size();
+        for (const CachedFile& file : files) info.bytes += file.bytes;
+    }
+    return info;
+}
+
+u64 Cache::evict() {
+    std::vector<CachedFile> files;
+    u64 total = 0;
+    for (const std::string_view kind : kinds)
+        for (CachedFile& file : files_of(folder_, kind)) {
+            total += file.bytes;
+            files.push_back(std::move(file));
+        }
+    if (total <= limit_) return 0;
+    std::ranges::sort(files, {}, &CachedFile::used);
+    const u64 wanted = limit_ / 10 * 9;
+    u64 removed = 0;
+    for (const CachedFile& file : files) {
+        if (total - removed <= wanted) break;
+        removed += remove(file);
+    }
+    return removed;
+}
+
+u64 Cache::clear() {
+    u64 removed = 0;
+    for (const std::string_view kind : kinds)
+        for (const CachedFile& file : files_of(folder_, kind)) removed += remove(file);
+    return removed;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/cache/step_result.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Json = nlohmann::json;
+
+Json to_json(const Metrics& metrics) {
+    Json rows = Json::array();
+    for (const Metric& metric : metrics.values)
+        rows.push_back({metric.name, metric.value, static_cast<int>(metric.unit)});
+    return rows;
+}
+
+Metrics metrics_from(const Json& rows) {
+    Metrics metrics;
+    for (const Json& row : rows)
+        metrics.values.push_back(
+            {row.at(0).get<std::string>(), row.at(1).get<double>(), static_cast<Unit>(row.at(2).get<int>())});
+    return metrics;
+}
+
+}  // namespace
+
+const ResultOutput* StepResult::output(std::string_view port) const {
+    const auto found = std::ranges::find(outputs, port, &ResultOutput::port);
+    return found == outputs.end() ? nullptr : &*found;
+}
+
+std::string to_bytes(const StepResult& result) {
+    Json json{{"metrics", to_json(result.metrics)}, {"facts", to_json(result.facts)}, {"warnings", result.warnings},
+              {"seconds", result.seconds},          {"outputs", Json::array()},       {"resolved", Json::array()}};
+    for (const ResultOutput& output : result.outputs)
+        json["outputs"].push_back({output.port, static_cast<int>(output.kind), output.content, output.bytes});
+    for (const auto& [name, value] : result.resolved) json["resolved"].push_back({name, value.items, value.list});
+    std::string bytes;
+    Json::to_cbor(json, bytes);
+    return bytes;
+}
+
+StepResult step_result_from(std::string_view bytes) try {
+    const Json json = Json::from_cbor(bytes);
+    StepResult result;
+    result.metrics = metrics_from(json.at("metrics"));
+    result.facts = metrics_from(json.at("facts"));
+    result.warnings = json.at("warnings").get<std::vector<std::string>>();
+    result.seconds = json.at("seconds").get<double>();
+    for (const Json& row : json.at("outputs"))
+        result.outputs.push_back({row.at(0).get<std::string>(), static_cast<Kind>(row.at(1).get<int>()),
+                                  row.at(2).get<std::string>(), row.at(3).get<u64>()});
+    for (const Json& row : json.at("resolved"))
+        result.resolved.emplace_back(
+            row.at(0).get<std::string>(),
+            WrittenParameter{row.at(1).get<std::vector<std::string>>(), row.at(2).get<bool>()});
+    return result;
+} catch (const Json::exception& error) {
+    throw Error("the remembered result of a step is none: {}", error.what());
+}
+
+}  // namespace scanmill

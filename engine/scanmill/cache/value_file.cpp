@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/cache/value_file.hpp"
+
+#include <xxhash.h>
+
+#include <cstring>
+#include <memory>
+
+#include "scanmill/cache/value_fields.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/atomic_file.hpp"
+#include "scanmill/formats/mapped_file.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::string_view magic = "SMVALUE1";
+
+struct Preamble {
+    char magic[8];
+    u64 header_bytes;
+    XXH128_canonical_t header_hash, arrays_hash;
+    u64 file_bytes;
+    u64 reserved;
+};
+static_assert(sizeof(Preamble) == value_alignment);
+
+constexpr std::array<std::byte, value_alignment> zeros{};
+
+std::span<const std::byte> padding(std::size_t bytes) { return std::span(zeros).first(aligned(bytes) - bytes); }
+
+XXH128_canonical_t canonical(XXH128_hash_t hash) {
+    XXH128_canonical_t bytes;
+    XXH128_canonicalFromHash(&bytes, hash);
+    return bytes;
+}
+
+bool equal(const XXH128_canonical_t& a, const XXH128_canonical_t& b) {
+    return std::memcmp(a.digest, b.digest, sizeof a.digest) == 0;
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Of all arrays as they lie in the file, zeros between them included.
+XXH128_hash_t hash_of(std::span<const std::span<const std::byte>> arrays) {
+    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
+    XXH3_128bits_reset(state.get());
+    for (const std::span<const std::byte>& array : arrays) {
+        XXH3_128bits_update(state.get(), array.data(), array.size());
+        XXH3_128bits_update(state.get(), zeros.data(), padding(array.size()).size());
+    }
+    return XXH3_128bits_digest(state.get());
+}
+
+}  // namespace
+
+EncodedValue::EncodedValue(Value value) : value_(std::move(value)) {
+    ValueFields fields = fields_of(value_);
+    arrays_ = std::move(fields.arrays);
+    Preamble preamble{};
+    std::memcpy(preamble.magic, magic.data(), magic.size());
+    preamble.header_bytes = fields.header.size();
+    preamble.header_hash = canonical(XXH3_128bits(fields.header.data(), fields.header.size()));
+    preamble.arrays_hash = canonical(hash_of(arrays_));
+    size_ = sizeof preamble + aligned(fields.header.size());
+    for (const std::span<const std::byte>& array : arrays_) size_ += aligned(array.size());
+    preamble.file_bytes = size_;
+    // The preamble knows every byte through its two hashes.
+    const XXH128_hash_t whole = XXH3_128bits(&preamble, sizeof preamble);
+    content_ = fmt::format("{:016x}{:016x}", whole.high64, whole.low64);
+    head_.append(reinterpret_cast<const char*>(&preamble), sizeof preamble);
+    head_ += fields.header;
+    head_ += text_of(padding(fields.header.size()));
+}
+
+void EncodedValue::write(const std::filesystem::path& file) const {
+    AtomicFile target(file);
+    target.write(head_);
+    for (const std::span<const std::byte>& array : arrays_) {
+        target.write(text_of(array));
+        target.write(text_of(padding(array.size())));
+    }
+    target.commit(AtomicFile::Sync::no);
+}
+
+Value read_value(const std::filesystem::path& file) {
+    const auto map = std::make_shared<const MappedFile>(file);
+    const std::string_view bytes = map->bytes();
+    Preamble preamble;
+    if (bytes.size() < sizeof preamble || !bytes.starts_with(magic))
+        throw Error("'{}' is no value file", file.string());
+    std::memcpy(&preamble, bytes.data(), sizeof preamble);
+    if (preamble.file_bytes != bytes.size() || preamble.header_bytes > bytes.size() - sizeof preamble)
+        throw Error("'{}' has {} bytes and promises {}", file.string(), bytes.size(), preamble.file_bytes);
+    const std::string_view header = bytes.substr(sizeof preamble, preamble.header_bytes);
+    const std::string_view arrays = bytes.substr(std::min(bytes.size(), sizeof preamble + aligned(header.size())));
+    if (!equal(preamble.header_hash, canonical(XXH3_128bits(header.data(), header.size()))) ||
+        !equal(preamble.arrays_hash, canonical(XXH3_128bits(arrays.data(), arrays.size()))))
+        throw Error("'{}' is damaged: its bytes are not those that were written", file.string());
+    return value_of(header, arrays, map);
+}
+
+}  // namespace scanmill
