@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/records/reasons.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace scanmill {
+
+namespace {
+
+using Texts = std::vector<std::pair<std::string, std::string>>;
+
+std::string value_in(const Texts& texts, const std::string& name) {
+    const auto found = std::ranges::find(texts, name, &Texts::value_type::first);
+    return found == texts.end() ? "" : found->second;
+}
+
+class Explainer {
+public:
+    Explainer(std::vector<NodeForesight>& foresight, const Plan& plan, FilterLibrary& library, const RunGraph& graph,
+              std::uint64_t seed, const RunRecords& records)
+        : foresight_(foresight),
+          plan_(plan),
+          library_(library),
+          graph_(graph),
+          seed_(seed),
+          records_(records) {}
+
+    void explain_all() {
+        for (std::size_t index = 0; index < graph_.nodes.size(); ++index) {
+            NodeForesight& seen = foresight_[index];
+            if (!seen.will_run || seen.known) continue;
+            if (std::string why = reason(index); !why.empty()) seen.why = std::move(why);
+        }
+    }
+
+private:
+    std::string reason(std::size_t index) const {
+        const RunNode& node = graph_.nodes[index];
+        const std::string& scan = graph_.scan_names[node.scan];
+        const std::string label = node.step ? plan_.steps[*node.step].label : "read";
+        const std::vector<PastStep> past = records_.last_steps(workflow_name(plan_), scan, label);
+        std::vector<std::string> least;
+        for (const PastStep& step : past)
+            if (std::vector<std::string> found = differences(index, step);
+                &step == &past.front() || found.size() < least.size())
+                least = std::move(found);
+        if (past.empty()) return {};
+        if (least.empty())
+            return "the cache no longer knows it, or Scanmill itself changed, since run " +
+                   std::to_string(past.front().run);
+        std::string text;
+        for (const std::string& difference : least) text += (text.empty() ? "" : ", ") + difference;
+        return text + fmt::format(" since run {}", past.front().run);
+    }
+
+    std::vector<std::string> differences(std::size_t index, const PastStep& past) const {
+        const RunNode& node = graph_.nodes[index];
+        std::vector<std::string> found;
+        if (past.plan_key == node.key) return found;
+        if (!node.step) return {"the file's content changed"};
+        const PlannedStep& step = plan_.steps[*node.step];
+        if (past.filter != step.spec.name)
+            found.push_back(fmt::format("the filter changed {} → {}", past.filter, step.spec.name));
+        else if (past.filter_version != step.spec.version)
+            found.push_back(
+                fmt::format("{}'s version changed {} → {}", past.filter, past.filter_version, step.spec.version));
+        else if (past.build != library_.build_id(step.spec.name))
+            found.push_back(fmt::format("{} was built again", past.filter));
+        for (const auto& [name, value] : step.parameters.values)
+            if (const std::string now = text(value), before = value_in(past.authored, name); now != before)
+                found.push_back(fmt::format("{} changed {} → {}", name, before.empty() ? "nothing" : before,
+                                            now.empty() ? "nothing" : now));
+        if (past.seed != seed_) found.push_back(fmt::format("the seed changed {} → {}", past.seed, seed_));
+        for (const NodeInput& input : node.inputs)
+            if (!foresight_[input.node].known) {
+                const RunNode& from = graph_.nodes[input.node];
+                found.push_back(from.step ? fmt::format("what '{}' gives may change", plan_.steps[*from.step].label)
+                                          : std::string("the scan changed"));
+            }
+        return found;
+    }
+
+    std::vector<NodeForesight>& foresight_;
+    const Plan& plan_;
+    FilterLibrary& library_;
+    const RunGraph& graph_;
+    std::uint64_t seed_;
+    const RunRecords& records_;
+};
+
+}  // namespace
+
+void explain(std::vector<NodeForesight>& foresight, const Plan& plan, FilterLibrary& library, const RunGraph& graph,
+             std::uint64_t seed, const RunRecords& records) {
+    Explainer(foresight, plan, library, graph, seed, records).explain_all();
+}
+
+}  // namespace scanmill

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Why a step runs that ran before: what of it changed since the last run of the same workflow into this folder.
+
+#include "scanmill/engine/foresight.hpp"
+#include "scanmill/records/run_records.hpp"
+
+namespace scanmill {
+
+/// Replaces "it has not run like this" by what differs from the step of the same name on the same scan in the newest
+/// run of the workflow that has one: parameters with both values, the filter's version or build, the seed, the scan's
+/// content, what an earlier step gives. Where variants have several such steps, the one that differs least counts.
+void explain(std::vector<NodeForesight>& foresight, const Plan& plan, FilterLibrary& library, const RunGraph& graph,
+             std::uint64_t seed, const RunRecords& records);
+
+}  // namespace scanmill

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/records/recorder.hpp"
+
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+std::vector<std::pair<std::string, std::string>> texts_of(const ParameterSet& parameters) {
+    std::vector<std::pair<std::string, std::string>> texts;
+    for (const auto& [name, value] : parameters.values)
+        if (std::string shown = text(value); !shown.empty()) texts.emplace_back(name, std::move(shown));
+    return texts;
+}
+
+}  // namespace
+
+Recorder::Recorder(RunRecords& records, const RunStart& start, const Plan& plan, FilterLibrary& library,
+                   const RunGraph& graph, OnWarning on_warning)
+    : records_(records),
+      plan_(plan),
+      library_(library),
+      graph_(graph),
+      on_warning_(std::move(on_warning)),
+      begin_(std::chrono::steady_clock::now()),
+      flushed_(begin_) {
+    attempt([&] { run_ = records_.begin(start); });
+}
+
+void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
+    StepRecord step;
+    step.node = static_cast<std::size_t>(&node - graph_.nodes.data());
+    step.scan = graph_.scan_names[node.scan];
+    step.plan_key = node.key;
+    step.label = "read";
+    if (node.step) {
+        const PlannedStep& planned = plan_.steps[*node.step];
+        step.label = planned.label;
+        step.filter = planned.spec.name;
+        step.filter_version = planned.spec.version;
+        step.build = library_.build_id(planned.spec.name);
+        step.authored = texts_of(planned.parameters);
+    }
+    step.origin = name_of(report.origin);
+    step.why = report.why;
+    step.outcome = name_of(report.outcome);
+    step.error = report.error;
+    step.seconds = report.seconds;
+    step.cpu_seconds = report.cpu_seconds;
+    step.resolved = texts_of(report.resolved);
+    step.metrics = report.metrics;
+    step.facts = report.facts;
+    step.warnings = report.warnings;
+    steps_.push_back(std::move(step));
+}
+
+void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
+    CellRecord record;
+    record.scan = graph_.scan_names[cell.scan];
+    record.variant = plan_.variants[cell.variant].name;
+    record.outcome = name_of(report.outcome);
+    record.error = report.error;
+    record.seconds = report.seconds;
+    record.nodes = cell.nodes;
+    for (const OutputReport& output : report.outputs)
+        record.outputs.push_back({output.file.string(), std::string(name_of(output.kind)),
+                                  std::string(name_of(output.outcome)), output.facts});
+    cells_.push_back(std::move(record));
+    constexpr std::chrono::seconds patience(1);
+    if (std::chrono::steady_clock::now() - flushed_ > patience) flush();
+}
+
+void Recorder::finish(const RunReport& report) {
+    flush();
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
+    const std::string outcome = report.interrupted ? "interrupted" : report.all_done() ? "done" : "failed";
+    attempt([&] { records_.end(run_, outcome, seconds.count()); });
+}
+
+void Recorder::flush() {
+    attempt([&] { records_.add(run_, steps_, cells_); });
+    steps_.clear();
+    cells_.clear();
+    flushed_ = std::chrono::steady_clock::now();
+}
+
+template <class Action>
+void Recorder::attempt(Action&& action) {
+    if (broken_) return;
+    try {
+        action();
+    } catch (const Error& error) {
+        broken_ = true;
+        if (on_warning_) on_warning_(fmt::format("this run is not recorded to its end: {}", error.sentence()));
+    }
+}
+
+}  // namespace scanmill

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Appends to the records what a run reports, while it runs.
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scanmill/engine/run.hpp"
+#include "scanmill/records/run_records.hpp"
+
+namespace scanmill {
+
+/// Gathers for at most a second before it writes, so that many small steps cost few syncs; a run that is killed loses
+/// that second. When the records cannot be written any longer, that is told once and the run goes on without them.
+class Recorder : public RunObserver {
+public:
+    using OnWarning = std::function<void(std::string)>;
+
+    /// All must outlive the recorder.
+    Recorder(RunRecords& records, const RunStart& start, const Plan& plan, FilterLibrary& library,
+             const RunGraph& graph, OnWarning on_warning);
+
+    void node_ended(const RunNode& node, const NodeReport& report) override;
+    void cell_ended(const RunCell& cell, const CellReport& report) override;
+    /// The rest, and how the run ended.
+    void finish(const RunReport& report);
+
+    std::int64_t run() const { return run_; }
+
+private:
+    void flush();
+    template <class Action>
+    void attempt(Action&& action);
+
+    RunRecords& records_;
+    const Plan& plan_;
+    FilterLibrary& library_;
+    const RunGraph& graph_;
+    OnWarning on_warning_;
+    std::int64_t run_ = 0;
+    bool broken_ = false;
+    std::vector<StepRecord> steps_;
+    std::vector<CellRecord> cells_;
+    std::chrono::steady_clock::time_point begin_, flushed_;
+};
+
+}  // namespace scanmill

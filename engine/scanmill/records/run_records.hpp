@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What was run, with what, and what came of it: one SQLite file per output folder, to which every run appends.
+///
+/// Nothing is ever changed or removed. A run without an end was interrupted by force. The file may lie on a network
+/// file system (rollback journal) and be read by any SQLite program; its tables are in run_records.cpp, where each
+/// change is a migration of its own. Not-a-number is stored as NULL.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scanmill/data/metrics.hpp"
+
+namespace scanmill {
+
+struct RunStart {
+    std::string workflow, file;
+    std::vector<std::string> arguments;  ///< of the command
+    std::uint64_t seed = 0;
+    unsigned threads = 1;
+    std::string version, machine;
+};
+
+struct StepRecord {
+    std::size_t node = 0;  ///< index into the run's graph
+    std::string label, filter, scan, plan_key, build;
+    int filter_version = 0;
+    std::string origin, why, outcome, error;
+    double seconds = 0, cpu_seconds = 0;
+    std::vector<std::pair<std::string, std::string>> authored, resolved;  ///< parameters, as text
+    Metrics metrics, facts;
+    std::vector<std::string> warnings;
+};
+
+struct OutputRecord {
+    std::string file, kind, outcome;
+    Metrics facts;
+};
+
+struct CellRecord {
+    std::string scan, variant, outcome, error;
+    double seconds = 0;
+    std::vector<std::size_t> nodes;  ///< of the run's graph; their steps were recorded before
+    std::vector<OutputRecord> outputs;
+};
+
+struct RunSummary {
+    std::int64_t id = 0;
+    std::string started, workflow;
+    std::optional<std::string> outcome;  ///< nothing: the run never came to its end
+    std::size_t cells = 0, failed = 0, ran = 0, cached = 0;
+    double seconds = 0;
+};
+
+struct RunDetails {
+    RunSummary summary;
+    RunStart start;
+    std::vector<CellRecord> cells;
+    std::vector<StepRecord> steps;
+};
+
+/// A step of an earlier run, as far as telling what changed needs it.
+struct PastStep {
+    std::int64_t run = 0;
+    std::uint64_t seed = 0;
+    std::string filter, build, plan_key;
+    int filter_version = 0;
+    std::vector<std::pair<std::string, std::string>> authored;
+};
+
+/// The file's name in an output folder.
+inline constexpr const char* records_file = "scanmill.sqlite";
+
+class RunRecords {
+public:
+    /// Opens the records for appending, or makes them. Throws Error: a file that is none, one of a newer Scanmill, a
+    /// folder that cannot be written to.
+    static RunRecords append_to(const std::filesystem::path& file);
+    /// Opens what is there for reading.
+    static RunRecords read(const std::filesystem::path& file);
+    RunRecords(RunRecords&&) noexcept;
+    ~RunRecords();
+
+    /// The new run's number.
+    std::int64_t begin(const RunStart& start);
+    /// Appends to the run, all or nothing: steps, then cells. Throws Error when the disk is full.
+    void add(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells);
+    void end(std::int64_t run, const std::string& outcome, double seconds);
+
+    /// In the order of their numbers.
+    std::vector<RunSummary> runs() const;
+    /// Throws Error when there is no such run, naming those there are.
+    RunDetails run(std::int64_t id) const;
+    /// The steps of this label on this scan in the newest run of the workflow that has some.
+    std::vector<PastStep> last_steps(const std::string& workflow, const std::string& scan,
+                                     const std::string& label) const;
+
+private:
+    struct Database;
+    explicit RunRecords(std::unique_ptr<Database> database);
+    std::unique_ptr<Database> database_;
+};
+
+}  // namespace scanmill

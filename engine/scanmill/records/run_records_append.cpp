@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "scanmill/records/records_database.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const std::vector<std::pair<std::string, std::string>>& pairs) {
+    Json json = Json::object();
+    for (const auto& [name, value] : pairs) json[name] = value;
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void bind(SQLite::Statement& statement, int place, double number) {
+    if (std::isnan(number))
+        statement.bind(place);
+    else
+        statement.bind(place, number);
+}
+
+}  // namespace
+
+std::int64_t RunRecords::begin(const RunStart& start) {
+    return about(database_->file, [&] {
+        SQLite::Statement insert(
+            database_->sqlite,
+            "INSERT INTO run (started, workflow, file, arguments, seed, threads, version, machine) "
+            "VALUES (strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, ?, ?, ?, ?, ?, ?)");
+        SQLite::bind(insert, start.workflow, start.file,
+                     Json(start.arguments).dump(-1, ' ', false, Json::error_handler_t::replace),
+                     std::to_string(start.seed), static_cast<std::int64_t>(start.threads), start.version,
+                     start.machine);
+        insert.exec();
+        return database_->sqlite.getLastInsertRowid();
+    });
+}
+
+void RunRecords::add(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells) {
+    about(database_->file, [&] {
+        SQLite::Database& sqlite = database_->sqlite;
+        SQLite::Transaction transaction(sqlite);
+        SQLite::Statement step_row(
+            sqlite,
+            "INSERT INTO step (run, node, label, filter, filter_version, build, scan, plan_key, origin, why, outcome, "
+            "error, seconds, cpu_seconds, authored, resolved) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+        SQLite::Statement metric_row(sqlite, "INSERT INTO metric VALUES (?, ?, ?, ?, ?)");
+        SQLite::Statement warning_row(sqlite, "INSERT INTO warning VALUES (?, ?)");
+        const auto run_row = [](SQLite::Statement& statement) {
+            statement.exec();
+            statement.reset();
+        };
+        for (const StepRecord& step : steps) {
+            SQLite::bind(step_row, run, static_cast<std::int64_t>(step.node), step.label, step.filter,
+                         step.filter_version, step.build, step.scan, step.plan_key, step.origin, step.why, step.outcome,
+                         step.error, step.seconds, step.cpu_seconds, text_of(step.authored), text_of(step.resolved));
+            run_row(step_row);
+            const std::int64_t id = sqlite.getLastInsertRowid();
+            database_->step_ids[{run, step.node}] = id;
+            for (const Metrics* metrics : {&step.metrics, &step.facts})
+                for (const Metric& metric : metrics->values) {
+                    SQLite::bind(metric_row, id, metrics == &step.facts ? 1 : 0, metric.name);
+                    bind(metric_row, 4, metric.value);
+                    metric_row.bind(5, std::string(name_of(metric.unit)));
+                    run_row(metric_row);
+                }
+            for (const std::string& text : step.warnings) {
+                SQLite::bind(warning_row, id, text);
+                run_row(warning_row);
+            }
+        }
+        SQLite::Statement cell_row(
+            sqlite, "INSERT INTO cell (run, scan, variant, outcome, error, seconds) VALUES (?, ?, ?, ?, ?, ?)");
+        SQLite::Statement link_row(sqlite, "INSERT INTO cell_step VALUES (?, ?)");
+        SQLite::Statement output_row(sqlite, "INSERT INTO output (cell, file, kind, outcome) VALUES (?, ?, ?, ?)");
+        SQLite::Statement fact_row(sqlite, "INSERT INTO output_fact VALUES (?, ?, ?, ?)");
+        for (const CellRecord& cell : cells) {
+            SQLite::bind(cell_row, run, cell.scan, cell.variant, cell.outcome, cell.error, cell.seconds);
+            run_row(cell_row);
+            const std::int64_t id = sqlite.getLastInsertRowid();
+            for (const std::size_t node : cell.nodes)
+                if (const auto step = database_->step_ids.find({run, node}); step != database_->step_ids.end()) {
+                    SQLite::bind(link_row, id, step->second);
+                    run_row(link_row);
+                }
+            for (const OutputRecord& output : cell.outputs) {
+                SQLite::bind(output_row, id, output.file, output.kind, output.outcome);
+                run_row(output_row);
+                const std::int64_t output_id = sqlite.getLastInsertRowid();
+                for (const Metric& fact : output.facts.values) {
+                    SQLite::bind(fact_row, output_id, fact.name);
+                    bind(fact_row, 3, fact.value);
+                    fact_row.bind(4, std::string(name_of(fact.unit)));
+                    run_row(fact_row);
+                }
+            }
+        }
+        transaction.commit();
+    });
+}
+
+void RunRecords::end(std::int64_t run, const std::string& outcome, double seconds) {
+    about(database_->file, [&] {
+        SQLite::Statement insert(database_->sqlite,
+                                 "INSERT INTO run_end VALUES (?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, ?)");
+        SQLite::bind(insert, run, outcome, seconds);
+        insert.exec();
+    });
+}
+
+}  // namespace scanmill
