@@ -13,7 +13,8 @@ enum ExitCode { done = 0, some_failed = 1, bad_request = 2, our_fault = 3, inter
 
 using Action = std::function<int()>;
 
-void add_run(CLI::App& app, Action& chosen);
+/// `command_line`: the program and its arguments, for the records.
+void add_run(CLI::App& app, Action& chosen, std::vector<std::string> command_line);
 void add_check(CLI::App& app, Action& chosen);
 void add_list(CLI::App& app, Action& chosen);
 void add_show(CLI::App& app, Action& chosen);
@@ -21,6 +22,8 @@ void add_info(CLI::App& app, Action& chosen);
 void add_convert(CLI::App& app, Action& chosen);
 void add_schema(CLI::App& app, Action& chosen);
 void add_docs(CLI::App& app, Action& chosen);
+void add_runs(CLI::App& app, Action& chosen);
+void add_cache(CLI::App& app, Action& chosen);
 void add_completion(CLI::App& app, Action& chosen);
 
 }  // namespace scanmill::runner

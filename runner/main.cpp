@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     app.set_help_all_flag("--help-all", "Help of every command");
     const bool json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
     Action chosen;
-    add_run(app, chosen);
+    add_run(app, chosen, {argv, argv + argc});
     add_check(app, chosen);
     add_list(app, chosen);
     add_show(app, chosen);
@@ -29,6 +29,8 @@ int main(int argc, char** argv) {
     add_convert(app, chosen);
     add_schema(app, chosen);
     add_docs(app, chosen);
+    add_runs(app, chosen);
+    add_cache(app, chosen);
     add_completion(app, chosen);
     try {
         app.parse(argc, argv);

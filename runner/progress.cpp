@@ -55,7 +55,9 @@ void Progress::node_ended(const RunNode& node, const NodeReport& report) {
     const std::scoped_lock lock(mutex_);
     ++ended_;
     if (quiet_ || terminal_ || report.outcome != Outcome::done) return;
-    fmt::print(stderr, "[{}/{}] {} {:.2f} s\n", ended_, graph_.nodes.size(), label(node), report.seconds);
+    const std::string took =
+        report.origin == Origin::ran ? fmt::format("{:.2f} s", report.seconds) : std::string("cached");
+    fmt::print(stderr, "[{}/{}] {} {}\n", ended_, graph_.nodes.size(), label(node), took);
 }
 
 void Progress::output_written(const RunCell&, const OutputReport& report) {

@@ -10,13 +10,19 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cache_options.hpp"
 #include "commands.hpp"
 #include "error_output.hpp"
 #include "load.hpp"
+#include "machine.hpp"
 #include "printable.hpp"
 #include "progress.hpp"
 #include "run_output.hpp"
+#include "scanmill/engine/observers.hpp"
 #include "scanmill/filter/error.hpp"
+#include "scanmill/filter/module.hpp"
+#include "scanmill/records/reasons.hpp"
+#include "scanmill/records/recorder.hpp"
 
 namespace scanmill::runner {
 
@@ -28,6 +34,8 @@ struct Options {
     unsigned threads = 0;
     std::uint64_t seed = 0;
     bool dry_run = false, json = false, quiet = false;
+    CacheOptions cache;
+    std::vector<std::string> command_line;
 };
 
 // The one thing a signal handler may touch.
@@ -53,6 +61,33 @@ std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std
     return inputs;
 }
 
+void warn(const std::string& text) { fmt::print(stderr, "warning: {}\n", printable(text)); }
+
+/// Nothing, after a warning, where they cannot be opened: results count more than records of them.
+std::optional<RunRecords> open_records(const std::filesystem::path& folder) {
+    try {
+        std::error_code trouble;
+        std::filesystem::create_directories(folder, trouble);
+        return RunRecords::append_to(folder / records_file);
+    } catch (const Error& error) {
+        warn(fmt::format("this run is not recorded: {}", error.sentence()));
+        return std::nullopt;
+    }
+}
+
+/// What changed since the last run into the same folder; without records of one nothing is known.
+void explain_from_records(std::vector<NodeForesight>& foresight, const Plan& plan, FilterLibrary& library,
+                          const RunGraph& graph, const RunRequest& request) {
+    const std::filesystem::path file = request.output_folder / records_file;
+    std::error_code absent;
+    if (!std::filesystem::exists(file, absent)) return;
+    try {
+        explain(foresight, plan, library, graph, request.seed, RunRecords::read(file));
+    } catch (const Error& error) {
+        warn(fmt::format("what changed since the last run is not known: {}", error.sentence()));
+    }
+}
+
 int run_workflow(const Options& options) {
     FilterLibrary library = open_library();
     const CheckedWorkflow checked = check_workflow(options.workflow, library, parse_settings(options.settings));
@@ -71,22 +106,47 @@ int run_workflow(const Options& options) {
     request.only = options.only;
     request.until = options.until;
     request.save = options.save;
-    const RunGraph graph = make_graph(checked.plan, library, request);
+    const std::unique_ptr<Cache> cache = open_cache(options.cache);
+    const RunGraph graph = make_graph(checked.plan, library, request, [&](const std::filesystem::path& file) {
+        return cache ? cache->file_hash(file) : content_hash(file);
+    });
+    std::vector<NodeForesight> foresight = foresee(checked.plan, graph, cache.get());
+    if (cache) explain_from_records(foresight, checked.plan, library, graph, request);
     if (options.dry_run) {
-        fmt::print("{}",
-                   options.json ? graph_json(checked.plan, graph) + "\n" : printable(graph_text(checked.plan, graph)));
+        fmt::print("{}", options.json ? graph_json(checked.plan, graph, foresight) + "\n"
+                                      : printable(graph_text(checked.plan, graph, foresight)));
         return done;
     }
 
     RunSettings settings;
     settings.threads = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
     settings.seed = options.seed;
+    settings.cache = cache.get();
+    settings.foresight = std::move(foresight);
+    settings.keep = keep_policy(options.cache);
     settings.is_cancelled = [] { return interrupt_requested != 0; };
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
     Progress progress(checked.plan, graph, options.quiet);
-    const RunReport report = run(checked.plan, library, graph, request, settings, progress);
+    std::optional<RunRecords> records = open_records(request.output_folder);
+    std::optional<Recorder> recorder;
+    std::vector<RunObserver*> observing{&progress};
+    if (records) {
+        const RunStart start{workflow_name(checked.plan),
+                             options.workflow,
+                             options.command_line,
+                             options.seed,
+                             settings.threads,
+                             SCANMILL_VERSION,
+                             machine_text()};
+        recorder.emplace(*records, start, checked.plan, library, graph, warn);
+        observing.push_back(&*recorder);
+    }
+    Observers observers(observing);
+    const RunReport report = run(checked.plan, library, graph, request, settings, observers);
     progress.finish();
+    if (recorder) recorder->finish(report);
+    if (cache) cache->evict();
 
     fmt::print("{}", options.json ? report_json(checked.plan, graph, report) + "\n"
                                   : report_text(checked.plan, graph, report));
@@ -126,9 +186,10 @@ std::string what_bars_folder(const std::string& folder) {
 
 }  // namespace
 
-void add_run(CLI::App& app, Action& chosen) {
+void add_run(CLI::App& app, Action& chosen, std::vector<std::string> command_line) {
     CLI::App* command = app.add_subcommand("run", "Runs a workflow over one scan or many");
     auto options = std::make_shared<Options>();
+    options->command_line = std::move(command_line);
     command->add_option("WORKFLOW", options->workflow, "The workflow file")->required();
     command->add_option(
         "SCAN", options->scans,
@@ -159,7 +220,9 @@ void add_run(CLI::App& app, Action& chosen) {
     command->add_option("--seed", options->seed, "Seed of everything random")
         ->capture_default_str()
         ->check(whole_number<std::uint64_t>());
-    command->add_flag("--dry-run", options->dry_run, "Print what would be run and written, and stop");
+    add_cache_options(*command, options->cache, true);
+    command->add_flag("--dry-run", options->dry_run,
+                      "Print what would be run and why, what is cached, and what would be written, and stop");
     command->add_flag("--json", options->json, "Print the report as JSON");
     command->add_flag("-q,--quiet", options->quiet, "No progress on stderr");
     command->callback([&chosen, options] { chosen = [options] { return run_workflow(*options); }; });

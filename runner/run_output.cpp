@@ -68,8 +68,9 @@ Json to_json(const ParameterSet& parameters) {
 
 }  // namespace
 
-std::string graph_text(const Plan& plan, const RunGraph& graph) {
+std::string graph_text(const Plan& plan, const RunGraph& graph, const std::vector<NodeForesight>& foresight) {
     std::string text;
+    std::size_t cached = 0;
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         const RunNode& node = graph.nodes[index];
         text += fmt::format("{:>4}. {} {}{}\n", index + 1, node.key.substr(0, 8), node_label(plan, node),
@@ -78,23 +79,29 @@ std::string graph_text(const Plan& plan, const RunGraph& graph) {
             text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1,
                                 input.from.empty() ? "" : "." + input.from);
         if (!node.unreadable.empty()) text += fmt::format("        {}\n", node.unreadable);
+        cached += !foresight[index].will_run;
+        text += foresight[index].will_run ? fmt::format("        will run because {}\n", foresight[index].why)
+                                          : "        cached\n";
     }
     for (const RunCell& cell : graph.cells)
         for (const RunOutput& output : cell.outputs)
             text += fmt::format("{} [{}] -> {}\n", graph.scan_names[cell.scan], plan.variants[cell.variant].name,
                                 shown_path(output.file));
-    return text + fmt::format("{} to compute, {} cell{}\n", graph.nodes.size(), graph.cells.size(),
-                              graph.cells.size() == 1 ? "" : "s");
+    return text + fmt::format("{} to compute, {} cached, {} cell{}\n", graph.nodes.size() - cached, cached,
+                              graph.cells.size(), graph.cells.size() == 1 ? "" : "s");
 }
 
-std::string graph_json(const Plan& plan, const RunGraph& graph) {
+std::string graph_json(const Plan& plan, const RunGraph& graph, const std::vector<NodeForesight>& foresight) {
     Json json{{"scanmill", 1}, {"nodes", Json::array()}, {"cells", Json::array()}};
-    for (const RunNode& node : graph.nodes) {
+    for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
+        const RunNode& node = graph.nodes[index];
         Json entry{{"key", node.key}, {"step", node_label(plan, node)}, {"in", Json::array()}};
         if (!node.step) entry["file"] = node.file.string();
         if (!node.unreadable.empty()) entry["unreadable"] = node.unreadable;
         for (const NodeInput& input : node.inputs)
             entry["in"].push_back({{"port", input.port}, {"node", input.node}, {"from", input.from}});
+        entry["cached"] = !foresight[index].will_run;
+        if (foresight[index].will_run) entry["why"] = foresight[index].why;
         json["nodes"].push_back(std::move(entry));
     }
     for (const RunCell& cell : graph.cells) {
@@ -157,7 +164,9 @@ std::string report_json(const Plan& plan, const RunGraph& graph, const RunReport
         Json entry{{"key", node.key},
                    {"step", node_label(plan, node)},
                    {"outcome", name_of(done.outcome)},
+                   {"origin", name_of(done.origin)},
                    {"seconds", done.seconds}};
+        if (!done.why.empty() && done.origin == Origin::ran) entry["why"] = done.why;
         if (node.step)
             entry["filter"] = plan.steps[*node.step].spec.name;
         else

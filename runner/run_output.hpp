@@ -4,12 +4,13 @@
 
 #include <string>
 
+#include "scanmill/engine/foresight.hpp"
 #include "scanmill/engine/run.hpp"
 
 namespace scanmill::runner {
 
-std::string graph_text(const Plan& plan, const RunGraph& graph);
-std::string graph_json(const Plan& plan, const RunGraph& graph);
+std::string graph_text(const Plan& plan, const RunGraph& graph, const std::vector<NodeForesight>& foresight);
+std::string graph_json(const Plan& plan, const RunGraph& graph, const std::vector<NodeForesight>& foresight);
 
 /// A row per cell: points read, the filters' headline metrics, the written mesh's facts, seconds, files.
 std::string report_text(const Plan& plan, const RunGraph& graph, const RunReport& report);

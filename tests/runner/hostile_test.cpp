@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scanmill/records/run_records.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -40,11 +41,12 @@ std::size_t times(const std::string& text, std::string_view part) {
     return count;
 }
 
-/// Everything below a folder, `out` apart from its files.
+/// All files below a folder but the records of its runs.
 std::size_t files_below(const fs::path& folder) {
     std::size_t files = 0;
     if (fs::exists(folder))
-        for (const auto& entry : fs::recursive_directory_iterator(folder)) files += !entry.is_directory();
+        for (const auto& entry : fs::recursive_directory_iterator(folder))
+            files += !entry.is_directory() && entry.path().filename() != records_file;
     return files;
 }
 

@@ -94,7 +94,7 @@ void follow(const Guide& guide, const std::filesystem::path& folder, const std::
     const TemporaryFolder outputs;
     std::string script = "cd '" + folder.string() + "'\nexport HOME='" + home.string() + "'\nexport PATH='" +
                          std::filesystem::path(SCANMILL_PROGRAM).parent_path().string() +
-                         "':$PATH\nunset SCANMILL_PLUGIN_PATH\n";
+                         "':$PATH\nunset SCANMILL_PLUGIN_PATH XDG_CACHE_HOME\n";
     for (std::size_t i = 0; i < guide.commands.size(); ++i)
         script += "{ " + guide.commands[i].text + "\n} >'" + (outputs / std::to_string(i)).string() + "' 2>&1\n";
     const std::filesystem::path file = outputs.write("script", script);

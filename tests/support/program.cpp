@@ -33,6 +33,7 @@ namespace {
     limit(RLIMIT_CPU, options.seconds_limit);
     constexpr unsigned nobody = 65534;
     if (options.without_rights && ::geteuid() == 0 && (::setgid(nobody) != 0 || ::setuid(nobody) != 0)) ::_exit(126);
+    ::setenv("XDG_CACHE_HOME", options.cache.c_str(), 1);
     for (const std::string& variable : options.environment) {
         const std::size_t equals = variable.find('=');
         ::setenv(variable.substr(0, equals).c_str(), variable.substr(equals + 1).c_str(), 1);
@@ -49,9 +50,11 @@ namespace {
 ProgramResult scanmill_program(const std::vector<std::string>& arguments, const ProgramOptions& options) {
     const TemporaryFolder folder;
     const std::string out = (folder / "out").string(), err = (folder / "err").string();
+    ProgramOptions own = options;
+    if (own.cache.empty()) own.cache = folder / "cache";
     const pid_t child = ::fork();
     if (child < 0) throw std::runtime_error("the program could not be started");
-    if (child == 0) become(arguments, options, out.c_str(), err.c_str());
+    if (child == 0) become(arguments, own, out.c_str(), err.c_str());
     int status = 0;
     ::waitpid(child, &status, 0);
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content_of(out), content_of(err)};

@@ -19,6 +19,7 @@ struct ProgramOptions {
     std::size_t memory_limit = 0;                 ///< bytes of address space; 0: none
     std::size_t file_limit = 0;                   ///< bytes of any file that it writes; 0: none
     std::size_t seconds_limit = 0;                ///< of processor time, then it is killed; 0: none
+    std::filesystem::path cache{};                ///< XDG_CACHE_HOME; empty: a new one, removed afterwards
     bool without_rights = false;                  ///< as the user `nobody`, when we are root
 };
 

@@ -50,6 +50,10 @@ public:
         values_.emplace_back(std::move(port), std::make_shared<const T>(std::move(object)));
         return *this;
     }
+    Outputs& set(std::string port, Value value) {
+        values_.emplace_back(std::move(port), std::move(value));
+        return *this;
+    }
     /// nullptr when the filter gave nothing for `port`.
     const Value* find(std::string_view port) const {
         for (const auto& [name, value] : values_)

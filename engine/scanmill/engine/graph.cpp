@@ -17,14 +17,17 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::string_view key_scheme = "1";
+constexpr std::string_view key_scheme = "2";
 
 namespace fs = std::filesystem;
 
 class GraphBuilder {
 public:
-    GraphBuilder(const Plan& plan, FilterLibrary& library, const RunRequest& request)
-        : plan_(plan),
+    using Hash = std::function<std::string(const fs::path&)>;
+
+    GraphBuilder(const Plan& plan, FilterLibrary& library, const RunRequest& request, const Hash& hash)
+        : hash_(hash),
+          plan_(plan),
           library_(library),
           request_(request),
           core_build_(content_hash(core_library_file())),
@@ -35,7 +38,7 @@ public:
         protect_parameter_files();
         const std::vector<WorkflowInput>& inputs = plan_.workflow.inputs;
         if (inputs.empty() || inputs.front().list) {
-            graph_.scan_names.push_back(workflow_name());
+            graph_.scan_names.push_back(workflow_name(plan_));
             add_cells(0, {});
             return std::move(graph_);
         }
@@ -57,10 +60,6 @@ private:
                     });
     }
 
-    std::string workflow_name() const {
-        return plan_.workflow.name.empty() ? fs::path(plan_.workflow.file).stem().string() : plan_.workflow.name;
-    }
-
     /// `file` is the scan; empty when there is none, or a list of them.
     void add_cells(std::size_t scan, const fs::path& file) {
         for (std::size_t variant = 0; variant < plan_.variants.size(); ++variant) {
@@ -75,7 +74,7 @@ private:
                 add_to(cell, node_of_step[step]);
             }
             const TemplateValues values{file.empty() ? graph_.scan_names.back() : file.stem().string(), planned.name,
-                                        workflow_name()};
+                                        workflow_name(plan_)};
             for (const auto& [name, source] : outputs(planned)) {
                 if (source.step && !node_of_step.contains(*source.step)) continue;  // beyond --until
                 const std::size_t node = sources_of(source, node_of_step, scan, file, cell).front();
@@ -130,10 +129,14 @@ private:
             .field("core", core_build_)
             .field("seed", std::to_string(request_.seed));
         const auto content = [this](const fs::path& parameter) { return content_of(parameter); };
-        for (const auto& [name, value] : planned.parameters.values) {
-            const bool names_files = planned.spec.parameter(name)->type == ParameterType::path;
-            key.field("parameter " + name, names_files ? key_text_of_paths(value, content) : canonical_text(value));
-        }
+        const auto names_files = [&](const std::string& name) {
+            return planned.spec.parameter(name)->type == ParameterType::path;
+        };
+        for (const auto& [name, value] : planned.parameters.values)
+            if (names_files(name)) key.field("parameter " + name, key_text_of_paths(value, content));
+        node.code = key.key();
+        for (const auto& [name, value] : planned.parameters.values)
+            if (!names_files(name)) key.field("parameter " + name, canonical_text(value));
         for (const PlannedInput& input : planned.inputs)
             for (const ValueSource& source : input.sources)
                 for (const std::size_t from : sources_of(source, node_of_step, scan, file, cell)) {
@@ -162,9 +165,10 @@ private:
         node.file = file;
         node.input = input;
         node.scan = scan;
+        node.content = content_of(file, &node.unreadable);
         KeyBuilder key;
         key.field("scheme", key_scheme)
-            .field("content", content_of(file, &node.unreadable))
+            .field("content", node.content)
             .field("extension", plain_extension(file.extension().string()))  // it may decide how the bytes are read
             .field("kind", name_of(declared.kind))
             .field("unit", symbol(request_.unit != LengthUnit::unknown ? request_.unit : declared.unit))
@@ -182,7 +186,7 @@ private:
             try {
                 std::error_code absent;  // a pipe would block, a folder has no content; reading them says why
                 if (!fs::is_regular_file(file, absent)) throw Error("'{}' is no file", file.string());
-                known->second.first = content_hash(file);
+                known->second.first = hash_(file);
             } catch (const Error& error) {
                 known->second = {"unreadable " + file.string(), error.sentence()};
             }
@@ -201,6 +205,7 @@ private:
         if (std::ranges::find(cell.nodes, node) == cell.nodes.end()) cell.nodes.push_back(node);
     }
 
+    const Hash& hash_;
     const Plan& plan_;
     FilterLibrary& library_;
     const RunRequest& request_;
@@ -213,8 +218,9 @@ private:
 
 }  // namespace
 
-RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request) {
-    return GraphBuilder(plan, library, request).build();
+RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request,
+                    const std::function<std::string(const fs::path&)>& hash) {
+    return GraphBuilder(plan, library, request, hash).build();
 }
 
 }  // namespace scanmill

@@ -7,11 +7,13 @@
 /// written where before anything runs; an executor, or an export to another scheduler, only has to follow it.
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scanmill/engine/request.hpp"
+#include "scanmill/filter/module.hpp"
 
 namespace scanmill {
 
@@ -22,10 +24,12 @@ struct NodeInput {
 };
 
 struct RunNode {
-    std::string key;
+    std::string key;  ///< plan key: what identifies the result before anything runs
+    std::string code;  ///< of a step: hash of filter, builds, seed and the content of files that parameters name
     std::optional<std::size_t> step;  ///< index into Plan::steps; nothing: a leaf
     std::filesystem::path file;  ///< of a leaf
     std::size_t input = 0;  ///< of a leaf: index into Workflow::inputs
+    std::string content;  ///< of a leaf: hash of the file's bytes
     std::string unreadable;  ///< of a leaf: why its content could not be hashed
     std::vector<NodeInput> inputs;
     std::size_t scan = 0;  ///< the first cell's
@@ -55,6 +59,8 @@ struct RunGraph {
 /// leave the output folder. Reads every file once, to hash it, also those that path
 /// parameters name: a step's key knows their content and not their names. A scan that cannot be read only marks its
 /// node, another file is left to the filter.
-RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request);
+/// `hash` gives the hash of a file's bytes: content_hash(), or one that remembers.
+RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request,
+                    const std::function<std::string(const std::filesystem::path&)>& hash = content_hash);
 
 }  // namespace scanmill

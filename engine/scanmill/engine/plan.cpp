@@ -258,6 +258,10 @@ Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& 
     return Planner(std::move(workflow), library, diagnostics).plan(settings);
 }
 
+std::string workflow_name(const Plan& plan) {
+    return plan.workflow.name.empty() ? std::filesystem::path(plan.workflow.file).stem().string() : plan.workflow.name;
+}
+
 Kind kind_of(const Plan& plan, const ValueSource& source) {
     return source.step ? plan.steps[*source.step].spec.output(source.port)->kind
                        : plan.workflow.inputs[source.input].kind;

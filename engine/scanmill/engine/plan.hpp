@@ -71,6 +71,9 @@ struct Plan {
 /// Checks the workflow against the filters at hand; with errors in `diagnostics` the plan must not be run.
 Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics);
 
+/// The workflow's own name, else that of its file.
+std::string workflow_name(const Plan& plan);
+
 /// Kind of the value.
 Kind kind_of(const Plan& plan, const ValueSource& source);
 

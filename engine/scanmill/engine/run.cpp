@@ -2,6 +2,7 @@
 #include "scanmill/engine/run.hpp"
 
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,8 +10,12 @@
 #include <new>
 
 #include "scanmill/engine/facts.hpp"
+#include "scanmill/engine/foresight.hpp"
+#include "scanmill/engine/key.hpp"
+#include "scanmill/engine/run_memory.hpp"
 #include "scanmill/engine/step_runner.hpp"
 #include "scanmill/filter/error.hpp"
+#include "scanmill/filter/module.hpp"
 #include "scanmill/formats/files.hpp"
 
 namespace scanmill {
@@ -21,6 +26,16 @@ namespace fs = std::filesystem;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Of this process until now, all threads together.
+double cpu_seconds() {
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
 /// A folder of its own below the system's temporary one, removed with everything in it.
@@ -53,6 +68,8 @@ private:
     fs::path path_;
 };
 
+/// The values of nodes, made when somebody needs them: kept in memory until their last use, mapped from the cache, or
+/// computed.
 class Executor {
 public:
     Executor(const Plan& plan, FilterLibrary& library, const RunGraph& graph, const RunRequest& request,
@@ -63,13 +80,16 @@ public:
           request_(request),
           settings_(settings),
           observer_(observer),
+          memory_(settings.cache, settings.keep),
+          foresight_(settings.foresight.empty() ? foresee(plan, graph, settings.cache) : settings.foresight),
           values_(graph.nodes.size()),
           uses_left_(graph.nodes.size(), 0),
           visited_(graph.nodes.size(), false) {
         report_.nodes.resize(graph.nodes.size());
         report_.cells.resize(graph.cells.size());
-        for (const RunNode& node : graph.nodes)
-            for (const NodeInput& input : node.inputs) ++uses_left_[input.node];
+        for (std::size_t index = 0; index < graph.nodes.size(); ++index)
+            if (foresight_[index].will_run)
+                for (const NodeInput& input : graph.nodes[index].inputs) ++uses_left_[input.node];
         for (const RunCell& cell : graph.cells)
             for (const RunOutput& output : cell.outputs) ++uses_left_[output.node];
     }
@@ -85,7 +105,7 @@ public:
 private:
     void run_cell(const RunCell& cell, CellReport& report) {
         for (const std::size_t node : cell.nodes) {
-            if (!visited_[node]) run_node(node);
+            if (!visited_[node]) visit(node);
             const NodeReport& done = report_.nodes[node];
             report.seconds += done.seconds;
             if (done.outcome == Outcome::failed && report.error.empty()) report.error = done.error;
@@ -103,24 +123,66 @@ private:
         observer_.cell_ended(cell, report);
     }
 
-    void run_node(std::size_t index) {
+    /// Runs the node, or takes over what the cache knows of it.
+    void visit(std::size_t index) {
         visited_[index] = true;
         const RunNode& node = graph_.nodes[index];
-        NodeReport& report = report_.nodes[index];
-        const auto needs = [&](const NodeInput& input) { return report_.nodes[input.node].outcome == Outcome::done; };
-        if (!report_.interrupted && std::ranges::all_of(node.inputs, needs)) {
+        if (!foresight_[index].will_run && !report_.interrupted) {
+            NodeReport& report = report_.nodes[index];
+            adopt(*foresight_[index].known, node, report);
+            report.origin = Origin::cached;
+            for (const std::string& warning : report.warnings) observer_.node_warning(node, warning);
             observer_.node_started(node);
-            const auto start = std::chrono::steady_clock::now();
-            attempt(index, report);
-            report.seconds = seconds_since(start);
+            if (meets_expectations(index, report)) report.outcome = Outcome::done;
             observer_.node_ended(node, report);
+            return;
         }
-        for (const NodeInput& input : node.inputs) release(input.node);
+        run_node(index);
         if (uses_left_[index] == 0) values_[index] = {};
     }
 
-    /// Runs the node and turns whatever it throws into a report.
-    void attempt(std::size_t index, NodeReport& report) {
+    void run_node(std::size_t index) {
+        const RunNode& node = graph_.nodes[index];
+        const auto has_values = [&](const NodeInput& input) { return provide(input.node, input.from); };
+        if (!report_.interrupted && std::ranges::all_of(node.inputs, has_values)) {
+            NodeReport& report = report_.nodes[index] = {};
+            report.why = foresight_[index].why;
+            observer_.node_started(node);
+            const auto start = std::chrono::steady_clock::now();
+            const double cpu = cpu_seconds();
+            attempt(index, report, [&] {
+                if (node.step)
+                    run_step_node(index, report);
+                else
+                    read_leaf_node(index, report);
+            });
+            report.seconds = seconds_since(start);
+            report.cpu_seconds = cpu_seconds() - cpu;
+            observer_.node_ended(node, report);
+        }
+        for (const NodeInput& input : node.inputs) release(input.node);
+    }
+
+    /// Whether the value is at hand afterwards: in memory, from the cache or, when that has lost it, made again.
+    bool provide(std::size_t index, const std::string& port) {
+        if (!visited_[index]) visit(index);
+        if (report_.nodes[index].outcome != Outcome::done) return false;
+        if (find(index, port)) return true;
+        const std::optional<StepResult>& known = foresight_[index].known;
+        const ResultOutput* output = known ? known->output(port) : nullptr;
+        if (std::optional<Value> value = output ? memory_.value(output->content) : std::nullopt) {
+            values_[index].push_back({port, std::move(*value)});
+            return true;
+        }
+        foresight_[index].needed.insert(port);
+        foresight_[index].why = "the cache has lost its value";
+        run_node(index);
+        return report_.nodes[index].outcome == Outcome::done && find(index, port);
+    }
+
+    /// Turns whatever `work` throws into the node's report.
+    template <class Work>
+    void attempt(std::size_t index, NodeReport& report, Work&& work) {
         const RunNode& node = graph_.nodes[index];
         const auto fail = [&](Error error) {
             if (node.step) {
@@ -134,10 +196,7 @@ private:
             report.error = error.what();
         };
         try {
-            if (node.step)
-                run_step_node(index, report);
-            else
-                read_leaf_node(index, report);
+            work();
             report.outcome = Outcome::done;
         } catch (const Cancelled&) {
             report_.interrupted = true;
@@ -157,19 +216,23 @@ private:
             observer_.node_warning(node, text);
             report.warnings.push_back(std::move(text));
         };
+        const auto start = std::chrono::steady_clock::now();
         Value value = read_leaf(node.file, plan_.workflow.inputs[node.input], request_.unit, on_warning);
+        if (settings_.cache && content_hash(node.file) != node.content)
+            throw Error("'{}' changed while the run was going on", node.file.string()).hint("run it again");
         if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&value))
             report.facts.set("points", static_cast<double>((*points)->size()), Unit::count);
         else if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
             report.facts.set("points", static_cast<double>((*mesh)->positions.size()), Unit::count);
         values_[index].push_back({"", std::move(value)});
+        remember(index, node.key, seconds_since(start), report);
     }
 
     void run_step_node(std::size_t index, NodeReport& report) {
         const RunNode& node = graph_.nodes[index];
         const PlannedStep& step = plan_.steps[*node.step];
         std::vector<StepInput> inputs;
-        for (const NodeInput& input : node.inputs) inputs.push_back({input.port, value_of(input.node, input.from)});
+        for (const NodeInput& input : node.inputs) inputs.push_back({input.port, *find(input.node, input.from)});
         ContextOptions options;
         options.threads = settings_.threads;
         options.seed = settings_.seed;
@@ -177,20 +240,115 @@ private:
         options.is_cancelled = settings_.is_cancelled;
         options.on_progress = [&](double fraction) { observer_.node_progress(node, fraction); };
         options.on_warning = [&](std::string_view text) { observer_.node_warning(node, text); };
-        const Outputs outputs = run_step(step, library_.load(step.spec.name), inputs, std::move(options), report);
+        std::string run_key;
+        auto start = std::chrono::steady_clock::now();
+        const Recall recall = [&](const ParameterSet& resolved, NodeReport& of) -> std::optional<Outputs> {
+            if (!settings_.cache) return std::nullopt;
+            run_key = run_key_of(node, step, resolved);
+            std::optional<Outputs> known = recalled(index, run_key, of);
+            start = std::chrono::steady_clock::now();
+            return known;
+        };
+        const auto filter = [&]() -> const FilterDeclaration& { return library_.load(step.spec.name); };
+        const Outputs outputs = run_step(step, filter, inputs, std::move(options), recall, report);
+        const double seconds = seconds_since(start);
         for (const auto& [port, value] : outputs) values_[index].push_back({port, value});
         if (settings_.is_cancelled && settings_.is_cancelled()) report_.interrupted = true;
+        if (report.origin == Origin::ran) remember(index, run_key, seconds, report);
+        if (!step.expectations.empty())
+            require_expectations(step, *find(index, step.spec.outputs.front().name), report);
+    }
+
+    /// Filter, parameters as it gets them, and the content of its inputs: whatever else changed makes no difference.
+    std::string run_key_of(const RunNode& node, const PlannedStep& step, const ParameterSet& resolved) const {
+        KeyBuilder key;
+        key.field("code", node.code);
+        for (const auto& [name, value] : resolved.values)
+            if (step.spec.parameter(name)->type != ParameterType::path)
+                key.field("parameter " + name, canonical_text(value));
+        for (const NodeInput& input : node.inputs)
+            key.field("port " + input.port, foresight_[input.node].known->output(input.from)->content);
+        return key.key();
+    }
+
+    /// What the cache knows under the run key, if all values that are needed were kept.
+    std::optional<Outputs> recalled(std::size_t index, const std::string& run_key, NodeReport& report) {
+        const RunNode& node = graph_.nodes[index];
+        std::optional<StepResult> result = memory_.result(run_key);
+        if (!result) return std::nullopt;
+        Outputs outputs;
+        for (const std::string& port : foresight_[index].needed) {
+            const ResultOutput* output = result->output(port);
+            std::optional<Value> value = output ? memory_.value(output->content) : std::nullopt;
+            if (!value) return std::nullopt;
+            outputs.set(port, std::move(*value));
+        }
+        memory_.connect(node.key, run_key);
+        adopt(*result, node, report);
+        report.origin = Origin::same_inputs;
+        for (const std::string& warning : report.warnings) observer_.node_warning(node, warning);
+        foresight_[index].known = std::move(result);
+        return outputs;
+    }
+
+    /// Hands the node's result to the cache, and its values where that is worth it.
+    void remember(std::size_t index, const std::string& run_key, double seconds, const NodeReport& report) {
+        if (!settings_.cache) return;
+        const RunNode& node = graph_.nodes[index];
+        double cost = seconds;
+        for (const NodeInput& input : node.inputs) cost += memory_.cost_of(input.node);
+        StepResult result;
+        for (const auto& [name, value] : report.resolved.values)
+            if (!std::holds_alternative<std::monostate>(value)) result.resolved.emplace_back(name, written(value));
+        result.metrics = report.metrics;
+        result.facts = report.facts;
+        result.warnings = report.warnings;
+        result.seconds = seconds;
+        result.outputs = memory_.keep_values(index, values_[index], cost);
+        memory_.keep_result(node.key, run_key, result);
+        foresight_[index].known = std::move(result);
+    }
+
+    /// The report of a node that did not run.
+    void adopt(const StepResult& result, const RunNode& node, NodeReport& report) const {
+        report.metrics = result.metrics;
+        report.facts = result.facts;
+        report.warnings = result.warnings;
+        if (!node.step) return;
+        const FilterSpec& spec = plan_.steps[*node.step].spec;
+        report.resolved = {};
+        for (const auto& [name, text] : result.resolved)
+            report.resolved.values.emplace_back(name, parse(*spec.parameter(name), text));
+    }
+
+    /// Of a node from the cache: its step may expect other things than when it ran.
+    bool meets_expectations(std::size_t index, NodeReport& report) {
+        const RunNode& node = graph_.nodes[index];
+        if (!node.step || plan_.steps[*node.step].expectations.empty()) return true;
+        const PlannedStep& step = plan_.steps[*node.step];
+        const std::string& primary = step.spec.outputs.front().name;
+        report.outcome = Outcome::done;  // so that its value can be provided
+        const bool provided = provide(index, primary);
+        report.outcome = Outcome::skipped;
+        if (!provided) return false;
+        attempt(index, report, [&] { require_expectations(step, *find(index, primary), report); });
+        return report.outcome == Outcome::done;
     }
 
     OutputReport write_output(const RunCell& cell, const RunOutput& output, CellReport& report) {
         OutputReport written;
         written.file = output.file;
-        if (report_.nodes[output.node].outcome != Outcome::done) return written;
-        const Value value = value_of(output.node, output.port);
-        written.kind = kind_of(value);
         const auto start = std::chrono::steady_clock::now();
         try {
             if (const auto earlier = written_.find(output.file); earlier != written_.end()) return earlier->second;
+            if (!provide(output.node, output.port)) {
+                // Something may have failed only now, when a value was made again.
+                for (const std::size_t node : cell.nodes)
+                    if (report.error.empty()) report.error = report_.nodes[node].error;
+                return written;
+            }
+            const Value value = *find(output.node, output.port);
+            written.kind = kind_of(value);
             std::error_code trouble;
             fs::create_directories(output.file.parent_path(), trouble);
             if (trouble)
@@ -212,13 +370,15 @@ private:
         return written;
     }
 
-    const Value& value_of(std::size_t node, const std::string& port) const {
+    /// nullptr when it is not in memory.
+    const Value* find(std::size_t node, const std::string& port) const {
         const auto found = std::ranges::find(values_[node], port, &StepInput::port);
-        return found->value;
+        return found == values_[node].end() ? nullptr : &found->value;
     }
 
     void release(std::size_t node) {
-        if (--uses_left_[node] == 0) values_[node] = {};
+        if (uses_left_[node] > 0) --uses_left_[node];
+        if (uses_left_[node] == 0) values_[node] = {};
     }
 
     const Plan& plan_;
@@ -229,6 +389,8 @@ private:
     RunObserver& observer_;
     ScratchFolder scratch_;
     RunReport report_;
+    RunMemory memory_;
+    std::vector<NodeForesight> foresight_;
     std::vector<std::vector<StepInput>> values_;  // by node: its outputs, while somebody still needs them
     std::vector<std::size_t> uses_left_;
     std::vector<bool> visited_;
@@ -242,6 +404,15 @@ std::string_view name_of(Outcome outcome) {
         case Outcome::done: return "done";
         case Outcome::failed: return "failed";
         case Outcome::skipped: return "skipped";
+    }
+    return "";
+}
+
+std::string_view name_of(Origin origin) {
+    switch (origin) {
+        case Origin::ran: return "ran";
+        case Origin::cached: return "cached";
+        case Origin::same_inputs: return "same inputs";
     }
     return "";
 }

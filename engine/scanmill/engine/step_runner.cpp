@@ -89,16 +89,15 @@ void require_whole(const Outputs& outputs, const FilterSpec& spec) {
     }
 }
 
-void require_expectations(const PlannedStep& step, const Outputs& outputs, NodeReport& report) {
+}  // namespace
+
+void require_expectations(const PlannedStep& step, const Value& primary, NodeReport& report) {
     if (step.expectations.empty()) return;
-    const Value& primary = *outputs.find(step.spec.outputs.front().name);
     report.facts = facts_of(primary);
     Metrics known = report.facts;
     for (const Metric& metric : report.metrics.values) known.set(metric.name, metric.value, metric.unit);
     require_met(step.expectations, known, length_scale(primary));
 }
-
-}  // namespace
 
 Value read_leaf(const std::filesystem::path& file, const WorkflowInput& declared, LengthUnit unit,
                 const std::function<void(std::string)>& on_warning) {
@@ -119,8 +118,9 @@ Value read_leaf(const std::filesystem::path& file, const WorkflowInput& declared
     return reframed(value, frame);
 }
 
-Outputs run_step(const PlannedStep& step, const FilterDeclaration& filter, const std::vector<StepInput>& inputs,
-                 ContextOptions options, NodeReport& report) {
+Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
+                 const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
+                 NodeReport& report) {
     Context context(std::move(options));
     const Value* first = first_geometric(inputs);
     const auto keep_findings = [&] {
@@ -132,10 +132,10 @@ Outputs run_step(const PlannedStep& step, const FilterDeclaration& filter, const
     try {
         const Inputs ports = rebased(inputs, first, context);
         report.resolved = resolved_parameters(step, first);
-        Outputs outputs = filter.run(ports, report.resolved, context);
+        if (std::optional<Outputs> known = recall(report.resolved, report)) return std::move(*known);
+        Outputs outputs = filter().run(ports, report.resolved, context);
         require_whole(outputs, step.spec);
         keep_findings();
-        require_expectations(step, outputs, report);
         return outputs;
     } catch (...) {
         keep_findings();

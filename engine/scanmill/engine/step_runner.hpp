@@ -16,9 +16,17 @@ struct StepInput {
     Value value;
 };
 
-/// Runs the filter: inputs brought to one origin, lengths resolved, outputs checked. What it learned goes to `report`
-/// even when it throws (Error or Cancelled).
-Outputs run_step(const PlannedStep& step, const FilterDeclaration& filter, const std::vector<StepInput>& inputs,
-                 ContextOptions options, NodeReport& report);
+/// Asked once the parameters are resolved: the filter's outputs, when somebody remembers them, and what is known of
+/// them goes to the report; nothing makes the filter run.
+using Recall = std::function<std::optional<Outputs>(const ParameterSet& resolved, NodeReport& report)>;
+
+/// Runs the filter unless `recall` knows better: inputs brought to one origin, lengths resolved, outputs checked.
+/// What it learned goes to `report` even when it throws (Error or Cancelled). `filter` is called for when it runs.
+Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
+                 const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
+                 NodeReport& report);
+
+/// Throws Error naming the step's expectations that its outputs and metrics do not meet.
+void require_expectations(const PlannedStep& step, const Value& primary, NodeReport& report);
 
 }  // namespace scanmill

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/engine/foresight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace scanmill {
+
+namespace {
+
+std::optional<StepResult> remembered(const Cache& cache, const std::string& plan_key) {
+    const std::optional<std::string> run_key = cache.run_key(plan_key);
+    return run_key ? cache.step(*run_key) : std::nullopt;
+}
+
+class Seer {
+public:
+    Seer(const Plan& plan, const RunGraph& graph, const Cache* cache)
+        : plan_(plan),
+          graph_(graph),
+          cache_(cache),
+          nodes_(graph.nodes.size()) {}
+
+    std::vector<NodeForesight> see() {
+        for (const RunCell& cell : graph_.cells)
+            for (const RunOutput& output : cell.outputs) nodes_[output.node].needed.insert(output.port);
+        // A node's inputs stand before it: from the end, everybody who needs its values has spoken.
+        for (std::size_t index = nodes_.size(); index-- > 0;) look_at(index);
+        return std::move(nodes_);
+    }
+
+private:
+    void look_at(std::size_t index) {
+        const RunNode& node = graph_.nodes[index];
+        NodeForesight& seen = nodes_[index];
+        const PlannedStep* step = node.step ? &plan_.steps[*node.step] : nullptr;
+        if (step && !step->expectations.empty()) seen.needed.insert(step->spec.outputs.front().name);
+        if (cache_) seen.known = remembered(*cache_, node.key);
+        if (!cache_)
+            seen.why = "there is no cache";
+        else if (!seen.known)
+            seen.why = step ? "it has not run on such inputs with such parameters" : "it was not read before";
+        else if (const auto missing = std::ranges::find_if(
+                     seen.needed, [&](const std::string& port) { return !is_kept(*seen.known, port); });
+                 missing != seen.needed.end())
+            seen.why = fmt::format("its {} was not kept, being quick to make again",
+                                   missing->empty() ? "content" : "'" + *missing + "'");
+        seen.will_run = !seen.why.empty();
+        if (!seen.will_run) return;
+        for (const NodeInput& input : node.inputs) nodes_[input.node].needed.insert(input.from);
+    }
+
+    bool is_kept(const StepResult& result, const std::string& port) const {
+        const ResultOutput* output = result.output(port);
+        return output && cache_->has_value(output->content);
+    }
+
+    const Plan& plan_;
+    const RunGraph& graph_;
+    const Cache* cache_;
+    std::vector<NodeForesight> nodes_;
+};
+
+}  // namespace
+
+std::vector<NodeForesight> foresee(const Plan& plan, const RunGraph& graph, const Cache* cache) {
+    return Seer(plan, graph, cache).see();
+}
+
+}  // namespace scanmill

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Several observers of one run.
+
+#include <vector>
+
+#include "scanmill/engine/run.hpp"
+
+namespace scanmill {
+
+/// Tells each of them everything, in the order given. They must outlive it.
+class Observers : public RunObserver {
+public:
+    explicit Observers(std::vector<RunObserver*> all) : all_(std::move(all)) {}
+
+    void node_started(const RunNode& node) override {
+        for (RunObserver* one : all_) one->node_started(node);
+    }
+    void node_progress(const RunNode& node, double fraction) override {
+        for (RunObserver* one : all_) one->node_progress(node, fraction);
+    }
+    void node_warning(const RunNode& node, std::string_view text) override {
+        for (RunObserver* one : all_) one->node_warning(node, text);
+    }
+    void node_ended(const RunNode& node, const NodeReport& report) override {
+        for (RunObserver* one : all_) one->node_ended(node, report);
+    }
+    void output_written(const RunCell& cell, const OutputReport& report) override {
+        for (RunObserver* one : all_) one->output_written(cell, report);
+    }
+    void cell_ended(const RunCell& cell, const CellReport& report) override {
+        for (RunObserver* one : all_) one->cell_ended(cell, report);
+    }
+
+private:
+    std::vector<RunObserver*> all_;
+};
+
+}  // namespace scanmill

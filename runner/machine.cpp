@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "machine.hpp"
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <thread>
+
+#include "byte_size.hpp"
+
+namespace scanmill::runner {
+
+namespace {
+
+std::string processor() {
+    std::ifstream facts("/proc/cpuinfo");
+    for (std::string line; std::getline(facts, line);)
+        if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(": ") + 2));
+    return "unknown processor";
+}
+
+}  // namespace
+
+std::string machine_text() {
+    utsname system{};
+    ::uname(&system);
+    const u64 memory = static_cast<u64>(::sysconf(_SC_PHYS_PAGES)) * static_cast<u64>(::sysconf(_SC_PAGESIZE));
+    return fmt::format("{}, {} cores, {}, {} {} {}", processor(), std::thread::hardware_concurrency(),
+                       byte_size_text(memory), system.sysname, system.release, system.machine);
+}
+
+}  // namespace scanmill::runner

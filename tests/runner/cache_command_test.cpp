@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cache as a user meets it: a second run, what a dry run says, how large it is, and emptying it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class CacheCommand : public testing::Test {
+protected:
+    CacheCommand() {
+        folder_.write("a.xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 2\n");
+        folder_.write("w.yaml",
+                      "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: 0.1 u}\n"
+                      "outputs: {'{scan}.ply': voxel-thin}\n");
+    }
+    ProgramResult scanmill(std::vector<std::string> arguments) {
+        return scanmill_program(arguments, {.folder = folder_.path(), .cache = folder_ / "home"});
+    }
+    ProgramResult run(const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{"run", "w.yaml", "a.xyz", "-o", "out"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return scanmill(std::move(arguments));
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(CacheCommand, SecondRun_SaysWhatWasCachedAndWritesTheSame) {
+    EXPECT_EQ(run({"--keep", "always"}).exit_code, 0);
+    const std::string first = content_of(folder_ / "out/a.ply");
+    std::filesystem::remove_all(folder_ / "out");
+    const ProgramResult again = run();
+    EXPECT_EQ(again.exit_code, 0);
+    EXPECT_THAT(again.err, HasSubstr("voxel-thin cached"));
+    EXPECT_EQ(content_of(folder_ / "out/a.ply"), first);
+    const json report = json::parse(run({"--json"}).out);
+    EXPECT_EQ(report["steps"][1]["origin"], "cached");
+}
+
+TEST_F(CacheCommand, DryRun_NamesWhatIsCachedAndWhyTheRestRuns) {
+    run({"--keep", "always"});
+    EXPECT_THAT(run({"--dry-run"}).out, AllOf(HasSubstr("0 to compute, 2 cached"), Not(HasSubstr("because"))));
+    folder_.write("w.yaml",
+                  "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: 0.2 u}\n"
+                  "outputs: {'{scan}.ply': voxel-thin}\n");
+    EXPECT_THAT(run({"--dry-run"}).out,
+                AllOf(HasSubstr("1 to compute, 1 cached"),
+                      HasSubstr("will run because bin-size changed 0.1 u → 0.2 u since run 1")));
+    const json planned = json::parse(run({"--dry-run", "--json"}).out);
+    EXPECT_EQ(planned["nodes"][0]["cached"], true);
+    EXPECT_EQ(planned["nodes"][1]["cached"], false);
+}
+
+TEST_F(CacheCommand, NoCache_TouchesNone) {
+    EXPECT_EQ(run({"--no-cache"}).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "home"));
+    EXPECT_EQ(run({"--no-cache", "--cache", "x"}).exit_code, 2) << "which of the two?";
+}
+
+TEST_F(CacheCommand, InfoAndClear_AreAboutTheSameFolder) {
+    run({"--keep", "always"});
+    const json full = json::parse(scanmill({"cache", "info", "--json"}).out);
+    EXPECT_EQ(full["steps"], 2);
+    EXPECT_GT(full["bytes"], 0);
+    EXPECT_EQ(full["folder"], (folder_ / "home/scanmill").string());
+    EXPECT_THAT(scanmill({"cache", "info"}).out, HasSubstr("steps   2"));
+    EXPECT_EQ(scanmill({"cache", "clear"}).exit_code, 0);
+    EXPECT_EQ(json::parse(scanmill({"cache", "info", "--json"}).out)["bytes"], 0);
+    EXPECT_THAT(run({"--dry-run"}).out, HasSubstr("2 to compute, 0 cached"));
+}
+
+TEST_F(CacheCommand, FolderOfItsOwn_IsUsed) {
+    run({"--cache", "mine", "--keep", "always"});
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "mine/v1/steps"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "home"));
+    EXPECT_EQ(json::parse(scanmill({"cache", "info", "--json", "--cache", "mine"}).out)["steps"], 2);
+}
+
+TEST_F(CacheCommand, LimitThatIsReached_RemovesAtTheEndOfTheRun) {
+    EXPECT_EQ(run({"--keep", "always", "--cache-limit", "1 kB"}).exit_code, 0);
+    EXPECT_LE(json::parse(scanmill({"cache", "info", "--json"}).out)["bytes"], 1000);
+    const ProgramResult refused = run({"--cache-limit", "much"});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("'much' is no size; expected 500 MiB"));
+}
+
+TEST_F(CacheCommand, WithoutAHome_TheRunGoesOnWithoutACache) {
+    const ProgramResult ran = scanmill_program(
+        {"run", "w.yaml", "a.xyz", "-o", "out"},
+        {.folder = folder_.path(), .environment = {"XDG_CACHE_HOME=relative", "HOME="}, .cache = folder_ / "home"});
+    EXPECT_EQ(ran.exit_code, 0);
+    EXPECT_THAT(ran.err, AllOf(HasSubstr("there is no folder for the cache"), HasSubstr("nothing is kept")));
+}
+
+}  // namespace
+}  // namespace scanmill::test
