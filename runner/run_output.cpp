@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "metrics_json.hpp"
 #include "scanmill/engine/facts.hpp"
 #include "table.hpp"
 
 namespace scanmill::runner {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string shown_path(const std::filesystem::path& file) {
     const std::string relative = std::filesystem::proximate(file).string();
@@ -50,13 +49,6 @@ Metrics headline(const Plan& plan, const RunGraph& graph, const RunReport& repor
             break;
         }
     return shown;
-}
-
-Json to_json(const Metrics& metrics) {
-    Json json = Json::object();
-    for (const Metric& metric : metrics.values)
-        json[metric.name] = metric.unit == Unit::boolean ? Json(metric.value != 0) : Json(metric.value);
-    return json;
 }
 
 Json to_json(const ParameterSet& parameters) {
@@ -172,8 +164,8 @@ std::string report_json(const Plan& plan, const RunGraph& graph, const RunReport
         else
             entry["file"] = node.file.string();
         if (!done.resolved.values.empty()) entry["parameters"] = to_json(done.resolved);
-        if (!done.metrics.values.empty()) entry["metrics"] = to_json(done.metrics);
-        if (!done.facts.values.empty()) entry["facts"] = to_json(done.facts);
+        if (!done.metrics.values.empty()) entry["metrics"] = metrics_json(done.metrics);
+        if (!done.facts.values.empty()) entry["facts"] = metrics_json(done.facts);
         if (!done.warnings.empty()) entry["warnings"] = done.warnings;
         if (!done.error.empty()) entry["error"] = done.error;
         json["steps"].push_back(std::move(entry));
@@ -191,7 +183,7 @@ std::string report_json(const Plan& plan, const RunGraph& graph, const RunReport
             Json file{{"file", output.file.string()},
                       {"outcome", name_of(output.outcome)},
                       {"kind", name_of(output.kind)},
-                      {"facts", to_json(output.facts)}};
+                      {"facts", metrics_json(output.facts)}};
             if (!output.warnings.empty()) file["warnings"] = output.warnings;
             entry["outputs"].push_back(std::move(file));
         }

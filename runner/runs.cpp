@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "metrics_json.hpp"
 #include "printable.hpp"
 #include "scanmill/engine/facts.hpp"
 #include "scanmill/filter/error.hpp"
@@ -15,21 +16,12 @@ namespace scanmill::runner {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string outcome_of(const RunSummary& run) { return run.outcome.value_or("unfinished"); }
 
 Json to_json(const RunSummary& run) {
     return {{"id", run.id},          {"started", run.started}, {"workflow", run.workflow}, {"outcome", outcome_of(run)},
             {"cells", run.cells},    {"failed", run.failed},   {"ran", run.ran},           {"cached", run.cached},
             {"seconds", run.seconds}};
-}
-
-Json to_json(const Metrics& metrics) {
-    Json json = Json::object();
-    for (const Metric& metric : metrics.values)
-        json[metric.name] = metric.unit == Unit::boolean ? Json(metric.value != 0) : Json(metric.value);
-    return json;
 }
 
 Json to_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
@@ -55,7 +47,7 @@ Json to_json(const RunDetails& run) {
             entry["outputs"].push_back({{"file", output.file},
                                         {"kind", output.kind},
                                         {"outcome", output.outcome},
-                                        {"facts", to_json(output.facts)}});
+                                        {"facts", metrics_json(output.facts)}});
         json["cells"].push_back(std::move(entry));
     }
     json["steps"] = Json::array();
@@ -74,8 +66,8 @@ Json to_json(const RunDetails& run) {
                    {"cpu-seconds", step.cpu_seconds},
                    {"authored", to_json(step.authored)},
                    {"parameters", to_json(step.resolved)},
-                   {"metrics", to_json(step.metrics)},
-                   {"facts", to_json(step.facts)}};
+                   {"metrics", metrics_json(step.metrics)},
+                   {"facts", metrics_json(step.facts)}};
         if (!step.error.empty()) entry["error"] = step.error;
         if (!step.warnings.empty()) entry["warnings"] = step.warnings;
         json["steps"].push_back(std::move(entry));
