@@ -46,8 +46,10 @@ u64 parse_byte_size(std::string_view text) {
 
 std::string byte_size_text(u64 bytes) {
     for (const SizeUnit& unit : std::span(units).first(4))
-        if (static_cast<double>(bytes) >= unit.bytes)
-            return fmt::format("{:.3g} {}", static_cast<double>(bytes) / unit.bytes, unit.symbol);
+        if (static_cast<double>(bytes) >= unit.bytes) {
+            const double amount = static_cast<double>(bytes) / unit.bytes;
+            return fmt::format("{:.{}f} {}", amount, amount < 10 ? 2 : amount < 100 ? 1 : 0, unit.symbol);
+        }
     return fmt::format("{} B", bytes);
 }
 

@@ -165,6 +165,76 @@ TEST_F(CachedRun, DamagedValues_AreMadeAgainAndTold) {
     EXPECT_THAT(origins(run_two("factor: 2", "factor: 3")), ElementsAre(cached, cached, cached)) << "mended";
 }
 
+TEST_F(CachedRun, LostValueThatOthersWereMadeWith_IsMadeAgainWithoutLosingTheirs) {
+    // `last` takes the scan and what `first` makes of it: making that again must not let go of the scan.
+    const auto diamond = [&](const std::string& factor) {
+        return run("  - id: first\n    test-step: {factor: 2}\n  - id: last\n    test-step: {factor: " + factor +
+                       "}\n    in: {points: scan, more: [scan, first.points]}\n",
+                   {scan("a.xyz")}, "outputs: {'{scan}.ply': last.points}\n");
+    };
+    EXPECT_TRUE(diamond("3").all_done());
+    for (const fs::path& file : values()) fs::resize_file(file, fs::file_size(file) - 1);
+    const RunReport again = diamond("4");
+    EXPECT_TRUE(again.all_done());
+    EXPECT_EQ(again.nodes[2].metrics.find("more")->value, 8);
+    EXPECT_EQ(world_of_second_point(), Vec3(4, 0, 0));
+}
+
+TEST_F(CachedRun, EntriesOfOtherNames_AreNotTrusted) {
+    run_two("factor: 2", "factor: 3");
+    const std::string first = content_of(folder_ / "out/a.ply");
+    for (const std::string_view kind : {"plans", "steps", "values"}) {
+        std::vector<fs::path> files;
+        for (const auto& entry : fs::recursive_directory_iterator(folder_ / ("cache/v1/" + std::string(kind))))
+            if (entry.is_regular_file()) files.push_back(entry.path());
+        ASSERT_GT(files.size(), 2u);
+        // Each gets the next one's content.
+        const std::string kept = content_of(files[0]);
+        for (std::size_t i = 0; i < files.size(); ++i)
+            folder_.write(fs::relative(files[i], folder_.path()).string(),
+                          i + 1 < files.size() ? content_of(files[i + 1]) : kept);
+        told_.clear();
+        EXPECT_TRUE(run_two("factor: 2", "factor: 3").all_done());
+        EXPECT_EQ(content_of(folder_ / "out/a.ply"), first) << kind;
+        EXPECT_FALSE(told_.empty()) << kind;
+    }
+}
+
+TEST_F(CachedRun, FileOfAParameterThatChangesMeanwhile_FailsTheStep) {
+    // The step itself changes it: it appends to its log.
+    folder_.write("log", "");
+    const RunReport report = run("  - test-step: {log: " + log() + "}\n", {scan("a.xyz")});
+    EXPECT_THAT(report.cells[0].error, HasSubstr("log' changed while the run was going on"));
+    EXPECT_FALSE(cache_.run_key(graph_.nodes[1].key));
+}
+
+TEST_F(CachedRun, StepThatReadsWhatHasNoContent_IsNeverCached) {
+    const std::string steps = "  - test-step: {log: " + log() + "}\n";
+    EXPECT_TRUE(run(steps, {scan("a.xyz")}).all_done());  // the log is not there yet
+    fs::remove(folder_ / "log");
+    const RunReport again = run(steps, {scan("a.xyz")});
+    EXPECT_EQ(again.nodes[1].origin, ran);
+    EXPECT_THAT(again.nodes[1].why, HasSubstr("no content to be known by"));
+}
+
+TEST_F(CachedRun, WarningsOfReading_NameTheFileThatWasRead) {
+    const std::string text = "# unit furlong\n" + small_scan;
+    run("  - test-step:\n", {scan("a.xyz", text)});
+    const RunReport copy = run("  - test-step:\n", {scan("b.xyz", text)});
+    EXPECT_EQ(copy.nodes[0].origin, cached);
+    EXPECT_THAT(copy.nodes[0].warnings,
+                ElementsAre(testing::AllOf(HasSubstr("/b.xyz': the unit"), testing::Not(HasSubstr("a.xyz")))));
+}
+
+TEST_F(CachedRun, EqualStepsThatExpectOtherThings_AreAskedEach) {
+    request_.inputs = {{"other", {scan("b.xyz")}}};
+    const RunReport report =
+        run("  - id: one\n    test-step:\n    in: {points: scan}\n    expect: {points: 4}\n"
+            "  - id: two\n    test-step:\n    in: {points: other}\n    expect: {points: '> 4'}\n",
+            {scan("a.xyz")}, "", "{scan: points, other: points}");
+    EXPECT_THAT(report.cells[0].error, HasSubstr("in step 'two'"));
+}
+
 TEST_F(CachedRun, CacheThatCannotBeWritten_CostsNothingButTime) {
     folder_.write("cache", "a file in its place");
     EXPECT_TRUE(run_two("factor: 2", "factor: 3").all_done());

@@ -85,10 +85,11 @@ TEST_F(RunsCommand, DryRun_NamesWhatChangedSinceTheLastRun) {
     write("0.1 u");
     EXPECT_THAT(dry({"--seed", "3"}), HasSubstr("the seed changed 0 → 3"));
     folder_.write("a.xyz", "0 0 0\n5 0 0\n");
-    EXPECT_THAT(dry(), AllOf(HasSubstr("the file's content changed since run 1"), HasSubstr("the scan changed")));
+    EXPECT_THAT(dry(),
+                AllOf(HasSubstr("the file, its unit or its frame changed since run 1"), HasSubstr("the scan changed")));
     scanmill({"cache", "clear"});
     folder_.write("a.xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 2\n");
-    EXPECT_THAT(dry(), HasSubstr("the cache no longer knows it"));
+    EXPECT_THAT(dry(), HasSubstr("the cache does not know it"));
 }
 
 TEST_F(RunsCommand, WhatIsNotThere_IsSaid) {

@@ -103,9 +103,11 @@ auto Cache::read(std::string_view kind, std::string_view name, Read&& read, bool
         if (found && marks_use) touch(file);
         return found;
     } catch (const Error& error) {
-        std::error_code ignored;
-        fs::remove(file, ignored);
-        warn(fmt::format("an entry of the cache was removed and counts as missing: {}", error.sentence()));
+        std::error_code trouble;
+        if (!fs::exists(file, trouble)) return std::nullopt;  // somebody else removed it just now
+        const bool removed = fs::remove(file, trouble);
+        warn(fmt::format("an entry of the cache {} and counts as missing: {}",
+                         removed ? "was removed" : "cannot be removed", error.sentence()));
         return std::nullopt;
     }
 }
@@ -128,10 +130,10 @@ bool Cache::has_value(std::string_view content) const {
 }
 
 std::optional<Value> Cache::value(std::string_view content) const {
-    return read("values", content, [](const fs::path& file) -> std::optional<Value> {
+    return read("values", content, [&](const fs::path& file) -> std::optional<Value> {
         std::error_code absent;
         if (!fs::exists(file, absent)) return std::nullopt;
-        return read_value(file);
+        return read_value(file, content);
     });
 }
 
@@ -143,7 +145,7 @@ bool Cache::write(std::string_view kind, std::string_view name, Write&& write, b
         if (!replace && fs::exists(file, trouble)) return true;  // the same bytes: the name says so
         fs::create_directories(file.parent_path(), trouble);
         if (trouble) throw Error("the folder '{}' cannot be made: {}", file.parent_path().string(), trouble.message());
-        mark_as_cache(folder_);
+        mark_as_cache(folder_ / layout);
         write(file);
         return true;
     } catch (const Error& error) {

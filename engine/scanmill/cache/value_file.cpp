@@ -44,6 +44,12 @@ std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+/// The preamble knows every byte through its two hashes.
+std::string content_text(const Preamble& preamble) {
+    const XXH128_hash_t whole = XXH3_128bits(&preamble, sizeof preamble);
+    return fmt::format("{:016x}{:016x}", whole.high64, whole.low64);
+}
+
 /// Of all arrays as they lie in the file, zeros between them included.
 XXH128_hash_t hash_of(std::span<const std::span<const std::byte>> arrays) {
     const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
@@ -68,9 +74,7 @@ EncodedValue::EncodedValue(Value value) : value_(std::move(value)) {
     size_ = sizeof preamble + aligned(fields.header.size());
     for (const std::span<const std::byte>& array : arrays_) size_ += aligned(array.size());
     preamble.file_bytes = size_;
-    // The preamble knows every byte through its two hashes.
-    const XXH128_hash_t whole = XXH3_128bits(&preamble, sizeof preamble);
-    content_ = fmt::format("{:016x}{:016x}", whole.high64, whole.low64);
+    content_ = content_text(preamble);
     head_.append(reinterpret_cast<const char*>(&preamble), sizeof preamble);
     head_ += fields.header;
     head_ += text_of(padding(fields.header.size()));
@@ -86,7 +90,7 @@ void EncodedValue::write(const std::filesystem::path& file) const {
     target.commit(AtomicFile::Sync::no);
 }
 
-Value read_value(const std::filesystem::path& file) {
+Value read_value(const std::filesystem::path& file, std::string_view content) {
     const auto map = std::make_shared<const MappedFile>(file);
     const std::string_view bytes = map->bytes();
     Preamble preamble;
@@ -100,6 +104,8 @@ Value read_value(const std::filesystem::path& file) {
     if (!equal(preamble.header_hash, canonical(XXH3_128bits(header.data(), header.size()))) ||
         !equal(preamble.arrays_hash, canonical(XXH3_128bits(arrays.data(), arrays.size()))))
         throw Error("'{}' is damaged: its bytes are not those that were written", file.string());
+    if (const std::string found = content_text(preamble); !content.empty() && found != content)
+        throw Error("'{}' is damaged: it holds the value {}", file.string(), found);
     return value_of(header, arrays, map);
 }
 

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scanmill/data/value.hpp"
@@ -42,7 +43,8 @@ private:
 
 /// The value in the file, its arrays mapped as long as anybody holds them. Reads every byte once to check the hashes.
 /// Throws Error: no such file, not a value file, of another version, cut short, or with bytes that were changed. Nobody
-/// may shorten the file afterwards; removing it does no harm.
-Value read_value(const std::filesystem::path& file);
+/// may shorten the file afterwards; removing it does no harm. With `content` given, also for a value of another
+/// content.
+Value read_value(const std::filesystem::path& file, std::string_view content = {});
 
 }  // namespace scanmill

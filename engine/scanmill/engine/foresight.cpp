@@ -36,9 +36,12 @@ private:
         NodeForesight& seen = nodes_[index];
         const PlannedStep* step = node.step ? &plan_.steps[*node.step] : nullptr;
         if (step && !step->expectations.empty()) seen.needed.insert(step->spec.outputs.front().name);
-        if (cache_) seen.known = remembered(*cache_, node.key);
+        if (cache_ && !node.is_uncacheable) seen.known = remembered(*cache_, node.key);
+        if (seen.known && !is_sound(*seen.known, step)) seen.known.reset();
         if (!cache_)
             seen.why = "there is no cache";
+        else if (node.is_uncacheable)
+            seen.why = "it reads what has no content to be known by";
         else if (!seen.known)
             seen.why = step ? "it has not run on such inputs with such parameters" : "it was not read before";
         else if (const auto missing = std::ranges::find_if(
@@ -49,6 +52,14 @@ private:
         seen.will_run = !seen.why.empty();
         if (!seen.will_run) return;
         for (const NodeInput& input : node.inputs) nodes_[input.node].needed.insert(input.from);
+    }
+
+    /// Whether the result speaks of this step's ports and parameters.
+    static bool is_sound(const StepResult& result, const PlannedStep* step) {
+        if (!step) return result.output("") != nullptr;
+        const auto is_there = [&](const PortSpec& port) { return result.output(port.name) != nullptr; };
+        const auto is_known = [&](const auto& parameter) { return step->spec.parameter(parameter.first) != nullptr; };
+        return std::ranges::all_of(step->spec.outputs, is_there) && std::ranges::all_of(result.resolved, is_known);
     }
 
     bool is_kept(const StepResult& result, const std::string& port) const {

@@ -21,6 +21,16 @@ constexpr std::string_view key_scheme = "2";
 
 namespace fs = std::filesystem;
 
+/// Of everything that reads files: the core, and the modules of formats.
+std::string builds_of_readers(const std::string& core) {
+    std::string builds = core;
+    for (fs::path module : module_manifests(installed_format_folder())) {
+        std::error_code absent;
+        if (module.replace_extension(".so"); fs::is_regular_file(module, absent)) builds += " " + content_hash(module);
+    }
+    return builds;
+}
+
 class GraphBuilder {
 public:
     using Hash = std::function<std::string(const fs::path&)>;
@@ -31,6 +41,7 @@ public:
           library_(library),
           request_(request),
           core_build_(content_hash(core_library_file())),
+          reader_builds_(builds_of_readers(core_build_)),
           output_files_(request) {}
 
     RunGraph build() {
@@ -128,7 +139,13 @@ private:
             .field("module", library_.build_id(planned.spec.name))
             .field("core", core_build_)
             .field("seed", std::to_string(request_.seed));
-        const auto content = [this](const fs::path& parameter) { return content_of(parameter); };
+        const auto content = [&](const fs::path& parameter) {
+            std::string unreadable;
+            std::string hash = content_of(parameter, &unreadable);
+            node.parameter_files.push_back({parameter, hash});
+            node.is_uncacheable = node.is_uncacheable || !unreadable.empty();
+            return hash;
+        };
         const auto names_files = [&](const std::string& name) {
             return planned.spec.parameter(name)->type == ParameterType::path;
         };
@@ -141,6 +158,7 @@ private:
             for (const ValueSource& source : input.sources)
                 for (const std::size_t from : sources_of(source, node_of_step, scan, file, cell)) {
                     node.inputs.push_back({input.port, from, source.port});
+                    node.is_uncacheable = node.is_uncacheable || graph_.nodes[from].is_uncacheable;
                     key.field("port " + input.port, graph_.nodes[from].key + "." + source.port);
                 }
         node.key = key.key();
@@ -166,9 +184,11 @@ private:
         node.input = input;
         node.scan = scan;
         node.content = content_of(file, &node.unreadable);
+        node.is_uncacheable = !node.unreadable.empty();
         KeyBuilder key;
         key.field("scheme", key_scheme)
             .field("content", node.content)
+            .field("readers", reader_builds_)
             .field("extension", plain_extension(file.extension().string()))  // it may decide how the bytes are read
             .field("kind", name_of(declared.kind))
             .field("unit", symbol(request_.unit != LengthUnit::unknown ? request_.unit : declared.unit))
@@ -196,7 +216,12 @@ private:
     }
 
     std::size_t add_node(RunNode node) {
-        const auto [known, is_new] = node_of_key_.emplace(node.key, graph_.nodes.size());
+        // Steps that do the same and expect different things are not one node.
+        std::string identity = node.key;
+        if (node.step)
+            for (const PlannedExpectation& expectation : plan_.steps[*node.step].expectations)
+                identity += "\n" + expectation.text;
+        const auto [known, is_new] = node_of_key_.emplace(std::move(identity), graph_.nodes.size());
         if (is_new) graph_.nodes.push_back(std::move(node));
         return known->second;
     }
@@ -209,10 +234,10 @@ private:
     const Plan& plan_;
     FilterLibrary& library_;
     const RunRequest& request_;
-    std::string core_build_;
+    std::string core_build_, reader_builds_;
     OutputFiles output_files_;
     RunGraph graph_;
-    std::map<std::string, std::size_t> node_of_key_;
+    std::map<std::string, std::size_t> node_of_key_;  // and its expectations
     std::map<std::string, std::pair<std::string, std::string>> contents_;  // file → hash, reason
 };
 

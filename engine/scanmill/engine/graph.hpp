@@ -23,6 +23,12 @@ struct NodeInput {
     std::string from;  ///< the node's output port; empty for leaves
 };
 
+/// A file that a parameter names, as it was when the run was planned.
+struct ParameterFile {
+    std::filesystem::path path;
+    std::string content;
+};
+
 struct RunNode {
     std::string key;  ///< plan key: what identifies the result before anything runs
     std::string code;  ///< of a step: hash of filter, builds, seed and the content of files that parameters name
@@ -30,6 +36,9 @@ struct RunNode {
     std::filesystem::path file;  ///< of a leaf
     std::size_t input = 0;  ///< of a leaf: index into Workflow::inputs
     std::string content;  ///< of a leaf: hash of the file's bytes
+    std::vector<ParameterFile> parameter_files;  ///< of a step
+    /// It, or something before it, reads what has no content to be known by: a folder, a file that is not there.
+    bool is_uncacheable = false;
     std::string unreadable;  ///< of a leaf: why its content could not be hashed
     std::vector<NodeInput> inputs;
     std::size_t scan = 0;  ///< the first cell's

@@ -126,25 +126,41 @@ private:
     /// Runs the node, or takes over what the cache knows of it.
     void visit(std::size_t index) {
         visited_[index] = true;
-        const RunNode& node = graph_.nodes[index];
-        if (!foresight_[index].will_run && !report_.interrupted) {
-            NodeReport& report = report_.nodes[index];
-            adopt(*foresight_[index].known, node, report);
-            report.origin = Origin::cached;
-            for (const std::string& warning : report.warnings) observer_.node_warning(node, warning);
-            observer_.node_started(node);
-            if (meets_expectations(index, report)) report.outcome = Outcome::done;
-            observer_.node_ended(node, report);
-            return;
-        }
-        run_node(index);
+        if (foresight_[index].will_run || report_.interrupted)
+            run_node(index);
+        else
+            adopt_node(index);
         if (uses_left_[index] == 0) values_[index] = {};
+    }
+
+    void adopt_node(std::size_t index) {
+        const RunNode& node = graph_.nodes[index];
+        NodeReport& report = report_.nodes[index];
+        adopt(*foresight_[index].known, node, report);
+        report.origin = Origin::cached;
+        report.outcome = Outcome::done;
+        if (node.step && !plan_.steps[*node.step].expectations.empty()) {
+            // They may be others than when it ran. Where the cache has lost the value, the node runs and asks by
+            // itself.
+            const PlannedStep& step = plan_.steps[*node.step];
+            const std::optional<Value> primary = provide(index, step.spec.outputs.front().name);
+            if (report.origin != Origin::cached) return;
+            if (primary) attempt(index, report, [&] { require_expectations(step, *primary, report); });
+        }
+        for (const std::string& warning : report.warnings) observer_.node_warning(node, warning);
+        observer_.node_started(node);
+        observer_.node_ended(node, report);
     }
 
     void run_node(std::size_t index) {
         const RunNode& node = graph_.nodes[index];
-        const auto has_values = [&](const NodeInput& input) { return provide(input.node, input.from); };
-        if (!report_.interrupted && std::ranges::all_of(node.inputs, has_values)) {
+        std::vector<StepInput> inputs;
+        for (const NodeInput& input : node.inputs) {
+            std::optional<Value> value = report_.interrupted ? std::nullopt : provide(input.node, input.from);
+            if (!value) break;
+            inputs.push_back({input.port, std::move(*value)});
+        }
+        if (!report_.interrupted && inputs.size() == node.inputs.size()) {
             NodeReport& report = report_.nodes[index] = {};
             report.why = foresight_[index].why;
             observer_.node_started(node);
@@ -152,32 +168,36 @@ private:
             const double cpu = cpu_seconds();
             attempt(index, report, [&] {
                 if (node.step)
-                    run_step_node(index, report);
+                    run_step_node(index, inputs, report);
                 else
                     read_leaf_node(index, report);
             });
             report.seconds = seconds_since(start);
             report.cpu_seconds = cpu_seconds() - cpu;
             observer_.node_ended(node, report);
+        } else {
+            report_.nodes[index].outcome = Outcome::skipped;
         }
         for (const NodeInput& input : node.inputs) release(input.node);
     }
 
-    /// Whether the value is at hand afterwards: in memory, from the cache or, when that has lost it, made again.
-    bool provide(std::size_t index, const std::string& port) {
+    /// The value: from memory, from the cache or, when that has lost it, made again. Nothing when that is not possible.
+    std::optional<Value> provide(std::size_t index, const std::string& port) {
         if (!visited_[index]) visit(index);
-        if (report_.nodes[index].outcome != Outcome::done) return false;
-        if (find(index, port)) return true;
+        if (report_.nodes[index].outcome != Outcome::done) return std::nullopt;
+        if (const Value* value = find(index, port)) return *value;
         const std::optional<StepResult>& known = foresight_[index].known;
         const ResultOutput* output = known ? known->output(port) : nullptr;
         if (std::optional<Value> value = output ? memory_.value(output->content) : std::nullopt) {
-            values_[index].push_back({port, std::move(*value)});
-            return true;
+            values_[index].push_back({port, *value});
+            return value;
         }
         foresight_[index].needed.insert(port);
         foresight_[index].why = "the cache has lost its value";
+        for (const NodeInput& input : graph_.nodes[index].inputs) ++uses_left_[input.node];
         run_node(index);
-        return report_.nodes[index].outcome == Outcome::done && find(index, port);
+        const Value* value = report_.nodes[index].outcome == Outcome::done ? find(index, port) : nullptr;
+        return value ? std::optional<Value>(*value) : std::nullopt;
     }
 
     /// Turns whatever `work` throws into the node's report.
@@ -218,7 +238,7 @@ private:
         };
         const auto start = std::chrono::steady_clock::now();
         Value value = read_leaf(node.file, plan_.workflow.inputs[node.input], request_.unit, on_warning);
-        if (settings_.cache && content_hash(node.file) != node.content)
+        if (settings_.cache && !node.is_uncacheable && content_hash(node.file) != node.content)
             throw Error("'{}' changed while the run was going on", node.file.string()).hint("run it again");
         if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&value))
             report.facts.set("points", static_cast<double>((*points)->size()), Unit::count);
@@ -228,11 +248,9 @@ private:
         remember(index, node.key, seconds_since(start), report);
     }
 
-    void run_step_node(std::size_t index, NodeReport& report) {
+    void run_step_node(std::size_t index, const std::vector<StepInput>& inputs, NodeReport& report) {
         const RunNode& node = graph_.nodes[index];
         const PlannedStep& step = plan_.steps[*node.step];
-        std::vector<StepInput> inputs;
-        for (const NodeInput& input : node.inputs) inputs.push_back({input.port, *find(input.node, input.from)});
         ContextOptions options;
         options.threads = settings_.threads;
         options.seed = settings_.seed;
@@ -243,7 +261,7 @@ private:
         std::string run_key;
         auto start = std::chrono::steady_clock::now();
         const Recall recall = [&](const ParameterSet& resolved, NodeReport& of) -> std::optional<Outputs> {
-            if (!settings_.cache) return std::nullopt;
+            if (!settings_.cache || node.is_uncacheable) return std::nullopt;
             run_key = run_key_of(node, step, resolved);
             std::optional<Outputs> known = recalled(index, run_key, of);
             start = std::chrono::steady_clock::now();
@@ -252,6 +270,9 @@ private:
         const auto filter = [&]() -> const FilterDeclaration& { return library_.load(step.spec.name); };
         const Outputs outputs = run_step(step, filter, inputs, std::move(options), recall, report);
         const double seconds = seconds_since(start);
+        for (const ParameterFile& file : node.parameter_files)
+            if (settings_.cache && !node.is_uncacheable && content_hash(file.path) != file.content)
+                throw Error("'{}' changed while the run was going on", file.path.string()).hint("run it again");
         for (const auto& [port, value] : outputs) values_[index].push_back({port, value});
         if (settings_.is_cancelled && settings_.is_cancelled()) report_.interrupted = true;
         if (report.origin == Origin::ran) remember(index, run_key, seconds, report);
@@ -293,16 +314,20 @@ private:
 
     /// Hands the node's result to the cache, and its values where that is worth it.
     void remember(std::size_t index, const std::string& run_key, double seconds, const NodeReport& report) {
-        if (!settings_.cache) return;
         const RunNode& node = graph_.nodes[index];
+        if (!settings_.cache || node.is_uncacheable) return;
         double cost = seconds;
         for (const NodeInput& input : node.inputs) cost += memory_.cost_of(input.node);
         StepResult result;
         for (const auto& [name, value] : report.resolved.values)
-            if (!std::holds_alternative<std::monostate>(value)) result.resolved.emplace_back(name, written(value));
+            if (!std::holds_alternative<std::monostate>(value) && !names_files(node, name))
+                result.resolved.emplace_back(name, written(value));
         result.metrics = report.metrics;
         result.facts = report.facts;
-        result.warnings = report.warnings;
+        // Equal files of other names share the result: what is said of reading begins with the name.
+        const std::string prefix = said_of(node);
+        for (const std::string& warning : report.warnings)
+            result.warnings.push_back(warning.starts_with(prefix) ? warning.substr(prefix.size()) : warning);
         result.seconds = seconds;
         result.outputs = memory_.keep_values(index, values_[index], cost);
         memory_.keep_result(node.key, run_key, result);
@@ -313,27 +338,21 @@ private:
     void adopt(const StepResult& result, const RunNode& node, NodeReport& report) const {
         report.metrics = result.metrics;
         report.facts = result.facts;
-        report.warnings = result.warnings;
+        report.warnings.clear();
+        for (const std::string& warning : result.warnings) report.warnings.push_back(said_of(node) + warning);
         if (!node.step) return;
-        const FilterSpec& spec = plan_.steps[*node.step].spec;
+        const PlannedStep& step = plan_.steps[*node.step];
         report.resolved = {};
+        for (const auto& [name, value] : step.parameters.values)
+            if (names_files(node, name)) report.resolved.values.emplace_back(name, value);
         for (const auto& [name, text] : result.resolved)
-            report.resolved.values.emplace_back(name, parse(*spec.parameter(name), text));
+            report.resolved.values.emplace_back(name, parse(*step.spec.parameter(name), text));
     }
 
-    /// Of a node from the cache: its step may expect other things than when it ran.
-    bool meets_expectations(std::size_t index, NodeReport& report) {
-        const RunNode& node = graph_.nodes[index];
-        if (!node.step || plan_.steps[*node.step].expectations.empty()) return true;
-        const PlannedStep& step = plan_.steps[*node.step];
-        const std::string& primary = step.spec.outputs.front().name;
-        report.outcome = Outcome::done;  // so that its value can be provided
-        const bool provided = provide(index, primary);
-        report.outcome = Outcome::skipped;
-        if (!provided) return false;
-        attempt(index, report, [&] { require_expectations(step, *find(index, primary), report); });
-        return report.outcome == Outcome::done;
+    bool names_files(const RunNode& node, const std::string& parameter) const {
+        return plan_.steps[*node.step].spec.parameter(parameter)->type == ParameterType::path;
     }
+    static std::string said_of(const RunNode& node) { return node.step ? "" : "'" + node.file.string() + "': "; }
 
     OutputReport write_output(const RunCell& cell, const RunOutput& output, CellReport& report) {
         OutputReport written;
@@ -341,13 +360,14 @@ private:
         const auto start = std::chrono::steady_clock::now();
         try {
             if (const auto earlier = written_.find(output.file); earlier != written_.end()) return earlier->second;
-            if (!provide(output.node, output.port)) {
+            const std::optional<Value> provided = provide(output.node, output.port);
+            if (!provided) {
                 // Something may have failed only now, when a value was made again.
                 for (const std::size_t node : cell.nodes)
                     if (report.error.empty()) report.error = report_.nodes[node].error;
                 return written;
             }
-            const Value value = *find(output.node, output.port);
+            const Value& value = *provided;
             written.kind = kind_of(value);
             std::error_code trouble;
             fs::create_directories(output.file.parent_path(), trouble);

@@ -47,19 +47,24 @@ private:
                 &step == &past.front() || found.size() < least.size())
                 least = std::move(found);
         if (past.empty()) return {};
+        const std::int64_t run = past.front().run;
+        if (least.empty() && std::ranges::any_of(past, [](const PastStep& step) { return !step.done; }))
+            return fmt::format("it did not come to its end in run {}", run);
         if (least.empty())
-            return "the cache no longer knows it, or Scanmill itself changed, since run " +
-                   std::to_string(past.front().run);
+            return fmt::format(
+                "the cache does not know it: none of its parameters changed since run {}, but perhaps the order of its "
+                "inputs, a file that a parameter names, or Scanmill itself; or the cache lost it",
+                run);
         std::string text;
         for (const std::string& difference : least) text += (text.empty() ? "" : ", ") + difference;
-        return text + fmt::format(" since run {}", past.front().run);
+        return text + fmt::format(" since run {}", run);
     }
 
     std::vector<std::string> differences(std::size_t index, const PastStep& past) const {
         const RunNode& node = graph_.nodes[index];
         std::vector<std::string> found;
         if (past.plan_key == node.key) return found;
-        if (!node.step) return {"the file's content changed"};
+        if (!node.step) return {"the file, its unit or its frame changed"};
         const PlannedStep& step = plan_.steps[*node.step];
         if (past.filter != step.spec.name)
             found.push_back(fmt::format("the filter changed {} → {}", past.filter, step.spec.name));

@@ -53,6 +53,7 @@ void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
     step.facts = report.facts;
     step.warnings = report.warnings;
     steps_.push_back(std::move(step));
+    flush_when_due();
 }
 
 void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
@@ -67,9 +68,10 @@ void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
         record.outputs.push_back({output.file.string(), std::string(name_of(output.kind)),
                                   std::string(name_of(output.outcome)), output.facts});
     cells_.push_back(std::move(record));
-    constexpr std::chrono::seconds patience(1);
-    if (std::chrono::steady_clock::now() - flushed_ > patience) flush();
+    flush_when_due();
 }
+
+Recorder::~Recorder() { flush(); }
 
 void Recorder::finish(const RunReport& report) {
     flush();
@@ -78,7 +80,13 @@ void Recorder::finish(const RunReport& report) {
     attempt([&] { records_.end(run_, outcome, seconds.count()); });
 }
 
+void Recorder::flush_when_due() {
+    constexpr std::chrono::seconds patience(1);
+    if (std::chrono::steady_clock::now() - flushed_ > patience) flush();
+}
+
 void Recorder::flush() {
+    if (steps_.empty() && cells_.empty()) return;
     attempt([&] { records_.add(run_, steps_, cells_); });
     steps_.clear();
     cells_.clear();

@@ -12,8 +12,9 @@
 
 namespace scanmill {
 
-/// Gathers for at most a second before it writes, so that many small steps cost few syncs; a run that is killed loses
-/// that second. When the records cannot be written any longer, that is told once and the run goes on without them.
+/// Gathers what ends within a second before it writes, so that many small steps cost few syncs; a run that is killed
+/// loses what ended in its last second, and the step that it was at. When the records cannot be written any longer,
+/// that is told once and the run goes on without them.
 class Recorder : public RunObserver {
 public:
     using OnWarning = std::function<void(std::string)>;
@@ -21,6 +22,8 @@ public:
     /// All must outlive the recorder.
     Recorder(RunRecords& records, const RunStart& start, const Plan& plan, FilterLibrary& library,
              const RunGraph& graph, OnWarning on_warning);
+
+    ~Recorder() override;
 
     void node_ended(const RunNode& node, const NodeReport& report) override;
     void cell_ended(const RunCell& cell, const CellReport& report) override;
@@ -31,6 +34,7 @@ public:
 
 private:
     void flush();
+    void flush_when_due();
     template <class Action>
     void attempt(Action&& action);
 

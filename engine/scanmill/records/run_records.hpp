@@ -69,6 +69,7 @@ struct PastStep {
     std::string filter, build, plan_key;
     int filter_version = 0;
     std::vector<std::pair<std::string, std::string>> authored;
+    bool done = true;
 };
 
 /// The file's name in an output folder.

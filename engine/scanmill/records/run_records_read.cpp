@@ -32,8 +32,10 @@ std::vector<RunSummary> RunRecords::runs() const {
             "SELECT run.id, started, workflow, run_end.outcome, COALESCE(run_end.seconds, 0), "
             "(SELECT COUNT(*) FROM cell WHERE cell.run = run.id), "
             "(SELECT COUNT(*) FROM cell WHERE cell.run = run.id AND outcome = 'failed'), "
-            "(SELECT COUNT(*) FROM step WHERE step.run = run.id AND origin = 'ran' AND outcome != 'skipped'), "
-            "(SELECT COUNT(*) FROM step WHERE step.run = run.id AND origin != 'ran') "
+            "(SELECT COUNT(DISTINCT node) FROM step WHERE step.run = run.id AND origin = 'ran'), "
+            // What was taken over and then had to run all the same counts as run.
+            "(SELECT COUNT(DISTINCT node) FROM step WHERE step.run = run.id AND origin != 'ran' AND node NOT IN "
+            "(SELECT node FROM step WHERE step.run = run.id AND origin = 'ran')) "
             "FROM run LEFT JOIN run_end ON run_end.run = run.id ORDER BY run.id");
         const auto count = [&row](int column) { return static_cast<std::size_t>(row.getColumn(column).getInt64()); };
         std::vector<RunSummary> runs;
@@ -156,7 +158,8 @@ std::vector<PastStep> RunRecords::last_steps(const std::string& workflow, const 
     return about(database_->file, [&] {
         SQLite::Statement row(
             database_->sqlite,
-            "SELECT run.id, seed, filter, build, plan_key, filter_version, authored FROM step JOIN run ON run.id = "
+            "SELECT run.id, seed, filter, build, plan_key, filter_version, authored, outcome FROM step JOIN run ON "
+            "run.id = "
             "step.run "
             "WHERE step.run = (SELECT MAX(step.run) FROM step JOIN run ON run.id = step.run "
             "WHERE workflow = ?1 AND scan = ?2 AND label = ?3) AND scan = ?2 AND label = ?3 ORDER BY step.id");
@@ -165,7 +168,8 @@ std::vector<PastStep> RunRecords::last_steps(const std::string& workflow, const 
         while (row.executeStep())
             steps.push_back({row.getColumn(0).getInt64(), std::stoull(row.getColumn(1).getString()),
                              row.getColumn(2).getString(), row.getColumn(3).getString(), row.getColumn(4).getString(),
-                             row.getColumn(5).getInt(), pairs_of(row.getColumn(6).getString())});
+                             row.getColumn(5).getInt(), pairs_of(row.getColumn(6).getString()),
+                             row.getColumn(7).getString() == "done"});
         return steps;
     });
 }
