@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -98,7 +99,7 @@ const T& as(const Value& value) {
 
 template <class T>
 bool same_bits(const Buffer<T>& a, const Buffer<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+    return std::ranges::equal(std::as_bytes(a.span()), std::as_bytes(b.span()));
 }
 
 void expect_same(const ColumnTable& a, const ColumnTable& b) {
