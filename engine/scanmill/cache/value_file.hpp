@@ -22,7 +22,7 @@ namespace scanmill {
 /// A value ready to be written; shares its arrays.
 class EncodedValue {
 public:
-    /// Hashes every byte of the value: about 10 GB/s from memory.
+    /// Cost: one pass over every byte of the value, to hash it.
     explicit EncodedValue(Value value);
 
     /// 32 hexadecimal digits, of everything that the value holds: equal for equal values.

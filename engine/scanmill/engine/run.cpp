@@ -238,8 +238,7 @@ private:
         };
         const auto start = std::chrono::steady_clock::now();
         Value value = read_leaf(node.file, plan_.workflow.inputs[node.input], request_.unit, on_warning);
-        if (settings_.cache && !node.is_uncacheable && content_hash(node.file) != node.content)
-            throw Error("'{}' changed while the run was going on", node.file.string()).hint("run it again");
+        require_unchanged(node, node.file, node.content);
         if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&value))
             report.facts.set("points", static_cast<double>((*points)->size()), Unit::count);
         else if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
@@ -261,7 +260,7 @@ private:
         std::string run_key;
         auto start = std::chrono::steady_clock::now();
         const Recall recall = [&](const ParameterSet& resolved, NodeReport& of) -> std::optional<Outputs> {
-            if (!settings_.cache || node.is_uncacheable) return std::nullopt;
+            if (!uses_cache(node)) return std::nullopt;
             run_key = run_key_of(node, step, resolved);
             std::optional<Outputs> known = recalled(index, run_key, of);
             start = std::chrono::steady_clock::now();
@@ -270,14 +269,20 @@ private:
         const auto filter = [&]() -> const FilterDeclaration& { return library_.load(step.spec.name); };
         const Outputs outputs = run_step(step, filter, inputs, std::move(options), recall, report);
         const double seconds = seconds_since(start);
-        for (const ParameterFile& file : node.parameter_files)
-            if (settings_.cache && !node.is_uncacheable && content_hash(file.path) != file.content)
-                throw Error("'{}' changed while the run was going on", file.path.string()).hint("run it again");
+        for (const ParameterFile& file : node.parameter_files) require_unchanged(node, file.path, file.content);
         for (const auto& [port, value] : outputs) values_[index].push_back({port, value});
         if (settings_.is_cancelled && settings_.is_cancelled()) report_.interrupted = true;
         if (report.origin == Origin::ran) remember(index, run_key, seconds, report);
         if (!step.expectations.empty())
             require_expectations(step, *find(index, step.spec.outputs.front().name), report);
+    }
+
+    bool uses_cache(const RunNode& node) const { return settings_.cache && !node.is_uncacheable; }
+
+    /// The key knows a file as it was when the run was planned; what it holds now must not be kept under that key.
+    void require_unchanged(const RunNode& node, const fs::path& file, const std::string& content) const {
+        if (uses_cache(node) && content_hash(file) != content)
+            throw Error("'{}' changed while the run was going on", file.string()).hint("run it again");
     }
 
     /// Filter, parameters as it gets them, and the content of its inputs: whatever else changed makes no difference.
@@ -315,7 +320,7 @@ private:
     /// Hands the node's result to the cache, and its values where that is worth it.
     void remember(std::size_t index, const std::string& run_key, double seconds, const NodeReport& report) {
         const RunNode& node = graph_.nodes[index];
-        if (!settings_.cache || node.is_uncacheable) return;
+        if (!uses_cache(node)) return;
         double cost = seconds;
         for (const NodeInput& input : node.inputs) cost += memory_.cost_of(input.node);
         StepResult result;
