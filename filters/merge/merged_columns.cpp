@@ -7,6 +7,7 @@
 #include <string>
 
 #include "merge/joined_column.hpp"
+#include "scanmill/geometry/placed.hpp"
 
 namespace scanmill::merging {
 
@@ -23,23 +24,10 @@ bool names_a_source(const std::string& name) {
     return rest.empty();
 }
 
-template <class Number>
-Column turned(const Column& normals, const Eigen::Matrix3d& rotation) {
-    Array<Number> values(3 * normals.rows());
-    for (std::size_t row = 0; row < normals.rows(); ++row) {
-        const Vec3 normal = rotation * Vec3(normals.number(row, 0), normals.number(row, 1), normals.number(row, 2));
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            values[3 * row + axis] = static_cast<Number>(normal[static_cast<Eigen::Index>(axis)]);
-    }
-    return {normals.name(), 3, Buffer<Number>(std::move(values))};
-}
-
 /// The column as the result will call it, turned when it has directions.
 Column placed(const Column& column, const RigidTransform* pose) {
     if (names_a_source(column.name())) return column.renamed(column.name() + older);
-    if (!pose || column.name() != "normal" || column.components() != 3) return column;
-    return column.type() == ScalarType::float32 ? turned<float>(column, pose->rotation)
-                                                : turned<double>(column, pose->rotation);
+    return pose ? turned(column, pose->rotation) : column;
 }
 
 std::string shape(const Column& column) {

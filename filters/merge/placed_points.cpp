@@ -2,6 +2,7 @@
 #include "merge/placed_points.hpp"
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/geometry/placed.hpp"
 
 namespace scanmill::merging {
 
@@ -12,16 +13,6 @@ struct Motion {
     Eigen::Matrix3d rotation;
     Vec3 shift;
 };
-
-Vec3 translation_in(LengthUnit unit, const RigidTransform& pose) {
-    if (pose.unit == LengthUnit::unknown || pose.unit == unit) return pose.translation;
-    if (unit == LengthUnit::unknown)
-        throw Error("the poses are in {}; the unit of the scans is not declared", symbol(pose.unit))
-            .hint("declare it: --unit mm, or `unit: mm` at the workflow's input");
-    Vec3 translation;
-    for (int axis = 0; axis < 3; ++axis) translation[axis] = in_unit(pose.translation[axis], pose.unit, unit);
-    return translation;
-}
 
 }  // namespace
 

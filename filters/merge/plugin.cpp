@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/plugin.hpp"
 #include "merge/merge.hpp"
-#include "merge/poses.hpp"
+#include "merge/scan_poses.hpp"
 
 using namespace scanmill;
 
@@ -38,7 +38,8 @@ SCANMILL_FILTER() {
             if (params.poses_file) {
                 std::vector<Frame> frames;
                 for (const auto& cloud : clouds) frames.push_back(cloud->frame);
-                params.poses = merging::poses_of(frames, merging::read_poses(*params.poses_file, context), context);
+                const auto warn = [&](std::string sentence) { context.warn(std::move(sentence)); };
+                params.poses = merging::poses_of(frames, read_poses(*params.poses_file, warn), context);
             }
             return Outputs().set("points", merge(clouds, params, context).points);
         });

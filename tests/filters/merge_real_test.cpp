@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "filters/merge_cases.hpp"
-#include "merge/poses.hpp"
+#include "merge/scan_poses.hpp"
 #include "scanmill/formats/files.hpp"
 #include "support/real_data.hpp"
 
@@ -49,9 +49,9 @@ protected:
         SCANMILL_REAL_SCAN(model, shared_data, "1-bunny/bun_zipper.ply");
         SCANMILL_REAL_SCAN(conf, shared_data, "1-bunny/raw/bun.conf");
         Context context;
-        const std::vector<merging::ScanPose> poses = merging::read_poses(conf, context);
+        const std::vector<ScanPose> poses = read_poses(conf, [&](std::string text) { context.warn(std::move(text)); });
         std::vector<Frame> frames;
-        for (const merging::ScanPose& pose : poses) {
+        for (const ScanPose& pose : poses) {
             clouds_.push_back(*read_points(conf.parent_path() / pose.scan));
             clouds_.back().frame.name = std::filesystem::path(pose.scan).stem();
             frames.push_back(clouds_.back().frame);

@@ -73,7 +73,7 @@ TEST(MergeRefusals, PosesInAUnitThatTheScansLack_AskForIt) {
     RigidTransform pose;
     pose.unit = LengthUnit::metre;
     const Error error = refusal({point}, posed({pose}));
-    EXPECT_THAT(error.sentence(), HasSubstr("the poses are in m; the unit of the scans is not declared"));
+    EXPECT_THAT(error.sentence(), HasSubstr("the pose is in m; the unit of the scan is not declared"));
     EXPECT_THAT(error.hint(), HasSubstr("--unit"));
 }
 

@@ -3,11 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "merge/pose_files.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
+#include "scanmill/formats/pose_files.hpp"
+#include "scanmill/formats/rotation.hpp"
 
-namespace scanmill::merging {
+namespace scanmill {
 
 namespace {
 
@@ -63,20 +64,42 @@ std::string text_at(const Json& object, const char* key, const std::string& plac
     return item_at(object, key).get<std::string>();
 }
 
+/// `what` begins the message: "pose 2: 'rotation'".
 template <std::size_t count>
-std::array<double, count> numbers_at(const Json& object, const char* key, const std::string& place) {
+std::array<double, count> numbers_of(const Json& list, const std::string& what) {
     std::array<double, count> values;
-    const Json& list = item_at(object, key);
     const bool sound = list.is_array() && list.size() == count &&
                        std::ranges::all_of(list, [](const Json& item) { return item.is_number(); });
-    if (!sound) throw Error("{}: '{}' is not a list of {} numbers", place, key, count);
+    if (!sound) throw Error("{} is not a list of {} numbers", what, count);
     for (std::size_t i = 0; i < count; ++i) values[i] = list[i].template get<double>();
     return values;
 }
 
+/// Four rows of four numbers, row by row.
+std::array<double, 16> matrix_of(const Json& rows, const std::string& place) {
+    if (!rows.is_array() || rows.size() != 4) throw Error("{}: 'matrix' is not a list of 4 rows", place);
+    std::array<double, 16> values;
+    for (std::size_t row = 0; row < 4; ++row)
+        std::ranges::copy(numbers_of<4>(rows[row], fmt::format("{}: row {} of 'matrix'", place, row + 1)),
+                          values.begin() + static_cast<std::ptrdiff_t>(4 * row));
+    return values;
+}
+
+RigidTransform motion_at(const Json& item, const std::string& place, const OnPoseWarning& warn) {
+    if (!item.contains("matrix")) {
+        RigidTransform motion;
+        motion.rotation = rotation_of(numbers_of<4>(item_at(item, "rotation"), place + ": 'rotation'"), place, warn);
+        motion.translation = Vec3(numbers_of<3>(item_at(item, "translation"), place + ": 'translation'").data());
+        return motion;
+    }
+    for (const char* other : {"rotation", "translation"})
+        if (item.contains(other)) throw Error("{}: has a matrix and '{}'; expected one of the two ways", place, other);
+    return motion_of(matrix_of(item_at(item, "matrix"), place), place);
+}
+
 }  // namespace
 
-std::vector<ScanPose> parse_poses_json(std::string_view text, const Warn& warn) {
+std::vector<ScanPose> parse_poses_json(std::string_view text, const OnPoseWarning& warn) {
     const Json root = parsed(text);
     const std::string whole = "the poses";
     if (!root.is_object()) throw Error("holds no JSON object; expected {}", "{\"scanmill\": 1, \"poses\": […]}");
@@ -93,11 +116,10 @@ std::vector<ScanPose> parse_poses_json(std::string_view text, const Warn& warn) 
     for (const Json& item : list) {
         const std::string place = fmt::format("pose {}", poses.size() + 1);
         if (!item.is_object()) throw Error("{}: is no JSON object", place);
-        require_keys(item, place, {"scan", "rotation", "translation"});
+        require_keys(item, place, {"scan", "rotation", "translation", "matrix"});
         ScanPose pose;
         pose.scan = text_at(item, "scan", place);
-        pose.transform.rotation = rotation_of(numbers_at<4>(item, "rotation", place), place, warn);
-        pose.transform.translation = Vec3(numbers_at<3>(item, "translation", place).data());
+        pose.transform = motion_at(item, place, warn);
         pose.transform.unit = unit.value_or(LengthUnit::unknown);
         pose.transform.to = text_at(root, "frame", whole);
         poses.push_back(std::move(pose));
@@ -105,4 +127,4 @@ std::vector<ScanPose> parse_poses_json(std::string_view text, const Warn& warn) 
     return poses;
 }
 
-}  // namespace scanmill::merging
+}  // namespace scanmill

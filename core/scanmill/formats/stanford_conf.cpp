@@ -2,13 +2,14 @@
 #include <array>
 #include <cmath>
 
-#include "merge/pose_files.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
+#include "scanmill/formats/pose_files.hpp"
 #include "scanmill/formats/reading.hpp"
+#include "scanmill/formats/rotation.hpp"
 #include "scanmill/formats/text_cursor.hpp"
 
-namespace scanmill::merging {
+namespace scanmill {
 
 namespace {
 
@@ -34,7 +35,7 @@ std::array<double, 7> numbers(TextCursor& cursor, std::string_view scan) {
 
 }  // namespace
 
-std::vector<ScanPose> parse_stanford_conf(std::string_view text, const Warn& warn) {
+std::vector<ScanPose> parse_stanford_conf(std::string_view text, const OnPoseWarning& warn) {
     static const std::vector<std::string> keywords{"camera", "mesh", "bmesh"};
     std::vector<ScanPose> poses;
     TextCursor cursor(text, {.comment = '#'});
@@ -57,4 +58,4 @@ std::vector<ScanPose> parse_stanford_conf(std::string_view text, const Warn& war
     return poses;
 }
 
-}  // namespace scanmill::merging
+}  // namespace scanmill

@@ -1,28 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "merge/poses.hpp"
+#include "merge/scan_poses.hpp"
 
 #include <algorithm>
 #include <map>
 
-#include "merge/pose_files.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
-#include "scanmill/formats/mapped_file.hpp"
-#include "scanmill/formats/reading.hpp"
 
 namespace scanmill::merging {
 
 namespace {
-
-bool is_json(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    return first != std::string_view::npos && (text[first] == '{' || text[first] == '[');
-}
-
-bool belongs_to(const ScanPose& pose, const std::string& frame) {
-    const std::filesystem::path scan(pose.scan);
-    return pose.scan == frame || scan.filename() == frame || scan.stem() == frame;
-}
 
 std::vector<std::string> names_of(std::span<const ScanPose> poses) {
     std::vector<std::string> names;
@@ -54,7 +41,7 @@ std::vector<RigidTransform> by_name(std::span<const Frame> frames, std::span<con
     std::vector<std::string> unused = names_of(poses);
     for (std::size_t input = 0; input < frames.size(); ++input) {
         const std::string& name = frames[input].name;
-        const auto fits = [&](const ScanPose& pose) { return belongs_to(pose, name); };
+        const auto fits = [&](const ScanPose& pose) { return is_of(pose, name); };
         const auto found = std::ranges::find_if(poses, fits);
         if (found == poses.end())
             throw Error("there is no pose for input {}, whose frame is called '{}'; there are {}{}", input, name,
@@ -75,24 +62,6 @@ std::vector<RigidTransform> by_name(std::span<const Frame> frames, std::span<con
 }
 
 }  // namespace
-
-std::vector<ScanPose> parse_poses(std::string_view content, const std::function<void(std::string)>& warn) {
-    const std::string_view text = without_byte_order_mark(content);
-    return is_json(text) ? parse_poses_json(text, warn) : parse_stanford_conf(text, warn);
-}
-
-std::vector<ScanPose> read_poses(const std::filesystem::path& file, Context& context) {
-    if (std::filesystem::is_directory(file)) throw Error("'{}': is a folder; expected a file of poses", file.string());
-    const auto warn = [&](const std::string& sentence) {
-        context.warn(fmt::format("'{}': {}", file.string(), sentence));
-    };
-    try {
-        const MappedFile content(file);
-        return parse_poses(content.bytes(), warn);
-    } catch (const Error& error) {
-        throw Error("'{}': {}", file.string(), error.sentence()).hint(error.hint());
-    }
-}
 
 std::vector<RigidTransform> poses_of(std::span<const Frame> frames, std::span<const ScanPose> poses, Context& context) {
     const auto unnamed = std::ranges::find(frames, "", &Frame::name);
