@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "byte_size.hpp"
 #include "cache_options.hpp"
 #include "commands.hpp"
 #include "printable.hpp"
+#include "scanmill/engine/byte_size.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill::runner {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "byte_size.hpp"
 #include "printable.hpp"
+#include "scanmill/engine/byte_size.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill::runner {

@@ -4,32 +4,11 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 
+#include "scanmill/engine/workflow_file.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill::runner {
-
-namespace {
-
-constexpr std::size_t largest_workflow = 16u << 20;
-
-std::string read_text(const std::string& file) {
-    std::error_code trouble;
-    if (std::filesystem::is_directory(file, trouble)) throw Error("'{}' is a folder; expected a workflow file", file);
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error("'{}' cannot be opened; expected a workflow file", file);
-    std::string text, block(1u << 16, '\0');
-    while (stream.read(block.data(), static_cast<std::streamsize>(block.size())), stream.gcount() > 0) {
-        text.append(block, 0, static_cast<std::size_t>(stream.gcount()));
-        if (text.size() > largest_workflow)
-            throw Error("'{}' has more than {} bytes, the most that a workflow may have", file, largest_workflow);
-    }
-    return text;
-}
-
-}  // namespace
 
 FilterLibrary open_library() {
     std::vector<std::string> ignored;
@@ -42,7 +21,7 @@ FilterLibrary open_library() {
 
 CheckedWorkflow check_workflow(const std::string& file, const FilterLibrary& library, const Settings& settings) {
     Diagnostics diagnostics(file);
-    Workflow workflow = parse_workflow(read_text(file), diagnostics);
+    Workflow workflow = parse_workflow(read_workflow_file(file), diagnostics);
     Plan plan = make_plan(std::move(workflow), library, settings, diagnostics);
     return {std::move(diagnostics), std::move(plan)};
 }

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <thread>
 
-#include "byte_size.hpp"
+#include "scanmill/engine/byte_size.hpp"
 
 namespace scanmill::runner {
 

@@ -235,6 +235,14 @@ void visit_all(const Workflow& workflow, const Settings& settings, const std::fu
 
 }  // namespace
 
+std::vector<std::string> undeclared(const Settings& settings, const Workflow& workflow) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : settings)
+        if (std::ranges::find(workflow.parameters, name, &WorkflowParameter::name) == workflow.parameters.end())
+            names.push_back(name);
+    return names;
+}
+
 void expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics,
             const std::function<void(const Variant&)>& visit) {
     const References references(workflow, diagnostics);

@@ -12,8 +12,11 @@
 
 namespace scanmill {
 
-/// Values given from outside for workflow parameters: `--set`.
+/// Values given from outside for workflow parameters: `--set`, or a batch's `set`.
 using Settings = std::map<std::string, ValueExpression>;
+
+/// The names in `settings` that are no parameters of the workflow.
+std::vector<std::string> undeclared(const Settings& settings, const Workflow& workflow);
 
 /// A parameter of a step and the value that this variant takes for it. Leads into the workflow or the settings.
 struct ChosenArgument {

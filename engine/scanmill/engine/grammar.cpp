@@ -33,6 +33,16 @@ void MapReader::complain_of_others() {
                                                            enumerated(known_), did_you_mean(entry.key, known_)));
 }
 
+void require_grammar_version(MapReader& root, Diagnostics& diagnostics) {
+    constexpr std::string_view version = "1";
+    const YamlEntry* entry = root.find("scanmill");
+    if (!entry)
+        diagnostics.error({1, 1}, "does not say its grammar; expected `scanmill: 1` as the first line");
+    else if (entry->value.text != version)
+        diagnostics.error(entry->value.position, fmt::format("the grammar is {}; this program reads grammar {}",
+                                                             entry->value.described(), version));
+}
+
 bool require_map(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics) {
     if (node.is_map()) return true;
     diagnostics.error(node.position, fmt::format("found {}; expected {}", node.described(), expected));
@@ -49,6 +59,14 @@ std::optional<std::string> require_text(const YamlNode& node, std::string_view e
     if (node.is_scalar()) return node.text;
     diagnostics.error(node.position, fmt::format("found {}; expected {}", node.described(), expected));
     return std::nullopt;
+}
+
+LengthUnit require_unit(const YamlNode& node, Diagnostics& diagnostics) {
+    const std::optional<LengthUnit> known = length_unit(node.text);
+    if (!known)
+        diagnostics.error(node.position,
+                          fmt::format("{} is no unit; expected one of {}", node.described(), length_unit_symbols()));
+    return known.value_or(LengthUnit::unknown);
 }
 
 bool require_name(const std::string& name, Position position, std::string_view what, Diagnostics& diagnostics) {

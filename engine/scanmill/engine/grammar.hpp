@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "scanmill/data/frame.hpp"
 #include "scanmill/engine/document.hpp"
 
 namespace scanmill {
@@ -31,11 +32,17 @@ private:
     std::vector<std::string> known_;
 };
 
+/// Reports anything but `scanmill: 1`.
+void require_grammar_version(MapReader& root, Diagnostics& diagnostics);
+
 /// `node` must be of this type; otherwise reports what was found and `expected`.
 bool require_map(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics);
 bool require_list(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics);
 /// The scalar's text; nothing after reporting when it is none.
 std::optional<std::string> require_text(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics);
+
+/// The unit that a scan is in; unknown after reporting when it is none.
+LengthUnit require_unit(const YamlNode& node, Diagnostics& diagnostics);
 
 /// Names of inputs, parameters, steps and variants: letters, digits, `-`, `_`; begins with a letter.
 bool require_name(const std::string& name, Position position, std::string_view what, Diagnostics& diagnostics);

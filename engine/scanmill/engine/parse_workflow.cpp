@@ -12,8 +12,6 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::string_view grammar_version = "1";
-
 class WorkflowParser {
 public:
     explicit WorkflowParser(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
@@ -21,7 +19,6 @@ public:
     Workflow workflow(const YamlNode& root);
 
 private:
-    void version(const YamlEntry* entry);
     void input(const YamlEntry& entry, Workflow& workflow);
     void input_details(const YamlNode& node, WorkflowInput& input);
     void input_kind(const YamlNode& node, WorkflowInput& input);
@@ -47,7 +44,7 @@ Workflow WorkflowParser::workflow(const YamlNode& root) {
     }
     if (!require_map(root, "a workflow: a map that begins with `scanmill: 1`", diagnostics_)) return workflow;
     MapReader keys(root, "a workflow", diagnostics_);
-    version(keys.find("scanmill"));
+    require_grammar_version(keys, diagnostics_);
     workflow.name = keys.text("name");
     if (const YamlNode* name = root.find("name"); name && name->is_scalar())
         require_name(workflow.name, name->position, "a workflow", diagnostics_);
@@ -64,14 +61,6 @@ Workflow WorkflowParser::workflow(const YamlNode& root) {
                [&](const YamlEntry& entry) { output(entry, workflow); });
     keys.complain_of_others();
     return workflow;
-}
-
-void WorkflowParser::version(const YamlEntry* entry) {
-    if (!entry)
-        diagnostics_.error({1, 1}, "does not say its grammar; expected `scanmill: 1` as the first line");
-    else if (entry->value.text != grammar_version)
-        diagnostics_.error(entry->value.position, fmt::format("the grammar is {}; this program reads grammar {}",
-                                                              entry->value.described(), grammar_version));
 }
 
 void WorkflowParser::input(const YamlEntry& entry, Workflow& workflow) {
@@ -104,13 +93,7 @@ void WorkflowParser::input_details(const YamlNode& node, WorkflowInput& input) {
                                fmt::format("found {}; expected true or false", list->value.described()));
         input.list = list->value.text == "true";
     }
-    if (const YamlEntry* unit = keys.find("unit")) {
-        const std::optional<LengthUnit> known = length_unit(unit->value.text);
-        if (!known)
-            diagnostics_.error(unit->value.position, fmt::format("{} is no unit; expected one of {}",
-                                                                 unit->value.described(), length_unit_symbols()));
-        input.unit = known.value_or(LengthUnit::unknown);
-    }
+    if (const YamlEntry* unit = keys.find("unit")) input.unit = require_unit(unit->value, diagnostics_);
     keys.complain_of_others();
 }
 

@@ -22,9 +22,11 @@ namespace {
 
 class Planner {
 public:
-    Planner(Workflow workflow, const FilterLibrary& library, Diagnostics& diagnostics)
+    Planner(Workflow workflow, const FilterLibrary& library, Diagnostics& diagnostics,
+            Diagnostics* settings_diagnostics)
         : library_(library),
-          diagnostics_(diagnostics) {
+          diagnostics_(diagnostics),
+          settings_diagnostics_(settings_diagnostics) {
         plan_.workflow = std::move(workflow);
     }
 
@@ -164,16 +166,29 @@ private:
             return parameter.default_value;
         }
         const WrittenValue& written = *argument->written;
+        const bool from_outside = settings_->contains(written.reference);
         try {
             const ParameterValue value = parse(parameter, argument->value->literal);
-            const bool from_outside = settings_->contains(written.reference);  // relative to where we are
-            if (parameter.type != ParameterType::path || from_outside) return value;
-            return with_paths_from(std::filesystem::path(plan_.workflow.file).parent_path(), value);
+            if (parameter.type != ParameterType::path) return value;
+            if (from_outside && !settings_diagnostics_) return value;  // relative to where we are
+            const std::filesystem::path file = from_outside ? settings_diagnostics_->file() : plan_.workflow.file;
+            return with_paths_from(file.parent_path(), value);
         } catch (const Error& error) {
-            const std::string through = written.reference.empty() ? "" : " (from $" + written.reference + ")";
-            diagnostics_.error(written.position, fmt::format("{}{}: {}", parameter.name, through, error.sentence()));
+            complain_of_value(*argument, step.syntax->filter, error.sentence());
             return parameter.default_value;
         }
+    }
+
+    void complain_of_value(const ChosenArgument& argument, const std::string& filter, const std::string& sentence) {
+        const std::string& parameter = argument.parameter->name;
+        const std::string& reference = argument.written->reference;
+        if (settings_diagnostics_ && settings_->contains(reference))
+            settings_diagnostics_->error(argument.value->position, fmt::format("${} is the {} of {}: {}", reference,
+                                                                               parameter, filter, sentence));
+        else
+            diagnostics_.error(
+                argument.written->position,
+                fmt::format("{}{}: {}", parameter, reference.empty() ? "" : " (from $" + reference + ")", sentence));
     }
 
     std::string structure_key(const FilterSpec& spec, const ParameterSet& parameters,
@@ -247,6 +262,7 @@ private:
 
     const FilterLibrary& library_;
     Diagnostics& diagnostics_;
+    Diagnostics* settings_diagnostics_;
     const Settings* settings_ = nullptr;
     Plan plan_;
     std::map<std::string, std::size_t> step_of_key_;
@@ -254,8 +270,9 @@ private:
 
 }  // namespace
 
-Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics) {
-    return Planner(std::move(workflow), library, diagnostics).plan(settings);
+Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics,
+               Diagnostics* settings_diagnostics) {
+    return Planner(std::move(workflow), library, diagnostics, settings_diagnostics).plan(settings);
 }
 
 std::string workflow_name(const Plan& plan) {

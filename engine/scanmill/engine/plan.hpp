@@ -68,8 +68,12 @@ struct Plan {
     std::vector<PlannedVariant> variants;
 };
 
-/// Checks the workflow against the filters at hand; with errors in `diagnostics` the plan must not be run.
-Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics);
+/// Checks the workflow against the filters at hand; with errors in `diagnostics` the plan must not be run. When
+/// settings stand in a file of their own, `settings_diagnostics` is that file's: a value that its parameter cannot take
+/// is then reported there, at its own place, and relative paths among the values count from that file's folder. Without
+/// it the error is told at the step, and such paths count from the working folder.
+Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics,
+               Diagnostics* settings_diagnostics = nullptr);
 
 /// The workflow's own name, else that of its file.
 std::string workflow_name(const Plan& plan);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "byte_size.hpp"
+#include "scanmill/engine/byte_size.hpp"
 
 #include <array>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/quantity.hpp"
 
-namespace scanmill::runner {
+namespace scanmill {
 
 namespace {
 
@@ -53,4 +53,4 @@ std::string byte_size_text(u64 bytes) {
     return fmt::format("{} B", bytes);
 }
 
-}  // namespace scanmill::runner
+}  // namespace scanmill

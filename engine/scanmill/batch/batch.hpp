@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A batch as its file says it: which scans, under which workflows, with which values, limits, truth and gate.
+///
+/// Paths are relative to the batch file. Scans are named by globs: `*`, `?` and `[…]` within a name, `**` for any
+/// number of folders, never what begins with a dot. What `scans` has found stands here, sorted, every file once.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scanmill/batch/gate.hpp"
+#include "scanmill/batch/limits.hpp"
+#include "scanmill/data/transform.hpp"
+#include "scanmill/engine/expand.hpp"
+#include "scanmill/filter/library.hpp"
+
+namespace scanmill {
+
+struct BatchScan {
+    std::filesystem::path file;
+    Position position;  ///< of the path in the batch file
+    LengthUnit unit = LengthUnit::unknown;
+    std::string frame;                   ///< its {stem} replaced; empty: what the workflow or the file says
+    std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
+    std::filesystem::path truth;         ///< empty: there is none
+    Settings settings;                   ///< the scan's own, before the batch's
+};
+
+struct BatchWorkflow {
+    std::filesystem::path file;
+    Position position;
+};
+
+/// What the batch says of measuring against the truth; the rest is the filter's default.
+struct MeasureOptions {
+    std::optional<std::int64_t> samples;
+    std::vector<Length> thresholds;
+    std::optional<bool> self_intersections;
+};
+
+/// In Settings a value's `position` is that of its name.
+struct Batch {
+    std::string file, name, summary;
+    std::vector<BatchScan> scans;  ///< entry by entry, within one by path
+    std::vector<BatchWorkflow> workflows;
+    Settings settings;
+    Limits limits;
+    MeasureOptions measure;
+    std::vector<GateRule> gate;  ///< empty: nothing is gated
+};
+
+/// The batch in `text`; `diagnostics` is that of its file, and what is wrong goes there: all of it, each with its
+/// place. What is right is still returned. Looks for the files that it names and reads those of poses, but no scan. A
+/// name in `set` that no workflow declares is not found here (see plan_batch.hpp).
+Batch parse_batch(const std::string& text, const FilterLibrary& library, Diagnostics& diagnostics);
+
+/// Whether the text is a batch rather than a workflow: it has the key `batch`.
+bool is_batch(const std::string& text);
+
+}  // namespace scanmill

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/batch/parse_scans.hpp"
+
+#include <fmt/format.h>
+
+#include "scanmill/batch/parse_pose.hpp"
+#include "scanmill/batch/parse_settings.hpp"
+#include "scanmill/batch/scan_files.hpp"
+#include "scanmill/engine/grammar.hpp"
+#include "scanmill/engine/input_frame.hpp"
+#include "scanmill/filter/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A path over {stem}, and how many of the files that it led to are missing.
+class FileTemplate {
+public:
+    FileTemplate(std::string text, std::string what, Position position, const fs::path& folder,
+                 Diagnostics& diagnostics)
+        : text_(std::move(text)),
+          what_(std::move(what)),
+          position_(position),
+          folder_(folder),
+          diagnostics_(diagnostics) {
+        const std::size_t before = diagnostics_.errors();
+        check_stem_template(text_, "the " + what_, position_, diagnostics_);
+        if (text_.empty()) diagnostics_.error(position_, fmt::format("the {} is empty; expected a path", what_));
+        sound_ = diagnostics_.errors() == before;
+    }
+
+    /// Calls `use` with the scan's file. When it is missing, or `use` throws Error, that is reported, but not for the
+    /// scans beyond the first ten.
+    template <class Use>
+    void apply(const fs::path& scan, Use&& use) {
+        if (!sound_) return;
+        const fs::path file = folder_ / with_stem(text_, scan);
+        try {
+            std::error_code ignored;
+            if (!fs::is_regular_file(file, ignored))
+                throw Error("'{}': there is no such file; expected the {} of '{}'", file.string(), what_,
+                            scan.string());
+            use(file);
+        } catch (const Error& error) {
+            if (++wrong_ <= most_) diagnostics_.error(position_, error.sentence());
+        }
+    }
+    void finish() {
+        if (wrong_ > most_)
+            diagnostics_.error(position_, fmt::format("and {} more: the {} of that many scans is missing or wrong, too",
+                                                      wrong_ - most_, what_));
+    }
+    Position position() const { return position_; }
+
+private:
+    static constexpr std::size_t most_ = 10;
+    std::string text_, what_;
+    Position position_;
+    fs::path folder_;
+    Diagnostics& diagnostics_;
+    bool sound_ = false;
+    std::size_t wrong_ = 0;
+};
+
+class ScansParser {
+public:
+    ScansParser(const fs::path& folder, Diagnostics& diagnostics) : folder_(folder), diagnostics_(diagnostics) {}
+
+    std::vector<BatchScan> scans(const YamlNode& node) {
+        if (!require_list(node, "a list of scans, as [scans/*.ply]", diagnostics_)) return {};
+        if (node.items.empty()) diagnostics_.error(node.position, "the list of scans is empty");
+        for (const YamlNode& item : node.items) entry(item);
+        return std::move(scans_);
+    }
+
+private:
+    void entry(const YamlNode& node) {
+        static const char* const expected = "a path, as scans/*.ply, or {path: scans/*.ply, unit: mm}";
+        if (!node.is_map()) {
+            if (const auto path = require_text(node, expected, diagnostics_)) find_files(*path, node.position);
+            return;
+        }
+        MapReader keys(node, "a scan", diagnostics_);
+        const YamlEntry* path = keys.find("path");
+        const std::size_t first = scans_.size();
+        if (!path)
+            diagnostics_.error(node.position, fmt::format("the scan has no path; expected {}", expected));
+        else if (const auto text = require_text(path->value, "a path, as scans/*.ply", diagnostics_))
+            find_files(*text, path->value.position);
+        const std::span<BatchScan> scans = std::span(scans_).subspan(first);
+        if (const YamlEntry* unit = keys.find("unit")) {
+            const LengthUnit known = require_unit(unit->value, diagnostics_);
+            for (BatchScan& scan : scans) scan.unit = known;
+        }
+        frame(keys, scans);
+        if (const YamlEntry* pose = keys.find("pose")) this->pose(pose->value, scans);
+        if (const YamlEntry* truth = keys.find("truth")) this->truth(truth->value, scans);
+        if (const YamlEntry* set = keys.find("set"); set && !set->value.is_null()) {
+            const Settings settings = parse_settings(set->value, diagnostics_);
+            for (BatchScan& scan : scans) scan.settings = settings;
+        }
+        keys.complain_of_others();
+    }
+
+    void find_files(const std::string& path, Position position) {
+        try {
+            for (fs::path& file : scan_files(folder_, path)) {
+                const auto [earlier, is_new] = line_of_.emplace(fs::absolute(file).lexically_normal(), position.line);
+                if (is_new) {
+                    scans_.emplace_back();
+                    scans_.back().file = std::move(file);
+                    scans_.back().position = position;
+                } else {
+                    diagnostics_.error(position, fmt::format("'{}' is a scan already by line {}; name every file once",
+                                                             file.string(), earlier->second));
+                }
+            }
+        } catch (const Error& error) {
+            diagnostics_.error(position, error.sentence());
+        }
+    }
+
+    void frame(MapReader& keys, std::span<BatchScan> scans) {
+        const YamlEntry* entry = keys.find("frame");
+        if (!entry) return;
+        const std::string frame = require_text(entry->value, "a text for 'frame'", diagnostics_).value_or("");
+        check_frame_template(frame, entry->value.position, diagnostics_);
+        for (BatchScan& scan : scans) scan.frame = frame_of_file(frame, scan.file);
+    }
+
+    void pose(const YamlNode& node, std::span<BatchScan> scans) {
+        if (node.is_sequence() || node.is_map()) {
+            if (const auto pose = parse_pose(node, diagnostics_))
+                for (BatchScan& scan : scans) {
+                    scan.pose = pose;
+                    scan.pose->unit = scan.unit;
+                }
+            return;
+        }
+        const auto text = require_text(
+            node, "a file, as poses/{stem}.json, a matrix of 4 rows or {translation: …, rotation: …}", diagnostics_);
+        if (!text) return;
+        FileTemplate files(*text, "pose", node.position, folder_, diagnostics_);
+        for (BatchScan& scan : scans)
+            files.apply(scan.file, [&](const fs::path& file) {
+                scan.pose = pose_files_.pose_of(scan.file, file, files.position(), diagnostics_);
+            });
+        files.finish();
+    }
+
+    void truth(const YamlNode& node, std::span<BatchScan> scans) {
+        const auto text = require_text(node, "a file, as truth/{stem}.stl", diagnostics_);
+        if (!text) return;
+        FileTemplate files(*text, "truth", node.position, folder_, diagnostics_);
+        for (BatchScan& scan : scans) files.apply(scan.file, [&](const fs::path& file) { scan.truth = file; });
+        files.finish();
+    }
+
+    fs::path folder_;
+    Diagnostics& diagnostics_;
+    PoseFiles pose_files_;
+    std::vector<BatchScan> scans_;
+    std::map<fs::path, int> line_of_;
+};
+
+}  // namespace
+
+std::vector<BatchScan> parse_scans(const YamlNode& node, const fs::path& folder, Diagnostics& diagnostics) {
+    return ScansParser(folder, diagnostics).scans(node);
+}
+
+}  // namespace scanmill
