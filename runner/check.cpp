@@ -7,7 +7,10 @@
 #include "error_output.hpp"
 #include "load.hpp"
 #include "plan_output.hpp"
+#include "scanmill/batch/plan_batch.hpp"
+#include "scanmill/engine/workflow_file.hpp"
 #include "scanmill/filter/error.hpp"
+#include "scanmill/formats/reading.hpp"
 
 namespace scanmill::runner {
 
@@ -19,49 +22,107 @@ struct Options {
     std::string format = "text";
 };
 
-int check(const Options& options) {
-    const FilterLibrary library = open_library();
-    const Settings settings = parse_settings(options.settings);
-    auto files = nlohmann::ordered_json::array();
-    const bool as_json = options.json || options.format == "json";
-    int code = done;
-    for (const std::string& file : options.files) {
-        try {
-            const CheckedWorkflow checked = check_workflow(file, library, settings);
-            const bool sound = !checked.diagnostics.has_errors();
-            if (!sound) code = bad_request;
-            if (as_json) {
-                nlohmann::ordered_json entry = to_json(checked.diagnostics);
-                if (sound && options.plan) entry["plan"] = nlohmann::ordered_json::parse(plan_json(checked.plan));
-                files.push_back(std::move(entry));
-                continue;
+/// One file after the other: findings as they come, or all as JSON at the end.
+class Checker {
+public:
+    explicit Checker(const Options& options)
+        : options_(options),
+          as_json_(options.json || options.format == "json"),
+          library_(open_library()),
+          settings_(parse_settings(options.settings)) {}
+
+    int check() {
+        for (const std::string& file : options_.files) {
+            try {
+                const std::string text = read_workflow_file(file);
+                if (is_batch(text))
+                    check_one_batch(file, text);
+                else
+                    check_one_workflow(file, text);
+            } catch (const Error& error) {
+                code_ = bad_request;
+                if (as_json_)
+                    entries_.push_back(unreadable_json(file, error));
+                else
+                    print(error, false);
             }
-            print(checked.diagnostics);
-            if (!sound) continue;
-            if (options.plan)
-                fmt::print("{}", options.format == "dot" ? plan_dot(checked.plan) : plan_text(checked.plan));
-            else
-                fmt::print("{}: ok, {} step{}, {} variant{}\n", file, checked.plan.steps.size(),
-                           checked.plan.steps.size() == 1 ? "" : "s", checked.plan.variants.size(),
-                           checked.plan.variants.size() == 1 ? "" : "s");
-        } catch (const Error& error) {
-            code = bad_request;
-            if (as_json)
-                files.push_back(unreadable_json(file, error));
-            else
-                print(error, false);
         }
+        if (as_json_) print_files_json(std::move(entries_));
+        return code_;
     }
-    if (as_json) print_files_json(std::move(files));
-    return code;
-}
+
+private:
+    void check_one_workflow(const std::string& file, const std::string& text) {
+        const CheckedWorkflow checked = check_workflow(file, text, library_, settings_);
+        const bool sound = report(checked.diagnostics);
+        if (!sound) return;
+        if (options_.plan)
+            show(checked.plan);
+        else
+            say("{}: ok, {}, {}\n", file, counted(checked.plan.steps.size(), "step", "steps"),
+                counted(checked.plan.variants.size(), "variant", "variants"));
+    }
+
+    void check_one_batch(const std::string& file, const std::string& text) {
+        if (!settings_.empty())
+            throw Error("'{}' is a batch, which --set does not reach; write the values under its `set:`", file);
+        const CheckedBatch checked = check_batch(text, file, library_);
+        for (const Diagnostics& diagnostics : checked.diagnostics) report(diagnostics);
+        if (checked.has_errors()) return;
+        if (options_.plan)
+            for (const BatchPart& part : checked.parts) show(*part.plan);
+        else
+            say("{}: ok, {}, {}, {}\n", file, counted(checked.batch.scans.size(), "scan", "scans"),
+                counted(checked.batch.workflows.size(), "workflow", "workflows"),
+                counted(checked.variants(), "variant", "variants"));
+    }
+
+    /// Whether nothing is wrong.
+    bool report(const Diagnostics& diagnostics) {
+        if (diagnostics.has_errors()) code_ = bad_request;
+        if (as_json_)
+            entries_.push_back(to_json(diagnostics));
+        else
+            print(diagnostics);
+        return !diagnostics.has_errors();
+    }
+
+    /// As JSON a plan belongs to the file that was reported for its workflow.
+    void show(const Plan& plan) {
+        if (!as_json_) {
+            fmt::print("{}", options_.format == "dot" ? plan_dot(plan) : plan_text(plan));
+            return;
+        }
+        for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry)
+            if ((*entry)["file"] == plan.workflow.file) {
+                auto json = nlohmann::ordered_json::parse(plan_json(plan));
+                if (entry->contains("plan"))
+                    (*entry)["further-plans"].push_back(std::move(json));
+                else
+                    (*entry)["plan"] = std::move(json);
+                return;
+            }
+    }
+
+    template <class... Arguments>
+    void say(fmt::format_string<Arguments...> line, Arguments&&... arguments) {
+        if (!as_json_) fmt::print(line, std::forward<Arguments>(arguments)...);
+    }
+
+    const Options& options_;
+    bool as_json_;
+    FilterLibrary library_;
+    Settings settings_;
+    nlohmann::ordered_json entries_ = nlohmann::ordered_json::array();
+    int code_ = done;
+};
 
 }  // namespace
 
 void add_check(CLI::App& app, Action& chosen) {
-    CLI::App* command = app.add_subcommand("check", "Checks workflow files without opening any scan");
+    CLI::App* command = app.add_subcommand("check", "Checks workflow and batch files without opening any scan");
     auto options = std::make_shared<Options>();
-    command->add_option("FILE", options->files, "Workflow files")->required();
+    command->add_option("FILE", options->files, "Workflow or batch files")->required();
     command->add_option("--set", options->settings, "A workflow parameter's value, NAME=VALUE")->take_all();
     CLI::Option* plan =
         command->add_flag("--plan", options->plan, "Print the steps of every variant and what feeds them");
@@ -69,7 +130,7 @@ void add_check(CLI::App& app, Action& chosen) {
         ->needs(plan)
         ->check(CLI::IsMember({"text", "dot", "json"}));
     command->add_flag("--json", options->json, "Print the findings as JSON");
-    command->callback([&chosen, options] { chosen = [options] { return check(*options); }; });
+    command->callback([&chosen, options] { chosen = [options] { return Checker(*options).check(); }; });
 }
 
 }  // namespace scanmill::runner

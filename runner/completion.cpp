@@ -38,7 +38,9 @@ std::vector<Command> commands_of(const CLI::App& app) {
 bool completes_filters(const Command& command) { return command.name == "show"; }
 
 /// Words that the command takes in place of files; none where it takes files.
-std::string_view words_of(const Command& command) { return command.name == "completion" ? "bash zsh fish" : ""; }
+std::string_view words_of(const Command& command) {
+    return command.name == "completion" ? "bash zsh fish" : command.name == "schema" ? "workflow batch" : "";
+}
 
 /// The text without what would end a quoted word of a shell, or has a meaning of its own in zsh's descriptions.
 std::string plain(std::string_view text) {

@@ -20,8 +20,13 @@ FilterLibrary open_library() {
 }
 
 CheckedWorkflow check_workflow(const std::string& file, const FilterLibrary& library, const Settings& settings) {
+    return check_workflow(file, read_workflow_file(file), library, settings);
+}
+
+CheckedWorkflow check_workflow(const std::string& file, const std::string& text, const FilterLibrary& library,
+                               const Settings& settings) {
     Diagnostics diagnostics(file);
-    Workflow workflow = parse_workflow(read_workflow_file(file), diagnostics);
+    Workflow workflow = parse_workflow(text, diagnostics);
     Plan plan = make_plan(std::move(workflow), library, settings, diagnostics);
     return {std::move(diagnostics), std::move(plan)};
 }

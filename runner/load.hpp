@@ -19,6 +19,9 @@ struct CheckedWorkflow {
 
 /// Throws Error when the file itself cannot be read.
 CheckedWorkflow check_workflow(const std::string& file, const FilterLibrary& library, const Settings& settings);
+/// The same of a file that was read already.
+CheckedWorkflow check_workflow(const std::string& file, const std::string& text, const FilterLibrary& library,
+                               const Settings& settings);
 
 /// NAME=VALUE pairs of --set. Throws Error for what is no such pair.
 Settings parse_settings(const std::vector<std::string>& pairs);

@@ -3,26 +3,44 @@
 
 #include "commands.hpp"
 #include "load.hpp"
+#include "scanmill/batch/batch_schema.hpp"
 #include "scanmill/engine/workflow_schema.hpp"
 #include "text_file.hpp"
 
 namespace scanmill::runner {
 
+namespace {
+
+struct Options {
+    std::string kind = "workflow", folder;
+};
+
+int schema(const Options& options) {
+    const FilterLibrary library = open_library();
+    if (options.folder.empty()) {
+        fmt::print("{}", options.kind == "batch" ? batch_schema(library) : workflow_schema(library));
+        return done;
+    }
+    const std::filesystem::path folder(options.folder);
+    write_text(folder / "workflow.schema.json", workflow_schema(library));
+    write_text(folder / "batch.schema.json", batch_schema(library));
+    return done;
+}
+
+}  // namespace
+
 void add_schema(CLI::App& app, Action& chosen) {
     CLI::App* command = app.add_subcommand(
-        "schema", "Prints the JSON Schema of workflow files, for editors: every filter at hand with its parameters");
-    auto folder = std::make_shared<std::string>();
-    command->add_option("-o,--output", *folder, "Write workflow.schema.json into this folder instead");
-    command->callback([&chosen, folder] {
-        chosen = [folder] {
-            const std::string schema = workflow_schema(open_library());
-            if (folder->empty())
-                fmt::print("{}", schema);
-            else
-                write_text(std::filesystem::path(*folder) / "workflow.schema.json", schema);
-            return done;
-        };
-    });
+        "schema",
+        "Prints the JSON Schema of workflow or batch files, for editors: every filter at hand with its parameters");
+    auto options = std::make_shared<Options>();
+    CLI::Option* kind = command->add_option("KIND", options->kind, "Which to print: workflow (the default) or batch")
+                            ->check(CLI::IsMember({"workflow", "batch"}));
+    command
+        ->add_option("-o,--output", options->folder,
+                     "Write both, workflow.schema.json and batch.schema.json, into this folder instead")
+        ->excludes(kind);
+    command->callback([&chosen, options] { chosen = [options] { return schema(*options); }; });
 }
 
 }  // namespace scanmill::runner

@@ -6,16 +6,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <yaml-cpp/yaml.h>
 
-#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 
+#include "engine/schema_support.hpp"
 #include "scanmill/engine/plan.hpp"
 #include "support/declared_filters.hpp"
 #include "support/temporary_folder.hpp"
@@ -24,61 +19,8 @@ namespace scanmill {
 namespace {
 
 using nlohmann::json;
+using test::Schema;
 using testing::HasSubstr;
-
-/// YAML as editors see it: plain scalars are numbers, booleans and null where they look like it.
-json to_json(const YAML::Node& node) {
-    if (node.IsSequence()) {
-        json list = json::array();
-        for (const YAML::Node& item : node) list.push_back(to_json(item));
-        return list;
-    }
-    if (node.IsMap()) {
-        json map = json::object();
-        for (const auto& entry : node) map[entry.first.Scalar()] = to_json(entry.second);
-        return map;
-    }
-    if (node.IsNull() || !node.IsDefined()) return nullptr;
-    const std::string& text = node.Scalar();
-    if (node.Tag() == "!") return text;  // it stood in quotes
-    if (text == "true" || text == "false") return text == "true";
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return text;
-    if (number == static_cast<double>(static_cast<std::int64_t>(number)) && text.find('.') == std::string::npos)
-        return static_cast<std::int64_t>(number);
-    return number;
-}
-
-class Schema {
-public:
-    explicit Schema(const FilterLibrary& library) : text_(workflow_schema(library)) {
-        const json document = json::parse(text_);
-        valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-            .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), schema_);
-    }
-    bool accepts(const std::string& workflow) { return complaints(workflow).empty(); }
-
-    /// Every complaint as "place: what", the place being the keys on the way: "steps 0 thin count".
-    std::string complaints(const std::string& workflow) {
-        const json document = to_json(YAML::Load(workflow));
-        valijson::ValidationResults results;
-        valijson::Validator(valijson::Validator::kStrongTypes)
-            .validate(schema_, valijson::adapters::NlohmannJsonAdapter(document), &results);
-        std::string all;
-        for (const valijson::ValidationResults::Error& error : results) {
-            for (std::size_t i = 1; i < error.context.size(); ++i)
-                all += (i > 1 ? " " : "") + error.context[i].substr(1, error.context[i].size() - 2);
-            all += ": " + error.description + "\n";
-        }
-        return all;
-    }
-    const std::string& text() const { return text_; }
-
-private:
-    std::string text_;
-    valijson::Schema schema_;
-};
 
 class WorkflowSchema : public testing::Test {
 protected:
@@ -92,42 +34,13 @@ protected:
 
     test::DeclaredFilters filters_;
     FilterLibrary library_ = filters_.library();
-    Schema schema_{library_};
+    Schema schema_{workflow_schema(library_)};
 };
 
 std::string steps(const std::string& steps) { return "scanmill: 1\ninputs: {scan: points}\nsteps:\n" + steps; }
 std::string with_n(const std::string& text) { return "parameters: {n: 3}\n" + steps(text); }
 
-/// What the validator says of a key that is not known, but for its name.
-const std::string known_only =
-    " that could not be validated using 'properties' or 'additionalProperties' constraints: ";
-
-TEST_F(WorkflowSchema, WhatCheckAccepts_IsAccepted) {
-    for (const std::string& workflow :
-         {with_n("  - thin: {count: $n}\n"), with_n("  - thin: {size: 0.1 %diag, axis: [1, 0, 0], count: $n}\n"),
-          with_n("  - thin: {size: +1e-3 mm, rule: random, count: $n}\n"),
-          with_n("  - thin: {count: {sweep: [1, $n, 9]}}\n    expect: {kept: '> 3', points: [1, 9]}\n"),
-          with_n("  - thin: {count: $n}\n  - tetrahedralise:\n  - solid: {alpha: auto, coverage: 0.5, angle: 0 deg}\n"
-                 "    expect: {closed: true, alpha: < 3 %diag, bending: < 40 deg}\n"),
-          with_n("  - one-of:\n      - thin: {count: $n}\n      - id: b\n        thin:\n"
-                 "      - name: twice\n        steps: [{thin: }, {id: again, thin: }]\n    id: any\n"),
-          std::string("scanmill: 1\nname: w\nsummary: Nothing.\ninputs: {a: {kind: points, unit: mm, help: It.}, "
-                      "b: [points]}\nsteps: [{combine: , in: {points: [a, b]}}]\n"
-                      "outputs: {'{scan}.ply': combine}\n"),
-          std::string("scanmill: 1\nsummary: 5\ninputs: {scan: points}\nparameters:\nsteps: [{thin: }]\noutputs:\n"),
-          std::string(
-              "scanmill: 1\ninputs: {scan: points}\nparameters: {s: {default: {sweep: [1 u, 2 u]}, help: It.}}\n"
-              "steps: [{thin: {size: $s}, in: scan}]\n")}) {
-        EXPECT_THAT(check_says(workflow), testing::IsEmpty()) << workflow;
-        EXPECT_EQ(schema_.complaints(workflow), "") << workflow;
-    }
-}
-
-struct Mistake {
-    std::string workflow;
-    std::string schema;  ///< a part of the schema's complaints: place and reason
-    std::string check;  ///< a part of the only thing that check says
-};
+using test::known_only;
 
 /// One mistake each, so that neither of the two can reject it for another reason.
 const std::vector<Mistake> mistakes{
@@ -218,7 +131,7 @@ TEST_F(WorkflowSchema, EqualFilters_GiveEqualBytes) { EXPECT_EQ(workflow_schema(
 
 TEST(ShippedWorkflows, AreAcceptedByTheSchemaAndByCheck) {
     const FilterLibrary library({SCANMILL_PLUGIN_DIR});
-    Schema schema(library);
+    Schema schema(workflow_schema(library));
     std::size_t found = 0;
     for (const auto& file : std::filesystem::directory_iterator(SCANMILL_SOURCE_DIR "/workflows")) {
         if (file.path().extension() != ".yaml") continue;

@@ -43,6 +43,10 @@ Workflow WorkflowParser::workflow(const YamlNode& root) {
         return workflow;
     }
     if (!require_map(root, "a workflow: a map that begins with `scanmill: 1`", diagnostics_)) return workflow;
+    if (const YamlNode* batch = root.find("batch")) {
+        diagnostics_.error(batch->position, "is a batch; expected a workflow. A batch is run by `scanmill batch`");
+        return workflow;
+    }
     MapReader keys(root, "a workflow", diagnostics_);
     require_grammar_version(keys, diagnostics_);
     workflow.name = keys.text("name");

@@ -2,72 +2,41 @@
 #include "scanmill/engine/workflow_schema.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "scanmill/engine/expectation.hpp"
 #include "scanmill/engine/parameter_schema.hpp"
+#include "scanmill/engine/schema_parts.hpp"
 
 namespace scanmill {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr const char* name_pattern = "^[A-Za-z][A-Za-z0-9_-]*$";
-
-Json name_schema(const char* description) {
-    return {{"type", "string"}, {"pattern", name_pattern}, {"description", description}};
-}
-
-/// Any scalar is a text in YAML, quoted or not.
-Json text_schema(const char* description) {
-    return {{"type", Json::array({"string", "number", "boolean"})}, {"description", description}};
-}
+using schema::Json;
+using schema::map_from_names;
+using schema::object_of;
 
 Json reference_to(const char* definition) { return {{"$ref", std::string("#/definitions/") + definition}}; }
-
-/// An object of exactly these keys.
-Json object_of(Json properties) {
-    return {{"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
-}
-
-Json map_from_names(Json values, const char* description) {
-    return {{"type", Json::array({"object", "null"})},
-            {"description", description},
-            {"propertyNames", {{"pattern", name_pattern}}},
-            {"additionalProperties", std::move(values)}};
-}
-
-Json units() {
-    Json symbols = Json::array();
-    for (const LengthUnit unit : {LengthUnit::micrometre, LengthUnit::millimetre, LengthUnit::centimetre,
-                                  LengthUnit::metre, LengthUnit::inch, LengthUnit::foot})
-        symbols.push_back(symbol(unit));
-    return {{"enum", std::move(symbols)}, {"description", "The unit of the file's numbers."}};
-}
 
 Json input_schema() {
     const Json kind{{"enum", Json::array({"points", "mesh"})}, {"description", "What the file holds."}};
     const Json list{{"type", "array"}, {"items", kind}, {"minItems", 1}, {"maxItems", 1}};
     Json details = object_of({{"kind", {{"anyOf", Json::array({kind, list})}}},
                               {"list", {{"type", "boolean"}, {"description", "Takes any number of files."}}},
-                              {"unit", units()},
-                              {"frame", text_schema("The name of the coordinate system.")},
-                              {"help", text_schema("What the input is for.")}});
+                              {"unit", schema::unit()},
+                              {"frame", schema::text("The name of the coordinate system.")},
+                              {"help", schema::text("What the input is for.")}});
     details["required"] = Json::array({"kind"});
     return {{"anyOf", Json::array({kind, list, std::move(details)})}};
 }
 
 /// Of a workflow parameter, whose type only its use decides.
 Json any_value_schema() {
-    const Json scalar{{"type", Json::array({"string", "number", "boolean"})}};
-    const Json value{{"anyOf", Json::array({scalar, Json{{"type", "array"}, {"items", scalar}}})}};
-    Json sweep = object_of({{"sweep", {{"type", "array"}, {"minItems", 1}, {"items", value}}}});
-    sweep["required"] = Json::array({"sweep"});
-    const Json given{{"anyOf", Json::array({value, sweep})}};
-    Json details = object_of({{"default", given}, {"help", text_schema("What the parameter is for.")}});
+    const Json given = schema::any_value();
+    Json details = object_of({{"default", given}, {"help", schema::text("What the parameter is for.")}});
     details["required"] = Json::array({"default"});
-    return {{"anyOf", Json::array({value, std::move(sweep), std::move(details)})}};
+    Json alternatives = given["anyOf"];
+    alternatives.push_back(std::move(details));
+    return {{"anyOf", std::move(alternatives)}};
 }
 
 std::string sentence_of(const FilterSpec& spec) { return spec.summary + " (" + spec.source + ")"; }
@@ -114,7 +83,7 @@ Json expect_schema(const FilterSpec& spec) {
 
 /// A step has one filter; what `in` and `expect` take depends on which.
 Json step_schema(const FilterLibrary& library) {
-    Json properties{{"id", name_schema("How later steps and outputs refer to this step.")},
+    Json properties{{"id", schema::name_of("How later steps and outputs refer to this step.")},
                     {"in", {{"description", "Which values feed the ports; without it, the nearest earlier ones."}}},
                     {"expect", {{"description", "What must be true of the result, else the scan fails."}}}};
     Json one_filter = Json::array(), by_filter = Json::array();
@@ -132,18 +101,18 @@ Json step_schema(const FilterLibrary& library) {
 }
 
 Json one_of_schema() {
-    Json named = object_of({{"name", name_schema("How variants are named that take this alternative.")},
+    Json named = object_of({{"name", schema::name_of("How variants are named that take this alternative.")},
                             {"steps", reference_to("steps")}});
     named["required"] = Json::array({"steps"});
     const Json alternative{{"anyOf", Json::array({reference_to("step"), reference_to("one-of"), reference_to("steps"),
                                                   std::move(named)})}};
-    Json schema =
-        object_of({{"id", name_schema("How later steps and outputs refer to the end of whichever alternative ran.")},
-                   {"one-of",
-                    {{"type", "array"},
-                     {"minItems", 1},
-                     {"description", "Alternatives: everything below runs once for each."},
-                     {"items", alternative}}}});
+    Json schema = object_of(
+        {{"id", schema::name_of("How later steps and outputs refer to the end of whichever alternative ran.")},
+         {"one-of",
+          {{"type", "array"},
+           {"minItems", 1},
+           {"description", "Alternatives: everything below runs once for each."},
+           {"items", alternative}}}});
     schema["required"] = Json::array({"one-of"});
     return schema;
 }
@@ -153,8 +122,8 @@ Json one_of_schema() {
 std::string workflow_schema(const FilterLibrary& library) {
     Json properties{
         {"scanmill", {{"const", 1}, {"description", "The version of the grammar."}}},
-        {"name", name_schema("The workflow's name.")},
-        {"summary", text_schema("What the workflow does, in a sentence.")},
+        {"name", schema::name_of("The workflow's name.")},
+        {"summary", schema::text("What the workflow does, in a sentence.")},
         {"inputs", map_from_names(reference_to("input"), "Files; the scans feed the first, --in the others.")},
         {"parameters", map_from_names(reference_to("parameter"), "Values that steps refer to by $name; --set.")},
         {"steps", reference_to("steps")},
@@ -162,21 +131,16 @@ std::string workflow_schema(const FilterLibrary& library) {
          {{"type", Json::array({"object", "null"})},
           {"description", "Files to write: names over {scan}, {variant} and {workflow}, each with its step."},
           {"additionalProperties", {{"type", "string"}}}}}};
-    Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"},
-                {"title", "Scanmill workflow"},
-                {"type", "object"},
-                {"required", Json::array({"scanmill", "steps"})},
-                {"additionalProperties", false},
-                {"properties", std::move(properties)}};
-    schema["definitions"] = {{"input", input_schema()},
-                             {"parameter", any_value_schema()},
-                             {"steps",
-                              {{"type", "array"},
-                               {"minItems", 1},
-                               {"items", {{"anyOf", Json::array({reference_to("step"), reference_to("one-of")})}}}}},
-                             {"step", step_schema(library)},
-                             {"one-of", one_of_schema()}};
-    return schema.dump(2) + "\n";
+    Json whole = schema::document("Scanmill workflow", Json::array({"scanmill", "steps"}), std::move(properties));
+    whole["definitions"] = {{"input", input_schema()},
+                            {"parameter", any_value_schema()},
+                            {"steps",
+                             {{"type", "array"},
+                              {"minItems", 1},
+                              {"items", {{"anyOf", Json::array({reference_to("step"), reference_to("one-of")})}}}}},
+                            {"step", step_schema(library)},
+                            {"one-of", one_of_schema()}};
+    return whole.dump(2) + "\n";
 }
 
 }  // namespace scanmill
