@@ -146,7 +146,7 @@ TEST_F(BatchScans, MissingTruth_IsToldForEachScan) {
     folder_.write("truth/b.stl", "x");
     EXPECT_THAT(
         scans("[{path: scans/*.ply, truth: 'truth/{stem}.stl'}]"),
-        ElementsAre(AllOf(StartsWith("b:3:37: "), HasSubstr("truth/a.stl': there is no such file; expected the truth"),
+        ElementsAre(AllOf(StartsWith("b:3:36: "), HasSubstr("truth/a.stl': there is no such file; expected the truth"),
                           HasSubstr("scans/a.ply"))));
     EXPECT_EQ(batch_.scans[1].truth, folder_ / "truth/b.stl");
 }
@@ -171,7 +171,7 @@ TEST_F(BatchScans, PoseFilesThatDoNotHelp_AreRefusedWithTheirPath) {
     const auto refusal = [&](const std::string& content) {
         folder_.write("p.json", content);
         const auto found = scans("[{path: scans/a.ply, pose: p.json}]");
-        EXPECT_THAT(found, ElementsAre(AllOf(StartsWith("b:3:36: '"), HasSubstr("p.json': "))));
+        EXPECT_THAT(found, ElementsAre(AllOf(StartsWith("b:3:35: '"), HasSubstr("p.json': "))));
         return found.front();
     };
     EXPECT_THAT(refusal("{}"), HasSubstr("expected \"scanmill\": 1"));

@@ -56,7 +56,7 @@ gate: {hausdorff: +1 %, genus: exact, seconds: +20 %, max: +0.2 mm, components: 
     EXPECT_EQ(batch_.workflows[1].file, folder_ / "other.yaml");
     EXPECT_EQ(batch_.workflows[1].position, (Position{7, 21}));
     EXPECT_EQ(batch_.settings.at("n").values.size(), 2u);
-    EXPECT_EQ(batch_.settings.at("s").position, (Position{8, 29})) << "of the name";
+    EXPECT_EQ(batch_.settings.at("s").position, (Position{8, 27})) << "of the name";
     EXPECT_EQ(batch_.limits, (Limits{u64(8) << 30, 500'000'000, 600, 2.5, 1}));
     EXPECT_EQ(batch_.measure.samples, 1000);
     EXPECT_THAT(batch_.measure.thresholds,

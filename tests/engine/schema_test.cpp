@@ -19,6 +19,7 @@ namespace scanmill {
 namespace {
 
 using nlohmann::json;
+using test::known_only;
 using test::Schema;
 using testing::HasSubstr;
 
@@ -40,7 +41,32 @@ protected:
 std::string steps(const std::string& steps) { return "scanmill: 1\ninputs: {scan: points}\nsteps:\n" + steps; }
 std::string with_n(const std::string& text) { return "parameters: {n: 3}\n" + steps(text); }
 
-using test::known_only;
+TEST_F(WorkflowSchema, WhatCheckAccepts_IsAccepted) {
+    for (const std::string& workflow :
+         {with_n("  - thin: {count: $n}\n"), with_n("  - thin: {size: 0.1 %diag, axis: [1, 0, 0], count: $n}\n"),
+          with_n("  - thin: {size: +1e-3 mm, rule: random, count: $n}\n"),
+          with_n("  - thin: {count: {sweep: [1, $n, 9]}}\n    expect: {kept: '> 3', points: [1, 9]}\n"),
+          with_n("  - thin: {count: $n}\n  - tetrahedralise:\n  - solid: {alpha: auto, coverage: 0.5, angle: 0 deg}\n"
+                 "    expect: {closed: true, alpha: < 3 %diag, bending: < 40 deg}\n"),
+          with_n("  - one-of:\n      - thin: {count: $n}\n      - id: b\n        thin:\n"
+                 "      - name: twice\n        steps: [{thin: }, {id: again, thin: }]\n    id: any\n"),
+          std::string("scanmill: 1\nname: w\nsummary: Nothing.\ninputs: {a: {kind: points, unit: mm, help: It.}, "
+                      "b: [points]}\nsteps: [{combine: , in: {points: [a, b]}}]\n"
+                      "outputs: {'{scan}.ply': combine}\n"),
+          std::string("scanmill: 1\nsummary: 5\ninputs: {scan: points}\nparameters:\nsteps: [{thin: }]\noutputs:\n"),
+          std::string(
+              "scanmill: 1\ninputs: {scan: points}\nparameters: {s: {default: {sweep: [1 u, 2 u]}, help: It.}}\n"
+              "steps: [{thin: {size: $s}, in: scan}]\n")}) {
+        EXPECT_THAT(check_says(workflow), testing::IsEmpty()) << workflow;
+        EXPECT_EQ(schema_.complaints(workflow), "") << workflow;
+    }
+}
+
+struct Mistake {
+    std::string workflow;
+    std::string schema;  ///< a part of the schema's complaints: place and reason
+    std::string check;  ///< a part of the only thing that check says
+};
 
 /// One mistake each, so that neither of the two can reject it for another reason.
 const std::vector<Mistake> mistakes{

@@ -7,7 +7,7 @@
 namespace scanmill::test {
 
 std::span<const FuzzTarget> fuzz_targets() {
-    static constexpr std::array<FuzzTarget, 15> table{{
+    static constexpr std::array<FuzzTarget, 16> table{{
         {"ply", [](std::string_view bytes) { return read_scan("ply", bytes); }},
         {"stl", [](std::string_view bytes) { return read_scan("stl", bytes); }},
         {"off", [](std::string_view bytes) { return read_scan("off", bytes); }},
@@ -19,6 +19,7 @@ std::span<const FuzzTarget> fuzz_targets() {
         {"las", [](std::string_view bytes) { return read_scan("las", bytes); }},
         {"pcd", [](std::string_view bytes) { return read_scan("pcd", bytes); }},
         {"workflow", check_workflow_text},
+        {"batch", check_batch_text},
         {"setting", check_setting},
         {"manifest", check_manifest},
         {"format-manifest", check_format_manifest},

@@ -36,6 +36,9 @@ inline void require_law(bool holds, const std::string& law) {
 bool read_scan(std::string_view extension, std::string_view bytes);
 /// Parses and plans a workflow, against filters that exist only as declarations.
 bool check_workflow_text(std::string_view bytes);
+/// Parses and plans a batch, in a folder with two scans and a workflow, against the same filters; bytes that could lead
+/// out of the folder are refused unread.
+bool check_batch_text(std::string_view bytes);
 /// Reads the bytes as the VALUE of `--set NAME=VALUE`, as every type of parameter, and plans a workflow with it.
 bool check_setting(std::string_view bytes);
 /// Reads the bytes as a filter's manifest.

@@ -24,6 +24,11 @@ TEST(SchemaCommand, PrintsAndWritesTheSame) {
     EXPECT_TRUE(json::parse(printed.out)["definitions"]["step"]["properties"].contains("voxel-thin"));
     EXPECT_EQ(scanmill_program({"schema", "-o", (folder / "new").string()}).exit_code, 0);
     EXPECT_EQ(content_of(folder / "new/workflow.schema.json"), printed.out);
+    EXPECT_EQ(scanmill_program({"schema", "workflow"}).out, printed.out);
+    const ProgramResult of_batches = scanmill_program({"schema", "batch"});
+    EXPECT_TRUE(json::parse(of_batches.out)["properties"].contains("gate"));
+    EXPECT_EQ(content_of(folder / "new/batch.schema.json"), of_batches.out);
+    EXPECT_EQ(scanmill_program({"schema", "report"}).exit_code, 2);
 }
 
 TEST(SchemaCommand, FolderThatCannotBeMade_IsOneSentence) {
@@ -78,6 +83,7 @@ TEST(Completion, Bash_ProposesCommandsOptionsAndFilters) {
     EXPECT_EQ(completed(folder, "run --un", 2), "--unit --until\n");
     EXPECT_EQ(completed(folder, "show vox", 2), "voxel-thin\n");
     EXPECT_EQ(completed(folder, "completion f", 2), "fish\n");
+    EXPECT_EQ(completed(folder, "schema b", 2), "batch\n");
 }
 
 TEST(Completion, Bash_ProposesFilesWithBlanksWhole) {

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `scanmill check` on batch files.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/program.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class CheckOfABatch : public testing::Test {
+protected:
+    CheckOfABatch() {
+        for (const char* scan : {"a.xyz", "b.xyz", "c.xyz"}) folder_.write(std::string("scans/") + scan, "0 0 0\n");
+        folder_.write("thin.yaml",
+                      "scanmill: 1\ninputs: {scan: points}\nparameters: {size: 1 u}\nsteps: [{voxel-thin: {bin-size: "
+                      "$size}}]\n");
+        folder_.write("merge.yaml", "scanmill: 1\ninputs: {scans: [points]}\nsteps: [{merge: }]\n");
+    }
+    ProgramResult check(const std::string& batch, std::vector<std::string> options = {}) {
+        folder_.write("nightly.yaml", batch);
+        options.insert(options.begin(), {"check", "nightly.yaml"});
+        return scanmill_program(options, {.folder = folder_.path()});
+    }
+    static std::string with_size(const std::string& size) {
+        return "scanmill: 1\nbatch: nightly\nscans: [scans/*.xyz]\nworkflows: [thin.yaml, merge.yaml]\nset: {size: " +
+               size + "}\n";
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(CheckOfABatch, SaysHowManyOfWhat) {
+    const ProgramResult found = check(with_size("{sweep: [1 u, 2 u, 3 u]}"));
+    EXPECT_EQ(found.exit_code, 0);
+    EXPECT_EQ(found.out, "nightly.yaml: ok, 3 scans, 2 workflows, 4 variants\n");
+    EXPECT_THAT(found.err, IsEmpty());
+}
+
+TEST_F(CheckOfABatch, PlanOfEveryPart_IsPrinted) {
+    EXPECT_THAT(check(with_size("{sweep: [1 u, 2 u]}"), {"--plan"}).out,
+                AllOf(HasSubstr("variant size=2u"), HasSubstr("merge.yaml: 1 step, 1 variant")));
+    const json files = json::parse(check(with_size("2 u"), {"--plan", "--json"}).out)["files"];
+    ASSERT_EQ(files.size(), 3u);
+    EXPECT_EQ(files[0]["file"], "nightly.yaml");
+    EXPECT_EQ(files[1]["plan"]["steps"].size(), 1u);
+    EXPECT_TRUE(files[2].contains("plan"));
+}
+
+TEST_F(CheckOfABatch, BadValue_StandsInTheBatch) {
+    const ProgramResult found = check(with_size("2 yard"));
+    EXPECT_EQ(found.exit_code, 2);
+    EXPECT_THAT(found.err, HasSubstr("nightly.yaml:5:13: $size is the bin-size of voxel-thin: 'yard' is no unit"));
+    EXPECT_THAT(found.out, IsEmpty());
+    const json answer = json::parse(check(with_size("2 yard"), {"--json"}).out);
+    EXPECT_EQ(answer["files"][0]["ok"], false);
+    EXPECT_EQ(answer["files"][0]["diagnostics"][0]["line"], 5);
+    EXPECT_EQ(answer["files"][1]["ok"], true);
+}
+
+TEST_F(CheckOfABatch, SettingsOfTheCommandLine_DoNotReachIt) {
+    const ProgramResult found = check(with_size("2 u"), {"--set", "size=1 u"});
+    EXPECT_EQ(found.exit_code, 2);
+    EXPECT_THAT(found.err, HasSubstr("is a batch, which --set does not reach"));
+}
+
+TEST_F(CheckOfABatch, PathsOfItsValues_CountFromItsFolder) {
+    folder_.write(
+        "posed.yaml",
+        "scanmill: 1\ninputs: {scans: [points]}\nparameters: {poses: none}\nsteps: [{merge: {poses: $poses}}]\n");
+    folder_.write("sub/b.yaml",
+                  "scanmill: 1\nbatch: b\nscans: [../scans/*.xyz]\nworkflows: ../posed.yaml\nset: {poses: p.json}\n");
+    const ProgramResult found = scanmill_program({"check", "sub/b.yaml", "--plan"}, {.folder = folder_.path()});
+    EXPECT_EQ(found.exit_code, 0) << found.err;
+    EXPECT_THAT(found.out, HasSubstr("poses: sub/p.json"));
+}
+
+}  // namespace
+}  // namespace scanmill::test
