@@ -50,6 +50,16 @@ TEST(YamlDocument, RepeatedKey_IsAnErrorAtTheSecondPlace) {
     EXPECT_EQ(parsed.root.find("a")->text, "1");
 }
 
+TEST(YamlDocument, NamesThatYamlTakesForSomethingElse_AskForQuotes) {
+    for (const char* text : {"a: {b: c/{stem}.json, d: 1}\n", "a: [b/[cd].ply, e]\n"}) {
+        const Parsed parsed = parse(text);
+        ASSERT_EQ(parsed.findings.size(), 1u) << text;
+        EXPECT_THAT(parsed.findings[0].message, HasSubstr("needs quotes, as \"{stem}.ply\"")) << text;
+    }
+    for (const char* text : {"a:\n  - *.ply\n", "a: *\n", "a: [**/*.ply]\n"})
+        EXPECT_THAT(parse(text).findings.at(0).message, HasSubstr("needs quotes, as \"*.ply\"")) << text;
+}
+
 TEST(YamlDocument, RepeatedKeyInANestedFlowMap_IsFound) {
     EXPECT_EQ(parse("a: {b: [{c: 1, c: 2}]}\n").findings.size(), 1u);
 }

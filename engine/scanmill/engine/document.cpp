@@ -49,6 +49,15 @@ Extent extent_of(const YamlNode& node) {
     return whole;
 }
 
+/// Names with placeholders and wildcards are texts that YAML takes for something else.
+std::string way_out(const std::string& message) {
+    const auto says = [&](const char* words) { return message.find(words) != std::string::npos; };
+    if (says("flow"))
+        return "; within { } and [ ] a text with braces, brackets or commas needs quotes, as \"{stem}.ply\"";
+    if (says("anchor") || says("alias")) return "; a text that begins with * or & needs quotes, as \"*.ply\"";
+    return "";
+}
+
 /// Builds the tree from the parser's events: keys, values and items arrive one after the other.
 class TreeBuilder : public YAML::EventHandler {
 public:
@@ -218,7 +227,7 @@ YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
             last = next.begin;
         }
     } catch (const YAML::Exception& error) {
-        diagnostics.error(position_of(error.mark), "is no YAML: " + error.msg);
+        diagnostics.error(position_of(error.mark), "is no YAML: " + error.msg + way_out(error.msg));
     } catch (const TooMuch& too_much) {
         diagnostics.error(too_much.position, too_much.what + "; write fewer anchors and aliases");
     }

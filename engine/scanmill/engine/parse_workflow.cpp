@@ -44,7 +44,7 @@ Workflow WorkflowParser::workflow(const YamlNode& root) {
     }
     if (!require_map(root, "a workflow: a map that begins with `scanmill: 1`", diagnostics_)) return workflow;
     if (const YamlNode* batch = root.find("batch")) {
-        diagnostics_.error(batch->position, "is a batch; expected a workflow. A batch is run by `scanmill batch`");
+        diagnostics_.error(batch->position, "is a batch; expected a workflow (`scanmill batch` runs batches)");
         return workflow;
     }
     MapReader keys(root, "a workflow", diagnostics_);
