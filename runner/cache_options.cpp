@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "printable.hpp"
 #include "scanmill/engine/byte_size.hpp"
 #include "scanmill/filter/error.hpp"
@@ -26,11 +28,16 @@ void add_cache_options(CLI::App& command, CacheOptions& options, bool computes) 
         ->check(CLI::IsMember({"worth", "always", "never"}));
 }
 
-std::unique_ptr<Cache> open_cache(const CacheOptions& options) {
+Warn warning_teller() {
+    return [told = std::make_shared<std::set<std::string>>()](const std::string& text) {  // all copies know it
+        if (told->insert(text).second) fmt::print(stderr, "warning: {}\n", printable(text));
+    };
+}
+
+std::unique_ptr<Cache> open_cache(const CacheOptions& options, const Warn& warn) {
     if (options.none) return nullptr;
     const u64 limit = options.limit.empty() ? Cache::default_limit : parse_byte_size(options.limit);
-    const auto warn = [](const std::string& text) { fmt::print(stderr, "warning: {}\n", printable(text)); };
-    if (!options.folder.empty()) return std::make_unique<Cache>(options.folder, limit, warn);
+    if (!options.folder.empty()) return std::make_unique<Cache>(std::filesystem::absolute(options.folder), limit, warn);
     try {
         return std::make_unique<Cache>(default_cache_folder(), limit, warn);
     } catch (const Error& error) {

@@ -15,6 +15,7 @@ using Action = std::function<int()>;
 
 /// `command_line`: the program and its arguments, for the records.
 void add_run(CLI::App& app, Action& chosen, std::vector<std::string> command_line);
+void add_batch(CLI::App& app, Action& chosen, std::vector<std::string> command_line);
 void add_check(CLI::App& app, Action& chosen);
 void add_list(CLI::App& app, Action& chosen);
 void add_show(CLI::App& app, Action& chosen);

@@ -2,9 +2,13 @@
 #include "machine.hpp"
 
 #include <fmt/format.h>
+#include <gnu/libc-version.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include <tbb/version.h>
+
+#include <Eigen/Core>
 #include <fstream>
 #include <thread>
 
@@ -29,6 +33,12 @@ std::string machine_text() {
     const u64 memory = static_cast<u64>(::sysconf(_SC_PHYS_PAGES)) * static_cast<u64>(::sysconf(_SC_PAGESIZE));
     return fmt::format("{}, {} cores, {}, {} {} {}", processor(), std::thread::hardware_concurrency(),
                        byte_size_text(memory), system.sysname, system.release, system.machine);
+}
+
+std::string libraries_text() {
+    const std::string eigen = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
+    return fmt::format("Eigen {}, oneTBB {}, glibc {}, GCC {}", eigen, TBB_VERSION_STRING, ::gnu_get_libc_version(),
+                       __VERSION__);
 }
 
 }  // namespace scanmill::runner

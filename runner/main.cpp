@@ -10,9 +10,11 @@
 #include "error_output.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
+#include "scanmill/work/serve.hpp"
 
 int main(int argc, char** argv) {
     using namespace scanmill::runner;
+    if (argc == 2 && argv[1] == std::string_view("worker")) return scanmill::serve_as_worker();
     // Beyond the largest file that the system allows, writing then fails with a reason instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app("Scanmill turns libraries of 3D scans into surfaces, unattended.", "scanmill");
@@ -22,6 +24,7 @@ int main(int argc, char** argv) {
     const bool json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
     Action chosen;
     add_run(app, chosen, {argv, argv + argc});
+    add_batch(app, chosen, {argv, argv + argc});
     add_check(app, chosen);
     add_list(app, chosen);
     add_show(app, chosen);

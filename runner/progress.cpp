@@ -2,47 +2,85 @@
 #include "progress.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
+
+#include <algorithm>
 
 #include "printable.hpp"
 
 namespace scanmill::runner {
 
-Progress::Progress(const Plan& plan, const RunGraph& graph, bool quiet)
-    : plan_(plan),
-      graph_(graph),
+namespace {
+
+std::size_t terminal_width() {
+    winsize size{};
+    return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::size_t count_to_run(const std::vector<NodeForesight>& foresight) {
+    return static_cast<std::size_t>(std::ranges::count(foresight, true, &NodeForesight::will_run));
+}
+
+}  // namespace
+
+Progress::Progress(const RunGraph& graph, const std::vector<NodeForesight>& foresight, std::size_t workers, bool quiet)
+    : graph_(graph),
+      board_(workers, graph.nodes.size(), count_to_run(foresight)),
       quiet_(quiet),
-      terminal_(::isatty(STDERR_FILENO) != 0) {}
+      terminal_(::isatty(STDERR_FILENO) != 0),
+      begin_(std::chrono::steady_clock::now()) {}
 
 std::string Progress::label(const RunNode& node) const {
-    return printable_line(node.step ? fmt::format("{}: {}", graph_.scan_names[node.scan], plan_.steps[*node.step].label)
-                                    : fmt::format("{}: read", node.file.string()));
+    return printable_line(node.step ? fmt::format("{}: {}", graph_.scan_names[node.scan], graph_.label(node))
+                                    : fmt::format("{}: read", node.leaf.file.string()));
 }
 
 void Progress::say(const std::string& line) {
-    if (terminal_ && !quiet_) fmt::print(stderr, "\r\x1b[K");
+    wipe();
     fmt::print(stderr, "{}\n", printable(line));
 }
 
-void Progress::overwrite(const std::string& line) {
-    if (terminal_ && !quiet_) {
-        fmt::print(stderr, "\r\x1b[K[{}/{}] {}", ended_ + 1, graph_.nodes.size(), line);
-        std::fflush(stderr);
-    }
+void Progress::wipe() {
+    if (painted_ > 0) fmt::print(stderr, "\x1b[{}A\x1b[J", painted_);
+    painted_ = 0;
 }
 
-void Progress::node_started(const RunNode& node) {
+void Progress::paint() {
+    wipe();
+    const std::size_t width = terminal_width();
+    for (const std::string& line : board_.lines(seconds_since(begin_), width > 1 ? width - 1 : 1)) {
+        fmt::print(stderr, "{}\n", line);
+        ++painted_;
+    }
+    std::fflush(stderr);
+}
+
+void Progress::time_passed() {
+    if (!has_board()) return;
     const std::scoped_lock lock(mutex_);
-    percent_ = -1;
-    overwrite(label(node));
+    constexpr std::chrono::milliseconds pause(100);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < pause) return;
+    last_ = now;
+    paint();
+}
+
+void Progress::node_started(const RunNode& node, std::size_t worker) {
+    const std::scoped_lock lock(mutex_);
+    board_.started(worker, label(node), seconds_since(begin_));
 }
 
 void Progress::node_progress(const RunNode& node, double fraction) {
-    const std::scoped_lock lock(mutex_);
-    const int percent = static_cast<int>(100 * fraction);
-    if (percent == percent_) return;
-    percent_ = percent;
-    overwrite(fmt::format("{} {} %", label(node), percent));
+    {
+        const std::scoped_lock lock(mutex_);
+        board_.progressed(label(node), fraction);
+    }
+    time_passed();
 }
 
 void Progress::node_warning(const RunNode& node, std::string_view text) {
@@ -54,27 +92,43 @@ void Progress::node_warning(const RunNode& node, std::string_view text) {
 void Progress::node_ended(const RunNode& node, const NodeReport& report) {
     const std::scoped_lock lock(mutex_);
     ++ended_;
+    board_.ended(label(node));
+    board_.step_ended(report.origin != Origin::cached);
     if (quiet_ || terminal_ || report.outcome != Outcome::done) return;
     const std::string took =
-        report.origin == Origin::ran ? fmt::format("{:.2f} s", report.seconds) : std::string("cached");
+        report.origin == Origin::ran ? fmt::format("{:.2f} s", report.effort.seconds) : std::string("cached");
     fmt::print(stderr, "[{}/{}] {} {}\n", ended_, graph_.nodes.size(), label(node), took);
+}
+
+void Progress::output_started(const RunCell&, const RunOutput& output, std::size_t worker) {
+    const std::scoped_lock lock(mutex_);
+    board_.started(worker, printable_line(output.file.string()), seconds_since(begin_));
 }
 
 void Progress::output_written(const RunCell&, const OutputReport& report) {
     const std::scoped_lock lock(mutex_);
+    board_.ended(printable_line(report.file.string()));
     for (const std::string& warning : report.warnings) say(fmt::format("warning: {}", warning));
 }
 
 void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     const std::scoped_lock lock(mutex_);
-    if (report.error.empty()) return;
-    const bool several = plan_.variants.size() > 1;
-    say(fmt::format("error: {}{}", report.error,
-                    several ? fmt::format("\n  under variant '{}'", plan_.variants[cell.variant].name) : ""));
+    if (!report.failure) return;
+    board_.cell_failed();
+    const bool several = graph_.plans[cell.plan]->variants.size() > 1;
+    say(fmt::format("error: {}{}", report.failure.text,
+                    several ? fmt::format("\n  under variant '{}'", graph_.variant(cell).name) : ""));
+}
+
+void Progress::say_beside(const std::function<void()>& say_it) {
+    const std::scoped_lock lock(mutex_);
+    wipe();
+    say_it();
 }
 
 void Progress::finish() {
-    if (terminal_ && !quiet_) fmt::print(stderr, "\r\x1b[K");
+    const std::scoped_lock lock(mutex_);
+    wipe();
 }
 
 }  // namespace scanmill::runner

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "failure_json.hpp"
 #include "metrics_json.hpp"
 #include "scanmill/engine/facts.hpp"
 #include "table.hpp"
@@ -19,18 +20,15 @@ std::string shown_path(const std::filesystem::path& file) {
     return relative.starts_with("..") ? file.string() : relative;
 }
 
-std::string node_label(const Plan& plan, const RunNode& node) {
-    return node.step ? plan.steps[*node.step].label : "read";
-}
-
 /// The numbers worth a column, of one cell, in the order of its steps.
-Metrics headline(const Plan& plan, const RunGraph& graph, const RunReport& report, std::size_t cell) {
+Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cell) {
     Metrics shown, read;
     for (const std::size_t index : graph.cells[cell].nodes) {
         const RunNode& node = graph.nodes[index];
         const NodeReport& done = report.nodes[index];
-        if (!node.step) {
-            if (node.input != 0) continue;
+        const PlannedStep* step = graph.step(node);
+        if (!step) {
+            if (!node.is_scan) continue;
             for (const Metric& fact : done.facts.values) {  // a list's scans are counted together
                 const Metric* before = read.find(fact.name);
                 read.set(fact.name, fact.value + (before ? before->value : 0), fact.unit);
@@ -38,7 +36,7 @@ Metrics headline(const Plan& plan, const RunGraph& graph, const RunReport& repor
             }
             continue;
         }
-        for (const MetricSpec& metric : plan.steps[*node.step].spec.metrics)
+        for (const MetricSpec& metric : step->spec.metrics)
             if (const Metric* found = done.metrics.find(metric.name); metric.headline && found)
                 shown.set(metric.name, found->value, found->unit);
     }
@@ -51,6 +49,15 @@ Metrics headline(const Plan& plan, const RunGraph& graph, const RunReport& repor
     return shown;
 }
 
+bool has_several_workflows(const RunGraph& graph) {
+    return std::ranges::any_of(
+        graph.plans, [&](const auto& plan) { return plan->workflow.file != graph.plans.front()->workflow.file; });
+}
+
+bool has_several_variants(const RunGraph& graph) {
+    return std::ranges::any_of(graph.plans, [](const auto& plan) { return plan->variants.size() > 1; });
+}
+
 Json to_json(const ParameterSet& parameters) {
     Json json = Json::object();
     for (const auto& [name, value] : parameters.values)
@@ -60,13 +67,14 @@ Json to_json(const ParameterSet& parameters) {
 
 }  // namespace
 
-std::string graph_text(const Plan& plan, const RunGraph& graph, const std::vector<NodeForesight>& foresight) {
+std::string graph_text(const RunGraph& graph, const std::vector<NodeForesight>& foresight) {
     std::string text;
     std::size_t cached = 0;
+    const bool several_workflows = has_several_workflows(graph);
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         const RunNode& node = graph.nodes[index];
-        text += fmt::format("{:>4}. {} {}{}\n", index + 1, node.key.substr(0, 8), node_label(plan, node),
-                            node.step ? "" : " " + node.file.string());
+        text += fmt::format("{:>4}. {} {}{}\n", index + 1, node.key.substr(0, 8), graph.label(node),
+                            node.step ? "" : " " + node.leaf.file.string());
         for (const NodeInput& input : node.inputs)
             text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1,
                                 input.from.empty() ? "" : "." + input.from);
@@ -77,18 +85,19 @@ std::string graph_text(const Plan& plan, const RunGraph& graph, const std::vecto
     }
     for (const RunCell& cell : graph.cells)
         for (const RunOutput& output : cell.outputs)
-            text += fmt::format("{} [{}] -> {}\n", graph.scan_names[cell.scan], plan.variants[cell.variant].name,
+            text += fmt::format("{} [{}{}] -> {}\n", graph.scan_names[cell.scan],
+                                several_workflows ? graph.workflow(cell) + ": " : "", graph.variant(cell).name,
                                 shown_path(output.file));
     return text + fmt::format("{} to compute, {} cached, {} cell{}\n", graph.nodes.size() - cached, cached,
                               graph.cells.size(), graph.cells.size() == 1 ? "" : "s");
 }
 
-std::string graph_json(const Plan& plan, const RunGraph& graph, const std::vector<NodeForesight>& foresight) {
+std::string graph_json(const RunGraph& graph, const std::vector<NodeForesight>& foresight) {
     Json json{{"scanmill", 1}, {"nodes", Json::array()}, {"cells", Json::array()}};
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         const RunNode& node = graph.nodes[index];
-        Json entry{{"key", node.key}, {"step", node_label(plan, node)}, {"in", Json::array()}};
-        if (!node.step) entry["file"] = node.file.string();
+        Json entry{{"key", node.key}, {"step", graph.label(node)}, {"in", Json::array()}};
+        if (!node.step) entry["file"] = node.leaf.file.string();
         if (!node.unreadable.empty()) entry["unreadable"] = node.unreadable;
         for (const NodeInput& input : node.inputs)
             entry["in"].push_back({{"port", input.port}, {"node", input.node}, {"from", input.from}});
@@ -98,7 +107,8 @@ std::string graph_json(const Plan& plan, const RunGraph& graph, const std::vecto
     }
     for (const RunCell& cell : graph.cells) {
         Json entry{{"scan", graph.scan_names[cell.scan]},
-                   {"variant", plan.variants[cell.variant].name},
+                   {"workflow", graph.workflow(cell)},
+                   {"variant", graph.variant(cell).name},
                    {"nodes", cell.nodes},
                    {"outputs", Json::array()}};
         for (const RunOutput& output : cell.outputs) entry["outputs"].push_back(output.file.string());
@@ -107,16 +117,17 @@ std::string graph_json(const Plan& plan, const RunGraph& graph, const std::vecto
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string report_text(const Plan& plan, const RunGraph& graph, const RunReport& report) {
+std::string report_text(const RunGraph& graph, const RunReport& report) {
     std::vector<Metrics> numbers;
     std::vector<std::string> columns;
     for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
-        numbers.push_back(headline(plan, graph, report, cell));
+        numbers.push_back(headline(graph, report, cell));
         for (const Metric& metric : numbers.back().values)
             if (std::ranges::find(columns, metric.name) == columns.end()) columns.push_back(metric.name);
     }
-    const bool several_variants = plan.variants.size() > 1;
+    const bool several_workflows = has_several_workflows(graph), several_variants = has_several_variants(graph);
     std::vector<std::string> headers{"scan"};
+    if (several_workflows) headers.push_back("workflow");
     if (several_variants) headers.push_back("variant");
     headers.insert(headers.end(), columns.begin(), columns.end());
     headers.insert(headers.end(), {"seconds", "result"});
@@ -127,7 +138,8 @@ std::string report_text(const Plan& plan, const RunGraph& graph, const RunReport
         if (done.outcome == Outcome::failed) ++failed;
         std::vector<std::string> row{
             std::filesystem::path(graph.scan_names[graph.cells[cell].scan]).filename().string()};
-        if (several_variants) row.push_back(plan.variants[graph.cells[cell].variant].name);
+        if (several_workflows) row.push_back(graph.workflow(graph.cells[cell]));
+        if (several_variants) row.push_back(graph.variant(graph.cells[cell]).name);
         for (const std::string& column : columns) {
             const Metric* metric = numbers[cell].find(column);
             row.push_back(metric ? display(*metric) : "-");
@@ -144,9 +156,9 @@ std::string report_text(const Plan& plan, const RunGraph& graph, const RunReport
     return text;
 }
 
-std::string report_json(const Plan& plan, const RunGraph& graph, const RunReport& report) {
+std::string report_json(const RunGraph& graph, const RunReport& report) {
     Json json{{"scanmill", 1},
-              {"workflow", plan.workflow.name},
+              {"workflow", workflow_name(*graph.plans.front())},
               {"interrupted", report.interrupted},
               {"steps", Json::array()},
               {"cells", Json::array()}};
@@ -154,31 +166,34 @@ std::string report_json(const Plan& plan, const RunGraph& graph, const RunReport
         const RunNode& node = graph.nodes[index];
         const NodeReport& done = report.nodes[index];
         Json entry{{"key", node.key},
-                   {"step", node_label(plan, node)},
+                   {"step", graph.label(node)},
                    {"outcome", name_of(done.outcome)},
                    {"origin", name_of(done.origin)},
-                   {"seconds", done.seconds}};
+                   {"seconds", done.effort.seconds}};
         if (!done.why.empty() && done.origin == Origin::ran) entry["why"] = done.why;
+        if (done.effort.peak_memory > 0) entry["peak-memory"] = done.effort.peak_memory;
         if (node.step)
-            entry["filter"] = plan.steps[*node.step].spec.name;
+            entry["filter"] = graph.step(node)->spec.name;
         else
-            entry["file"] = node.file.string();
+            entry["file"] = node.leaf.file.string();
         if (!done.resolved.values.empty()) entry["parameters"] = to_json(done.resolved);
         if (!done.metrics.values.empty()) entry["metrics"] = metrics_json(done.metrics);
         if (!done.facts.values.empty()) entry["facts"] = metrics_json(done.facts);
         if (!done.warnings.empty()) entry["warnings"] = done.warnings;
-        if (!done.error.empty()) entry["error"] = done.error;
+        if (done.failure) add_failure(entry, done.failure);
+        if (!done.effort.log.empty()) entry["log"] = done.effort.log;
         json["steps"].push_back(std::move(entry));
     }
     for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
         const CellReport& done = report.cells[cell];
         Json entry{{"scan", graph.scan_names[graph.cells[cell].scan]},
-                   {"variant", plan.variants[graph.cells[cell].variant].name},
+                   {"workflow", graph.workflow(graph.cells[cell])},
+                   {"variant", graph.variant(graph.cells[cell]).name},
                    {"outcome", name_of(done.outcome)},
                    {"seconds", done.seconds},
                    {"steps", graph.cells[cell].nodes},
                    {"outputs", Json::array()}};
-        if (!done.error.empty()) entry["error"] = done.error;
+        if (done.failure) add_failure(entry, done.failure);
         for (const OutputReport& output : done.outputs) {
             Json file{{"file", output.file.string()},
                       {"outcome", name_of(output.outcome)},

@@ -9,11 +9,11 @@
 
 namespace scanmill::runner {
 
-std::string graph_text(const Plan& plan, const RunGraph& graph, const std::vector<NodeForesight>& foresight);
-std::string graph_json(const Plan& plan, const RunGraph& graph, const std::vector<NodeForesight>& foresight);
+std::string graph_text(const RunGraph& graph, const std::vector<NodeForesight>& foresight);
+std::string graph_json(const RunGraph& graph, const std::vector<NodeForesight>& foresight);
 
 /// A row per cell: points read, the filters' headline metrics, the written mesh's facts, seconds, files.
-std::string report_text(const Plan& plan, const RunGraph& graph, const RunReport& report);
-std::string report_json(const Plan& plan, const RunGraph& graph, const RunReport& report);
+std::string report_text(const RunGraph& graph, const RunReport& report);
+std::string report_json(const RunGraph& graph, const RunReport& report);
 
 }  // namespace scanmill::runner

@@ -30,6 +30,13 @@ Json to_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
     return json;
 }
 
+void add_failure(Json& entry, const FailureRecord& failure) {
+    if (failure.error.empty()) return;
+    entry["error"] = failure.error;
+    entry["cause"] = failure.cause;
+    if (failure.number != 0) entry["number"] = failure.number;
+}
+
 Json to_json(const RunDetails& run) {
     Json json{{"scanmill", 1}, {"run", to_json(run.summary)}};
     json["run"]["file"] = run.start.file;
@@ -37,12 +44,15 @@ Json to_json(const RunDetails& run) {
     json["run"]["seed"] = run.start.seed;
     json["run"]["threads"] = run.start.threads;
     json["run"]["version"] = run.start.version;
+    json["run"]["jobs"] = run.start.jobs;
     json["run"]["machine"] = run.start.machine;
+    json["run"]["libraries"] = run.start.libraries;
     json["cells"] = Json::array();
     for (const CellRecord& cell : run.cells) {
-        Json entry{{"scan", cell.scan},       {"variant", cell.variant}, {"outcome", cell.outcome},
-                   {"seconds", cell.seconds}, {"steps", cell.nodes},     {"outputs", Json::array()}};
-        if (!cell.error.empty()) entry["error"] = cell.error;
+        Json entry{{"scan", cell.scan},       {"workflow", cell.workflow}, {"variant", cell.variant},
+                   {"outcome", cell.outcome}, {"seconds", cell.seconds},   {"steps", cell.nodes},
+                   {"outputs", Json::array()}};
+        add_failure(entry, cell.failure);
         for (const OutputRecord& output : cell.outputs)
             entry["outputs"].push_back({{"file", output.file},
                                         {"kind", output.kind},
@@ -53,6 +63,7 @@ Json to_json(const RunDetails& run) {
     json["steps"] = Json::array();
     for (const StepRecord& step : run.steps) {
         Json entry{{"node", step.node},
+                   {"workflow", step.workflow},
                    {"step", step.label},
                    {"filter", step.filter},
                    {"version", step.filter_version},
@@ -64,11 +75,15 @@ Json to_json(const RunDetails& run) {
                    {"outcome", step.outcome},
                    {"seconds", step.seconds},
                    {"cpu-seconds", step.cpu_seconds},
+                   {"peak-memory", step.peak_memory},
+                   {"threads", step.threads},
+                   {"attempts", step.attempts},
                    {"authored", to_json(step.authored)},
                    {"parameters", to_json(step.resolved)},
                    {"metrics", metrics_json(step.metrics)},
                    {"facts", metrics_json(step.facts)}};
-        if (!step.error.empty()) entry["error"] = step.error;
+        add_failure(entry, step.failure);
+        if (!step.log.empty()) entry["log"] = step.log;
         if (!step.warnings.empty()) entry["warnings"] = step.warnings;
         json["steps"].push_back(std::move(entry));
     }
@@ -112,7 +127,7 @@ int show_run(const RunRecords& records, std::int64_t id, bool json) {
         steps.add({step.scan, step.label, step.outcome, fmt::format("{:.2f}", step.seconds), step.origin, step.why});
     fmt::print("{}", printable(steps.text()));
     for (const CellRecord& cell : run.cells)
-        if (!cell.error.empty()) fmt::print("\n{}\n", printable(cell.error));
+        if (!cell.failure.error.empty()) fmt::print("\n{}\n", printable(cell.failure.error));
     return done;
 }
 

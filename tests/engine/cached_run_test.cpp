@@ -22,12 +22,12 @@ class CachedRun : public Run {
 protected:
     CachedRun() {
         settings_.cache = &cache_;
-        settings_.keep = KeepRule::Policy::always;
+        keep_ = KeepRule::Policy::always;
     }
     std::vector<Origin> origins(const RunReport& report) {
         std::vector<Origin> all;
         for (const NodeReport& node : report.nodes) {
-            EXPECT_EQ(node.outcome, Outcome::done) << node.error;
+            EXPECT_EQ(node.outcome, Outcome::done) << node.failure.text;
             all.push_back(node.origin);
         }
         return all;
@@ -102,15 +102,14 @@ TEST_F(CachedRun, AnotherContentUnderTheSameName_IsAnotherScan) {
     fs::remove(folder_ / "a.xyz");
     scan("a.xyz", "0 0 0\n7 0 0\n");
     prepare("  - test-step: {factor: 2}\n", {(folder_ / "a.xyz").string()});
-    EXPECT_FALSE(foresee(plan_, graph_, &cache_)[0].known);
+    EXPECT_FALSE(foresee(graph_, &cache_)[0].known);
 }
 
 TEST_F(CachedRun, ScanThatChangesAfterPlanning_Fails) {
     prepare("  - test-step:\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-step}\n");
     scan("a.xyz", "0 0 0\n7 0 0\n");
-    RunObserver nobody;
-    const RunReport report = scanmill::run(plan_, library_, graph_, request_, settings_, nobody);
-    EXPECT_THAT(report.cells[0].error, HasSubstr("changed while the run was going on"));
+    const RunReport report = run_graph();
+    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("changed while the run was going on"));
     EXPECT_FALSE(fs::exists(folder_ / "out/a.ply"));
 }
 
@@ -128,13 +127,13 @@ TEST_F(CachedRun, ExpectationsOfWhatIsCached_AreAskedAgain) {
     };
     EXPECT_TRUE(expecting("4").all_done());
     const RunReport unmet = expecting("'> 4'");
-    EXPECT_THAT(unmet.cells[0].error, testing::AllOf(HasSubstr("points"), HasSubstr("in step 'test-step'")));
+    EXPECT_THAT(unmet.cells[0].failure.text, testing::AllOf(HasSubstr("points"), HasSubstr("in step 'test-step'")));
     EXPECT_EQ(unmet.nodes[1].origin, cached);
     EXPECT_TRUE(expecting("4").all_done());
 }
 
 TEST_F(CachedRun, ValuesNotKept_AreMadeAgainWhereTheyAreNeeded) {
-    settings_.keep = KeepRule::Policy::never;
+    keep_ = KeepRule::Policy::never;
     run_two("factor: 2", "factor: 3");
     EXPECT_FALSE(fs::exists(folder_ / "cache/v1/values"));
     const std::string first = content_of(folder_ / "out/a.ply");
@@ -204,7 +203,7 @@ TEST_F(CachedRun, FileOfAParameterThatChangesMeanwhile_FailsTheStep) {
     // The step itself changes it: it appends to its log.
     folder_.write("log", "");
     const RunReport report = run("  - test-step: {log: " + log() + "}\n", {scan("a.xyz")});
-    EXPECT_THAT(report.cells[0].error, HasSubstr("log' changed while the run was going on"));
+    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("log' changed while the run was going on"));
     EXPECT_FALSE(cache_.run_key(graph_.nodes[1].key));
 }
 
@@ -232,7 +231,7 @@ TEST_F(CachedRun, EqualStepsThatExpectOtherThings_AreAskedEach) {
         run("  - id: one\n    test-step:\n    in: {points: scan}\n    expect: {points: 4}\n"
             "  - id: two\n    test-step:\n    in: {points: other}\n    expect: {points: '> 4'}\n",
             {scan("a.xyz")}, "", "{scan: points, other: points}");
-    EXPECT_THAT(report.cells[0].error, HasSubstr("in step 'two'"));
+    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("in step 'two'"));
 }
 
 TEST_F(CachedRun, CacheThatCannotBeWritten_CostsNothingButTime) {
@@ -255,13 +254,13 @@ TEST_F(CachedRun, Foresight_SaysWhatWillRunAndWhy) {
     run_two("factor: 2", "factor: 3");
     prepare("  - id: first\n    test-step: {factor: 2}\n  - id: second\n    test-step: {factor: 4}\n", {scan("a.xyz")},
             "outputs: {'{scan}.ply': second.points}\n");
-    const std::vector<NodeForesight> seen = foresee(plan_, graph_, &cache_);
+    const std::vector<NodeForesight> seen = foresee(graph_, &cache_);
     EXPECT_FALSE(seen[0].will_run);
     EXPECT_FALSE(seen[1].will_run);
     EXPECT_THAT(seen[1].needed, ElementsAre("points"));
     EXPECT_TRUE(seen[2].will_run);
     EXPECT_THAT(seen[2].why, HasSubstr("has not run on such inputs"));
-    EXPECT_THAT(foresee(plan_, graph_, nullptr)[0].why, HasSubstr("no cache"));
+    EXPECT_THAT(foresee(graph_, nullptr)[0].why, HasSubstr("no cache"));
 }
 
 TEST(KeepRule, WeighsMakingAgainstWriting) {

@@ -32,7 +32,7 @@ TEST_F(ListInput, First_TakesAllScansInOneRunOfTheWorkflowsName) {
     ASSERT_EQ(node.inputs.size(), 3u);
     EXPECT_EQ(report.nodes.back().metrics.find("more")->value, 7);
     std::vector<std::string> order;
-    for (const NodeInput& input : node.inputs) order.push_back(graph_.nodes[input.node].file.stem());
+    for (const NodeInput& input : node.inputs) order.push_back(graph_.nodes[input.node].leaf.file.stem());
     EXPECT_THAT(order, ElementsAre("c", "a", "b")) << "as they were given";
 }
 
@@ -50,7 +50,7 @@ TEST_F(ListInput, OneBadScan_FailsTheRunAndIsNamed) {
     const RunReport report = run(step, {scan("a.xyz"), (folder_ / "missing.xyz").string()}, "", views);
     ASSERT_EQ(report.cells.size(), 1u);
     EXPECT_EQ(report.cells[0].outcome, Outcome::failed);
-    EXPECT_THAT(report.cells[0].error, AllOf(HasSubstr("missing.xyz"), HasSubstr("on scan 'w'")));
+    EXPECT_THAT(report.cells[0].failure.text, AllOf(HasSubstr("missing.xyz"), HasSubstr("on scan 'w'")));
 }
 
 TEST_F(ListInput, WithoutScans_IsRefused) {

@@ -16,14 +16,10 @@ namespace fs = std::filesystem;
 
 class OutputFilesTest : public testing::Test {
 protected:
-    OutputFiles files(const std::string& folder = "out") {
-        request_.output_folder = (folder_.path() / folder).string();
-        return OutputFiles(request_);
-    }
+    OutputFiles files(const std::string& folder = "out") { return OutputFiles(folder_.path().string() + "/" + folder); }
     fs::path expected(const std::string& name) const { return fs::canonical(folder_.path()) / "out" / name; }
 
     test::TemporaryFolder folder_;
-    RunRequest request_;
 };
 
 TEST_F(OutputFilesTest, Paths_LieBelowTheFolderHoweverItIsWritten) {
@@ -64,8 +60,8 @@ TEST_F(OutputFilesTest, ExistingFolder_IsRefused) {
 TEST_F(OutputFilesTest, Input_IsNotReplacedByWhateverName) {
     const fs::path scan = folder_.write("out/scan.ply", "x");
     fs::create_hard_link(scan, folder_ / "out/same.ply");
-    request_.scans = {scan};
     OutputFiles outputs = files();
+    outputs.protect(scan);
     EXPECT_THAT(sentence_of([&] { outputs.add("scan.ply", {"k", ""}, "A"); }), HasSubstr("is an input"));
     EXPECT_THAT(sentence_of([&] { outputs.add("same.ply", {"k", ""}, "A"); }), HasSubstr("is an input"));
     EXPECT_NO_THROW(outputs.add("other.ply", {"k", ""}, "A"));

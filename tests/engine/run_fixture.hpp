@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "scanmill/engine/run.hpp"
+#include "scanmill/work/in_process_worker.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
@@ -20,8 +21,16 @@ protected:
     RunReport run(const std::string& steps, const std::vector<std::string>& scans, const std::string& tail = "",
                   const std::string& inputs = "{scan: points}") {
         prepare(steps, scans, tail, inputs);
+        return run_graph();
+    }
+    RunReport run_graph() {
         RunObserver nobody;
-        return scanmill::run(plan_, library_, graph_, request_, settings_, nobody);
+        return run_graph(nobody);
+    }
+    /// In this process.
+    RunReport run_graph(RunObserver& observer) {
+        InProcessWorker worker(library_, settings_.cache, keep_, settings_.is_cancelled);
+        return scanmill::run(library_, graph_, worker, settings_, observer);
     }
     /// All of it but running.
     void prepare(const std::string& steps, const std::vector<std::string>& scans, const std::string& tail = "",
@@ -32,7 +41,8 @@ protected:
             library_, {}, diagnostics);
         for (const Diagnostic& diagnostic : diagnostics.sorted())
             if (diagnostic.severity == Diagnostic::Severity::error) ADD_FAILURE() << text(diagnostic, "w.yaml");
-        request_.scans.assign(scans.begin(), scans.end());
+        request_.scans.clear();
+        for (const std::string& scan : scans) request_.scans.emplace_back(scan);
         request_.output_folder = folder_ / "out";
         graph_ = make_graph(plan_, library_, request_);
     }
@@ -50,6 +60,7 @@ protected:
     Plan plan_;
     RunRequest request_;
     RunSettings settings_;
+    KeepRule::Policy keep_ = KeepRule::Policy::worth;
     RunGraph graph_;
 };
 

@@ -25,12 +25,13 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 RunStart some_start() {
-    return {"thin", "thin.yaml", {"scanmill", "run", "a b"}, ~std::uint64_t(0), 4, "0.1.0", "a box"};
+    return {"thin", "thin.yaml", {"scanmill", "run", "a b"}, ~std::uint64_t(0), 4, 2, "0.1.0", "a box", "Eigen 3.4"};
 }
 
 StepRecord some_step(std::size_t node) {
     StepRecord step;
     step.node = node;
+    step.workflow = "thinning";
     step.label = "thin";
     step.filter = "voxel-thin";
     step.filter_version = 3;
@@ -47,6 +48,11 @@ StepRecord some_step(std::size_t node) {
     step.metrics = {{{"kept", 7, Unit::count}, {"rms", std::numeric_limits<double>::quiet_NaN(), Unit::length}}};
     step.facts = {{{"closed", 1, Unit::boolean}}};
     step.warnings = {"one", "two"};
+    step.failure = {"signal", 11, "it crashed"};
+    step.peak_memory = 3'000'000'000;
+    step.threads = 4;
+    step.attempts = 2;
+    step.log = {"first line", "last line"};
     return step;
 }
 
@@ -61,7 +67,7 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
         RunRecords records = RunRecords::append_to(file());
         const std::int64_t run = records.begin(some_start());
         records.add(run, {some_step(0), some_step(2)}, {});
-        CellRecord cell{"a.ply", "alpha=1", "failed", "what went wrong", 1.5, {0, 2}, {}};
+        CellRecord cell{"thinning", "a.ply", "alpha=1", "failed", {"time", 0, "what went wrong"}, 1.5, {0, 2}, {}};
         cell.outputs = {{"out/a.ply", "mesh", "done", {{{"triangles", 12, Unit::count}}}}};
         records.add(run, {}, {cell});
         records.end(run, "failed", 2.5);
@@ -91,10 +97,46 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     EXPECT_TRUE(std::isnan(step.metrics.find("rms")->value));
     EXPECT_EQ(step.facts.find("closed")->unit, Unit::boolean);
     EXPECT_EQ(step.warnings, some_step(2).warnings);
+    EXPECT_EQ(step.workflow, "thinning");
+    EXPECT_EQ(step.failure.cause, "signal");
+    EXPECT_EQ(step.failure.number, 11);
+    EXPECT_EQ(step.failure.error, "it crashed");
+    EXPECT_EQ(step.peak_memory, 3'000'000'000);
+    EXPECT_EQ(step.threads, 4u);
+    EXPECT_EQ(step.attempts, 2u);
+    EXPECT_THAT(step.log, ElementsAre("first line", "last line"));
+    EXPECT_EQ(run.start.jobs, 2u);
+    EXPECT_EQ(run.start.libraries, "Eigen 3.4");
     ASSERT_EQ(run.cells.size(), 1u);
-    EXPECT_EQ(run.cells[0].error, "what went wrong");
+    EXPECT_EQ(run.cells[0].workflow, "thinning");
+    EXPECT_EQ(run.cells[0].failure.cause, "time");
+    EXPECT_EQ(run.cells[0].failure.error, "what went wrong");
     EXPECT_THAT(run.cells[0].nodes, ElementsAre(0, 2));
     EXPECT_EQ(run.cells[0].outputs[0].facts.find("triangles")->value, 12);
+}
+
+/// The file was written by the program that first had such tables, over one good scan and one bad.
+TEST_F(Records, TablesOfTheFirstVersion_AreBroughtUpToDate) {
+    {
+        SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+        old.exec(content_of(SCANMILL_SOURCE_DIR "/tests/data/records_of_version_1.sql"));
+    }
+    for (const char* how : {"the first time", "once it is up to date"}) {
+        SCOPED_TRACE(how);
+        const RunRecords records = RunRecords::read(file());
+        ASSERT_EQ(records.runs().size(), 1u);
+        const RunDetails run = records.run(1);
+        EXPECT_EQ(run.summary.failed, 1u);
+        ASSERT_EQ(run.cells.size(), 2u);
+        EXPECT_EQ(run.cells[0].workflow, "quickstart");
+        EXPECT_THAT(run.cells[1].failure.error, HasSubstr("bad.xyz"));
+        ASSERT_EQ(run.steps.size(), 5u);
+        EXPECT_EQ(run.steps[0].peak_memory, 0);
+        EXPECT_EQ(run.steps[1].label, "voxel-thin");
+        EXPECT_FALSE(records.last_steps("quickstart", "small.xyz", "voxel-thin").empty());
+    }
+    RunRecords records = RunRecords::append_to(file());
+    EXPECT_EQ(records.begin(some_start()), 2);
 }
 
 TEST_F(Records, RunsAfterEachOther_AreNumbered_AndAKilledOneHasNoEnd) {
@@ -131,7 +173,7 @@ TEST_F(Records, OfANewerScanmill_AreLeftAlone) {
     SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
     for (const bool append : {false, true})
         EXPECT_THAT(sentence_of([&] { append ? RunRecords::append_to(file()) : RunRecords::read(file()); }),
-                    HasSubstr("tables are of version 99, this one knows 1"));
+                    HasSubstr("tables are of version 99, this one knows 2"));
 }
 
 TEST_F(Records, WhatIsNone_IsRefused) {
@@ -148,8 +190,8 @@ TEST_F(Run, Recorder_WritesWhatTheRunReports) {
             "outputs: {'{scan}.ply': test-step}\n");
     RunRecords records = RunRecords::append_to(folder_ / "records.sqlite");
     std::vector<std::string> told;
-    Recorder recorder(records, some_start(), plan_, library_, graph_, [&](std::string text) { told.push_back(text); });
-    recorder.finish(scanmill::run(plan_, library_, graph_, request_, settings_, recorder));
+    Recorder recorder(records, some_start(), library_, graph_, [&](std::string text) { told.push_back(text); });
+    recorder.finish(run_graph(recorder));
     const RunDetails run = records.run(recorder.run());
     EXPECT_EQ(run.summary.outcome, "done");
     ASSERT_EQ(run.steps.size(), 2u);

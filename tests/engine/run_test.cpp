@@ -70,10 +70,10 @@ TEST_F(Run, FailingAlternative_LeavesTheOthersAlone) {
     ASSERT_EQ(report.cells.size(), 4u);
     EXPECT_EQ(report.cells[0].outcome, Outcome::done);
     for (int failed = 1; failed < 4; ++failed) EXPECT_EQ(report.cells[failed].outcome, Outcome::failed);
-    EXPECT_THAT(report.cells[1].error,
+    EXPECT_THAT(report.cells[1].failure.text,
                 AllOf(HasSubstr("in step 'bad' (w.yaml:8:19)"), HasSubstr("a.xyz'"), HasSubstr("hint: ")));
-    EXPECT_THAT(report.cells[2].error, HasSubstr("an unexpected error: "));
-    EXPECT_THAT(report.cells[3].error, HasSubstr("memory did not suffice"));
+    EXPECT_THAT(report.cells[2].failure.text, HasSubstr("an unexpected error: "));
+    EXPECT_THAT(report.cells[3].failure.text, HasSubstr("memory did not suffice"));
     EXPECT_EQ(runs_logged(), 1u) << "nothing runs on what failed";
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out/a-good.xyz"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/a-bad.xyz"));
@@ -85,13 +85,13 @@ TEST_F(Run, BadScan_FailsItsCellOnly) {
             "outputs: {'{scan}.xyz': test-step}\n");
     EXPECT_EQ(report.cells[0].outcome, Outcome::failed);
     EXPECT_EQ(report.cells[1].outcome, Outcome::failed);
-    EXPECT_THAT(report.cells[1].error, HasSubstr("missing.xyz"));
+    EXPECT_THAT(report.cells[1].failure.text, HasSubstr("missing.xyz"));
     EXPECT_EQ(report.cells[2].outcome, Outcome::done);
 }
 
 TEST_F(Run, EmptyMesh_IsAnError) {
     const RunReport report = run("  - test-step: {mode: empty}\n", {scan("a.xyz")});
-    EXPECT_THAT(report.cells[0].error, HasSubstr("the result has no triangles"));
+    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("the result has no triangles"));
 }
 
 TEST_F(Run, Expectations_AreComparedWithMetricsAndFacts) {
@@ -102,7 +102,7 @@ TEST_F(Run, Expectations_AreComparedWithMetricsAndFacts) {
     const RunReport unmet =
         run("  - test-step:\n    expect: {points: '> 4'}\n", {scan("a.xyz")}, "outputs: {'{scan}.xyz': test-step}\n");
     EXPECT_EQ(unmet.cells[0].outcome, Outcome::failed);
-    EXPECT_THAT(unmet.cells[0].error, HasSubstr("expected points > 4, found 4"));
+    EXPECT_THAT(unmet.cells[0].failure.text, HasSubstr("expected points > 4, found 4"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/a.xyz"));
 }
 
@@ -122,7 +122,7 @@ TEST_F(Run, Lengths_AreResolvedOnceAgainstTheFirstInput) {
 
 TEST_F(Run, AbsoluteLengthOnAScanOfUnknownUnit_Fails) {
     const RunReport report = run("  - test-step: {length: 1 mm}\n", {scan("a.xyz")});
-    EXPECT_THAT(report.cells[0].error,
+    EXPECT_THAT(report.cells[0].failure.text,
                 AllOf(HasSubstr("unit is not declared"), HasSubstr("--unit mm"), HasSubstr("'length'")));
     request_.unit = LengthUnit::metre;
     EXPECT_DOUBLE_EQ(run("  - test-step: {length: 1 mm}\n", {scan("a.xyz")}).nodes[1].metrics.find("length")->value,
@@ -144,14 +144,14 @@ TEST_F(Run, InputsOfDifferentUnits_AreRefused) {
     const RunReport report =
         run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz", "# unit mm\n" + test::small_scan)},
             "", "{scan: points, others: [points]}");
-    EXPECT_THAT(report.cells[0].error, HasSubstr("different units: mm at 'points', m at 'more'"));
+    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("different units: mm at 'points', m at 'more'"));
 }
 
 TEST_F(Run, ListInput_ReachesThePortWhole) {
     request_.inputs = {{"others", {scan("b.xyz", "5 5 5\n6 6 6\n"), scan("c.xyz", "7 7 7\n8 8 8\n9 9 9\n")}}};
     const RunReport report = run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz")}, "",
                                  "{scan: points, others: [points]}");
-    EXPECT_TRUE(report.all_done()) << report.cells[0].error;
+    EXPECT_TRUE(report.all_done()) << report.cells[0].failure.text;
     EXPECT_EQ(graph_.nodes.back().inputs.size(), 3u);
 }
 
@@ -204,7 +204,7 @@ TEST_F(Run, Cancelling_EndsTheRunAndKeepsWhatWasFinished) {
     const RunReport report = run("  - test-step: {mode: wait}\n", {scan("a.xyz"), scan("b.xyz", "0 0 0\n1 1 1\n")});
     EXPECT_TRUE(report.interrupted);
     EXPECT_FALSE(report.all_done());
-    EXPECT_THAT(report.cells[0].error, IsEmpty());
+    EXPECT_THAT(report.cells[0].failure.text, IsEmpty());
 }
 
 TEST_F(Run, Warnings_AreKeptWithTheirStep) {

@@ -6,10 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <stdexcept>
-
-#include "support/temporary_folder.hpp"
 
 namespace scanmill::test {
 
@@ -47,17 +46,40 @@ namespace {
 
 }  // namespace
 
-ProgramResult scanmill_program(const std::vector<std::string>& arguments, const ProgramOptions& options) {
-    const TemporaryFolder folder;
-    const std::string out = (folder / "out").string(), err = (folder / "err").string();
+RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const ProgramOptions& options) {
+    const std::string out = (folder_ / "out").string(), err = (folder_ / "err").string();
     ProgramOptions own = options;
-    if (own.cache.empty()) own.cache = folder / "cache";
-    const pid_t child = ::fork();
-    if (child < 0) throw std::runtime_error("the program could not be started");
-    if (child == 0) become(arguments, own, out.c_str(), err.c_str());
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content_of(out), content_of(err)};
+    if (own.cache.empty()) own.cache = folder_ / "cache";
+    process_ = ::fork();
+    if (process_ < 0) throw std::runtime_error("the program could not be started");
+    if (process_ == 0) become(arguments, own, out.c_str(), err.c_str());
+}
+
+RunningProgram::~RunningProgram() {
+    signal(SIGKILL);
+    wait();
+}
+
+void RunningProgram::signal(int number) const {
+    if (!has_ended_) ::kill(process_, number);
+}
+
+bool RunningProgram::has_ended() {
+    if (!has_ended_) has_ended_ = ::waitpid(process_, &status_, WNOHANG) == process_;
+    return has_ended_;
+}
+
+ProgramResult RunningProgram::wait() {
+    if (!has_ended_) ::waitpid(process_, &status_, 0);
+    has_ended_ = true;
+    return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_), out(), err()};
+}
+
+std::string RunningProgram::out() const { return content_of(folder_ / "out"); }
+std::string RunningProgram::err() const { return content_of(folder_ / "err"); }
+
+ProgramResult scanmill_program(const std::vector<std::string>& arguments, const ProgramOptions& options) {
+    return RunningProgram(arguments, options).wait();
 }
 
 }  // namespace scanmill::test

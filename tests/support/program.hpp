@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "support/temporary_folder.hpp"
+
 namespace scanmill::test {
 
 struct ProgramResult {
@@ -23,7 +25,33 @@ struct ProgramOptions {
     bool without_rights = false;                  ///< as the user `nobody`, when we are root
 };
 
-/// Runs SCANMILL_PROGRAM with these arguments and no standard input.
+/// SCANMILL_PROGRAM with these arguments and no standard input, while it runs.
+class RunningProgram {
+public:
+    explicit RunningProgram(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
+    /// Ends it by force.
+    ~RunningProgram();
+    RunningProgram(const RunningProgram&) = delete;
+    RunningProgram& operator=(const RunningProgram&) = delete;
+
+    void signal(int number) const;
+    /// Whether it has ended.
+    bool has_ended();
+    /// Waits for its end.
+    ProgramResult wait();
+    /// What it wrote until now.
+    std::string out() const;
+    std::string err() const;
+    int process() const { return process_; }
+
+private:
+    TemporaryFolder folder_;
+    int process_ = -1;
+    bool has_ended_ = false;
+    int status_ = 0;
+};
+
+/// Runs it to its end.
 ProgramResult scanmill_program(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
 
 }  // namespace scanmill::test

@@ -6,6 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <system_error>
 
 #include "scanmill/filter/error.hpp"
@@ -77,24 +80,46 @@ void AtomicFile::write(std::string_view bytes) {
     }
 }
 
+/// Gives the file without a name this one; false when it is taken.
+bool AtomicFile::link_to(const fs::path& name) const {
+    const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);
+    if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
+    if (errno == EEXIST) return false;
+    throw Error("cannot be written in '{}': {}", folder_of(name).string(), reason_of(errno));
+}
+
 void AtomicFile::commit(Sync sync) {
     if (sync == Sync::yes && ::fsync(descriptor_) != 0)
         throw Error("writing failed: {}; the file was not made", reason_of(errno));
-    // linkat() replaces nothing, so the way to the target's name is by another one.
-    for (unsigned attempt = 0; temporary_.empty(); ++attempt) {
+    const bool is_named = temporary_.empty() && link_to(target_);
+    // linkat() replaces nothing, so the way to a name that is taken is by another one.
+    for (unsigned attempt = 0; !is_named && temporary_.empty(); ++attempt) {
         const fs::path name = temporary_name(folder_of(target_), attempt);
-        const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);
-        if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
-            temporary_ = name;
-        else if (errno != EEXIST)
-            throw Error("cannot be written in '{}': {}", name.parent_path().string(), reason_of(errno));
+        if (link_to(name)) temporary_ = name;
     }
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw Error("cannot be written: {}", reason_of(errno));
+    if (!is_named && ::rename(temporary_.c_str(), target_.c_str()) != 0)
+        throw Error("cannot be written: {}", reason_of(errno));
     temporary_.clear();
     if (sync == Sync::yes) sync_folder(folder_of(target_));
+}
+
+void remove_abandoned_parts(const fs::path& folder) {
+    constexpr std::string_view prefix = ".scanmill-", suffix = ".part";
+    std::error_code gone;
+    for (fs::directory_iterator entry(folder, gone), end; !gone && entry != end; entry.increment(gone)) {
+        const std::string name = entry->path().filename().string();
+        if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
+        const int process = std::atoi(name.c_str() + prefix.size());
+        if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) continue;
+        // Another machine, which counts its processes for itself, would be writing.
+        constexpr std::chrono::minutes settled(1);
+        std::error_code ignored;
+        const auto written = fs::last_write_time(entry->path(), ignored);
+        if (!ignored && fs::file_time_type::clock::now() - written > settled) fs::remove(entry->path(), ignored);
+    }
 }
 
 }  // namespace scanmill

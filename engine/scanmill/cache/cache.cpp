@@ -150,9 +150,11 @@ bool Cache::write(std::string_view kind, std::string_view name, Write&& write, b
         return true;
     } catch (const Error& error) {
         const std::scoped_lock one_at_a_time(mutex_);
+        // Without the file's name: the sentence is the same whichever process says it about whichever file.
+        const std::string& sentence = error.sentence();
         if (!write_failed_ && on_warning_)
-            on_warning_(
-                fmt::format("the cache '{}' does not keep what is new: {}", folder_.string(), error.sentence()));
+            on_warning_(fmt::format("the cache '{}' does not keep what is new: {}", folder_.string(),
+                                    sentence.substr(sentence.rfind(": ") + 2)));
         write_failed_ = true;
         return false;
     }

@@ -2,8 +2,8 @@
 #include "scanmill/cache/step_result.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "scanmill/cache/metrics_rows.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill {
@@ -11,21 +11,6 @@ namespace scanmill {
 namespace {
 
 using Json = nlohmann::json;
-
-Json to_json(const Metrics& metrics) {
-    Json rows = Json::array();
-    for (const Metric& metric : metrics.values)
-        rows.push_back({metric.name, metric.value, static_cast<int>(metric.unit)});
-    return rows;
-}
-
-Metrics metrics_from(const Json& rows) {
-    Metrics metrics;
-    for (const Json& row : rows)
-        metrics.values.push_back(
-            {row.at(0).get<std::string>(), row.at(1).get<double>(), static_cast<Unit>(row.at(2).get<int>())});
-    return metrics;
-}
 
 }  // namespace
 
@@ -35,7 +20,7 @@ const ResultOutput* StepResult::output(std::string_view port) const {
 }
 
 std::string to_bytes(const StepResult& result) {
-    Json json{{"metrics", to_json(result.metrics)}, {"facts", to_json(result.facts)}, {"warnings", result.warnings},
+    Json json{{"metrics", rows_of(result.metrics)}, {"facts", rows_of(result.facts)}, {"warnings", result.warnings},
               {"seconds", result.seconds},          {"outputs", Json::array()},       {"resolved", Json::array()}};
     for (const ResultOutput& output : result.outputs)
         json["outputs"].push_back({output.port, static_cast<int>(output.kind), output.content, output.bytes});

@@ -16,11 +16,7 @@ std::optional<StepResult> remembered(const Cache& cache, const std::string& plan
 
 class Seer {
 public:
-    Seer(const Plan& plan, const RunGraph& graph, const Cache* cache)
-        : plan_(plan),
-          graph_(graph),
-          cache_(cache),
-          nodes_(graph.nodes.size()) {}
+    Seer(const RunGraph& graph, const Cache* cache) : graph_(graph), cache_(cache), nodes_(graph.nodes.size()) {}
 
     std::vector<NodeForesight> see() {
         for (const RunCell& cell : graph_.cells)
@@ -34,7 +30,7 @@ private:
     void look_at(std::size_t index) {
         const RunNode& node = graph_.nodes[index];
         NodeForesight& seen = nodes_[index];
-        const PlannedStep* step = node.step ? &plan_.steps[*node.step] : nullptr;
+        const PlannedStep* step = graph_.step(node);
         if (step && !step->expectations.empty()) seen.needed.insert(step->spec.outputs.front().name);
         if (cache_ && !node.is_uncacheable) seen.known = remembered(*cache_, node.key);
         if (seen.known && !is_sound(*seen.known, step)) seen.known.reset();
@@ -67,7 +63,6 @@ private:
         return output && cache_->has_value(output->content);
     }
 
-    const Plan& plan_;
     const RunGraph& graph_;
     const Cache* cache_;
     std::vector<NodeForesight> nodes_;
@@ -75,8 +70,6 @@ private:
 
 }  // namespace
 
-std::vector<NodeForesight> foresee(const Plan& plan, const RunGraph& graph, const Cache* cache) {
-    return Seer(plan, graph, cache).see();
-}
+std::vector<NodeForesight> foresee(const RunGraph& graph, const Cache* cache) { return Seer(graph, cache).see(); }
 
 }  // namespace scanmill

@@ -21,6 +21,6 @@ struct NodeForesight {
 
 /// For every node of the graph. Nothing is remembered without a cache. A node runs when the cache does not know it, or
 /// when a value of it is needed that was not kept: by an output to be written, an expectation, or a step that runs.
-std::vector<NodeForesight> foresee(const Plan& plan, const RunGraph& graph, const Cache* cache);
+std::vector<NodeForesight> foresee(const RunGraph& graph, const Cache* cache);
 
 }  // namespace scanmill

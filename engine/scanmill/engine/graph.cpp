@@ -17,7 +17,7 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::string_view key_scheme = "2";
+constexpr std::string_view key_scheme = "3";
 
 namespace fs = std::filesystem;
 
@@ -33,36 +33,32 @@ std::string builds_of_readers(const std::string& core) {
 
 class GraphBuilder {
 public:
-    using Hash = std::function<std::string(const fs::path&)>;
-
-    GraphBuilder(const Plan& plan, FilterLibrary& library, const RunRequest& request, const Hash& hash)
+    GraphBuilder(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash)
         : hash_(hash),
-          plan_(plan),
           library_(library),
-          request_(request),
+          parts_(parts),
           core_build_(content_hash(core_library_file())),
           reader_builds_(builds_of_readers(core_build_)),
-          output_files_(request) {}
+          output_files_(parts.front().request.output_folder) {
+        graph_.seed = parts.front().request.seed;
+    }
 
     RunGraph build() {
-        require_fits(request_, plan_);
-        protect_parameter_files();
-        const std::vector<WorkflowInput>& inputs = plan_.workflow.inputs;
-        if (inputs.empty() || inputs.front().list) {
-            graph_.scan_names.push_back(workflow_name(plan_));
-            add_cells(0, {});
-            return std::move(graph_);
+        for (const GraphPart& part : parts_) {
+            require_fits(part.request, *part.plan);
+            protect_inputs(part);
         }
-        for (std::size_t scan = 0; scan < request_.scans.size(); ++scan) {
-            graph_.scan_names.push_back(request_.scans[scan].string());
-            add_cells(scan, request_.scans[scan]);
-        }
+        for (const GraphPart& part : parts_) add_part(part);
         return std::move(graph_);
     }
 
 private:
-    void protect_parameter_files() {
-        for (const PlannedStep& step : plan_.steps)
+    void protect_inputs(const GraphPart& part) {
+        output_files_.protect(part.plan->workflow.file);
+        for (const ScanFile& scan : part.request.scans) output_files_.protect(scan.path);
+        for (const auto& [name, files] : part.request.inputs)
+            for (const fs::path& file : files) output_files_.protect(file);
+        for (const PlannedStep& step : part.plan->steps)
             for (const auto& [name, value] : step.parameters.values)
                 if (step.spec.parameter(name)->type == ParameterType::path)
                     key_text_of_paths(value, [this](const fs::path& file) {
@@ -71,26 +67,47 @@ private:
                     });
     }
 
-    /// `file` is the scan; empty when there is none, or a list of them.
-    void add_cells(std::size_t scan, const fs::path& file) {
-        for (std::size_t variant = 0; variant < plan_.variants.size(); ++variant) {
-            const PlannedVariant& planned = plan_.variants[variant];
-            if (!request_.only.empty() && std::ranges::find(request_.only, planned.name) == request_.only.end())
+    void add_part(const GraphPart& part) {
+        plan_ = part.plan.get();
+        request_ = &part.request;
+        graph_.plans.push_back(part.plan);
+        const std::vector<WorkflowInput>& inputs = plan_->workflow.inputs;
+        if (inputs.empty() || inputs.front().list) {
+            add_cells(scan_index(workflow_name(*plan_)), nullptr);
+            return;
+        }
+        for (const ScanFile& scan : request_->scans) add_cells(scan_index(scan.path.string()), &scan);
+    }
+
+    /// Scans that several parts name are one.
+    std::size_t scan_index(const std::string& name) {
+        const auto [known, is_new] = scan_of_name_.emplace(name, graph_.scan_names.size());
+        if (is_new) graph_.scan_names.push_back(name);
+        return known->second;
+    }
+
+    /// `file` is the scan; none when there is none, or a list of them.
+    void add_cells(std::size_t scan, const ScanFile* file) {
+        const std::string& scan_name = graph_.scan_names[scan];
+        for (std::size_t variant = 0; variant < plan_->variants.size(); ++variant) {
+            const PlannedVariant& planned = plan_->variants[variant];
+            if (!request_->only.empty() && std::ranges::find(request_->only, planned.name) == request_->only.end())
                 continue;
-            if (!request_.until.empty() && !planned.steps_by_name.contains(request_.until)) continue;
-            RunCell cell{scan, variant, {}, {}};
+            if (!request_->until.empty() && !planned.steps_by_name.contains(request_->until)) continue;
+            RunCell cell{graph_.plans.size() - 1, scan, variant, {}, {}};
             std::map<std::size_t, std::size_t> node_of_step;
             for (const std::size_t step : steps_to_run(planned)) {
                 node_of_step[step] = add_step(step, node_of_step, scan, file, cell);
                 add_to(cell, node_of_step[step]);
             }
-            const TemplateValues values{file.empty() ? graph_.scan_names.back() : file.stem().string(), planned.name,
-                                        workflow_name(plan_)};
+            const TemplateValues values{file ? file->path.stem().string() : scan_name, planned.name,
+                                        workflow_name(*plan_)};
             for (const auto& [name, source] : outputs(planned)) {
                 if (source.step && !node_of_step.contains(*source.step)) continue;  // beyond --until
                 const std::size_t node = sources_of(source, node_of_step, scan, file, cell).front();
                 const std::string writer =
-                    fmt::format("scan '{}' under variant '{}'", graph_.scan_names.back(), planned.name);
+                    fmt::format("scan '{}' under variant '{}'{}", scan_name, planned.name,
+                                parts_.size() > 1 ? " of workflow '" + values.workflow + "'" : "");
                 const fs::path target =
                     output_files_.add(expand_template(name, values), {graph_.nodes[node].key, source.port}, writer);
                 cell.outputs.push_back({target, node, source.port});
@@ -100,7 +117,7 @@ private:
     }
 
     std::vector<std::size_t> steps_to_run(const PlannedVariant& variant) const {
-        const auto last = variant.steps_by_name.find(request_.until);
+        const auto last = variant.steps_by_name.find(request_->until);
         if (last == variant.steps_by_name.end()) return variant.steps;
         const auto end = std::ranges::find(variant.steps, last->second);
         return {variant.steps.begin(), end == variant.steps.end() ? end : end + 1};
@@ -110,26 +127,27 @@ private:
     std::vector<std::pair<std::string, ValueSource>> outputs(const PlannedVariant& variant) const {
         std::vector<std::pair<std::string, ValueSource>> all;
         for (const PlannedOutput& output : variant.outputs) all.emplace_back(output.file, output.source);
-        for (const std::string& wanted : request_.save) {
+        for (const std::string& wanted : request_->save) {
             const std::size_t dot = wanted.find('.');
             const auto step = variant.steps_by_name.find(wanted.substr(0, dot));
             if (step == variant.steps_by_name.end()) continue;  // a step of another variant
-            const FilterSpec& spec = plan_.steps[step->second].spec;
+            const FilterSpec& spec = plan_->steps[step->second].spec;
             const std::string port = dot == std::string::npos ? spec.outputs.front().name : wanted.substr(dot + 1);
             if (!spec.output(port)) throw Error("--save {}: the step has no output port '{}'", wanted, port);
             const Kind kind = spec.output(port)->kind;
             if (!can_write("ply", kind))
                 throw Error("--save {}: {} cannot be written to a file yet", wanted, name_of(kind));
-            const std::string variant_part = plan_.variants.size() > 1 ? ".{variant}" : "";
+            const std::string variant_part = plan_->variants.size() > 1 ? ".{variant}" : "";
             all.emplace_back("{scan}" + variant_part + "." + wanted + ".ply", ValueSource{step->second, 0, port});
         }
         return all;
     }
 
     std::size_t add_step(std::size_t step, const std::map<std::size_t, std::size_t>& node_of_step, std::size_t scan,
-                         const fs::path& file, RunCell& cell) {
-        const PlannedStep& planned = plan_.steps[step];
+                         const ScanFile* file, RunCell& cell) {
+        const PlannedStep& planned = plan_->steps[step];
         RunNode node;
+        node.plan = graph_.plans.size() - 1;
         node.step = step;
         node.scan = scan;
         KeyBuilder key;
@@ -138,7 +156,7 @@ private:
             .field("version", std::to_string(planned.spec.version))
             .field("module", library_.build_id(planned.spec.name))
             .field("core", core_build_)
-            .field("seed", std::to_string(request_.seed));
+            .field("seed", std::to_string(request_->seed));
         const auto content = [&](const fs::path& parameter) {
             std::string unreadable;
             std::string hash = content_of(parameter, &unreadable);
@@ -167,36 +185,54 @@ private:
 
     std::vector<std::size_t> sources_of(const ValueSource& source,
                                         const std::map<std::size_t, std::size_t>& node_of_step, std::size_t scan,
-                                        const fs::path& file, RunCell& cell) {
+                                        const ScanFile* file, RunCell& cell) {
         if (source.step) return {node_of_step.at(*source.step)};
-        const WorkflowInput& input = plan_.workflow.inputs[source.input];
-        if (source.input == 0 && !input.list) return {add_leaf(0, scan, file, cell)};
+        const WorkflowInput& input = plan_->workflow.inputs[source.input];
+        if (source.input == 0 && !input.list) return {add_leaf(0, scan, *file, cell)};
         std::vector<std::size_t> leaves;
-        for (const fs::path& each : source.input == 0 ? request_.scans : request_.inputs.at(input.name))
-            leaves.push_back(add_leaf(source.input, scan, each, cell));
+        if (source.input == 0)
+            for (const ScanFile& each : request_->scans) leaves.push_back(add_leaf(0, scan, each, cell));
+        else
+            for (const fs::path& each : request_->inputs.at(input.name))
+                leaves.push_back(add_leaf(source.input, scan, each, cell));
         return leaves;
     }
 
-    std::size_t add_leaf(std::size_t input, std::size_t scan, const fs::path& file, RunCell& cell) {
-        const WorkflowInput& declared = plan_.workflow.inputs[input];
+    std::size_t add_leaf(std::size_t input, std::size_t scan, const ScanFile& file, RunCell& cell) {
+        const WorkflowInput& declared = plan_->workflow.inputs[input];
         RunNode node;
-        node.file = file;
-        node.input = input;
+        node.plan = graph_.plans.size() - 1;
+        node.is_scan = input == 0;
         node.scan = scan;
-        node.content = content_of(file, &node.unreadable);
+        node.leaf.file = file.path;
+        node.leaf.content = content_of(file.path, &node.unreadable);
+        node.leaf.kind = declared.kind;
+        node.leaf.unit = file.unit != LengthUnit::unknown        ? file.unit
+                         : request_->unit != LengthUnit::unknown ? request_->unit
+                                                                 : declared.unit;
+        node.leaf.frame = !file.frame.empty() ? file.frame : frame_of_file(declared.frame, file.path);
+        node.leaf.pose = file.pose;
         node.is_uncacheable = !node.unreadable.empty();
         KeyBuilder key;
         key.field("scheme", key_scheme)
-            .field("content", node.content)
+            .field("content", node.leaf.content)
             .field("readers", reader_builds_)
-            .field("extension", plain_extension(file.extension().string()))  // it may decide how the bytes are read
+            .field("extension", plain_extension(file.path.extension().string()))  // it may decide how bytes are read
             .field("kind", name_of(declared.kind))
-            .field("unit", symbol(request_.unit != LengthUnit::unknown ? request_.unit : declared.unit))
-            .field("frame", frame_of_file(declared.frame, file));
+            .field("unit", symbol(node.leaf.unit))
+            .field("frame", node.leaf.frame)
+            .field("pose", file.pose ? key_text(*file.pose) : "");
         node.key = key.key();
         const std::size_t index = add_node(std::move(node));
         add_to(cell, index);
         return index;
+    }
+
+    static std::string key_text(const RigidTransform& pose) {
+        std::string text = fmt::format("{} {} {}", symbol(pose.unit), pose.from, pose.to);
+        for (const double number : pose.rotation.reshaped()) text += fmt::format(" {:a}", number);
+        for (const double number : pose.translation) text += fmt::format(" {:a}", number);
+        return text;
     }
 
     /// The content's hash; a file that cannot be read stands for itself alone.
@@ -219,7 +255,7 @@ private:
         // Steps that do the same and expect different things are not one node.
         std::string identity = node.key;
         if (node.step)
-            for (const PlannedExpectation& expectation : plan_.steps[*node.step].expectations)
+            for (const PlannedExpectation& expectation : plan_->steps[*node.step].expectations)
                 identity += "\n" + expectation.text;
         const auto [known, is_new] = node_of_key_.emplace(std::move(identity), graph_.nodes.size());
         if (is_new) graph_.nodes.push_back(std::move(node));
@@ -230,22 +266,33 @@ private:
         if (std::ranges::find(cell.nodes, node) == cell.nodes.end()) cell.nodes.push_back(node);
     }
 
-    const Hash& hash_;
-    const Plan& plan_;
+    const HashOfFile& hash_;
     FilterLibrary& library_;
-    const RunRequest& request_;
+    const std::vector<GraphPart>& parts_;
+    const Plan* plan_ = nullptr;  // of the part that is being added
+    const RunRequest* request_ = nullptr;
     std::string core_build_, reader_builds_;
     OutputFiles output_files_;
     RunGraph graph_;
     std::map<std::string, std::size_t> node_of_key_;  // and its expectations
+    std::map<std::string, std::size_t> scan_of_name_;
     std::map<std::string, std::pair<std::string, std::string>> contents_;  // file → hash, reason
 };
 
 }  // namespace
 
-RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request,
-                    const std::function<std::string(const fs::path&)>& hash) {
-    return GraphBuilder(plan, library, request, hash).build();
+const std::string& RunGraph::label(const RunNode& node) const {
+    static const std::string read = "read";
+    const PlannedStep* planned = step(node);
+    return planned ? planned->label : read;
+}
+
+RunGraph make_graph(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash) {
+    return GraphBuilder(parts, library, hash).build();
+}
+
+RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request, const HashOfFile& hash) {
+    return make_graph({{std::make_shared<const Plan>(plan), request}}, library, hash);
 }
 
 }  // namespace scanmill

@@ -28,11 +28,8 @@ fs::path real_path(const fs::path& path) {
 
 }  // namespace
 
-OutputFiles::OutputFiles(const RunRequest& request) : folder_(real_path(request.output_folder)) {
+OutputFiles::OutputFiles(const fs::path& folder) : folder_(real_path(folder)) {
     if (!folder_.has_filename() && folder_ != folder_.root_path()) folder_ = folder_.parent_path();  // "out/"
-    for (const fs::path& scan : request.scans) inputs_.insert(identity(scan));
-    for (const auto& [name, files] : request.inputs)
-        for (const fs::path& file : files) inputs_.insert(identity(file));
 }
 
 fs::path OutputFiles::add(const std::string& name, const OutputContent& content, const std::string& writer) {
@@ -41,7 +38,7 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
     if (!is_new) {
         if (known->second.content != content)
             throw Error("{} and {} would both write '{}'", known->second.writer, writer, file.string())
-                .hint("use {scan} and {variant} in the output's name, or rename a scan");
+                .hint("use {scan}, {variant} and {workflow} in the output's name, or rename a scan");
         return file;
     }
     require_no_clash(file, writer);

@@ -7,8 +7,6 @@
 #include <set>
 #include <string>
 
-#include "scanmill/engine/request.hpp"
-
 namespace scanmill {
 
 /// What a file will hold: one output port of one node.
@@ -20,9 +18,9 @@ struct OutputContent {
 
 class OutputFiles {
 public:
-    explicit OutputFiles(const RunRequest& request);
+    explicit OutputFiles(const std::filesystem::path& folder);
 
-    /// No output may replace this file either. Pre: nothing was added yet.
+    /// No output may replace this file. Pre: nothing was added yet.
     void protect(const std::filesystem::path& file) { inputs_.insert(identity(file)); }
 
     /// The absolute path of `name` (relative to the output folder, in normal form). `writer` says in messages who

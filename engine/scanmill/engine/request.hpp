@@ -5,15 +5,27 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scanmill/data/transform.hpp"
 #include "scanmill/engine/plan.hpp"
 
 namespace scanmill {
 
+/// A file, and what is known of it that it may not say itself.
+struct ScanFile {
+    ScanFile(std::filesystem::path file) : path(std::move(file)) {}
+
+    std::filesystem::path path;
+    LengthUnit unit = LengthUnit::unknown;  ///< unknown: what the request, the workflow or the file says
+    std::string frame;  ///< empty: what the workflow or the file says
+    std::optional<RigidTransform> pose;  ///< moves what was read; `to` names the frame that it leads to
+};
+
 struct RunRequest {
-    std::vector<std::filesystem::path> scans;  ///< feed the first input: one a run, or all of them one run's list
+    std::vector<ScanFile> scans;  ///< feed the first input: one a run, or all of them one run's list
     std::map<std::string, std::vector<std::filesystem::path>> inputs;  ///< feed the other inputs
     std::filesystem::path output_folder;
     LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: what the workflow or the file says

@@ -5,10 +5,10 @@
 
 #include "scanmill/engine/expectation.hpp"
 #include "scanmill/engine/facts.hpp"
-#include "scanmill/engine/input_frame.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/length_scale.hpp"
+#include "scanmill/geometry/placed.hpp"
 
 namespace scanmill {
 
@@ -99,22 +99,22 @@ void require_expectations(const PlannedStep& step, const Value& primary, NodeRep
     require_met(step.expectations, known, length_scale(primary));
 }
 
-Value read_leaf(const std::filesystem::path& file, const WorkflowInput& declared, LengthUnit unit,
-                const std::function<void(std::string)>& on_warning) {
+Value read_leaf(const LeafSource& leaf, const std::function<void(std::string)>& on_warning) {
     ReadOptions options;
     options.on_warning = on_warning;
-    options.unit = unit != LengthUnit::unknown ? unit : declared.unit;
+    options.unit = leaf.unit;
     Value value;
-    if (declared.kind == Kind::mesh)
-        value = read_mesh(file, options);
+    if (leaf.kind == Kind::mesh)
+        value = read_mesh(leaf.file, options);
     else
-        value = read_points(file, options);
-    const std::string name = frame_of_file(declared.frame, file);
-    if (name.empty() || frame_of(value)->name == name) return value;
+        value = read_points(leaf.file, options);
+    if (leaf.pose) value = placed(value, *leaf.pose);
+    if (leaf.frame.empty() || frame_of(value)->name == leaf.frame) return value;
     Frame frame = *frame_of(value);
     if (!frame.name.empty())
-        on_warning(fmt::format("the frame '{}' of the file is called '{}' by the workflow", frame.name, name));
-    frame.name = name;
+        on_warning(fmt::format("'{}': the frame '{}' of the file is called '{}' by the workflow or the batch",
+                               leaf.file.string(), frame.name, leaf.frame));
+    frame.name = leaf.frame;
     return reframed(value, frame);
 }
 

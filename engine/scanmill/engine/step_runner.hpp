@@ -2,14 +2,15 @@
 #pragma once
 /// One node's work, without the graph around it: read a file into a value, or run a filter on values.
 
-#include "scanmill/engine/run.hpp"
+#include "scanmill/engine/graph.hpp"
+#include "scanmill/engine/report.hpp"
+#include "scanmill/filter/context.hpp"
 #include "scanmill/filter/ports.hpp"
 
 namespace scanmill {
 
-/// The file's content as the workflow's input declares it. Throws Error.
-Value read_leaf(const std::filesystem::path& file, const WorkflowInput& declared, LengthUnit unit,
-                const std::function<void(std::string)>& on_warning);
+/// The file's content, in the unit, under the frame's name and in the pose that are declared. Throws Error.
+Value read_leaf(const LeafSource& leaf, const std::function<void(std::string)>& on_warning);
 
 struct StepInput {
     std::string port;
@@ -26,7 +27,8 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
                  const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
                  NodeReport& report);
 
-/// Throws Error naming the step's expectations that its outputs and metrics do not meet.
+/// Puts the facts about the step's primary output into the report, when it expects something. Throws Error naming what
+/// outputs and metrics do not meet.
 void require_expectations(const PlannedStep& step, const Value& primary, NodeReport& report);
 
 }  // namespace scanmill

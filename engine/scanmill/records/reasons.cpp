@@ -18,13 +18,11 @@ std::string value_in(const Texts& texts, const std::string& name) {
 
 class Explainer {
 public:
-    Explainer(std::vector<NodeForesight>& foresight, const Plan& plan, FilterLibrary& library, const RunGraph& graph,
-              std::uint64_t seed, const RunRecords& records)
+    Explainer(std::vector<NodeForesight>& foresight, FilterLibrary& library, const RunGraph& graph,
+              const RunRecords& records)
         : foresight_(foresight),
-          plan_(plan),
           library_(library),
           graph_(graph),
-          seed_(seed),
           records_(records) {}
 
     void explain_all() {
@@ -39,8 +37,8 @@ private:
     std::string reason(std::size_t index) const {
         const RunNode& node = graph_.nodes[index];
         const std::string& scan = graph_.scan_names[node.scan];
-        const std::string label = node.step ? plan_.steps[*node.step].label : "read";
-        const std::vector<PastStep> past = records_.last_steps(workflow_name(plan_), scan, label);
+        const std::vector<PastStep> past =
+            records_.last_steps(workflow_name(*graph_.plans[node.plan]), scan, graph_.label(node));
         std::vector<std::string> least;
         for (const PastStep& step : past)
             if (std::vector<std::string> found = differences(index, step);
@@ -65,7 +63,7 @@ private:
         std::vector<std::string> found;
         if (past.plan_key == node.key) return found;
         if (!node.step) return {"the file, its unit or its frame changed"};
-        const PlannedStep& step = plan_.steps[*node.step];
+        const PlannedStep& step = *graph_.step(node);
         if (past.filter != step.spec.name)
             found.push_back(fmt::format("the filter changed {} → {}", past.filter, step.spec.name));
         else if (past.filter_version != step.spec.version)
@@ -77,29 +75,27 @@ private:
             if (const std::string now = text(value), before = value_in(past.authored, name); now != before)
                 found.push_back(fmt::format("{} changed {} → {}", name, before.empty() ? "nothing" : before,
                                             now.empty() ? "nothing" : now));
-        if (past.seed != seed_) found.push_back(fmt::format("the seed changed {} → {}", past.seed, seed_));
+        if (past.seed != graph_.seed) found.push_back(fmt::format("the seed changed {} → {}", past.seed, graph_.seed));
         for (const NodeInput& input : node.inputs)
             if (!foresight_[input.node].known) {
                 const RunNode& from = graph_.nodes[input.node];
-                found.push_back(from.step ? fmt::format("what '{}' gives may change", plan_.steps[*from.step].label)
+                found.push_back(from.step ? fmt::format("what '{}' gives may change", graph_.label(from))
                                           : std::string("the scan changed"));
             }
         return found;
     }
 
     std::vector<NodeForesight>& foresight_;
-    const Plan& plan_;
     FilterLibrary& library_;
     const RunGraph& graph_;
-    std::uint64_t seed_;
     const RunRecords& records_;
 };
 
 }  // namespace
 
-void explain(std::vector<NodeForesight>& foresight, const Plan& plan, FilterLibrary& library, const RunGraph& graph,
-             std::uint64_t seed, const RunRecords& records) {
-    Explainer(foresight, plan, library, graph, seed, records).explain_all();
+void explain(std::vector<NodeForesight>& foresight, FilterLibrary& library, const RunGraph& graph,
+             const RunRecords& records) {
+    Explainer(foresight, library, graph, records).explain_all();
 }
 
 }  // namespace scanmill

@@ -14,12 +14,15 @@ std::vector<std::pair<std::string, std::string>> texts_of(const ParameterSet& pa
     return texts;
 }
 
+FailureRecord record_of(const Failure& failure) {
+    return {std::string(name_of(failure.cause)), failure.number, failure.text};
+}
+
 }  // namespace
 
-Recorder::Recorder(RunRecords& records, const RunStart& start, const Plan& plan, FilterLibrary& library,
-                   const RunGraph& graph, OnWarning on_warning)
+Recorder::Recorder(RunRecords& records, const RunStart& start, FilterLibrary& library, const RunGraph& graph,
+                   OnWarning on_warning)
     : records_(records),
-      plan_(plan),
       library_(library),
       graph_(graph),
       on_warning_(std::move(on_warning)),
@@ -30,24 +33,27 @@ Recorder::Recorder(RunRecords& records, const RunStart& start, const Plan& plan,
 
 void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
     StepRecord step;
-    step.node = static_cast<std::size_t>(&node - graph_.nodes.data());
+    step.node = graph_.index(node);
+    step.workflow = workflow_name(*graph_.plans[node.plan]);
     step.scan = graph_.scan_names[node.scan];
     step.plan_key = node.key;
-    step.label = "read";
-    if (node.step) {
-        const PlannedStep& planned = plan_.steps[*node.step];
-        step.label = planned.label;
-        step.filter = planned.spec.name;
-        step.filter_version = planned.spec.version;
-        step.build = library_.build_id(planned.spec.name);
-        step.authored = texts_of(planned.parameters);
+    step.label = graph_.label(node);
+    if (const PlannedStep* planned = graph_.step(node)) {
+        step.filter = planned->spec.name;
+        step.filter_version = planned->spec.version;
+        step.build = library_.build_id(planned->spec.name);
+        step.authored = texts_of(planned->parameters);
     }
     step.origin = name_of(report.origin);
     step.why = report.why;
     step.outcome = name_of(report.outcome);
-    step.error = report.error;
-    step.seconds = report.seconds;
-    step.cpu_seconds = report.cpu_seconds;
+    step.failure = record_of(report.failure);
+    step.seconds = report.effort.seconds;
+    step.cpu_seconds = report.effort.cpu_seconds;
+    step.peak_memory = static_cast<std::int64_t>(report.effort.peak_memory);
+    step.threads = report.effort.threads;
+    step.attempts = report.attempts;
+    step.log = report.effort.log;
     step.resolved = texts_of(report.resolved);
     step.metrics = report.metrics;
     step.facts = report.facts;
@@ -58,10 +64,11 @@ void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
 
 void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
     CellRecord record;
+    record.workflow = graph_.workflow(cell);
     record.scan = graph_.scan_names[cell.scan];
-    record.variant = plan_.variants[cell.variant].name;
+    record.variant = graph_.variant(cell).name;
     record.outcome = name_of(report.outcome);
-    record.error = report.error;
+    record.failure = record_of(report.failure);
     record.seconds = report.seconds;
     record.nodes = cell.nodes;
     for (const OutputReport& output : report.outputs)

@@ -20,8 +20,8 @@ public:
     using OnWarning = std::function<void(std::string)>;
 
     /// All must outlive the recorder.
-    Recorder(RunRecords& records, const RunStart& start, const Plan& plan, FilterLibrary& library,
-             const RunGraph& graph, OnWarning on_warning);
+    Recorder(RunRecords& records, const RunStart& start, FilterLibrary& library, const RunGraph& graph,
+             OnWarning on_warning);
 
     ~Recorder() override;
 
@@ -39,7 +39,6 @@ private:
     void attempt(Action&& action);
 
     RunRecords& records_;
-    const Plan& plan_;
     FilterLibrary& library_;
     const RunGraph& graph_;
     OnWarning on_warning_;

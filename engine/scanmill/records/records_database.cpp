@@ -8,7 +8,7 @@ namespace scanmill {
 namespace {
 
 /// One for every version of the tables; a file is brought from its version to the last by those in between.
-constexpr std::array<const char*, 1> migrations{R"(
+constexpr std::array<const char*, 2> migrations{R"(
 CREATE TABLE run (id INTEGER PRIMARY KEY, started TEXT NOT NULL, workflow TEXT NOT NULL, file TEXT NOT NULL,
     arguments TEXT NOT NULL, seed TEXT NOT NULL, threads INTEGER NOT NULL, version TEXT NOT NULL, machine TEXT NOT NULL);
 CREATE TABLE run_end (run INTEGER PRIMARY KEY REFERENCES run, ended TEXT NOT NULL, outcome TEXT NOT NULL,
@@ -35,6 +35,22 @@ CREATE TABLE output (id INTEGER PRIMARY KEY, cell INTEGER NOT NULL REFERENCES ce
 CREATE INDEX output_of_cell ON output (cell);
 CREATE TABLE output_fact (output INTEGER NOT NULL REFERENCES output, name TEXT NOT NULL, value REAL, unit TEXT NOT NULL);
 CREATE INDEX fact_of_output ON output_fact (output);
+)",
+                                                R"(
+ALTER TABLE run ADD COLUMN jobs INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE run ADD COLUMN libraries TEXT NOT NULL DEFAULT '';
+ALTER TABLE step ADD COLUMN workflow TEXT NOT NULL DEFAULT '';
+ALTER TABLE step ADD COLUMN cause TEXT NOT NULL DEFAULT '';
+ALTER TABLE step ADD COLUMN cause_number INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE step ADD COLUMN threads INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE step ADD COLUMN attempts INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE cell ADD COLUMN workflow TEXT NOT NULL DEFAULT '';
+ALTER TABLE cell ADD COLUMN cause TEXT NOT NULL DEFAULT '';
+ALTER TABLE cell ADD COLUMN cause_number INTEGER NOT NULL DEFAULT 0;
+UPDATE step SET workflow = (SELECT workflow FROM run WHERE run.id = step.run);
+UPDATE cell SET workflow = (SELECT workflow FROM run WHERE run.id = cell.run);
+CREATE TABLE log (step INTEGER NOT NULL REFERENCES step, line TEXT NOT NULL);
+CREATE INDEX log_of_step ON log (step);
 )"};
 
 }  // namespace
@@ -77,6 +93,7 @@ RunRecords RunRecords::read(const std::filesystem::path& file) {
         const int version = database->version();
         if (version == 0) throw Error("'{}' holds no records of runs", file.string());
         database->require_known(version);
+        if (static_cast<std::size_t>(version) < migrations.size()) return append_to(file);  // brings them up to date
         return RunRecords(std::move(database));
     });
 }

@@ -17,19 +17,31 @@
 namespace scanmill {
 
 struct RunStart {
-    std::string workflow, file;
+    std::string workflow, file;  ///< name and file of the workflow or the batch
     std::vector<std::string> arguments;  ///< of the command
     std::uint64_t seed = 0;
-    unsigned threads = 1;
-    std::string version, machine;
+    unsigned threads = 1;  ///< inside a filter
+    unsigned jobs = 0;     ///< worker processes; 0: none
+    std::string version, machine, libraries;
+};
+
+/// What kind of failure it was, and the signal or exit code that came with it.
+struct FailureRecord {
+    std::string cause;  ///< empty: none
+    int number = 0;
+    std::string error;  ///< whole text with frames and hint
 };
 
 struct StepRecord {
     std::size_t node = 0;  ///< index into the run's graph
-    std::string label, filter, scan, plan_key, build;
+    std::string workflow, label, filter, scan, plan_key, build;
     int filter_version = 0;
-    std::string origin, why, outcome, error;
+    std::string origin, why, outcome;
+    FailureRecord failure;
     double seconds = 0, cpu_seconds = 0;
+    std::int64_t peak_memory = 0;  ///< bytes; 0: not known
+    unsigned threads = 0, attempts = 0;
+    std::vector<std::string> log;  ///< the last lines that it wrote to standard output and error
     std::vector<std::pair<std::string, std::string>> authored, resolved;  ///< parameters, as text
     Metrics metrics, facts;
     std::vector<std::string> warnings;
@@ -41,7 +53,8 @@ struct OutputRecord {
 };
 
 struct CellRecord {
-    std::string scan, variant, outcome, error;
+    std::string workflow, scan, variant, outcome;
+    FailureRecord failure;
     double seconds = 0;
     std::vector<std::size_t> nodes;  ///< of the run's graph; their steps were recorded before
     std::vector<OutputRecord> outputs;
@@ -80,7 +93,7 @@ public:
     /// Opens the records for appending, or makes them. Throws Error: a file that is none, one of a newer Scanmill, a
     /// folder that cannot be written to.
     static RunRecords append_to(const std::filesystem::path& file);
-    /// Opens what is there for reading.
+    /// Opens what is there for reading; tables of an older version are brought up to date first.
     static RunRecords read(const std::filesystem::path& file);
     RunRecords(RunRecords&&) noexcept;
     ~RunRecords();

@@ -28,12 +28,12 @@ std::int64_t RunRecords::begin(const RunStart& start) {
     return about(database_->file, [&] {
         SQLite::Statement insert(
             database_->sqlite,
-            "INSERT INTO run (started, workflow, file, arguments, seed, threads, version, machine) "
-            "VALUES (strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, ?, ?, ?, ?, ?, ?)");
+            "INSERT INTO run (started, workflow, file, arguments, seed, threads, jobs, version, machine, libraries) "
+            "VALUES (strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, ?, ?, ?, ?, ?, ?, ?, ?)");
         SQLite::bind(insert, start.workflow, start.file,
                      Json(start.arguments).dump(-1, ' ', false, Json::error_handler_t::replace),
-                     std::to_string(start.seed), static_cast<std::int64_t>(start.threads), start.version,
-                     start.machine);
+                     std::to_string(start.seed), static_cast<std::int64_t>(start.threads),
+                     static_cast<std::int64_t>(start.jobs), start.version, start.machine, start.libraries);
         insert.exec();
         return database_->sqlite.getLastInsertRowid();
     });
@@ -46,9 +46,11 @@ void RunRecords::add(std::int64_t run, const std::vector<StepRecord>& steps, con
         SQLite::Statement step_row(
             sqlite,
             "INSERT INTO step (run, node, label, filter, filter_version, build, scan, plan_key, origin, why, outcome, "
-            "error, seconds, cpu_seconds, authored, resolved) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+            "error, seconds, cpu_seconds, authored, resolved, workflow, cause, cause_number, peak_memory, threads, "
+            "attempts) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
         SQLite::Statement metric_row(sqlite, "INSERT INTO metric VALUES (?, ?, ?, ?, ?)");
         SQLite::Statement warning_row(sqlite, "INSERT INTO warning VALUES (?, ?)");
+        SQLite::Statement log_row(sqlite, "INSERT INTO log VALUES (?, ?)");
         const auto run_row = [](SQLite::Statement& statement) {
             statement.exec();
             statement.reset();
@@ -56,7 +58,10 @@ void RunRecords::add(std::int64_t run, const std::vector<StepRecord>& steps, con
         for (const StepRecord& step : steps) {
             SQLite::bind(step_row, run, static_cast<std::int64_t>(step.node), step.label, step.filter,
                          step.filter_version, step.build, step.scan, step.plan_key, step.origin, step.why, step.outcome,
-                         step.error, step.seconds, step.cpu_seconds, text_of(step.authored), text_of(step.resolved));
+                         step.failure.error, step.seconds, step.cpu_seconds, text_of(step.authored),
+                         text_of(step.resolved), step.workflow, step.failure.cause, step.failure.number,
+                         step.peak_memory, static_cast<std::int64_t>(step.threads),
+                         static_cast<std::int64_t>(step.attempts));
             run_row(step_row);
             const std::int64_t id = sqlite.getLastInsertRowid();
             database_->step_ids[{run, step.node}] = id;
@@ -71,14 +76,21 @@ void RunRecords::add(std::int64_t run, const std::vector<StepRecord>& steps, con
                 SQLite::bind(warning_row, id, text);
                 run_row(warning_row);
             }
+            for (const std::string& line : step.log) {
+                SQLite::bind(log_row, id, line);
+                run_row(log_row);
+            }
         }
         SQLite::Statement cell_row(
-            sqlite, "INSERT INTO cell (run, scan, variant, outcome, error, seconds) VALUES (?, ?, ?, ?, ?, ?)");
+            sqlite,
+            "INSERT INTO cell (run, scan, variant, outcome, error, seconds, workflow, cause, cause_number) VALUES (?, "
+            "?, ?, ?, ?, ?, ?, ?, ?)");
         SQLite::Statement link_row(sqlite, "INSERT INTO cell_step VALUES (?, ?)");
         SQLite::Statement output_row(sqlite, "INSERT INTO output (cell, file, kind, outcome) VALUES (?, ?, ?, ?)");
         SQLite::Statement fact_row(sqlite, "INSERT INTO output_fact VALUES (?, ?, ?, ?)");
         for (const CellRecord& cell : cells) {
-            SQLite::bind(cell_row, run, cell.scan, cell.variant, cell.outcome, cell.error, cell.seconds);
+            SQLite::bind(cell_row, run, cell.scan, cell.variant, cell.outcome, cell.failure.error, cell.seconds,
+                         cell.workflow, cell.failure.cause, cell.failure.number);
             run_row(cell_row);
             const std::int64_t id = sqlite.getLastInsertRowid();
             for (const std::size_t node : cell.nodes)

@@ -68,7 +68,8 @@ RunDetails RunRecords::run(std::int64_t id) const {
     return about(database_->file, [&] {
         SQLite::Database& sqlite = database_->sqlite;
         SQLite::Statement start(sqlite,
-                                "SELECT file, arguments, seed, threads, version, machine FROM run WHERE id = ?");
+                                "SELECT file, arguments, seed, threads, version, machine, jobs, libraries FROM run "
+                                "WHERE id = ?");
         start.bind(1, id);
         start.executeStep();
         details.start.workflow = details.summary.workflow;
@@ -79,14 +80,18 @@ RunDetails RunRecords::run(std::int64_t id) const {
         details.start.threads = static_cast<unsigned>(start.getColumn(3).getInt64());
         details.start.version = start.getColumn(4).getString();
         details.start.machine = start.getColumn(5).getString();
+        details.start.jobs = static_cast<unsigned>(start.getColumn(6).getInt64());
+        details.start.libraries = start.getColumn(7).getString();
 
         SQLite::Statement steps(sqlite,
                                 "SELECT id, node, label, filter, filter_version, build, scan, plan_key, origin, why, "
-                                "outcome, error, seconds, cpu_seconds, authored, resolved FROM step WHERE run = ? "
+                                "outcome, error, seconds, cpu_seconds, authored, resolved, workflow, cause, "
+                                "cause_number, COALESCE(peak_memory, 0), threads, attempts FROM step WHERE run = ? "
                                 "ORDER BY id");
         SQLite::Statement metrics(sqlite,
                                   "SELECT is_fact, name, value, unit FROM metric WHERE step = ? ORDER BY rowid");
         SQLite::Statement warnings(sqlite, "SELECT text FROM warning WHERE step = ? ORDER BY rowid");
+        SQLite::Statement log(sqlite, "SELECT line FROM log WHERE step = ? ORDER BY rowid");
         steps.bind(1, id);
         while (steps.executeStep()) {
             StepRecord step;
@@ -101,11 +106,15 @@ RunDetails RunRecords::run(std::int64_t id) const {
             step.origin = text(8);
             step.why = text(9);
             step.outcome = text(10);
-            step.error = text(11);
+            step.failure = {text(17), steps.getColumn(18).getInt(), text(11)};
             step.seconds = steps.getColumn(12).getDouble();
             step.cpu_seconds = steps.getColumn(13).getDouble();
             step.authored = pairs_of(text(14));
             step.resolved = pairs_of(text(15));
+            step.workflow = text(16);
+            step.peak_memory = steps.getColumn(19).getInt64();
+            step.threads = static_cast<unsigned>(steps.getColumn(20).getInt64());
+            step.attempts = static_cast<unsigned>(steps.getColumn(21).getInt64());
             metrics.bind(1, steps.getColumn(0).getInt64());
             while (metrics.executeStep())
                 (metrics.getColumn(0).getInt() ? step.facts : step.metrics).values.push_back(metric_from(metrics, 1));
@@ -113,11 +122,16 @@ RunDetails RunRecords::run(std::int64_t id) const {
             warnings.bind(1, steps.getColumn(0).getInt64());
             while (warnings.executeStep()) step.warnings.push_back(warnings.getColumn(0).getString());
             warnings.reset();
+            log.bind(1, steps.getColumn(0).getInt64());
+            while (log.executeStep()) step.log.push_back(log.getColumn(0).getString());
+            log.reset();
             details.steps.push_back(std::move(step));
         }
 
         SQLite::Statement cells(
-            sqlite, "SELECT id, scan, variant, outcome, error, seconds FROM cell WHERE run = ? ORDER BY id");
+            sqlite,
+            "SELECT id, scan, variant, outcome, error, seconds, workflow, cause, cause_number FROM cell WHERE run = ? "
+            "ORDER BY id");
         SQLite::Statement nodes(sqlite,
                                 "SELECT node FROM cell_step JOIN step ON step.id = cell_step.step WHERE cell = ? "
                                 "ORDER BY cell_step.rowid");
@@ -125,13 +139,15 @@ RunDetails RunRecords::run(std::int64_t id) const {
         SQLite::Statement facts(sqlite, "SELECT name, value, unit FROM output_fact WHERE output = ? ORDER BY rowid");
         cells.bind(1, id);
         while (cells.executeStep()) {
-            CellRecord cell{cells.getColumn(1).getString(),
-                            cells.getColumn(2).getString(),
-                            cells.getColumn(3).getString(),
-                            cells.getColumn(4).getString(),
-                            cells.getColumn(5).getDouble(),
-                            {},
-                            {}};
+            CellRecord cell{
+                cells.getColumn(6).getString(),
+                cells.getColumn(1).getString(),
+                cells.getColumn(2).getString(),
+                cells.getColumn(3).getString(),
+                {cells.getColumn(7).getString(), cells.getColumn(8).getInt(), cells.getColumn(4).getString()},
+                cells.getColumn(5).getDouble(),
+                {},
+                {}};
             nodes.bind(1, cells.getColumn(0).getInt64());
             while (nodes.executeStep()) cell.nodes.push_back(static_cast<std::size_t>(nodes.getColumn(0).getInt64()));
             nodes.reset();
@@ -159,10 +175,9 @@ std::vector<PastStep> RunRecords::last_steps(const std::string& workflow, const 
         SQLite::Statement row(
             database_->sqlite,
             "SELECT run.id, seed, filter, build, plan_key, filter_version, authored, outcome FROM step JOIN run ON "
-            "run.id = "
-            "step.run "
-            "WHERE step.run = (SELECT MAX(step.run) FROM step JOIN run ON run.id = step.run "
-            "WHERE workflow = ?1 AND scan = ?2 AND label = ?3) AND scan = ?2 AND label = ?3 ORDER BY step.id");
+            "run.id = step.run WHERE step.run = "
+            "(SELECT MAX(run) FROM step WHERE step.workflow = ?1 AND scan = ?2 AND label = ?3) "
+            "AND step.workflow = ?1 AND scan = ?2 AND label = ?3 ORDER BY step.id");
         SQLite::bind(row, workflow, scan, label);
         std::vector<PastStep> steps;
         while (row.executeStep())

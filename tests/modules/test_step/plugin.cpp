@@ -22,7 +22,17 @@ SCANMILL_FILTER() {
                  {"out-of-memory", P::Mode::out_of_memory, "Throws a std::bad_alloc."},
                  {"empty", P::Mode::empty, "Gives an empty mesh."},
                  {"wait", P::Mode::wait, "Goes on until it is cancelled."},
-                 {"warn", P::Mode::warn, "Warns once."}},
+                 {"warn", P::Mode::warn, "Warns once."},
+                 {"slow", P::Mode::slow, "Takes 30 ms."},
+                 {"crash", P::Mode::crash, "Stores through a null pointer."},
+                 {"abort", P::Mode::abort, "Aborts the process."},
+                 {"throw-number", P::Mode::throw_number, "Throws an int."},
+                 {"loop", P::Mode::loop, "Never returns, whoever asks."},
+                 {"allocate", P::Mode::allocate, "Takes memory until there is none."},
+                 {"write", P::Mode::write, "Writes to standard output and error."},
+                 {"leak", P::Mode::leak, "Leaves files open."},
+                 {"exit", P::Mode::exit, "Ends the process as if all were well."},
+                 {"change-folder", P::Mode::change_folder, "Changes the process's working folder."}},
                 "What becomes of the run.")
         .param("log", &P::log, "A file that every run appends a line to: mode, number of points.")
         .param("length", &P::length, "Legs of the tetrahedron.", above(0))

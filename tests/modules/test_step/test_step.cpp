@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "test_step/test_step.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <new>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "scanmill/filter/error.hpp"
 
@@ -24,6 +31,16 @@ std::string_view name_of(Mode mode) {
         case Mode::empty: return "empty";
         case Mode::wait: return "wait";
         case Mode::warn: return "warn";
+        case Mode::slow: return "slow";
+        case Mode::crash: return "crash";
+        case Mode::abort: return "abort";
+        case Mode::throw_number: return "throw-number";
+        case Mode::loop: return "loop";
+        case Mode::allocate: return "allocate";
+        case Mode::write: return "write";
+        case Mode::leak: return "leak";
+        case Mode::exit: return "exit";
+        case Mode::change_folder: return "change-folder";
     }
     return "";
 }
@@ -33,6 +50,15 @@ void append_to_log(const std::filesystem::path& log, Mode mode, std::size_t poin
     std::ofstream stream(log, std::ios::binary | std::ios::app);
     stream << fmt::format("{} {}\n", name_of(mode), points) << std::flush;
     if (!stream) throw Error("the log '{}' cannot be written", log.string());
+}
+
+[[noreturn]] void take_all_memory() {
+    std::vector<std::unique_ptr<char[]>> taken;
+    constexpr std::size_t block = std::size_t(16) << 20;
+    for (;;) {
+        taken.push_back(std::make_unique<char[]>(block));  // set to zero: every page is touched
+        static_cast<void>(taken.back().release());         // and never given back
+    }
 }
 
 void misbehave(Mode mode, std::size_t points, Context& context) {
@@ -47,6 +73,30 @@ void misbehave(Mode mode, std::size_t points, Context& context) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
             }
         case Mode::warn: context.warn("was asked to warn"); break;
+        case Mode::slow: std::this_thread::sleep_for(std::chrono::milliseconds(30)); break;
+        case Mode::crash: {
+            std::puts("about to crash");
+            volatile int* volatile nowhere = nullptr;
+            *nowhere = 1;
+            break;
+        }
+        case Mode::abort: std::abort();
+        case Mode::throw_number: throw 42;
+        case Mode::loop:
+            for (volatile std::uint64_t turns = 0;;) turns = turns + 1;
+        case Mode::allocate: take_all_memory(); break;
+        case Mode::write:
+            for (int line = 1; line <= 100; ++line) std::printf("line %d\n", line);
+            std::fputs("and on standard error\n", stderr);
+            break;
+        case Mode::leak:
+            for (int file = 0; file < 3; ++file)
+                if (::open("/dev/null", O_RDONLY) < 0) throw Error("no file could be opened");
+            break;
+        case Mode::exit: std::exit(0);
+        case Mode::change_folder:
+            if (::chdir("/") != 0) throw Error("the folder could not be changed");
+            break;
         case Mode::pass:
         case Mode::empty: break;
     }

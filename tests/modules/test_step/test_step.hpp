@@ -13,7 +13,25 @@
 namespace scanmill {
 
 struct TestStepParams {
-    enum class Mode { pass, fail, throw_standard, out_of_memory, empty, wait, warn };
+    enum class Mode {
+        pass,
+        fail,
+        throw_standard,
+        out_of_memory,
+        empty,
+        wait,
+        warn,
+        slow,
+        crash,
+        abort,
+        throw_number,
+        loop,
+        allocate,
+        write,
+        leak,
+        exit,
+        change_folder
+    };
     Mode mode = Mode::pass;
     std::optional<std::filesystem::path> log;
     Length length = Length::percent_of_diagonal(1);
@@ -30,8 +48,11 @@ struct TestStepResult {
 ///
 /// First of all one line, "<mode> <number of points>", is appended to `log`, when one is given. Then, by mode:
 /// fail throws Error with a hint, throw_standard a std::runtime_error, out_of_memory a std::bad_alloc; empty gives a
-/// mesh without vertices; wait returns only by throwing Cancelled; warn warns once. Metrics: `points`, the number of
-/// points that came out; `length`.
+/// mesh without vertices; wait returns only by throwing Cancelled; warn warns once; slow takes 30 ms. What follows
+/// takes the process along or leaves something behind in it: crash stores through a null pointer, abort and exit end
+/// the process, throw_number throws an int, loop never returns, allocate takes memory until there is none, write says
+/// 100 lines on standard output and one on standard error, leak leaves three files open, change_folder leaves the
+/// process in the root folder. Metrics: `points`, the number of points that came out; `length`.
 TestStepResult test_step(const PointCloud& cloud, const TestStepParams& params, Context& context);
 
 }  // namespace scanmill

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a worker is given to do a task.
+#include <algorithm>
+
+#include "scanmill/engine/scheduler.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// The smaller of those that there are; 0 stands for none.
+template <class Number>
+Number smaller_limit(Number a, Number b) {
+    return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b);
+}
+
+}  // namespace
+
+u64 Scheduler::memory_limit() const {
+    return smaller_limit(settings_.limits.cell_memory, settings_.limits.step_memory);
+}
+
+/// What is left to the cell that has the most, and at most what a step may take.
+double Scheduler::seconds_limit(const Task& task) const {
+    const Limits& limits = settings_.limits;
+    double left = 0;
+    if (limits.cell_seconds > 0) {
+        for (const std::size_t cell : cells_of(task))
+            if (!cells_[cell].is_given_up) left = std::max(left, limits.cell_seconds - report_.cells[cell].seconds);
+        left = std::max(left, 0.001);
+    }
+    return smaller_limit(left, limits.step_seconds);
+}
+
+JobInput Scheduler::input_from(const Source& source, const std::string& port) const {
+    JobInput input{port, source.node, source.port, {}};
+    if (const std::optional<StepResult>& known = foresight_[source.node].known)
+        if (const ResultOutput* output = known->output(source.port)) input.content = output->content;
+    return input;
+}
+
+JobMemory Scheduler::memory_of(std::size_t index, std::size_t worker) const {
+    const RunNode& node = graph_.nodes[index];
+    const NodeState& state = nodes_[index];
+    JobMemory memory;
+    memory.is_used = settings_.cache && !node.is_uncacheable;
+    memory.plan_key = node.key;
+    memory.code = node.code;
+    memory.needed.assign(foresight_[index].needed.begin(), foresight_[index].needed.end());
+    const bool is_away = components_[state.component].home != worker;
+    memory.keep_always = settings_.shares_values && (is_away || state.uses_left > 1);
+    for (const NodeInput& input : node.inputs) memory.inputs_cost += nodes_[input.node].cost;
+    return memory;
+}
+
+Job Scheduler::job(const Task& task, std::size_t worker) const {
+    const RunNode& node = graph_.nodes[task.node];
+    const auto step = [&] {
+        return std::shared_ptr<const PlannedStep>(graph_.plans[node.plan], graph_.step(node));  // lives with its plan
+    };
+    Job job;
+    job.node = task.node;
+    job.threads = settings_.threads;
+    job.seed = graph_.seed;
+    job.memory_limit = memory_limit();
+    job.seconds_limit = seconds_limit(task);
+    const std::string on_scan = fmt::format("on scan '{}'", graph_.scan_names[node.scan]);
+    if (task.write > 0) {
+        const Write& write = writes_[task.write - 1];
+        job.work = WriteWork{write.file, input_from(write.source, "")};
+        job.frames = {fmt::format("on scan '{}'", graph_.scan_names[graph_.cells[write.cells.front()].scan])};
+        return job;
+    }
+    if (!node.step) {
+        job.work = ReadWork{node.leaf, memory_of(task.node, worker)};
+        if (node.leaf.file != graph_.scan_names[node.scan]) job.frames = {on_scan};
+        return job;
+    }
+    const PlannedStep& planned = *graph_.step(node);
+    job.frames = {fmt::format("in step '{}' ({}:{}:{})", planned.label, graph_.plans[node.plan]->workflow.file,
+                              planned.position.line, planned.position.column),
+                  on_scan};
+    if (!foresight_[task.node].will_run) {
+        const std::string& primary = planned.spec.outputs.front().name;
+        job.work = ExpectWork{step(), foresight_[task.node].known->metrics, input_from({task.node, primary}, primary)};
+        return job;
+    }
+    StepWork work{step(), library_.build_id(planned.spec.name), {}, node.parameter_files, memory_of(task.node, worker)};
+    for (const NodeInput& input : node.inputs) work.inputs.push_back(input_from({input.node, input.from}, input.port));
+    job.work = std::move(work);
+    return job;
+}
+
+}  // namespace scanmill

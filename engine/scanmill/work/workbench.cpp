@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/work/workbench.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+
+#include "scanmill/engine/byte_size.hpp"
+#include "scanmill/engine/facts.hpp"
+#include "scanmill/engine/key.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/module.hpp"
+#include "scanmill/formats/files.hpp"
+#include "scanmill/work/memory_limit.hpp"
+#include "scanmill/work/resource_use.hpp"
+
+namespace scanmill {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Thrown when an input is neither here nor in the cache; the report names it.
+struct InputLost {};
+
+/// Thrown by what asks for expectations.
+struct Unmet {
+    Error error;
+};
+
+bool names_files(const PlannedStep& step, const std::string& parameter) {
+    return step.spec.parameter(parameter)->type == ParameterType::path;
+}
+
+/// The key knows a file as it was when the run was planned; what it holds now must not be kept under that key.
+void require_unchanged(const fs::path& file, const std::string& content) {
+    if (content_hash(file) != content)
+        throw Error("'{}' changed while the run was going on", file.string()).hint("run it again");
+}
+
+/// Filter, parameters as it gets them, and the content of its inputs: whatever else changed makes no difference.
+std::string run_key_of(const StepWork& work, const ParameterSet& resolved) {
+    KeyBuilder key;
+    key.field("code", work.memory.code);
+    for (const auto& [name, value] : resolved.values)
+        if (!names_files(*work.step, name)) key.field("parameter " + name, canonical_text(value));
+    for (const JobInput& input : work.inputs) key.field("port " + input.port, input.content);
+    return key.key();
+}
+
+void check_expectations(const PlannedStep& step, const Value& primary, NodeReport& report) {
+    try {
+        require_expectations(step, primary, report);
+    } catch (const Error& error) {
+        throw Unmet{error};
+    }
+}
+
+}  // namespace
+
+Workbench::Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy)
+    : library_(library),
+      cache_(cache),
+      rule_(policy) {}
+
+JobReport Workbench::perform(const Job& job, const JobListener& listener) {
+    JobReport report;
+    report.node.attempts = 1;
+    const ResourceUse use;
+    const auto fail = [&](Cause cause, Error error) {
+        report.outcome = Outcome::failed;
+        report.node.failure = failure_of(job, cause, std::move(error));
+    };
+    const bool is_write = std::holds_alternative<WriteWork>(job.work);
+    try {
+        const MemoryLimit limit(job.memory_limit);
+        if (const auto* reading = std::get_if<ReadWork>(&job.work)) read(job, *reading, listener, report);
+        if (const auto* step = std::get_if<StepWork>(&job.work)) run(job, *step, listener, report);
+        if (const auto* asking = std::get_if<ExpectWork>(&job.work)) expect(job, *asking, report);
+        if (const auto* writing = std::get_if<WriteWork>(&job.work)) write(job, *writing, report);
+        report.outcome = Outcome::done;
+    } catch (const Cancelled&) {
+    } catch (const InputLost&) {
+    } catch (const Unmet& unmet) {
+        fail(Cause::expectation, unmet.error);
+    } catch (const Error& error) {
+        fail(is_write ? Cause::output : Cause::refused, error);
+    } catch (const std::bad_alloc&) {
+        fail(Cause::memory, job.memory_limit > 0
+                                ? Error("the memory did not suffice: the limit is {}", byte_size_text(job.memory_limit))
+                                      .hint("raise the limit, or thin the scan first")
+                                : Error("the machine's memory did not suffice")
+                                      .hint("thin the scan first, or use a machine with more memory"));
+    } catch (const std::exception& error) {
+        fail(Cause::exception, Error("an unexpected error: {}", error.what()));
+    } catch (...) {
+        fail(Cause::exception, Error("something was thrown that is no error and says nothing of itself"));
+    }
+    report.node.effort = use.until_now();
+    report.node.effort.threads = job.threads;
+    report.node.outcome = report.outcome;
+    if (is_write && report.outcome == Outcome::failed) report.output.outcome = Outcome::failed;
+    return report;
+}
+
+void Workbench::read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report) {
+    const auto on_warning = [&](std::string text) {
+        listener.on_warning(text);
+        report.node.warnings.push_back(std::move(text));
+    };
+    const auto start = std::chrono::steady_clock::now();
+    Value value = read_leaf(work.leaf, on_warning);
+    if (uses_cache(work.memory)) require_unchanged(work.leaf.file, work.leaf.content);
+    if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&value))
+        report.node.facts.set("points", static_cast<double>((*points)->size()), Unit::count);
+    else if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
+        report.node.facts.set("points", static_cast<double>((*mesh)->positions.size()), Unit::count);
+    values_[job.node] = {{"", std::move(value)}};
+    remember(job, work.memory, work.memory.plan_key, said_of(work.leaf.file), seconds_since(start), report);
+}
+
+void Workbench::run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report) {
+    std::vector<StepInput> inputs;
+    for (const JobInput& input : work.inputs)
+        if (std::optional<Value> value = fetch(input, report)) inputs.push_back({input.port, std::move(*value)});
+    if (!report.lost.empty()) throw InputLost{};
+
+    const PlannedStep& step = *work.step;
+    ContextOptions options;
+    options.threads = job.threads;
+    options.seed = job.seed;
+    options.scratch = scratch_.folder(std::to_string(job.node));
+    options.is_cancelled = listener.is_cancelled;
+    options.on_progress = listener.on_progress;
+    options.on_warning = listener.on_warning;
+    std::string run_key;
+    auto start = std::chrono::steady_clock::now();
+    const Recall recall = [&](const ParameterSet& resolved, NodeReport&) -> std::optional<Outputs> {
+        if (!uses_cache(work.memory)) return std::nullopt;
+        run_key = run_key_of(work, resolved);
+        std::optional<Outputs> known = recalled(work, run_key, listener, report);
+        start = std::chrono::steady_clock::now();
+        return known;
+    };
+    const auto filter = [&]() -> const FilterDeclaration& {
+        if (library_.build_id(step.spec.name) != work.build)
+            throw Error("the filter {} was built again while the run was going on", step.spec.name)
+                .hint("run it again");
+        return library_.load(step.spec.name);
+    };
+    const Outputs outputs = run_step(step, filter, inputs, std::move(options), recall, report.node);
+    const double seconds = seconds_since(start);
+    if (uses_cache(work.memory))
+        for (const ParameterFile& file : work.parameter_files) require_unchanged(file.path, file.content);
+    std::vector<StepInput>& values = values_[job.node] = {};
+    for (const auto& [port, value] : outputs) values.push_back({port, value});
+    if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
+    if (report.node.origin == Origin::ran) remember(job, work.memory, run_key, "", seconds, report);
+    if (!step.expectations.empty())
+        check_expectations(step, *find(job.node, step.spec.outputs.front().name), report.node);
+}
+
+void Workbench::expect(const Job&, const ExpectWork& work, JobReport& report) {
+    const std::optional<Value> primary = fetch(work.primary, report);
+    if (!primary) throw InputLost{};
+    report.node.metrics = work.metrics;
+    check_expectations(*work.step, *primary, report.node);
+}
+
+void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
+    OutputReport& written = report.output;
+    written.file = work.file;
+    const std::optional<Value> value = fetch(work.value, report);
+    if (!value) throw InputLost{};
+    written.kind = kind_of(*value);
+    std::error_code trouble;
+    fs::create_directories(work.file.parent_path(), trouble);
+    if (trouble) throw Error("the folder '{}' cannot be made: {}", work.file.parent_path().string(), trouble.message());
+    WriteOptions options;
+    options.on_warning = [&](std::string text) { written.warnings.push_back(std::move(text)); };
+    write_file(work.file, *value, options);
+    written.outcome = Outcome::done;
+    written.facts = facts_of(*value);
+}
+
+/// What the cache knows under the run key, if all values that are needed were kept.
+std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::string& run_key,
+                                           const JobListener& listener, JobReport& report) const {
+    std::optional<StepResult> result = cache_->step(run_key);
+    if (!result) return std::nullopt;
+    Outputs outputs;
+    for (const std::string& port : work.memory.needed) {
+        const ResultOutput* output = result->output(port);
+        std::optional<Value> value = output ? cache_->value(output->content) : std::nullopt;
+        if (!value) return std::nullopt;
+        outputs.set(port, std::move(*value));
+    }
+    cache_->keep_run_key(work.memory.plan_key, run_key);
+    adopt(*result, work.step.get(), "", report.node);
+    report.node.origin = Origin::same_inputs;
+    for (const std::string& warning : report.node.warnings) listener.on_warning(warning);
+    for (const ResultOutput& output : result->outputs)
+        if (cache_->has_value(output.content)) report.kept.push_back(output.port);
+    report.result = std::move(*result);
+    return outputs;
+}
+
+/// Hands the result to the cache, and its values where that is worth it.
+void Workbench::remember(const Job& job, const JobMemory& memory, const std::string& run_key,
+                         const std::string& said_of, double seconds, JobReport& report) {
+    if (!uses_cache(memory)) return;
+    StepResult& result = report.result;
+    const auto* work = std::get_if<StepWork>(&job.work);
+    for (const auto& [name, value] : report.node.resolved.values)
+        if (!std::holds_alternative<std::monostate>(value) && !names_files(*work->step, name))
+            result.resolved.emplace_back(name, written(value));
+    result.metrics = report.node.metrics;
+    result.facts = report.node.facts;
+    // Equal files of other names share the result: what is said of reading begins with the name.
+    for (const std::string& warning : report.node.warnings)
+        result.warnings.push_back(warning.starts_with(said_of) ? warning.substr(said_of.size()) : warning);
+    result.seconds = seconds;
+    keep_values(job.node, memory, memory.inputs_cost + seconds, report);
+    if (cache_->keep_step(run_key, result)) cache_->keep_run_key(memory.plan_key, run_key);
+}
+
+void Workbench::keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report) {
+    for (const auto& [port, value] : values_[node]) {
+        const EncodedValue encoded(value);
+        bool kept = cache_->has_value(encoded.content());
+        if (!kept && (memory.keep_always || rule_.is_worth(cost, encoded.size()))) {
+            const auto start = std::chrono::steady_clock::now();
+            kept = cache_->keep_value(encoded);
+            if (kept) rule_.wrote(encoded.size(), seconds_since(start));
+        }
+        if (kept) report.kept.push_back(port);
+        report.result.outputs.push_back({port, kind_of(value), encoded.content(), encoded.size()});
+    }
+}
+
+const Value* Workbench::find(std::size_t node, const std::string& port) const {
+    const auto of_node = values_.find(node);
+    if (of_node == values_.end()) return nullptr;
+    const auto found = std::ranges::find(of_node->second, port, &StepInput::port);
+    return found == of_node->second.end() ? nullptr : &found->value;
+}
+
+std::optional<Value> Workbench::fetch(const JobInput& input, JobReport& report) {
+    if (const Value* value = find(input.node, input.from)) return *value;
+    std::optional<Value> value = cache_ && !input.content.empty() ? cache_->value(input.content) : std::nullopt;
+    if (value)
+        values_[input.node].push_back({input.from, *value});
+    else
+        report.lost.push_back(input);
+    return value;
+}
+
+void adopt(const StepResult& result, const PlannedStep* step, const std::string& said_of, NodeReport& report) {
+    report.metrics = result.metrics;
+    report.facts = result.facts;
+    report.warnings.clear();
+    for (const std::string& warning : result.warnings) report.warnings.push_back(said_of + warning);
+    if (!step) return;
+    report.resolved = {};
+    for (const auto& [name, value] : step->parameters.values)
+        if (names_files(*step, name)) report.resolved.values.emplace_back(name, value);
+    for (const auto& [name, text] : result.resolved)
+        report.resolved.values.emplace_back(name, parse(*step->spec.parameter(name), text));
+}
+
+std::string said_of(const fs::path& file) { return "'" + file.string() + "': "; }
+
+}  // namespace scanmill

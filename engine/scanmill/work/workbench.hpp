@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Where jobs are done, one after the other: files read, filters run, results written. Values stay on the bench until
+/// they are forgotten, so that the next job need not fetch them.
+
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "scanmill/cache/cache.hpp"
+#include "scanmill/cache/keep_rule.hpp"
+#include "scanmill/engine/step_runner.hpp"
+#include "scanmill/filter/library.hpp"
+#include "scanmill/work/job.hpp"
+#include "scanmill/work/scratch_folder.hpp"
+
+namespace scanmill {
+
+/// What is told while a job is done; from any thread, one call at a time.
+struct JobListener {
+    std::function<void(double fraction)> on_progress;
+    std::function<void(std::string_view text)> on_warning;
+    std::function<bool()> is_cancelled;
+};
+
+class Workbench {
+public:
+    /// All must outlive it. Without a cache nothing is taken from one and nothing kept.
+    Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy);
+
+    /// Never throws: whatever goes wrong is in the report. Limits are for the surroundings to enforce.
+    JobReport perform(const Job& job, const JobListener& listener);
+    /// Drops the node's values.
+    void forget(std::size_t node) { values_.erase(node); }
+    bool is_empty() const { return values_.empty(); }
+
+private:
+    void read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report);
+    void run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report);
+    void expect(const Job& job, const ExpectWork& work, JobReport& report);
+    void write(const Job& job, const WriteWork& work, JobReport& report);
+
+    std::optional<Outputs> recalled(const StepWork& work, const std::string& run_key, const JobListener& listener,
+                                    JobReport& report) const;
+    void remember(const Job& job, const JobMemory& memory, const std::string& run_key, const std::string& said_of,
+                  double seconds, JobReport& report);
+    void keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report);
+    const Value* find(std::size_t node, const std::string& port) const;
+    /// From the bench or the cache; nothing, and a word in the report, when both have lost it.
+    std::optional<Value> fetch(const JobInput& input, JobReport& report);
+    bool uses_cache(const JobMemory& memory) const { return cache_ && memory.is_used; }
+
+    FilterLibrary& library_;
+    Cache* cache_;
+    KeepRule rule_;
+    ScratchFolder scratch_;
+    std::map<std::size_t, std::vector<StepInput>> values_;  // by node
+};
+
+/// What `step` remembers of a result, in the words of this node: warnings of reading begin with `said_of`.
+void adopt(const StepResult& result, const PlannedStep* step, const std::string& said_of, NodeReport& report);
+
+/// How warnings of reading this file begin.
+std::string said_of(const std::filesystem::path& file);
+
+}  // namespace scanmill

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/work/worker_processes.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstring>
+
+#include "scanmill/engine/byte_size.hpp"
+#include "scanmill/engine/duration.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/module.hpp"
+#include "scanmill/work/available_memory.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::chrono::milliseconds between_looks(100);
+
+const PlannedStep* step_of(const Job& job) {
+    if (const auto* run = std::get_if<StepWork>(&job.work)) return run->step.get();
+    if (const auto* expect = std::get_if<ExpectWork>(&job.work)) return expect->step.get();
+    return nullptr;
+}
+
+Error error_of(const ProcessEnd& end) {
+    if (end.signal == 0)
+        return Error("the worker process was ended from inside, with exit code {}, before the step came to its end",
+                     end.exit_code);
+    const char* meaning = ::sigdescr_np(end.signal);
+    const char* name = ::sigabbrev_np(end.signal);
+    return Error("the worker process was ended by the signal {} ({}), with {} of memory at most",
+                 name ? fmt::format("SIG{}", name) : std::to_string(end.signal), meaning ? meaning : "unknown",
+                 byte_size_text(end.peak_memory));
+}
+
+}  // namespace
+
+WorkerProcesses::WorkerProcesses(WorkerProcessSettings settings)
+    : settings_(std::move(settings)),
+      places_(settings_.count) {
+    start_ = {settings_.cache_folder, settings_.keep_policy, ::getpid(), content_hash(core_library_file())};
+}
+
+void WorkerProcesses::ensure(Place& place) {
+    if (place.process) return;
+    place.process = std::make_unique<WorkerProcess>(settings_.command);
+    place.process->send(to_message(start_));
+    place.forgotten.clear();
+}
+
+void WorkerProcesses::start(std::size_t worker, Job job) {
+    Place& place = places_[worker];
+    ensure(place);
+    place.process->read_log();
+    place.process->clear_log();
+    place.begun = place.looked_at = Clock::now();
+    place.peak_memory = 0;
+    place.process->send(to_message(job, place.forgotten));  // its end is noticed when it is waited for
+    place.forgotten.clear();
+    place.job = std::move(job);
+}
+
+void WorkerProcesses::forget(std::size_t worker, std::size_t node) {
+    if (places_[worker].process) places_[worker].forgotten.push_back(node);
+}
+
+void WorkerProcesses::replace(std::size_t worker) { places_[worker].process.reset(); }
+
+bool WorkerProcesses::has_room(u64 memory_limit) const {
+    if (memory_limit == 0) return true;
+    u64 promised = 0;
+    for (const Place& place : places_)
+        if (place.job) {
+            const u64 used = place.process->memory().anonymous;
+            promised += place.job->memory_limit - std::min(used, place.job->memory_limit);
+        }
+    return available_memory() >= promised + memory_limit;
+}
+
+void WorkerProcesses::wait(const WorkerListener& listener, std::chrono::milliseconds patience) {
+    std::vector<pollfd> watched;
+    for (const Place& place : places_) {
+        const WorkerProcess* process = place.process.get();
+        for (const int descriptor : {process ? process->channel() : -1, process ? process->log_pipe() : -1,
+                                     process ? process->descriptor() : -1})
+            watched.push_back({descriptor, POLLIN, 0});
+    }
+    const auto milliseconds = std::chrono::ceil<std::chrono::milliseconds>(until_next_look(patience)).count();
+    ::poll(watched.data(), watched.size(), static_cast<int>(std::max<std::int64_t>(milliseconds, 0)));
+    for (std::size_t worker = 0; worker < places_.size(); ++worker)
+        if (places_[worker].process) look_at(worker, listener);
+}
+
+WorkerProcesses::Clock::duration WorkerProcesses::until_next_look(std::chrono::milliseconds patience) const {
+    Clock::duration least = patience;
+    const auto now = Clock::now();
+    for (const Place& place : places_) {
+        if (!place.job) continue;
+        if (place.job->memory_limit > 0) least = std::min<Clock::duration>(least, between_looks);
+        if (place.job->seconds_limit > 0) {
+            const std::chrono::duration<double> left =
+                std::chrono::duration<double>(place.job->seconds_limit) - (now - place.begun);
+            if (left < least) least = std::chrono::duration_cast<Clock::duration>(left);
+        }
+    }
+    return std::max(least, Clock::duration::zero());
+}
+
+void WorkerProcesses::look_at(std::size_t worker, const WorkerListener& listener) {
+    Place& place = places_[worker];
+    place.process->read_log();
+    pollfd ended{place.process->descriptor(), POLLIN, 0};
+    const bool has_ended = ::poll(&ended, 1, 0) > 0;  // asked first: what it said before is read all the same
+    take_messages(worker, listener);
+    if (!place.process) return;
+    if (has_ended)
+        end_of_process(worker, listener);
+    else if (place.job)
+        enforce_limits(worker, listener);
+}
+
+void WorkerProcesses::take_messages(std::size_t worker, const WorkerListener& listener) {
+    Place& place = places_[worker];
+    MessageReader& reader = place.process->reader();
+    try {
+        for (;;) {
+            const MessageReader::Arrival arrival = reader.receive(false);
+            while (const std::optional<std::string> bytes = reader.next()) {
+                WorkerMessage message = worker_message_from(*bytes, place.job ? step_of(*place.job) : nullptr);
+                if (message.progress) listener.on_progress(worker, *message.progress);
+                if (message.warning) listener.on_warning(worker, *message.warning);
+                if (message.note && std::ranges::find(notes_, *message.note) == notes_.end()) {
+                    notes_.push_back(*message.note);
+                    if (settings_.on_note) settings_.on_note(*message.note);
+                }
+                if (message.report && place.job) tell_end(worker, listener, std::move(*message.report), false);
+            }
+            if (arrival == MessageReader::Arrival::something) continue;
+            // A filter may have closed the channel: nothing will be heard from this process any longer.
+            if (arrival == MessageReader::Arrival::end) place.process->signal(SIGKILL);
+            return;
+        }
+    } catch (const Error& error) {
+        end_by_force(worker, listener, Cause::exit, error);
+    }
+}
+
+void WorkerProcesses::enforce_limits(std::size_t worker, const WorkerListener& listener) {
+    Place& place = places_[worker];
+    const Job& job = *place.job;
+    const auto now = Clock::now();
+    constexpr std::chrono::milliseconds grace(1200);
+    if (cancelled_ && now - *cancelled_ > grace) {
+        place.process.reset();
+        return tell_end(worker, listener, {}, true);
+    }
+    if (job.seconds_limit > 0 && now - place.begun >= std::chrono::duration<double>(job.seconds_limit))
+        return end_by_force(worker, listener, Cause::time,
+                            Error("the time did not suffice: it was ended after {}", duration_text(job.seconds_limit))
+                                .hint("raise the limit, or thin the scan first"));
+    if (job.memory_limit == 0 || now - place.looked_at < between_looks) return;
+    place.looked_at = now;
+    const ResidentMemory memory = place.process->memory();
+    place.peak_memory = std::max(place.peak_memory, memory.peak);
+    if (memory.anonymous > job.memory_limit)
+        end_by_force(worker, listener, Cause::memory,
+                     Error("the memory did not suffice: it was ended at {}, the limit is {}",
+                           byte_size_text(memory.anonymous), byte_size_text(job.memory_limit))
+                         .hint("raise the limit, or thin the scan first"));
+}
+
+void WorkerProcesses::end_by_force(std::size_t worker, const WorkerListener& listener, Cause cause, Error error) {
+    Place& place = places_[worker];
+    const ProcessEnd end = place.process->end(true);
+    if (!place.job) return place.process.reset();
+    JobReport report;
+    report.outcome = Outcome::failed;
+    report.node.failure = failure_of(*place.job, cause, std::move(error), end.signal);
+    report.node.effort.peak_memory = end.peak_memory;
+    tell_end(worker, listener, std::move(report), true);
+}
+
+void WorkerProcesses::end_of_process(std::size_t worker, const WorkerListener& listener) {
+    Place& place = places_[worker];
+    const ProcessEnd end = place.process->end(false);
+    if (!place.job) return place.process.reset();
+    JobReport report;
+    if (!cancelled_) {
+        report.outcome = Outcome::failed;
+        report.node.failure = failure_of(*place.job, end.signal ? Cause::signal : Cause::exit, error_of(end),
+                                         end.signal ? end.signal : end.exit_code);
+    }
+    report.node.effort.peak_memory = end.peak_memory;
+    tell_end(worker, listener, std::move(report), true);
+}
+
+void WorkerProcesses::tell_end(std::size_t worker, const WorkerListener& listener, JobReport report, bool lost_values) {
+    Place& place = places_[worker];
+    if (place.process) {
+        place.process->read_log();
+        report.node.effort.log = place.process->log();
+        if (lost_values) place.process.reset();
+    }
+    if (report.node.effort.seconds == 0)
+        report.node.effort.seconds = std::chrono::duration<double>(Clock::now() - place.begun).count();
+    report.node.effort.threads = place.job->threads;
+    report.node.outcome = report.outcome;
+    place.job.reset();
+    listener.on_end(worker, std::move(report), lost_values);
+}
+
+void WorkerProcesses::cancel() {
+    if (cancelled_) return;
+    cancelled_ = Clock::now();
+    for (const Place& place : places_)
+        if (place.job) place.process->signal(SIGTERM);
+}
+
+}  // namespace scanmill

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "execute.hpp"
+
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <charconv>
+#include <csignal>
+#include <limits>
+#include <set>
+
+#include "commands.hpp"
+#include "event_stream.hpp"
+#include "machine.hpp"
+#include "printable.hpp"
+#include "progress.hpp"
+#include "run_output.hpp"
+#include "scanmill/engine/observers.hpp"
+#include "scanmill/engine/run.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/atomic_file.hpp"
+#include "scanmill/records/reasons.hpp"
+#include "scanmill/records/recorder.hpp"
+#include "scanmill/work/in_process_worker.hpp"
+#include "scanmill/work/worker_processes.hpp"
+
+namespace scanmill::runner {
+
+namespace {
+
+// The one thing a signal handler may touch.
+volatile std::sig_atomic_t interrupt_requested = 0;
+
+void on_interrupt(int signal) {
+    interrupt_requested = 1;
+    std::signal(signal, SIG_DFL);  // a second one ends the program at once
+}
+
+/// Nothing, after a warning, where they cannot be opened: results count more than records of them.
+std::optional<RunRecords> open_records(const std::filesystem::path& folder, const Warn& warn) {
+    try {
+        std::error_code trouble;
+        std::filesystem::create_directories(folder, trouble);
+        return RunRecords::append_to(folder / records_file);
+    } catch (const Error& error) {
+        warn(fmt::format("this run is not recorded: {}", error.sentence()));
+        return std::nullopt;
+    }
+}
+
+/// What changed since the last run into the same folder; without records of one nothing is known.
+void explain_from_records(std::vector<NodeForesight>& foresight, FilterLibrary& library, const RunGraph& graph,
+                          const std::filesystem::path& folder, const Warn& warn) {
+    const std::filesystem::path file = folder / records_file;
+    std::error_code absent;
+    if (!std::filesystem::exists(file, absent)) return;
+    try {
+        explain(foresight, library, graph, RunRecords::read(file));
+    } catch (const Error& error) {
+        warn(fmt::format("what changed since the last run is not known: {}", error.sentence()));
+    }
+}
+
+std::unique_ptr<Workers> make_workers(unsigned jobs, FilterLibrary& library, Cache* cache,
+                                      const ExecuteOptions& options, const Warn& warn,
+                                      const std::function<bool()>& is_cancelled) {
+    if (jobs == 0) return std::make_unique<InProcessWorker>(library, cache, keep_policy(options.cache), is_cancelled);
+    WorkerProcessSettings settings;
+    settings.command = {"/proc/self/exe", "worker"};
+    settings.count = jobs;
+    if (cache) settings.cache_folder = std::filesystem::absolute(cache->folder()).string();
+    settings.keep_policy = static_cast<int>(keep_policy(options.cache));
+    settings.on_note = warn;
+    auto processes = std::make_unique<WorkerProcesses>(std::move(settings));
+    processes->start_early(0);
+    return processes;
+}
+
+/// The command line's own reading takes -1 for the largest number and 010 for eight.
+template <class Number>
+CLI::Validator whole_number() {
+    return CLI::Validator(
+        [](const std::string& text) -> std::string {
+            Number ignored = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ignored);
+            const bool octal = text.size() > 1 && text[0] == '0';
+            if (error == std::errc() && end == text.data() + text.size() && !octal) return {};
+            return fmt::format("'{}' is no whole number from 0 to {}", text, std::numeric_limits<Number>::max());
+        },
+        "");
+}
+
+/// Empty when results can be put into the folder, which may have to be made.
+std::string what_bars_folder(const std::string& folder) {
+    if (folder.empty()) return "the output folder's name is empty";
+    std::error_code ignored;
+    for (std::filesystem::path part = folder; !part.empty(); part = part.parent_path()) {
+        if (std::filesystem::is_directory(part, ignored)) break;
+        if (std::filesystem::exists(part, ignored))
+            return fmt::format("results cannot be put into '{}': '{}' is a file", folder, part.string());
+        if (part == part.parent_path()) break;
+    }
+    return {};
+}
+
+constexpr unsigned most_jobs = 1024;
+
+}  // namespace
+
+unsigned cores() {
+    cpu_set_t usable;
+    if (::sched_getaffinity(0, sizeof usable, &usable) == 0) return static_cast<unsigned>(CPU_COUNT(&usable));
+    return 1;
+}
+
+void add_execute_options(CLI::App& command, ExecuteOptions& options, const std::string& jobs_help) {
+    command.add_option("-o,--output", options.output_folder, "The output folder")
+        ->capture_default_str()
+        ->check(CLI::Validator(what_bars_folder, ""));
+    command
+        .add_option("-j,--jobs", options.jobs,
+                    "Worker processes: what crashes in one harms no other; 0: everything in this process, without "
+                    "limits of time. " +
+                        jobs_help)
+        ->check(CLI::Range(0u, most_jobs));
+    command
+        .add_option("--threads", options.threads,
+                    "Threads inside a filter; 0: the machine's cores shared among the jobs. Results do not depend on "
+                    "it")
+        ->capture_default_str()
+        ->check(whole_number<unsigned>());
+    command.add_option("--seed", options.seed, "Seed of everything random")
+        ->capture_default_str()
+        ->check(whole_number<std::uint64_t>());
+    add_cache_options(command, options.cache, true);
+    command.add_flag("--fail-fast", options.fail_fast, "Begin nothing new once something has failed");
+    command.add_flag("--dry-run", options.dry_run,
+                     "Print what would be run and why, what is cached, and what would be written, and stop");
+    command.add_flag("-q,--quiet", options.quiet, "No progress on stderr");
+}
+
+int execute(const Task& task, FilterLibrary& library, Cache* cache, const Warn& warn, const ExecuteOptions& options) {
+    const RunGraph& graph = task.graph;
+    std::vector<NodeForesight> foresight = foresee(graph, cache);
+    if (cache) explain_from_records(foresight, library, graph, options.output_folder, warn);
+    if (options.dry_run) {
+        fmt::print("{}", options.json ? graph_json(graph, foresight) + "\n" : printable(graph_text(graph, foresight)));
+        return done;
+    }
+
+    std::set<std::filesystem::path> folders;
+    for (const RunCell& cell : graph.cells)
+        for (const RunOutput& output : cell.outputs) folders.insert(output.file.parent_path());
+    for (const std::filesystem::path& folder : folders) remove_abandoned_parts(folder);
+
+    const unsigned jobs = options.jobs.value_or(task.jobs);
+    RunSettings settings;
+    settings.threads = options.threads > 0 ? options.threads : std::max(1u, cores() / std::max(1u, jobs));
+    settings.limits = task.limits;
+    settings.fail_fast = options.fail_fast;
+    settings.cache = cache;
+    settings.shares_values = jobs > 0 && cache && keep_policy(options.cache) != KeepRule::Policy::never;
+    settings.foresight = std::move(foresight);
+    settings.is_cancelled = [] { return interrupt_requested != 0; };
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+    Progress progress(graph, settings.foresight, std::max(1u, jobs), options.quiet);
+    const Warn warn_beside = [&](std::string text) { progress.say_beside([&] { warn(std::move(text)); }); };
+    const std::unique_ptr<Workers> workers =
+        make_workers(jobs, library, cache, options, warn_beside, settings.is_cancelled);
+
+    std::optional<EventStream> events;
+    std::optional<RunRecords> records = open_records(options.output_folder, warn);
+    std::optional<Recorder> recorder;
+    std::vector<RunObserver*> observing{&progress};
+    if (options.json && task.streams_events) observing.push_back(&events.emplace(graph));
+    if (records) {
+        const RunStart start{task.name, task.file,        options.command_line, graph.seed,      settings.threads,
+                             jobs,      SCANMILL_VERSION, machine_text(),       libraries_text()};
+        recorder.emplace(*records, start, library, graph, warn_beside);
+        observing.push_back(&*recorder);
+    }
+    if (events) events->begin(task.name, jobs, settings.threads, recorder ? recorder->run() : 0);
+    Observers observers(observing);
+    const RunReport report = run(library, graph, *workers, settings, observers);
+    progress.finish();
+    if (recorder) recorder->finish(report);
+    if (cache) cache->evict();
+
+    if (events)
+        events->end(report);
+    else
+        fmt::print("{}", options.json ? report_json(graph, report) + "\n" : report_text(graph, report));
+    if (report.interrupted) {
+        fmt::print(stderr, "interrupted; what was written is whole\n");
+        return interrupted;
+    }
+    return report.all_done() ? done : some_failed;
+}
+
+}  // namespace scanmill::runner

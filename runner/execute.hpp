@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Running a graph from the command line: what `run` and `batch` have in common once they know what is to be done.
+
+#include <CLI/CLI.hpp>
+
+#include "cache_options.hpp"
+#include "scanmill/batch/limits.hpp"
+#include "scanmill/engine/graph.hpp"
+
+namespace scanmill::runner {
+
+struct ExecuteOptions {
+    std::string output_folder = "scanmill-out";
+    std::optional<unsigned> jobs;  ///< nothing: the command's own default
+    unsigned threads = 0;
+    std::uint64_t seed = 0;
+    bool dry_run = false, json = false, quiet = false, fail_fast = false;
+    CacheOptions cache;
+    std::vector<std::string> command_line;
+};
+
+/// `jobs_help` ends the help of `-j`.
+void add_execute_options(CLI::App& command, ExecuteOptions& options, const std::string& jobs_help);
+
+/// A graph, and how it is called in the records.
+struct Task {
+    std::string name, file;  ///< of the workflow or the batch
+    RunGraph graph;
+    Limits limits;
+    unsigned jobs = 1;  ///< where the options do not say
+    bool streams_events = false;  ///< --json prints what happens as it happens, a line each; else a report at the end
+};
+
+/// Prints what would be done, with --dry-run, or does it. Returns the exit code.
+int execute(const Task& task, FilterLibrary& library, Cache* cache, const Warn& warn, const ExecuteOptions& options);
+
+/// Cores that this process may use.
+unsigned cores();
+
+}  // namespace scanmill::runner
