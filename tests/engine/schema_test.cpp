@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/schema_support.hpp"
+#include "scanmill/batch/batch.hpp"
+#include "scanmill/batch/batch_schema.hpp"
 #include "scanmill/engine/plan.hpp"
 #include "support/declared_filters.hpp"
 #include "support/temporary_folder.hpp"
@@ -157,14 +159,20 @@ TEST_F(WorkflowSchema, EqualFilters_GiveEqualBytes) { EXPECT_EQ(workflow_schema(
 
 TEST(ShippedWorkflows, AreAcceptedByTheSchemaAndByCheck) {
     const FilterLibrary library({SCANMILL_PLUGIN_DIR});
-    Schema schema(workflow_schema(library));
+    Schema schema(workflow_schema(library)), schema_of_batches(batch_schema(library));
     std::size_t found = 0;
     for (const auto& file : std::filesystem::directory_iterator(SCANMILL_SOURCE_DIR "/workflows")) {
         if (file.path().extension() != ".yaml") continue;
         ++found;
         const std::string workflow = test::content_of(file.path());
-        EXPECT_TRUE(schema.accepts(workflow)) << file.path();
+        EXPECT_EQ((is_batch(workflow) ? schema_of_batches : schema).complaints(workflow), "") << file.path();
         Diagnostics diagnostics(file.path().string());
+        if (is_batch(workflow)) {  // whose scans have to be fetched; all else must be right
+            parse_batch(workflow, library, diagnostics);
+            for (const Diagnostic& found_wrong : diagnostics.sorted())
+                EXPECT_THAT(found_wrong.message, testing::HasSubstr("no file")) << file.path();
+            continue;
+        }
         make_plan(parse_workflow(workflow, diagnostics), library, {}, diagnostics);
         EXPECT_THAT(diagnostics.sorted(), testing::IsEmpty()) << file.path();
     }

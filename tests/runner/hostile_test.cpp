@@ -41,12 +41,16 @@ std::size_t times(const std::string& text, std::string_view part) {
     return count;
 }
 
-/// All files below a folder but the records of its runs.
+/// All files below a folder but the records of its runs and the descriptions of files that are there.
 std::size_t files_below(const fs::path& folder) {
     std::size_t files = 0;
     if (fs::exists(folder))
-        for (const auto& entry : fs::recursive_directory_iterator(folder))
-            files += !entry.is_directory() && entry.path().filename() != records_file;
+        for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+            fs::path described = entry.path();
+            described.replace_extension();
+            const bool is_description = entry.path().extension() == ".json" && fs::exists(described);
+            files += !entry.is_directory() && entry.path().filename() != records_file && !is_description;
+        }
     return files;
 }
 

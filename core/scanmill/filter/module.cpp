@@ -6,6 +6,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -107,7 +108,7 @@ std::string content_hash(const std::filesystem::path& file) {
     if (!stream) throw Error("'{}' cannot be read", file.string());
     const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
     XXH3_128bits_reset(state.get());
-    std::vector<char> block(std::size_t(1) << 20);
+    std::array<char, 1 << 16> block;
     while (stream.read(block.data(), static_cast<std::streamsize>(block.size())), stream.gcount() > 0)
         XXH3_128bits_update(state.get(), block.data(), static_cast<std::size_t>(stream.gcount()));
     if (stream.bad()) throw Error("'{}' cannot be read to its end", file.string());

@@ -12,6 +12,7 @@
 #include "scanmill/filter/module.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/formats/format.hpp"
+#include "scanmill/work/file_description.hpp"
 
 namespace scanmill {
 
@@ -110,6 +111,8 @@ private:
                                 parts_.size() > 1 ? " of workflow '" + values.workflow + "'" : "");
                 const fs::path target =
                     output_files_.add(expand_template(name, values), {graph_.nodes[node].key, source.port}, writer);
+                output_files_.add(description_of(expand_template(name, values)),
+                                  {graph_.nodes[node].key, source.port + " described"}, writer);
                 cell.outputs.push_back({target, node, source.port});
             }
             graph_.cells.push_back(std::move(cell));

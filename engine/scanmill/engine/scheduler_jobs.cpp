@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "scanmill/engine/scheduler.hpp"
+#include "scanmill/work/file_description.hpp"
 
 namespace scanmill {
 
@@ -67,7 +68,8 @@ Job Scheduler::job(const Task& task, std::size_t worker) const {
     const std::string on_scan = fmt::format("on scan '{}'", graph_.scan_names[node.scan]);
     if (task.write > 0) {
         const Write& write = writes_[task.write - 1];
-        job.work = WriteWork{write.file, input_from(write.source, "")};
+        job.work = WriteWork{write.file, made_how(graph_, write.cells, write.source.node, report_.nodes),
+                             input_from(write.source, "")};
         job.frames = {fmt::format("on scan '{}'", graph_.scan_names[graph_.cells[write.cells.front()].scan])};
         return job;
     }

@@ -54,6 +54,7 @@ struct ExpectWork {
 
 struct WriteWork {
     std::filesystem::path file;
+    std::string made_how;  ///< for the file's description
     JobInput value;
 };
 

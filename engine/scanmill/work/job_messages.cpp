@@ -157,7 +157,9 @@ Json to_json(const StepWork& work) {
 Json to_json(const ExpectWork& work) {
     return {{"step", to_json(*work.step)}, {"metrics", rows_of(work.metrics)}, {"primary", to_json(work.primary)}};
 }
-Json to_json(const WriteWork& work) { return {{"file", work.file.native()}, {"value", to_json(work.value)}}; }
+Json to_json(const WriteWork& work) {
+    return {{"file", work.file.native()}, {"how", work.made_how}, {"value", to_json(work.value)}};
+}
 
 constexpr std::array<const char*, 4> kinds_of_work{"read", "run", "expect", "write"};
 
@@ -168,7 +170,7 @@ std::variant<ReadWork, StepWork, ExpectWork, WriteWork> work_from(const Json& js
     }
     if (json.contains("write")) {
         const Json& body = json.at("write");
-        return WriteWork{body.at("file").get<std::string>(), input_from(body.at("value"))};
+        return WriteWork{body.at("file").get<std::string>(), body.at("how"), input_from(body.at("value"))};
     }
     if (json.contains("expect")) {
         const Json& body = json.at("expect");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/work/workbench.hpp"
 
+#include <limits.h>
+
 #include <algorithm>
 #include <chrono>
 #include <new>
@@ -11,6 +13,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/module.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/work/file_description.hpp"
 #include "scanmill/work/memory_limit.hpp"
 #include "scanmill/work/resource_use.hpp"
 
@@ -183,8 +186,13 @@ void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
     WriteOptions options;
     options.on_warning = [&](std::string text) { written.warnings.push_back(std::move(text)); };
     write_file(work.file, *value, options);
-    written.outcome = Outcome::done;
     written.facts = facts_of(*value);
+    constexpr std::size_t longest_name = NAME_MAX;
+    if (description_of(work.file).filename().native().size() <= longest_name)
+        write_description(work.file, work.made_how, *value, written.facts);
+    else
+        options.on_warning(fmt::format("'{}' has no description: its name would be too long", work.file.string()));
+    written.outcome = Outcome::done;
 }
 
 /// What the cache knows under the run key, if all values that are needed were kept.

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What the engine costs: `scanmill run workflows/quickstart.yaml` beside a program that calls the same filters one
+/// after the other, and nothing else.
+///
+/// Equal: the scan, the parameters, the threads, the STL that is written, one process started and waited for; all in
+/// turn. Not equal: the engine also starts a worker process, keys and checks everything, hashes the scan, and writes
+/// its records and the output's description. usage: engine_overhead_bench [rounds = 11]
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "alpha_solid/alpha_solid.hpp"
+#include "delaunay/delaunay.hpp"
+#include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/length_scale.hpp"
+#include "scanmill/geometry/topology.hpp"
+#include "voxel_thin/voxel_thin.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The quickstart workflow as a C++ program would write it.
+int run_filters(const fs::path& scan, const fs::path& output) {
+    using namespace scanmill;
+    ContextOptions options;
+    options.threads = std::max(1u, std::thread::hardware_concurrency());
+    Context context(std::move(options));
+    const std::shared_ptr<const PointCloud> points = read_points(scan);
+    VoxelThinParams thinning;
+    thinning.bin_size = Length::percent_of_diagonal(0.5).resolved(length_scale(points));
+    const VoxelThinResult thin = voxel_thin(*points, thinning, context);
+    const DelaunayResult delaunay = scanmill::delaunay(thin.points, {}, context);
+    auto solid = std::make_shared<const TriangleMesh>(alpha_solid(delaunay.tets, {}, context).mesh);
+    write_file(output, solid);
+    return 0;
+}
+
+double seconds_of(const std::vector<std::string>& command) {
+    std::vector<char*> arguments;
+    for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t quiet;
+    ::posix_spawn_file_actions_init(&quiet);
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
+        ::posix_spawn_file_actions_addopen(&quiet, stream, "/dev/null", O_WRONLY, 0);
+    const auto start = std::chrono::steady_clock::now();
+    pid_t process = 0;
+    const int trouble = ::posix_spawn(&process, arguments[0], &quiet, nullptr, arguments.data(), environ);
+    ::posix_spawn_file_actions_destroy(&quiet);
+    if (trouble != 0) throw std::runtime_error(command[0] + " cannot be started");
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw std::runtime_error(command[0] + " failed");
+    return seconds.count();
+}
+
+struct Contender {
+    std::string name;
+    std::vector<std::string> command;
+    std::function<void()> prepare = [] {};
+    std::vector<double> seconds = {};
+};
+
+double median(std::vector<double> numbers) {
+    std::ranges::sort(numbers);
+    return numbers[numbers.size() / 2];
+}
+
+void compare(const fs::path& scan, const fs::path& programs, const fs::path& folder, int rounds) {
+    const std::string out = (folder / "out").string(), cache = (folder / "cache").string();
+    const auto run = [&](std::vector<std::string> more) {
+        std::vector<std::string> command{
+            (programs / "scanmill").string(), "run", "workflows/quickstart.yaml", scan.string(), "-q", "-o", out};
+        command.insert(command.end(), more.begin(), more.end());
+        return command;
+    };
+    const auto without_cache = [&] { fs::remove_all(cache); };
+    std::vector<Contender> contenders{
+        {"the filters alone",
+         {(programs / "engine_overhead_bench").string(), "--filters", scan.string(), (folder / "alone.stl").string()}},
+        {"no cache", run({"--no-cache"})},
+        {"no cache, in one process", run({"--no-cache", "-j", "0"})},
+        {"a warm cache, nothing to store", run({"--cache", cache + "-never", "--keep", "never"})},
+        {"an empty cache, what is worth it", run({"--cache", cache}), without_cache},
+        {"an empty cache, every value", run({"--cache", cache, "--keep", "always"}), without_cache},
+        {"everything cached", run({"--cache", cache + "-full", "--keep", "always"})},
+    };
+    for (int round = 0; round <= rounds; ++round)  // the first warms everything up
+        for (Contender& contender : contenders) {
+            contender.prepare();
+            const double seconds = seconds_of(contender.command);
+            if (round > 0) contender.seconds.push_back(seconds);
+        }
+    fmt::print("{}\n", scan.filename().string());
+    for (const Contender& contender : contenders) {
+        std::vector<double> ratios;
+        for (std::size_t i = 0; i < contender.seconds.size(); ++i)
+            ratios.push_back(contender.seconds[i] / contenders.front().seconds[i]);
+        const auto [least, most] = std::ranges::minmax(ratios);
+        fmt::print("  {:<34} {:7.1f} ms   {:.3f} of the filters alone ({:.3f} to {:.3f})\n", contender.name,
+                   1e3 * median(contender.seconds), median(ratios), least, most);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    if (argc == 4 && std::strcmp(argv[1], "--filters") == 0) return run_filters(argv[2], argv[3]);
+    const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 11;
+    const fs::path programs = fs::canonical("/proc/self/exe").parent_path();
+    const fs::path folder = fs::temp_directory_path() / fmt::format("engine-overhead-{}", ::getpid());
+    fs::create_directories(folder);
+    for (const char* scan : {"build/data/meshes/bunny00.off", "build/data/dragon/dragon_vrip.ply"}) {
+        if (fs::exists(scan))
+            compare(scan, programs, folder, rounds);
+        else
+            fmt::print("{}: not there; make data fetches it\n", scan);
+    }
+    fs::remove_all(folder);
+    return 0;
+} catch (const std::exception& error) {
+    fmt::print("failed: {}\n", error.what());
+    return 1;
+}

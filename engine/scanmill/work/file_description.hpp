@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The small JSON file beside every output, `<output>.json`: what the file is, how it was made, and what is known to be
+/// true of it. Equal outputs have equal descriptions, whenever and wherever they were made.
+
+#include <filesystem>
+#include <string>
+
+#include "scanmill/engine/graph.hpp"
+#include "scanmill/engine/report.hpp"
+
+namespace scanmill {
+
+/// How an output comes about, as JSON: workflow and variants, scan, seed, the program's version, what the step that
+/// made it was expected to give, and of every step from the scan to it filter, version, build, key, parameters and
+/// metrics. `cells`: all that share the file.
+std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, std::size_t node,
+                     const std::vector<NodeReport>& reports);
+
+/// The description's name.
+std::filesystem::path description_of(const std::filesystem::path& file);
+
+/// Writes the description of a file that was written: `how` (of made_how()), with the file's name, bytes and SHA-256,
+/// and the value's unit, frame and facts. Throws Error as AtomicFile.
+void write_description(const std::filesystem::path& file, const std::string& how, const Value& value,
+                       const Metrics& facts);
+
+}  // namespace scanmill

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "../runner/progress_board.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace scanmill::runner {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(ProgressBoard, Workers_HaveALineEach_AndTheWholeHasOne) {
+    ProgressBoard board(2, 10, 10);
+    board.started(0, "a.ply: delaunay", 1);
+    board.progressed("a.ply: delaunay", 0.456);
+    EXPECT_THAT(board.lines(8.5, 80),
+                ElementsAre("  1 a.ply: delaunay 46 % 0:07", "  2 -", "[....................] 0/10 steps, 0:08"));
+    board.ended("a.ply: delaunay");
+    EXPECT_EQ(board.lines(9, 80).front(), "  1 -");
+}
+
+TEST(ProgressBoard, OneWorker_NeedsNoNumber) {
+    ProgressBoard board(1, 4, 4);
+    board.started(0, "a.ply: read", 0);
+    EXPECT_EQ(board.lines(0, 80).front(), "a.ply: read 0:00");
+}
+
+TEST(ProgressBoard, TimeLeft_CountsOnlyWhatTakesTime) {
+    ProgressBoard board(1, 100, 20);
+    EXPECT_FALSE(board.time_left(10)) << "nothing is known yet";
+    for (int i = 0; i < 80; ++i) board.step_ended(false);
+    EXPECT_FALSE(board.time_left(10));
+    for (int i = 0; i < 5; ++i) board.step_ended(true);
+    EXPECT_DOUBLE_EQ(*board.time_left(10), 30) << "5 steps in 10 s, 15 to come";
+    EXPECT_THAT(board.lines(10, 80).back(), HasSubstr("[#################...] 85/100 steps, 0:10, about 0:30 left"));
+    for (int i = 0; i < 15; ++i) board.step_ended(true);
+    EXPECT_FALSE(board.time_left(40));
+}
+
+TEST(ProgressBoard, Failures_AreCounted) {
+    ProgressBoard board(1, 2, 2);
+    board.cell_failed();
+    board.cell_failed();
+    EXPECT_THAT(board.lines(0, 80).back(), HasSubstr("2 failed"));
+}
+
+TEST(ProgressBoard, LongNames_KeepTheirEnd_AndWholeCharacters) {
+    ProgressBoard board(1, 2, 2);
+    board.started(0, "very/long/folder/Größe.ply: decimate", 0);
+    EXPECT_EQ(board.lines(0, 25).front(), "…Größe.ply: decimate 0:00");
+    EXPECT_EQ(board.lines(0, 3).front(), " 0:00") << "the time at least";
+}
+
+TEST(ClockText, Examples) {
+    EXPECT_EQ(clock_text(7.9), "0:07");
+    EXPECT_EQ(clock_text(750), "12:30");
+    EXPECT_EQ(clock_text(3725), "1:02:05");
+    EXPECT_EQ(clock_text(-1), "0:00");
+}
+
+}  // namespace
+}  // namespace scanmill::runner
