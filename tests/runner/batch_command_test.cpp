@@ -226,6 +226,21 @@ TEST_F(Batch, MoreWorkersThanScans_ComputeSharedStepsOnce) {
     }
 }
 
+/// Two ways to the same values: what comes after them is the same step on the same inputs.
+TEST_F(Batch, StepsOnEqualValues_RunOnce_AlsoWhenTheyComeUpTogether) {
+    folder_.write("w.yaml", "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - id: a\n    test-step: {mode: "
+                            "{sweep: [slow, warn]}}\n  - id: b\n    test-step: {mode: slow, factor: 2}\n    in: {points: "
+                            "a.points}\noutputs: {'{scan}.{variant}.ply': b}\n");
+    write_scans("scan", 3);
+    write_batch("scans/*.xyz");
+    ASSERT_EQ(run_batch({"-j", "4", "--keep", "always"}).exit_code, 0);
+    const std::vector<Json> second = of_step(recorded(1), "b");
+    EXPECT_EQ(second.size(), 6u);
+    EXPECT_EQ(count(second, "origin", "ran"), 3u);
+    EXPECT_EQ(count(second, "origin", "same inputs"), 3u);
+    EXPECT_EQ(outputs().size(), 6u);
+}
+
 TEST_F(Batch, NoBatch_IsRefusedWithTheWayOut) {
     write_workflow();
     write_scans("scan", 1);

@@ -295,6 +295,81 @@ TEST_F(Faults, RecordsThatCannotGrow_AreToldAndTheRunGoesOn) {
     EXPECT_EQ(outputs().size(), 3u + std::filesystem::exists(folder_ / "out/scanmill.sqlite-journal"));
 }
 
+/// The numbers of the processes that this one has started.
+std::vector<int> children_of(int process) {
+    std::ifstream list(fmt::format("/proc/{0}/task/{0}/children", process));
+    std::vector<int> children;
+    for (int child; list >> child;) children.push_back(child);
+    return children;
+}
+
+TEST_F(Faults, WorkerKilledFromOutside_FailsWhatItWasDoing) {
+    write_workflow("1");
+    write_scans("scan", 3);
+    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: loop}}, scans/scan_03.xyz");
+    RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1"}, options());
+    while (!batch.has_ended() && batch.err().find("scan_02.xyz: shared") == std::string::npos)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    for (const int worker : children_of(batch.process())) ::kill(worker, SIGKILL);
+    EXPECT_EQ(batch.wait().exit_code, 1);
+    const Json run = recorded(1);
+    EXPECT_EQ(count(run["cells"], "outcome", "done"), 2u);
+    EXPECT_EQ(count(run["cells"], "number", SIGKILL), 1u);
+}
+
+TEST_F(Faults, Workers_EndWithTheirRunner) {
+    write_workflow("1");
+    write_scans("scan", 1);
+    write_batch("{path: scans/scan_01.xyz, set: {mode: loop}}");
+    std::vector<int> workers;
+    {
+        RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1"}, options());
+        while (!batch.has_ended() && batch.err().find("scan_01.xyz: shared") == std::string::npos)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        workers = children_of(batch.process());
+        batch.signal(SIGKILL);
+    }
+    ASSERT_EQ(workers.size(), 1u);
+    for (int tries = 0; tries < 1000 && ::kill(workers[0], 0) == 0; ++tries)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_NE(::kill(workers[0], 0), 0) << "it would loop for ever";
+}
+
+TEST_F(Faults, NoScratchFolder_IsLeftBehind) {
+    write_workflow("1");
+    write_scans("scan", 2);
+    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: crash}}");
+    std::filesystem::create_directory(folder_ / "tmp");
+    ProgramOptions own = options();
+    own.environment.push_back("TMPDIR=" + (folder_ / "tmp").string());
+    EXPECT_EQ(scanmill_program({"batch", "b.yaml", "-o", "out", "-j", "2"}, own).exit_code, 1);
+    EXPECT_TRUE(std::filesystem::is_empty(folder_ / "tmp"));
+}
+
+/// No machine has room for two such cells: one after the other still runs.
+TEST_F(Faults, CellsThatDoNotFitBesideEachOther_RunOneAfterTheOther) {
+    write_workflow("1");
+    write_scans("scan", 4);
+    for (const char* memory : {"1000 TiB", "600 MiB"}) {
+        write_batch("{path: scans/*.xyz, set: {mode: slow}}", fmt::format("limits: {{memory: {}}}\n", memory));
+        const ProgramResult result = run_batch({"-j", "3", "--json", "--no-cache"});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        int running = 0, most = 0;
+        std::istringstream stream(result.out);
+        for (std::string line; std::getline(stream, line);) {
+            const Json event = Json::parse(line);
+            running += event["event"] == "step-started";
+            running -= event["event"] == "step-ended";
+            most = std::max(most, running);
+        }
+        if (memory[0] == '1')
+            EXPECT_EQ(most, 1);
+        else
+            EXPECT_GE(most, 2);
+    }
+}
+
 TEST_F(Faults, ClockThatMoved_IsNoReasonToTrustOrRunAnything) {
     write_workflow("1");
     write_scans("scan", 2);

@@ -16,6 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The shortest way of writing the same path: `a/../b` is `b`, unless a link makes a difference.
+fs::path without_detours(const fs::path& file) {
+    fs::path shorter = file.lexically_normal();
+    std::error_code other;
+    return fs::equivalent(file, shorter, other) && !other ? shorter : file;
+}
+
 /// A path over {stem}, and how many of the files that it led to are missing.
 class FileTemplate {
 public:
@@ -111,7 +118,7 @@ private:
                 const auto [earlier, is_new] = line_of_.emplace(fs::absolute(file).lexically_normal(), position.line);
                 if (is_new) {
                     scans_.emplace_back();
-                    scans_.back().file = std::move(file);
+                    scans_.back().file = without_detours(file);
                     scans_.back().position = position;
                 } else {
                     diagnostics_.error(position, fmt::format("'{}' is a scan already by line {}; name every file once",

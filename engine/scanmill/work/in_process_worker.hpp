@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "scanmill/work/scratch_folder.hpp"
 #include "scanmill/work/workbench.hpp"
 #include "scanmill/work/workers.hpp"
 
@@ -13,7 +14,7 @@ namespace scanmill {
 class InProcessWorker : public Workers {
 public:
     InProcessWorker(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, std::function<bool()> is_cancelled)
-        : bench_(library, cache, policy),
+        : bench_(library, cache, policy, scratch_.folder("worker")),
           is_cancelled_(std::move(is_cancelled)) {}
 
     std::size_t size() const override { return 1; }
@@ -30,6 +31,7 @@ public:
     void cancel() override {}
 
 private:
+    ScratchFolder scratch_;
     Workbench bench_;
     std::function<bool()> is_cancelled_;
     std::optional<Job> job_;

@@ -253,12 +253,12 @@ JobReport report_from(const Json& json, const PlannedStep* step) {
 }  // namespace
 
 std::string to_message(const WorkerStart& start) {
-    return bytes_of({start.cache_folder, start.keep_policy, start.parent, start.core_build});
+    return bytes_of({start.cache_folder, start.keep_policy, start.parent, start.core_build, start.scratch});
 }
 
 WorkerStart start_from(std::string_view message) {
     return read_message(message, [](const Json& row) {
-        return WorkerStart{row.at(0), row.at(1), row.at(2), row.at(3)};
+        return WorkerStart{row.at(0), row.at(1), row.at(2), row.at(3), row.at(4)};
     });
 }
 
@@ -302,6 +302,8 @@ WorkerMessage worker_message_from(std::string_view bytes, const PlannedStep* ste
         if (json.contains("warning")) message.warning = json.at("warning").get<std::string>();
         if (json.contains("note")) message.note = json.at("note").get<std::string>();
         if (json.contains("report")) message.report = report_from(json.at("report"), step);
+        if (!message.progress && !message.warning && !message.note && !message.report)
+            throw Error("a message between runner and worker says nothing");
         return message;
     });
 }

@@ -17,6 +17,7 @@ struct WorkerStart {
     int keep_policy = 0;
     int parent = 0;  ///< process; the worker ends with it
     std::string core_build;
+    std::string scratch;  ///< a folder of its own
 };
 std::string to_message(const WorkerStart& start);
 /// Throws Error, as all that read.

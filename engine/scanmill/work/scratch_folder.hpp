@@ -16,7 +16,7 @@ public:
     ScratchFolder(const ScratchFolder&) = delete;
     ScratchFolder& operator=(const ScratchFolder&) = delete;
 
-    /// A folder in it, empty at first.
+    /// A folder in it, emptied if it is there.
     std::filesystem::path folder(const std::string& name) const;
 
 private:

@@ -85,7 +85,7 @@ int serve(MessageReader& reader) {
             speaker.say({{}, {}, std::move(text), {}});
         });
     FilterLibrary library(plugin_folders());
-    Workbench bench(library, cache.get(), static_cast<KeepRule::Policy>(start.keep_policy));
+    Workbench bench(library, cache.get(), static_cast<KeepRule::Policy>(start.keep_policy), start.scratch);
     const bool is_same_program = content_hash(core_library_file()) == start.core_build;
     const u64 memory_before = anonymous_memory();
     const JobListener listener{[&](double fraction) { speaker.say_progress(fraction); },

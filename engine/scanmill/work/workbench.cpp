@@ -55,6 +55,13 @@ std::string run_key_of(const StepWork& work, const ParameterSet& resolved) {
     return key.key();
 }
 
+fs::path emptied(const fs::path& folder) {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    fs::create_directories(folder);
+    return folder;
+}
+
 void check_expectations(const PlannedStep& step, const Value& primary, NodeReport& report) {
     try {
         require_expectations(step, primary, report);
@@ -65,10 +72,11 @@ void check_expectations(const PlannedStep& step, const Value& primary, NodeRepor
 
 }  // namespace
 
-Workbench::Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy)
+Workbench::Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, fs::path scratch)
     : library_(library),
       cache_(cache),
-      rule_(policy) {}
+      rule_(policy),
+      scratch_(std::move(scratch)) {}
 
 JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     JobReport report;
@@ -136,7 +144,7 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     ContextOptions options;
     options.threads = job.threads;
     options.seed = job.seed;
-    options.scratch = scratch_.folder(std::to_string(job.node));
+    options.scratch = emptied(scratch_ / "step");
     options.is_cancelled = listener.is_cancelled;
     options.on_progress = listener.on_progress;
     options.on_warning = listener.on_warning;

@@ -12,7 +12,6 @@
 #include "scanmill/engine/step_runner.hpp"
 #include "scanmill/filter/library.hpp"
 #include "scanmill/work/job.hpp"
-#include "scanmill/work/scratch_folder.hpp"
 
 namespace scanmill {
 
@@ -25,8 +24,9 @@ struct JobListener {
 
 class Workbench {
 public:
-    /// All must outlive it. Without a cache nothing is taken from one and nothing kept.
-    Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy);
+    /// All must outlive it. Without a cache nothing is taken from one and nothing kept. `scratch`: a folder whose
+    /// content this may remove.
+    Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, std::filesystem::path scratch);
 
     /// Never throws: whatever goes wrong is in the report. Limits are for the surroundings to enforce.
     JobReport perform(const Job& job, const JobListener& listener);
@@ -53,7 +53,7 @@ private:
     FilterLibrary& library_;
     Cache* cache_;
     KeepRule rule_;
-    ScratchFolder scratch_;
+    std::filesystem::path scratch_;
     std::map<std::size_t, std::vector<StepInput>> values_;  // by node
 };
 

@@ -42,11 +42,13 @@ Error error_of(const ProcessEnd& end) {
 WorkerProcesses::WorkerProcesses(WorkerProcessSettings settings)
     : settings_(std::move(settings)),
       places_(settings_.count) {
-    start_ = {settings_.cache_folder, settings_.keep_policy, ::getpid(), content_hash(core_library_file())};
+    start_ = {settings_.cache_folder, settings_.keep_policy, ::getpid(), content_hash(core_library_file()), {}};
 }
 
-void WorkerProcesses::ensure(Place& place) {
+void WorkerProcesses::ensure(std::size_t worker) {
+    Place& place = places_[worker];
     if (place.process) return;
+    start_.scratch = scratch_.folder(std::to_string(worker)).string();
     place.process = std::make_unique<WorkerProcess>(settings_.command);
     place.process->send(to_message(start_));
     place.forgotten.clear();
@@ -54,7 +56,7 @@ void WorkerProcesses::ensure(Place& place) {
 
 void WorkerProcesses::start(std::size_t worker, Job job) {
     Place& place = places_[worker];
-    ensure(place);
+    ensure(worker);
     place.process->read_log();
     place.process->clear_log();
     place.begun = place.looked_at = Clock::now();

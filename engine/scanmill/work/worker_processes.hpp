@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "scanmill/work/job_messages.hpp"
+#include "scanmill/work/scratch_folder.hpp"
 #include "scanmill/work/worker_process.hpp"
 #include "scanmill/work/workers.hpp"
 
@@ -39,7 +40,7 @@ public:
     void wait(const WorkerListener& listener, std::chrono::milliseconds patience) override;
     void cancel() override;
     /// Starts a process before there is a job for it, so that it is ready by then.
-    void start_early(std::size_t worker) { ensure(places_[worker]); }
+    void start_early(std::size_t worker) { ensure(worker); }
 
 private:
     struct Place {
@@ -50,7 +51,7 @@ private:
         std::vector<std::size_t> forgotten;  ///< told with the next job
     };
 
-    void ensure(Place& place);
+    void ensure(std::size_t worker);
     void look_at(std::size_t worker, const WorkerListener& listener);
     void take_messages(std::size_t worker, const WorkerListener& listener);
     void enforce_limits(std::size_t worker, const WorkerListener& listener);
@@ -61,6 +62,7 @@ private:
 
     WorkerProcessSettings settings_;
     WorkerStart start_;
+    ScratchFolder scratch_;  // one folder in it for each worker
     std::vector<Place> places_;
     std::vector<std::string> notes_;
     std::optional<Clock::time_point> cancelled_;
