@@ -72,13 +72,13 @@ void Progress::time_passed() {
 
 void Progress::node_started(const RunNode& node, std::size_t worker) {
     const std::scoped_lock lock(mutex_);
-    board_.started(worker, label(node), seconds_since(begin_));
+    board_.started(worker, &node, label(node), seconds_since(begin_));
 }
 
 void Progress::node_progress(const RunNode& node, double fraction) {
     {
         const std::scoped_lock lock(mutex_);
-        board_.progressed(label(node), fraction);
+        board_.progressed(&node, fraction);
     }
     time_passed();
 }
@@ -92,7 +92,7 @@ void Progress::node_warning(const RunNode& node, std::string_view text) {
 void Progress::node_ended(const RunNode& node, const NodeReport& report) {
     const std::scoped_lock lock(mutex_);
     ++ended_;
-    board_.ended(label(node));
+    board_.ended(&node);
     board_.step_ended(report.origin != Origin::cached);
     if (quiet_ || terminal_ || report.outcome != Outcome::done) return;
     const std::string took =
@@ -102,12 +102,13 @@ void Progress::node_ended(const RunNode& node, const NodeReport& report) {
 
 void Progress::output_started(const RunCell&, const RunOutput& output, std::size_t worker) {
     const std::scoped_lock lock(mutex_);
-    board_.started(worker, printable_line(output.file.string()), seconds_since(begin_));
+    board_.started(worker, &output, printable_line(output.file.string()), seconds_since(begin_));
 }
 
-void Progress::output_written(const RunCell&, const OutputReport& report) {
+void Progress::output_written(const RunCell& cell, const OutputReport& report) {
     const std::scoped_lock lock(mutex_);
-    board_.ended(printable_line(report.file.string()));
+    for (const RunOutput& output : cell.outputs)
+        if (output.file == report.file) board_.ended(&output);
     for (const std::string& warning : report.warnings) say(fmt::format("warning: {}", warning));
 }
 

@@ -25,14 +25,14 @@ std::string fitted(const std::string& text, std::size_t width) {
 
 }  // namespace
 
-void ProgressBoard::progressed(const std::string& what, double fraction) {
+void ProgressBoard::progressed(const void* id, double fraction) {
     for (Doing& each : workers_)
-        if (each.what == what) each.fraction = std::clamp(fraction, 0.0, 1.0);
+        if (each.id == id) each.fraction = std::clamp(fraction, 0.0, 1.0);
 }
 
-void ProgressBoard::ended(const std::string& what) {
+void ProgressBoard::ended(const void* id) {
     for (Doing& each : workers_)
-        if (each.what == what) each = {};
+        if (each.id == id) each = {};
 }
 
 std::optional<double> ProgressBoard::time_left(double now) const {
@@ -47,7 +47,7 @@ std::vector<std::string> ProgressBoard::lines(double now, std::size_t width) con
     for (std::size_t worker = 0; worker < workers_.size(); ++worker) {
         const Doing& doing = workers_[worker];
         const std::string head = workers_.size() > 1 ? fmt::format("{:>3} ", worker + 1) : "";
-        if (doing.what.empty()) {
+        if (!doing.id) {
             all.push_back(fitted(head + "-", width));
             continue;
         }

@@ -16,10 +16,12 @@ public:
           steps_(steps),
           to_run_(to_run) {}
 
-    /// Times are seconds since the run began.
-    void started(std::size_t worker, std::string what, double at) { workers_[worker] = {std::move(what), at, 0}; }
-    void progressed(const std::string& what, double fraction);
-    void ended(const std::string& what);
+    /// `id`: what is being done, as whoever calls tells one thing from another. Times are seconds since the run began.
+    void started(std::size_t worker, const void* id, std::string what, double at) {
+        workers_[worker] = {id, std::move(what), at, 0};
+    }
+    void progressed(const void* id, double fraction);
+    void ended(const void* id);
     void step_ended(bool took_time) {
         ++ended_;
         ran_ += took_time;
@@ -33,7 +35,8 @@ public:
 
 private:
     struct Doing {
-        std::string what;  ///< empty: nothing
+        const void* id = nullptr;  ///< nullptr: nothing
+        std::string what;
         double since = 0, fraction = 0;
     };
     std::vector<Doing> workers_;

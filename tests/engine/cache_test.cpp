@@ -78,7 +78,7 @@ TEST_F(CacheTest, WhatWasNeverKept_IsMissing) {
     const Cache cache = open();
     EXPECT_FALSE(cache.run_key(key));
     EXPECT_FALSE(cache.step(key));
-    EXPECT_FALSE(cache.has_value(key));
+    EXPECT_FALSE(cache.has_value(key, 1));
     EXPECT_FALSE(cache.value(key));
     EXPECT_THAT(told_, IsEmpty());
     EXPECT_FALSE(fs::exists(folder_ / "cache")) << "asking makes nothing";
@@ -128,7 +128,7 @@ TEST_F(CacheTest, DamagedEntries_AreRemovedToldAndMissing) {
     EXPECT_EQ(told_.size(), 3u);
     for (const std::string& sentence : told_)
         EXPECT_THAT(sentence, testing::AllOf(HasSubstr("counts as missing"), HasSubstr("damaged")));
-    EXPECT_FALSE(cache.has_value(encoded.content()));
+    EXPECT_FALSE(cache.has_value(encoded.content(), encoded.size()));
     EXPECT_TRUE(cache.keep_value(encoded)) << "and can be kept again";
     EXPECT_EQ(size_of(cache.value(encoded.content())), 10u);
 }
@@ -161,10 +161,10 @@ TEST_F(CacheTest, BeyondItsLimit_WhatWasUsedLongestAgoGoes) {
     const u64 before = cache.info().bytes;
     EXPECT_GT(before, 240'000u);
     EXPECT_GT(cache.evict(), 0u);
-    EXPECT_TRUE(cache.has_value(contents[0]));
-    EXPECT_FALSE(cache.has_value(contents[1]));
-    EXPECT_FALSE(cache.has_value(contents[2]));
-    EXPECT_TRUE(cache.has_value(contents[3]));
+    EXPECT_TRUE(cache.value(contents[0]));
+    EXPECT_FALSE(cache.value(contents[1]));
+    EXPECT_FALSE(cache.value(contents[2]));
+    EXPECT_TRUE(cache.value(contents[3]));
     EXPECT_LE(cache.info().bytes, 135'000u);
 }
 
@@ -174,7 +174,7 @@ TEST_F(CacheTest, EvictedWhileItIsRead_AValueStays) {
     cache.keep_value(encoded);
     const std::optional<Value> value = cache.value(encoded.content());
     EXPECT_GT(cache.evict(), 0u);
-    EXPECT_FALSE(cache.has_value(encoded.content()));
+    EXPECT_FALSE(cache.has_value(encoded.content(), encoded.size()));
     EXPECT_EQ(std::get<std::shared_ptr<const PointCloud>>(*value)->positions[999], Vec3(999, 0, 0));
 }
 

@@ -74,13 +74,16 @@ TEST_F(WorkerProcessesTest, ProcessesThatAreNoWorkers_FailTheirJobs) {
             EXPECT_EQ(cell.failure.cause, stranger.cause) << stranger.command.back() << cell.failure.text;
         }
     }
-    EXPECT_THAT(sentence_of([&] { run_with({"/no/such/program"}); }), HasSubstr("no worker process can be started"));
+    const RunReport none = run_with({"/no/such/program"});
+    EXPECT_EQ(none.cells[1].failure.cause, Cause::exit);
+    EXPECT_THAT(none.cells[1].failure.text, HasSubstr("no worker process can be started"));
 }
 
 TEST_F(WorkerProcessesTest, JobMessage_BringsEverythingOfAStep) {
-    prepare("  - test-step: {mode: warn, factor: 0.1, length: 3 spacing, log: /a path/with blanks}\n"
-            "    expect: {points: \"> 3\", length: [0.1 u, 0.2 u], more: 0}\n",
-            {scan("a.xyz")});
+    prepare(
+        "  - test-step: {mode: warn, factor: 0.1, length: 3 spacing, log: /a path/with blanks}\n"
+        "    expect: {points: \"> 3\", length: [0.1 u, 0.2 u], more: 0}\n",
+        {scan("a.xyz")});
     Job job;
     job.node = 7;
     job.frames = {"in step 'x'", "on scan '\xff'"};
@@ -91,24 +94,30 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsEverythingOfAStep) {
     StepWork work;
     work.step = std::shared_ptr<const PlannedStep>(graph_.plans[0], &graph_.plans[0]->steps[0]);
     work.build = "b";
-    work.inputs = {{"points", 3, "mesh", "c"}};
+    work.inputs = {{"points", 3, "mesh", "c", {}},
+                   {"more", 4, "", "d", LeafSource{"/a", "d", Kind::points, {}, "", {}}}};
     work.parameter_files = {{"/a path", "content"}};
     work.memory = {true, "plan", "code", true, 0.1, {"points", "mesh"}};
     job.work = work;
     const ReceivedJob received = job_from(to_message(job, {1, 2}), library_);
     EXPECT_EQ(received.forgotten, (std::vector<std::size_t>{1, 2}));
-    EXPECT_EQ(received.job.node, 7u);
-    EXPECT_EQ(received.job.frames, job.frames);
-    EXPECT_EQ(received.job.threads, 3u);
-    EXPECT_EQ(received.job.seed, job.seed);
-    EXPECT_EQ(received.job.memory_limit, job.memory_limit);
-    EXPECT_EQ(received.job.seconds_limit, 0.1);
-    const auto& arrived = std::get<StepWork>(received.job.work);
+    ASSERT_TRUE(received.job);
+    EXPECT_EQ(received.job->node, 7u);
+    EXPECT_EQ(received.job->frames, job.frames);
+    EXPECT_EQ(received.job->threads, 3u);
+    EXPECT_EQ(received.job->seed, job.seed);
+    EXPECT_EQ(received.job->memory_limit, job.memory_limit);
+    EXPECT_EQ(received.job->seconds_limit, 0.1);
+    const auto& arrived = std::get<StepWork>(received.job->work);
     EXPECT_EQ(arrived.build, "b");
     EXPECT_EQ(arrived.inputs[0].port, "points");
     EXPECT_EQ(arrived.inputs[0].node, 3u);
     EXPECT_EQ(arrived.inputs[0].from, "mesh");
     EXPECT_EQ(arrived.inputs[0].content, "c");
+    EXPECT_FALSE(arrived.inputs[0].leaf);
+    ASSERT_TRUE(arrived.inputs[1].leaf);
+    EXPECT_EQ(arrived.inputs[1].leaf->file, "/a");
+    EXPECT_FALSE(job_from(to_message(std::vector<std::size_t>{9}), library_).job);
     EXPECT_EQ(arrived.parameter_files[0].path, "/a path");
     EXPECT_EQ(arrived.memory.plan_key, "plan");
     EXPECT_EQ(arrived.memory.code, "code");
@@ -141,7 +150,7 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsAFileToRead_AndItsPose) {
     Job job;
     job.work = ReadWork{{"/a \xff.ply", "hash", Kind::mesh, LengthUnit::inch, "part", pose}, {}};
     const ReceivedJob received = job_from(to_message(job, {}), library_);
-    const LeafSource& leaf = std::get<ReadWork>(received.job.work).leaf;
+    const LeafSource& leaf = std::get<ReadWork>(received.job->work).leaf;
     EXPECT_EQ(leaf.file, "/a \xff.ply");
     EXPECT_EQ(leaf.content, "hash");
     EXPECT_EQ(leaf.kind, Kind::mesh);
@@ -155,9 +164,10 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsAFileToRead_AndItsPose) {
 }
 
 TEST_F(WorkerProcessesTest, MessagesThatAreNone_AreErrors) {
-    for (const char* bytes : {"", "x", "\xa0", "\x80", "\xf6"}) {
-        EXPECT_THAT(sentence_of([&] { job_from(bytes, library_); }), HasSubstr("message")) << bytes;
-        EXPECT_THAT(sentence_of([&] { worker_message_from(bytes, nullptr); }), HasSubstr("message")) << bytes;
+    const std::string deep(4u << 20, '\x81');  // a list in a list in a list …
+    for (const std::string& bytes : {std::string(), std::string("x"), std::string("\xa0"), std::string("\x80"), deep}) {
+        EXPECT_THAT(sentence_of([&] { job_from(bytes, library_); }), HasSubstr("message"));
+        EXPECT_THAT(sentence_of([&] { worker_message_from(bytes, nullptr); }), HasSubstr("message"));
     }
 }
 

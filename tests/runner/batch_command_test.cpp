@@ -144,6 +144,59 @@ TEST_F(Batch, TwoCellsOfOneFile_AreRefusedBeforeAnythingRuns) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
+/// One of them may fail its expectation; then nobody could say what the file is.
+TEST_F(Batch, OneFileOfTwoWorkflowsThatExpectDifferentThings_IsRefused) {
+    write_scans("scan", 1);
+    const std::string head =
+        "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - test-step:\n    expect: {points: ";
+    folder_.write("strict.yaml", head + "77}\noutputs: {'{scan}.ply': test-step}\n");
+    folder_.write("lax.yaml", head + "5}\noutputs: {'{scan}.ply': test-step}\n");
+    folder_.write("b.yaml", "scanmill: 1\nbatch: b\nscans: [scans/*.xyz]\nworkflows: [strict.yaml, lax.yaml]\n");
+    const ProgramResult result = run_batch();
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("would both write"));
+}
+
+/// Reading what all scans share is the only thing that is done more than once.
+TEST_F(Batch, SharedInput_BelongsToEveryScan) {
+    folder_.write("w.yaml",
+                  "scanmill: 1\nname: w\ninputs: {scan: points, other: points}\nsteps:\n  - test-step: "
+                  "{mode: slow}\n    in: {points: scan, more: [other]}\noutputs: {'{scan}.ply': test-step}\n");
+    write_scans("scan", 6);
+    folder_.write("other.xyz", "5 5 5\n");
+    std::map<std::string, std::string> expected;
+    for (const char* jobs : {"0", "3"}) {
+        std::filesystem::remove_all(folder_ / "out");
+        std::vector<std::string> arguments{"run", "w.yaml"};
+        for (int i = 1; i <= 6; ++i) arguments.push_back(fmt::format("scans/scan_{:02}.xyz", i));
+        arguments.insert(arguments.end(), {"--in", "other=other.xyz", "-o", "out", "--no-cache", "-j", jobs});
+        const ProgramResult result = scanmill(arguments);
+        ASSERT_EQ(result.exit_code, 0) << result.err;
+        const Json run = recorded(1);
+        EXPECT_EQ(run["steps"].size(), 13u) << "seven reads, one of which is the shared one, and six steps";
+        if (expected.empty()) expected = outputs();
+        EXPECT_EQ(outputs(), expected);
+    }
+}
+
+/// What is cached stands on what it was made from: the same is written as if nothing were cached.
+TEST_F(Batch, ExpectationAddedBeforeWhatIsCached_FailsItToo) {
+    write_scans("scan", 1);
+    write_batch("scans/*.xyz");
+    const auto workflow = [&](const std::string& expect) {
+        folder_.write("w.yaml", "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - id: a\n    test-step:\n" +
+                                    expect +
+                                    "  - id: b\n    test-step: {factor: 2}\n    in: {points: a.points}\n"
+                                    "outputs: {'{scan}.ply': b}\n");
+    };
+    workflow("");
+    ASSERT_EQ(run_batch({"--keep", "always"}).exit_code, 0);
+    std::filesystem::remove_all(folder_ / "out");
+    workflow("    expect: {points: 77}\n");
+    EXPECT_EQ(run_batch({"--keep", "always"}).exit_code, 1);
+    EXPECT_EQ(outputs().size(), 0u);
+}
+
 TEST_F(Batch, Json_IsALineForEverythingThatHappens) {
     write_workflow("{sweep: [1, 2]}");
     write_scans("scan", 2);
@@ -228,9 +281,10 @@ TEST_F(Batch, MoreWorkersThanScans_ComputeSharedStepsOnce) {
 
 /// Two ways to the same values: what comes after them is the same step on the same inputs.
 TEST_F(Batch, StepsOnEqualValues_RunOnce_AlsoWhenTheyComeUpTogether) {
-    folder_.write("w.yaml", "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - id: a\n    test-step: {mode: "
-                            "{sweep: [slow, warn]}}\n  - id: b\n    test-step: {mode: slow, factor: 2}\n    in: {points: "
-                            "a.points}\noutputs: {'{scan}.{variant}.ply': b}\n");
+    folder_.write("w.yaml",
+                  "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - id: a\n    test-step: {mode: "
+                  "{sweep: [slow, warn]}}\n  - id: b\n    test-step: {mode: slow, factor: 2}\n    in: {points: "
+                  "a.points}\noutputs: {'{scan}.{variant}.ply': b}\n");
     write_scans("scan", 3);
     write_batch("scans/*.xyz");
     ASSERT_EQ(run_batch({"-j", "4", "--keep", "always"}).exit_code, 0);

@@ -94,6 +94,31 @@ TEST_F(Faults, EndlessAllocation_EndsAtTheLimit) {
     EXPECT_LT(step["peak-memory"], 1'500'000'000);
 }
 
+TEST_F(Faults, MemoryOfAStepThatFailed_IsThereForTheNextScan) {
+    write_workflow("1");
+    write_scans("scan", 1);
+    std::string many;
+    for (int i = 0; i < 400'000; ++i) many += fmt::format("{} {} {}\n", i, i % 7, i % 11);
+    folder_.write("scans/scan_02.xyz", many);
+    write_batch("{path: scans/scan_01.xyz, set: {first: allocate}}, scans/scan_02.xyz", "limits: {memory: 512 MiB}\n");
+    EXPECT_EQ(run_batch({"-j", "1", "--no-cache"}).exit_code, 1);
+    const Json run = recorded(1);
+    EXPECT_EQ(count(run["cells"], "cause", "memory"), 1u);
+    EXPECT_EQ(count(run["cells"], "outcome", "done"), 1u);
+}
+
+TEST_F(Faults, WarningsWithoutEnd_AreCutShort) {
+    const Json step = poisoned("babble");
+    EXPECT_EQ(result_.exit_code, 0);
+    ASSERT_EQ(step["warnings"].size(), 1001u);
+    EXPECT_EQ(step["warnings"][1000], "there were more than 1000 warnings");
+}
+
+TEST_F(Faults, ClosedStreams_DoNoHarm) {
+    poisoned("close-streams");
+    EXPECT_EQ(result_.exit_code, 0);
+}
+
 TEST_F(Faults, Exit_IsNoSuccess) {
     const Json step = poisoned("exit");
     expect_failure();
@@ -128,6 +153,7 @@ TEST_F(Faults, Retries_AreCounted) {
     const Json step = poisoned("crash", "limits: {retries: 2}\n");
     expect_failure();
     EXPECT_EQ(step["attempts"], 3);
+    EXPECT_THAT(step["error"].get<std::string>(), HasSubstr("it wrote last: about to crash"));
     EXPECT_THAT(result_.err, HasSubstr("attempt 2 of 3 failed"));
     const Json refused =
         (std::filesystem::remove_all(folder_ / "out"), scans_ = 0, poisoned("fail", "limits: {retries: 2}\n"));
@@ -316,6 +342,21 @@ TEST_F(Faults, WorkerKilledFromOutside_FailsWhatItWasDoing) {
     const Json run = recorded(1);
     EXPECT_EQ(count(run["cells"], "outcome", "done"), 2u);
     EXPECT_EQ(count(run["cells"], "number", SIGKILL), 1u);
+}
+
+TEST_F(Faults, WorkerAskedToEndByOthers_IsNoInterrupt) {
+    write_workflow("1");
+    write_scans("scan", 3);
+    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: wait}}, scans/scan_03.xyz");
+    RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1"}, options());
+    while (!batch.has_ended() && batch.err().find("scan_02.xyz: shared") == std::string::npos)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    for (const int worker : children_of(batch.process())) ::kill(worker, SIGTERM);
+    EXPECT_EQ(batch.wait().exit_code, 1);
+    const Json run = recorded(1);
+    EXPECT_EQ(count(run["cells"], "outcome", "done"), 2u);
+    EXPECT_EQ(count(run["cells"], "number", SIGTERM), 1u);
 }
 
 TEST_F(Faults, Workers_EndWithTheirRunner) {

@@ -13,17 +13,18 @@ using testing::Not;
 
 TEST(ProgressBoard, Workers_HaveALineEach_AndTheWholeHasOne) {
     ProgressBoard board(2, 10, 10);
-    board.started(0, "a.ply: delaunay", 1);
-    board.progressed("a.ply: delaunay", 0.456);
+    const int thing = 0;
+    board.started(0, &thing, "a.ply: delaunay", 1);
+    board.progressed(&thing, 0.456);
     EXPECT_THAT(board.lines(8.5, 80),
                 ElementsAre("  1 a.ply: delaunay 46 % 0:07", "  2 -", "[....................] 0/10 steps, 0:08"));
-    board.ended("a.ply: delaunay");
+    board.ended(&thing);
     EXPECT_EQ(board.lines(9, 80).front(), "  1 -");
 }
 
 TEST(ProgressBoard, OneWorker_NeedsNoNumber) {
     ProgressBoard board(1, 4, 4);
-    board.started(0, "a.ply: read", 0);
+    board.started(0, &board, "a.ply: read", 0);
     EXPECT_EQ(board.lines(0, 80).front(), "a.ply: read 0:00");
 }
 
@@ -48,7 +49,7 @@ TEST(ProgressBoard, Failures_AreCounted) {
 
 TEST(ProgressBoard, LongNames_KeepTheirEnd_AndWholeCharacters) {
     ProgressBoard board(1, 2, 2);
-    board.started(0, "very/long/folder/Größe.ply: decimate", 0);
+    board.started(0, &board, "very/long/folder/Größe.ply: decimate", 0);
     EXPECT_EQ(board.lines(0, 25).front(), "…Größe.ply: decimate 0:00");
     EXPECT_EQ(board.lines(0, 3).front(), " 0:00") << "the time at least";
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/context.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace scanmill {
@@ -23,6 +25,8 @@ void Context::check_cancelled() const {
 
 void Context::warn(std::string text) {
     const std::scoped_lock lock(mutex_);
+    if (warnings_.size() > most_warnings) return;
+    if (warnings_.size() == most_warnings) text = fmt::format("there were more than {} warnings", most_warnings);
     if (options_.on_warning) options_.on_warning(text);
     warnings_.push_back(std::move(text));
 }

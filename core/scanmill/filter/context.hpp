@@ -38,13 +38,16 @@ public:
     bool cancelled() const;
     /// Throws Cancelled when somebody asked to stop. Cheap enough for every chunk of work.
     void check_cancelled() const;
-    /// One sentence about something the user should know although the result stands; callable from any thread.
+    /// One sentence about something the user should know although the result stands; callable from any thread. After
+    /// most_warnings of them only that there were more is kept.
     void warn(std::string text);
     void metric(std::string_view name, double value, Unit unit = Unit::count);
     /// A generator for this run's seed; every call returns the same state, so split it with stream().
     Random random() const { return Random(options_.seed); }
     unsigned threads() const { return options_.threads; }
     const std::filesystem::path& scratch() const { return options_.scratch; }
+
+    static constexpr std::size_t most_warnings = 1000;
 
     const Metrics& metrics() const { return metrics_; }
     const std::vector<std::string>& warnings() const { return warnings_; }

@@ -124,9 +124,10 @@ std::optional<StepResult> Cache::step(std::string_view run_key) const {
     });
 }
 
-bool Cache::has_value(std::string_view content) const {
+bool Cache::has_value(std::string_view content, u64 bytes) const {
     std::error_code absent;
-    return fs::is_regular_file(place("values", content), absent);
+    const auto found = fs::file_size(place("values", content), absent);
+    return !absent && (found == bytes || value(content));  // reading tells what is wrong with it, and removes it
 }
 
 std::optional<Value> Cache::value(std::string_view content) const {

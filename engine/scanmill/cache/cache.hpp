@@ -41,7 +41,8 @@ public:
 
     std::optional<std::string> run_key(std::string_view plan_key) const;
     std::optional<StepResult> step(std::string_view run_key) const;
-    bool has_value(std::string_view content) const;
+    /// A value file of this content, and of as many bytes as it must have.
+    bool has_value(std::string_view content, u64 bytes) const;
     std::optional<Value> value(std::string_view content) const;
 
     /// False when it could not be written; the first reason is told once.

@@ -13,8 +13,13 @@ Components components_of(const RunGraph& graph) {
         while (parent[node] != node) node = parent[node] = parent[parent[node]];
         return node;
     };
+    std::vector<bool> is_taken(size, false);  // a file belongs to the first that reads it
     for (std::size_t node = 0; node < size; ++node)
         for (const NodeInput& input : graph.nodes[node].inputs) {
+            if (!graph.nodes[input.node].step) {
+                if (is_taken[input.node]) continue;
+                is_taken[input.node] = true;
+            }
             // The smaller number leads, so that a root is the first of its component.
             const std::size_t a = root(node), b = root(input.node);
             parent[std::max(a, b)] = std::min(a, b);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Which nodes of a graph depend on each other, directly or not.
+/// Which nodes of a graph depend on each other, directly or not. Files that are read do not join what reads them: who
+/// needs one can read it again.
 
 #include "scanmill/engine/graph.hpp"
 

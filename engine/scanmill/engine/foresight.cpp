@@ -60,7 +60,7 @@ private:
 
     bool is_kept(const StepResult& result, const std::string& port) const {
         const ResultOutput* output = result.output(port);
-        return output && cache_->has_value(output->content);
+        return output && cache_->has_value(output->content, output->bytes);
     }
 
     const RunGraph& graph_;

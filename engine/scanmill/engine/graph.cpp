@@ -110,9 +110,9 @@ private:
                     fmt::format("scan '{}' under variant '{}'{}", scan_name, planned.name,
                                 parts_.size() > 1 ? " of workflow '" + values.workflow + "'" : "");
                 const fs::path target =
-                    output_files_.add(expand_template(name, values), {graph_.nodes[node].key, source.port}, writer);
+                    output_files_.add(expand_template(name, values), {std::to_string(node), source.port}, writer);
                 output_files_.add(description_of(expand_template(name, values)),
-                                  {graph_.nodes[node].key, source.port + " described"}, writer);
+                                  {std::to_string(node), source.port + " described"}, writer);
                 cell.outputs.push_back({target, node, source.port});
             }
             graph_.cells.push_back(std::move(cell));

@@ -11,7 +11,7 @@ namespace scanmill {
 
 /// What a file will hold: one output port of one node.
 struct OutputContent {
-    std::string node_key;
+    std::string node;
     std::string port;
     bool operator==(const OutputContent&) const = default;
 };

@@ -11,6 +11,17 @@
 
 namespace scanmill {
 
+namespace {
+
+/// A scan may fail by what was done for another one of equal content.
+void name_scan(std::string& text, const std::string& done_for, const std::string& scan) {
+    const std::string frame = fmt::format("on scan '{}'", done_for);
+    if (const std::size_t place = text.find(frame); done_for != scan && place != std::string::npos)
+        text.replace(place, frame.size(), fmt::format("on scan '{}', which equals '{}'", scan, done_for));
+}
+
+}  // namespace
+
 Scheduler::Scheduler(FilterLibrary& library, const RunGraph& graph, Workers& workers, const RunSettings& settings,
                      RunObserver& observer)
     : library_(library),
@@ -37,16 +48,22 @@ RunReport Scheduler::run() {
         [&](std::size_t worker, std::string_view text) {
             if (at_[worker].task) observer_.node_warning(graph_.nodes[at_[worker].task->node], text);
         },
-        [&](std::size_t worker, JobReport report, bool lost_values) { ended(worker, std::move(report), lost_values); }};
+        [&](std::size_t worker, JobReport report, bool lost_values) { ended(worker, std::move(report), lost_values); },
+        [&](std::size_t worker) { gone(worker); }};
     for (;;) {
         if (!report_.interrupted && settings_.is_cancelled && settings_.is_cancelled()) {
             report_.interrupted = is_stopped_ = true;
             workers_.cancel();
         }
-        consider_all();
-        if (!is_stopped_) hand_out();
+        if (has_changed_) {
+            has_changed_ = false;
+            consider_all();
+            if (!is_stopped_) hand_out();
+        }
+        const bool is_pressing = !to_consider_.empty();
+        has_changed_ = has_changed_ || is_pressing;
         if (busy_ == 0 && to_consider_.empty()) break;
-        if (busy_ > 0) workers_.wait(listener, patience);
+        if (busy_ > 0) workers_.wait(listener, is_pressing ? std::chrono::milliseconds(0) : patience);
         observer_.time_passed();
     }
     skip_the_rest();
@@ -99,6 +116,14 @@ std::vector<Scheduler::Source> Scheduler::sources(const Task& task) const {
     return all;
 }
 
+/// What must have gone well before: also where the result is known, for it stands on theirs.
+std::vector<std::size_t> Scheduler::prerequisites(const Task& task) const {
+    if (task.write > 0) return {writes_[task.write - 1].source.node};
+    std::vector<std::size_t> all;
+    for (const NodeInput& input : graph_.nodes[task.node].inputs) all.push_back(input.node);
+    return all;
+}
+
 void Scheduler::consider_all() {
     while (!to_consider_.empty() && !is_stopped_) {
         const Task task = to_consider_.front();
@@ -111,9 +136,8 @@ void Scheduler::consider_all() {
 /// The task is ready, waits for a node, or has no hope.
 void Scheduler::consider(const Task& task) {
     if (!is_wanted(task)) return skip(task);
-    for (const Source& source : sources(task)) {
-        NodeState& from = nodes_[source.node];
-        if (task.write == 0 && source.node == task.node) continue;  // asks about itself
+    for (const std::size_t index : prerequisites(task)) {
+        NodeState& from = nodes_[index];
         if (from.state == State::failed || from.state == State::skipped) return skip(task);
         if (from.state != State::done) {
             from.waiting.push_back(task);
@@ -150,6 +174,8 @@ void Scheduler::make_again(std::size_t index, const std::string& why) {
     assert(node.state != State::running);
     node.state = State::pending;
     node.kept.clear();
+    node.failures = 0;
+    node.stays_home = true;
     foresight_[index].will_run = true;
     foresight_[index].why = why;
     for (const NodeInput& input : graph_.nodes[index].inputs) ++nodes_[input.node].uses_left;
@@ -158,10 +184,12 @@ void Scheduler::make_again(std::size_t index, const std::string& why) {
 }
 
 void Scheduler::hand_out() {
-    renew_worn_workers();
     for (std::size_t worker = 0; worker < at_.size(); ++worker) {
-        if (at_[worker].task) continue;
-        if (busy_ > 0 && !workers_.has_room(memory_limit())) return;
+        if (at_[worker].task || at_[worker].is_gone) continue;
+        if (busy_ > 0 && !workers_.has_room(memory_limit())) {
+            has_changed_ = true;  // memory may be free before anything else happens
+            return;
+        }
         if (const std::optional<Task> task = next_for(worker)) begin(worker, *task);
     }
 }
@@ -169,17 +197,23 @@ void Scheduler::hand_out() {
 /// Of its own components first, then of one that nobody has begun, then whatever helps another worker.
 std::optional<Scheduler::Task> Scheduler::next_for(std::size_t worker) {
     WorkerState& here = at_[worker];
+    if (here.worn_by) {  // what one scan has left behind no other one must meet
+        if (const std::optional<Task> task = next_at_home(worker, components_[*here.worn_by])) return task;
+        if (!to_consider_.empty()) return std::nullopt;  // it may have more to do in a moment
+        renew(worker);
+    }
     for (const std::size_t index : std::vector<std::size_t>(here.components.begin(), here.components.end()))
         if (const std::optional<Task> task = next_at_home(worker, components_[index])) return task;
-    if (here.is_worn) return std::nullopt;
+    if (!to_consider_.empty()) return std::nullopt;  // its own components may have more to do in a moment
     while (!fresh_.empty()) {
         const std::size_t index = *fresh_.begin();
         fresh_.erase(fresh_.begin());
         components_[index].home = worker;
         here.components.insert(index);
         if (const std::optional<Task> task = next_at_home(worker, components_[index])) return task;
+        if (!to_consider_.empty()) return std::nullopt;
     }
-    if (!settings_.cache || !settings_.shares_values) return std::nullopt;
+    if (!settings_.cache || !settings_.shares_values || is_helping_useless_) return std::nullopt;
     for (const WorkerState& other : at_)
         for (const std::size_t index : other.components)
             for (const Task& task : components_[index].ready)
@@ -211,7 +245,7 @@ std::optional<Scheduler::Task> Scheduler::next_at_home(std::size_t worker, Compo
 /// When a value that the task needs is nowhere, it is made again, and the task waits for it.
 bool Scheduler::lost_input(const Task& task, std::size_t worker) {
     for (const Source& source : sources(task)) {
-        if (is_kept(source) || at_[worker].holds.contains(source.node)) continue;
+        if (is_at_hand(source) || at_[worker].holds.contains(source.node)) continue;
         if (source.node == task.node && task.write == 0) {
             ask_no_more(task.node);
             to_consider_.push_back(task);
@@ -242,10 +276,16 @@ void Scheduler::ask_no_more(std::size_t index) {
 
 bool Scheduler::is_kept(const Source& source) const { return nodes_[source.node].kept.contains(source.port); }
 
+/// Any worker can have it: from the cache, or by reading the file again.
+bool Scheduler::is_at_hand(const Source& source) const {
+    return is_kept(source) || (!graph_.nodes[source.node].step && nodes_[source.node].state == State::done);
+}
+
 bool Scheduler::may_help(const Task& task) const {
     const std::vector<Source> all = sources(task);
-    return !graph_.nodes[task.node].is_uncacheable && is_wanted(task) && !is_being_computed(task) &&
-           std::ranges::all_of(all, [&](const Source& source) { return is_kept(source); });
+    return !graph_.nodes[task.node].is_uncacheable && !nodes_[task.node].stays_home && is_wanted(task) &&
+           std::ranges::all_of(all, [&](const Source& source) { return is_at_hand(source); }) &&
+           !is_being_computed(task);
 }
 
 /// Steps of different nodes that do the same on equal inputs: the second takes what the first made.
@@ -278,7 +318,6 @@ void Scheduler::begin(std::size_t worker, const Task& task) {
     for (const Source& source : sources(task)) here.holds.insert(source.node);
     if (task.write == 0) {
         nodes_[task.node].state = State::running;
-        ++nodes_[task.node].attempts;
         observer_.node_started(graph_.nodes[task.node], worker);
     } else {
         const Write& write = writes_[task.write - 1];
@@ -292,43 +331,85 @@ void Scheduler::ended(std::size_t worker, JobReport report, bool lost_values) {
     WorkerState& here = at_[worker];
     assert(here.task);
     const Task task = *here.task;
-    here.task.reset();
-    here.twin.clear();
-    --busy_;
-    if (lost_values) here = {{}, {}, {}, std::move(here.components), false};
-    if (!report.worn.empty()) here.is_worn = true;
-    NodeState& node = nodes_[task.node];
-    if (task.write == 0) node.state = State::pending;
-
-    if (!report.lost.empty()) {
-        for (const JobInput& input : report.lost) {
-            nodes_[input.node].kept.erase(input.from);
-            here.holds.erase(input.node);
-            workers_.forget(worker, input.node);
-        }
-        to_consider_.push_back(task);
-        return;
+    const std::size_t component = nodes_[task.node].component;
+    leave(worker);
+    if (lost_values) {
+        here.holds.clear();
+        here.worn_by.reset();
+    } else if (!report.worn.empty()) {
+        here.worn_by = component;
     }
+    if (!report.lost.empty()) return lost(worker, task, report.lost);
     if (report.outcome == Outcome::skipped) {  // cancelled
         report_.interrupted = is_stopped_ = true;
         return;
     }
+    unsigned& failures = task.write > 0 ? writes_[task.write - 1].failures : nodes_[task.node].failures;
     const Cause cause = report.node.failure.cause;
     const bool was_ended =
         cause == Cause::signal || cause == Cause::exit || cause == Cause::memory || cause == Cause::time;
-    if (task.write == 0 && was_ended && node.attempts <= settings_.limits.retries) {
-        observer_.node_warning(graph_.nodes[task.node],
-                               fmt::format("attempt {} of {} failed: {}", node.attempts, settings_.limits.retries + 1,
-                                           report.node.failure.text));
-        to_consider_.push_back(task);
-        return;
+    if (was_ended) {
+        ++failures;
+        if (failures <= settings_.limits.retries) {
+            observer_.node_warning(graph_.nodes[task.node],
+                                   fmt::format("attempt {} of {} failed: {}", failures, settings_.limits.retries + 1,
+                                               report.node.failure.text));
+            for (const std::size_t cell : cells_of(task)) charge(cell, report.node.effort.seconds);
+            to_consider_.push_back(task);
+            return;
+        }
     }
+    report.node.attempts = failures + !was_ended;
+    if (report.outcome == Outcome::failed && settings_.fail_fast) is_stopped_ = true;
     if (task.write > 0) {
         finish_write(task, std::move(report));
     } else {
         if (foresight_[task.node].will_run && !lost_values) here.holds.insert(task.node);
+        const bool is_away = components_[component].home != worker;
         finish_node(task.node, std::move(report));
+        const std::set<std::string>& needed = foresight_[task.node].needed;
+        // Values that cannot be kept do not get home: helping would mean doing things twice.
+        if (is_away && nodes_[task.node].state == State::done && !std::ranges::includes(nodes_[task.node].kept, needed))
+            is_helping_useless_ = true;
     }
+}
+
+/// The worker does nothing now.
+void Scheduler::leave(std::size_t worker) {
+    WorkerState& here = at_[worker];
+    if (here.task->write == 0) nodes_[here.task->node].state = State::pending;
+    here.task.reset();
+    here.twin.clear();
+    --busy_;
+    has_changed_ = true;
+}
+
+/// Inputs that were believed to be there are not.
+void Scheduler::lost(std::size_t worker, const Task& task, const std::vector<JobInput>& inputs) {
+    for (const Source& source : sources(task)) {
+        const auto is_it = [&](const JobInput& input) {
+            return input.node == source.node && input.from == source.port;
+        };
+        if (std::ranges::none_of(inputs, is_it)) continue;
+        nodes_[source.node].kept.erase(source.port);
+        if (at_[worker].holds.erase(source.node) > 0) workers_.forget(worker, source.node);
+    }
+    to_consider_.push_back(task);
+}
+
+/// No process can be started for this worker: others take over what is its own.
+void Scheduler::gone(std::size_t worker) {
+    WorkerState& here = at_[worker];
+    const Task task = *here.task;
+    leave(worker);
+    here.is_gone = true;
+    here.holds.clear();
+    for (const std::size_t index : here.components) {
+        components_[index].home.reset();
+        if (!components_[index].ready.empty()) fresh_.insert(index);
+    }
+    here.components.clear();
+    to_consider_.push_back(task);
 }
 
 void Scheduler::finish_node(std::size_t index, JobReport done) {
@@ -343,13 +424,14 @@ void Scheduler::finish_node(std::size_t index, JobReport done) {
     } else {  // it was known; only asked about
         report = {};
         scanmill::adopt(*seen.known, graph_.step(node), "", report);
+        report.attempts = done.node.attempts;
+        report.effort = std::move(done.node.effort);
         for (const std::string& warning : report.warnings) observer_.node_warning(node, warning);
         report.origin = Origin::cached;
         report.outcome = done.outcome;
         report.failure = std::move(done.node.failure);
         if (done.outcome == Outcome::done) report.facts = std::move(done.node.facts);
     }
-    report.attempts = state.attempts;
     if (seen.will_run) {
         report.why = seen.why;
         double cost = report.effort.seconds;
@@ -412,11 +494,15 @@ void Scheduler::task_ended(const Task& task) {
 
 void Scheduler::count_for_cells(const std::vector<std::size_t>& cells, double seconds) {
     for (const std::size_t cell : cells) {
-        report_.cells[cell].seconds += seconds;
-        const double limit = settings_.limits.cell_seconds;
-        if (limit > 0 && report_.cells[cell].seconds > limit) cells_[cell].is_given_up = true;
+        charge(cell, seconds);
         if (--cells_[cell].tasks_left == 0) end_cell(cell);
     }
+}
+
+void Scheduler::charge(std::size_t cell, double seconds) {
+    report_.cells[cell].seconds += seconds;
+    const double limit = settings_.limits.cell_seconds;
+    if (limit > 0 && report_.cells[cell].seconds > limit) cells_[cell].is_given_up = true;
 }
 
 void Scheduler::end_cell(std::size_t index) {
@@ -425,8 +511,11 @@ void Scheduler::end_cell(std::size_t index) {
     cells_[index].has_ended = true;
     bool is_done = true;
     for (const std::size_t node : cell.nodes) {
-        is_done = is_done && nodes_[node].state == State::done;
-        if (!report.failure) report.failure = report_.nodes[node].failure;
+        is_done = is_done && report_.nodes[node].outcome == Outcome::done;
+        if (!report.failure && report_.nodes[node].failure) {
+            report.failure = report_.nodes[node].failure;
+            name_scan(report.failure.text, graph_.scan_names[graph_.nodes[node].scan], graph_.scan_names[cell.scan]);
+        }
     }
     for (const std::size_t index_of_write : writes_of_cell_[index]) {
         const Write& write = writes_[index_of_write];
@@ -443,7 +532,6 @@ void Scheduler::end_cell(std::size_t index) {
                               .what()};
     report.outcome = report.failure ? Outcome::failed : is_done ? Outcome::done : Outcome::skipped;
     observer_.cell_ended(cell, report);
-    if (report.failure && settings_.fail_fast) is_stopped_ = true;
 }
 
 const std::vector<std::size_t>& Scheduler::cells_of(const Task& task) const {
@@ -459,22 +547,11 @@ void Scheduler::release(const Source& source) {
         if (at_[worker].holds.erase(source.node) > 0) workers_.forget(worker, source.node);
 }
 
-/// A worker that another scan must not meet is replaced as soon as nothing is lost by it.
-void Scheduler::renew_worn_workers() {
-    for (std::size_t worker = 0; worker < at_.size(); ++worker) {
-        WorkerState& here = at_[worker];
-        if (!here.is_worn || here.task) continue;
-        const auto is_kept_whole = [&](std::size_t node) {
-            const std::optional<StepResult>& known = foresight_[node].known;
-            return known && std::ranges::all_of(known->outputs, [&](const ResultOutput& output) {
-                       return nodes_[node].kept.contains(output.port);
-                   });
-        };
-        if (!std::ranges::all_of(here.holds, is_kept_whole)) continue;
-        here.holds.clear();
-        here.is_worn = false;
-        workers_.replace(worker);
-    }
+/// Another process takes the worker's place. What it held and nobody kept is made again where it is needed.
+void Scheduler::renew(std::size_t worker) {
+    at_[worker].worn_by.reset();
+    at_[worker].holds.clear();
+    workers_.replace(worker);
 }
 
 void Scheduler::skip_the_rest() {

@@ -43,11 +43,13 @@ private:
         OutputReport report;
         Failure failure;
         double seconds = 0;
+        unsigned failures = 0;
     };
     struct NodeState {
         State state = State::pending;
         bool is_counted = false;  ///< its cells know that it has ended once
-        unsigned attempts = 0;
+        unsigned failures = 0;  ///< of the worker, since it was last to be made
+        bool stays_home = false;  ///< it had to be made again: values of it get lost on the way
         std::size_t uses_left = 0;  ///< unfinished tasks that need its values
         std::size_t component = 0;
         double cost = 0;  ///< seconds to make its values again; 0 when the cache has them
@@ -70,12 +72,14 @@ private:
         std::string twin;  ///< key of what it computes
         std::set<std::size_t> holds;  ///< nodes
         std::set<std::size_t> components;  ///< whose home it is
-        bool is_worn = false;
+        std::optional<std::size_t> worn_by;  ///< the component after which it is not as it was
+        bool is_gone = false;
     };
 
     void lay_out();
     void find_components();
     std::vector<Source> sources(const Task& task) const;
+    std::vector<std::size_t> prerequisites(const Task& task) const;
     bool only_expects(std::size_t node) const;
 
     void consider_all();
@@ -88,6 +92,7 @@ private:
     std::optional<Task> next_for(std::size_t worker);
     std::optional<Task> next_at_home(std::size_t worker, Component& component);
     bool is_kept(const Source& source) const;
+    bool is_at_hand(const Source& source) const;
     bool may_help(const Task& task) const;
     bool is_being_computed(const Task& task) const;
     std::string twin_key(const Task& task) const;
@@ -96,9 +101,13 @@ private:
     Job job(const Task& task, std::size_t worker) const;
     JobMemory memory_of(std::size_t node, std::size_t worker) const;
     JobInput input_from(const Source& source, const std::string& port) const;
-    double seconds_limit(const Task& task) const;
+    void limit_time(const Task& task, Job& job) const;
 
     void ended(std::size_t worker, JobReport report, bool lost_values);
+    void leave(std::size_t worker);
+    void lost(std::size_t worker, const Task& task, const std::vector<JobInput>& inputs);
+    void gone(std::size_t worker);
+    void charge(std::size_t cell, double seconds);
     void finish_node(std::size_t node, JobReport report);
     void finish_write(const Task& task, JobReport report);
     void skip(const Task& task);
@@ -106,7 +115,7 @@ private:
     void count_for_cells(const std::vector<std::size_t>& cells, double seconds);
     void end_cell(std::size_t cell);
     void release(const Source& source);
-    void renew_worn_workers();
+    void renew(std::size_t worker);
     const std::vector<std::size_t>& cells_of(const Task& task) const;
     bool lost_input(const Task& task, std::size_t worker);
     void ask_no_more(std::size_t node);
@@ -129,6 +138,8 @@ private:
     std::deque<Task> to_consider_;
     std::size_t busy_ = 0;
     bool is_stopped_ = false;  // nothing new is begun
+    bool has_changed_ = true;  // since work was handed out last
+    bool is_helping_useless_ = false;
 };
 
 }  // namespace scanmill

@@ -2,6 +2,7 @@
 // What a worker is given to do a task.
 #include <algorithm>
 
+#include "scanmill/engine/duration.hpp"
 #include "scanmill/engine/scheduler.hpp"
 #include "scanmill/work/file_description.hpp"
 
@@ -22,19 +23,24 @@ u64 Scheduler::memory_limit() const {
 }
 
 /// What is left to the cell that has the most, and at most what a step may take.
-double Scheduler::seconds_limit(const Task& task) const {
+void Scheduler::limit_time(const Task& task, Job& job) const {
     const Limits& limits = settings_.limits;
-    double left = 0;
-    if (limits.cell_seconds > 0) {
-        for (const std::size_t cell : cells_of(task))
-            if (!cells_[cell].is_given_up) left = std::max(left, limits.cell_seconds - report_.cells[cell].seconds);
-        left = std::max(left, 0.001);
-    }
-    return smaller_limit(left, limits.step_seconds);
+    job.seconds_limit = limits.step_seconds;
+    job.limit_text = fmt::format("the limit of a step is {}", duration_text(limits.step_seconds));
+    if (limits.cell_seconds <= 0) return;
+    double left = 0.001;
+    for (const std::size_t cell : cells_of(task))
+        if (!cells_[cell].is_given_up) left = std::max(left, limits.cell_seconds - report_.cells[cell].seconds);
+    if (limits.step_seconds > 0 && limits.step_seconds <= left) return;
+    job.seconds_limit = left;
+    job.limit_text = fmt::format("the limit of a cell is {}, of which {:.2f} s were spent before",
+                                 duration_text(limits.cell_seconds), limits.cell_seconds - left);
 }
 
 JobInput Scheduler::input_from(const Source& source, const std::string& port) const {
-    JobInput input{port, source.node, source.port, {}};
+    JobInput input{port, source.node, source.port, {}, {}};
+    const RunNode& node = graph_.nodes[source.node];
+    if (!node.step) input.leaf = node.leaf;
     if (const std::optional<StepResult>& known = foresight_[source.node].known)
         if (const ResultOutput* output = known->output(source.port)) input.content = output->content;
     return input;
@@ -64,13 +70,14 @@ Job Scheduler::job(const Task& task, std::size_t worker) const {
     job.threads = settings_.threads;
     job.seed = graph_.seed;
     job.memory_limit = memory_limit();
-    job.seconds_limit = seconds_limit(task);
+    limit_time(task, job);
     const std::string on_scan = fmt::format("on scan '{}'", graph_.scan_names[node.scan]);
     if (task.write > 0) {
         const Write& write = writes_[task.write - 1];
         job.work = WriteWork{write.file, made_how(graph_, write.cells, write.source.node, report_.nodes),
                              input_from(write.source, "")};
-        job.frames = {fmt::format("on scan '{}'", graph_.scan_names[graph_.cells[write.cells.front()].scan])};
+        job.frames = {fmt::format("while writing '{}'", write.file.string()),
+                      fmt::format("on scan '{}'", graph_.scan_names[graph_.cells[write.cells.front()].scan])};
         return job;
     }
     if (!node.step) {

@@ -27,6 +27,7 @@ public:
 
     void node_ended(const RunNode& node, const NodeReport& report) override;
     void cell_ended(const RunCell& cell, const CellReport& report) override;
+    void time_passed() override { flush_when_due(); }
     /// The rest, and how the run ended.
     void finish(const RunReport& report);
 

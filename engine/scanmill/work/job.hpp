@@ -20,6 +20,7 @@ struct JobInput {
     std::size_t node = 0;  ///< whose value it is
     std::string from;  ///< the node's output port; empty for leaves
     std::string content;  ///< empty: the cache does not have it
+    std::optional<LeafSource> leaf;  ///< it can be read again
 };
 
 /// How the result is known in the cache.
@@ -66,6 +67,7 @@ struct Job {
     std::uint64_t seed = 0;
     u64 memory_limit = 0;  ///< bytes; 0: none
     double seconds_limit = 0;  ///< 0: none
+    std::string limit_text;  ///< whose limit of time that is, as a part of a sentence
 };
 
 struct JobReport {

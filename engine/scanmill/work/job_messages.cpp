@@ -19,12 +19,51 @@ std::string bytes_of(const Json& json) {
     return bytes;
 }
 
+/// Reads over a message and keeps nothing: what nests deeper than any message of ours would exhaust the stack.
+class DepthCheck : public Json::json_sax_t {
+public:
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override { return enter(); }
+    bool key(string_t&) override { return true; }
+    bool end_object() override { return leave(); }
+    bool start_array(std::size_t) override { return enter(); }
+    bool end_array() override { return leave(); }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override {
+        what_ = error.what();
+        return false;
+    }
+    const std::string& what() const { return what_; }
+
+private:
+    bool enter() {
+        constexpr int deepest = 16;
+        return ++depth_ <= deepest;
+    }
+    bool leave() {
+        --depth_;
+        return true;
+    }
+    int depth_ = 0;
+    std::string what_ = "it nests too deep";
+};
+
 /// Runs `read` over the message; whatever is not as it should be becomes an Error.
 template <class Read>
 auto read_message(std::string_view message, Read&& read) {
     try {
+        DepthCheck check;
+        if (!Json::sax_parse(message, &check, Json::input_format_t::cbor))
+            throw Error("a message between runner and worker cannot be understood: {}", check.what());
         return read(Json::from_cbor(message));
-    } catch (const Json::exception& error) {
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
         throw Error("a message between runner and worker cannot be understood: {}", error.what());
     }
 }
@@ -98,8 +137,17 @@ std::shared_ptr<const PlannedStep> step_from(const Json& json, const FilterLibra
     return step;
 }
 
-Json to_json(const JobInput& input) { return {input.port, input.node, input.from, input.content}; }
-JobInput input_from(const Json& row) { return {row.at(0), row.at(1).get<std::size_t>(), row.at(2), row.at(3)}; }
+Json to_json(const LeafSource& leaf);
+LeafSource leaf_from(const Json& json);
+
+Json to_json(const JobInput& input) {
+    return {input.port, input.node, input.from, input.content, input.leaf ? to_json(*input.leaf) : Json()};
+}
+JobInput input_from(const Json& row) {
+    JobInput input{row.at(0), row.at(1).get<std::size_t>(), row.at(2), row.at(3), {}};
+    if (!row.at(4).is_null()) input.leaf = leaf_from(row.at(4));
+    return input;
+}
 
 Json to_json(const JobMemory& memory) {
     return {memory.is_used, memory.plan_key, memory.code, memory.keep_always, memory.inputs_cost, memory.needed};
@@ -270,17 +318,20 @@ std::string to_message(const Job& job, const std::vector<std::size_t>& forgotten
     return bytes_of(json);
 }
 
+std::string to_message(const std::vector<std::size_t>& forgotten) { return bytes_of({{"forgotten", forgotten}}); }
+
 ReceivedJob job_from(std::string_view message, const FilterLibrary& library) {
     return read_message(message, [&](const Json& json) {
         ReceivedJob received;
-        Job& job = received.job;
+        received.forgotten = json.at("forgotten").get<std::vector<std::size_t>>();
+        if (!json.contains("node")) return received;
+        Job& job = received.job.emplace();
         job.node = json.at("node");
         job.frames = json.at("frames").get<std::vector<std::string>>();
         job.threads = json.at("threads");
         job.seed = json.at("seed");
         job.memory_limit = json.at("memory");
         job.seconds_limit = json.at("seconds");
-        received.forgotten = json.at("forgotten").get<std::vector<std::size_t>>();
         job.work = work_from(json, library);
         return received;
     });
@@ -288,6 +339,7 @@ ReceivedJob job_from(std::string_view message, const FilterLibrary& library) {
 
 std::string to_message(const WorkerMessage& message) {
     Json json = Json::object();
+    if (message.is_ready) json["ready"] = true;
     if (message.progress) json["progress"] = *message.progress;
     if (message.warning) json["warning"] = *message.warning;
     if (message.note) json["note"] = *message.note;
@@ -298,11 +350,12 @@ std::string to_message(const WorkerMessage& message) {
 WorkerMessage worker_message_from(std::string_view bytes, const PlannedStep* step) {
     return read_message(bytes, [&](const Json& json) {
         WorkerMessage message;
+        message.is_ready = json.contains("ready");
         if (json.contains("progress")) message.progress = json.at("progress").get<double>();
         if (json.contains("warning")) message.warning = json.at("warning").get<std::string>();
         if (json.contains("note")) message.note = json.at("note").get<std::string>();
         if (json.contains("report")) message.report = report_from(json.at("report"), step);
-        if (!message.progress && !message.warning && !message.note && !message.report)
+        if (!message.is_ready && !message.progress && !message.warning && !message.note && !message.report)
             throw Error("a message between runner and worker says nothing");
         return message;
     });

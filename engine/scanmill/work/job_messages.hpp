@@ -25,8 +25,10 @@ WorkerStart start_from(std::string_view message);
 
 /// `forgotten`: nodes whose values are to be dropped before.
 std::string to_message(const Job& job, const std::vector<std::size_t>& forgotten);
+/// Only that.
+std::string to_message(const std::vector<std::size_t>& forgotten);
 struct ReceivedJob {
-    Job job;
+    std::optional<Job> job;
     std::vector<std::size_t> forgotten;
 };
 /// Filters are known by name: `library` has their declarations.
@@ -34,10 +36,11 @@ ReceivedJob job_from(std::string_view message, const FilterLibrary& library);
 
 /// What a worker says: exactly one of them.
 struct WorkerMessage {
-    std::optional<double> progress;
-    std::optional<std::string> warning;  ///< about what is being done
-    std::optional<std::string> note;     ///< about the worker's surroundings, its cache
-    std::optional<JobReport> report;
+    bool is_ready = false;  ///< once, when the process has started
+    std::optional<double> progress = {};
+    std::optional<std::string> warning = {};  ///< about what is being done
+    std::optional<std::string> note = {};  ///< about the worker's surroundings, its cache
+    std::optional<JobReport> report = {};
 };
 std::string to_message(const WorkerMessage& message);
 /// `step`: of the job that is being done, nullptr when it has none.

@@ -6,11 +6,11 @@
 
 namespace scanmill {
 
-/// Counts what belongs to no file, of all threads. 0: no limit. Under AddressSanitizer, which takes more than anybody
-/// would allow, nothing is limited.
+/// Counts what belongs to no file; the stacks of `threads`, hardly used, come on top. 0: no limit. Under
+/// AddressSanitizer, which takes more than anybody would allow, nothing is limited.
 class MemoryLimit {
 public:
-    explicit MemoryLimit(u64 bytes);
+    MemoryLimit(u64 bytes, unsigned threads);
     ~MemoryLimit();
     MemoryLimit(const MemoryLimit&) = delete;
     MemoryLimit& operator=(const MemoryLimit&) = delete;

@@ -14,7 +14,7 @@ namespace scanmill {
 
 namespace {
 using Length = std::uint32_t;
-constexpr Length longest = 1u << 30;
+constexpr Length longest = 64u << 20;
 }  // namespace
 
 bool send_message(int socket, std::string_view message) {

@@ -55,6 +55,7 @@ ProcessState ProcessState::now() {
 std::string ProcessState::changes_since(const ProcessState& before) const {
     if (open_files_ > before.open_files_)
         return fmt::format("{} more files are open", open_files_ - before.open_files_);
+    if (open_files_ < before.open_files_) return "files were closed that somebody else had opened";
     if (folder_ != before.folder_) return "the working folder changed";
     if (locale_ != before.locale_) return "the locale changed";
     if (environment_ != before.environment_) return "the environment changed";

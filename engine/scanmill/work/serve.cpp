@@ -40,7 +40,7 @@ public:
         const auto now = std::chrono::steady_clock::now();
         if (now - told_ < pause) return;
         told_ = now;
-        say({fraction, {}, {}, {}});
+        say({.progress = fraction});
     }
 
 private:
@@ -81,28 +81,27 @@ int serve(MessageReader& reader) {
     Speaker speaker;
     std::unique_ptr<Cache> cache;
     if (!start.cache_folder.empty())
-        cache = std::make_unique<Cache>(start.cache_folder, Cache::default_limit, [&](std::string text) {
-            speaker.say({{}, {}, std::move(text), {}});
-        });
+        cache = std::make_unique<Cache>(start.cache_folder, Cache::default_limit,
+                                        [&](std::string text) { speaker.say({.note = std::move(text)}); });
     FilterLibrary library(plugin_folders());
     Workbench bench(library, cache.get(), static_cast<KeepRule::Policy>(start.keep_policy), start.scratch);
     const bool is_same_program = content_hash(core_library_file()) == start.core_build;
     const u64 memory_before = anonymous_memory();
     const JobListener listener{[&](double fraction) { speaker.say_progress(fraction); },
-                               [&](std::string_view text) {
-                                   speaker.say({{}, std::string(text), {}, {}});
-                               },
+                               [&](std::string_view text) { speaker.say({.warning = std::string(text)}); },
                                [] { return cancel_requested != 0; }};
+    speaker.say({.is_ready = true});
     while (const std::optional<std::string> message = next()) {
         JobReport report;
         try {
             const ReceivedJob received = job_from(*message, library);
+            for (const std::size_t node : received.forgotten) bench.forget(node);
+            if (!received.job) continue;
             if (!is_same_program)
                 throw Error("Scanmill was installed anew while the run was going on").hint("run it again");
-            for (const std::size_t node : received.forgotten) bench.forget(node);
             const std::string heavy = bench.is_empty() ? what_memory_stayed(memory_before) : "";
             const ProcessState before = ProcessState::now();
-            report = bench.perform(received.job, listener);
+            report = bench.perform(*received.job, listener);
             std::fflush(nullptr);
             report.worn = ProcessState::now().changes_since(before);
             if (report.worn.empty()) report.worn = heavy;
@@ -110,7 +109,7 @@ int serve(MessageReader& reader) {
             report.outcome = Outcome::failed;
             report.node.failure = {Cause::refused, 0, error.what()};
         }
-        speaker.say({{}, {}, {}, std::move(report)});
+        speaker.say({.report = std::move(report)});
     }
     return 0;
 }

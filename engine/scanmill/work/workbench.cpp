@@ -76,7 +76,8 @@ Workbench::Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy poli
     : library_(library),
       cache_(cache),
       rule_(policy),
-      scratch_(std::move(scratch)) {}
+      scratch_(std::move(scratch)),
+      folder_(fs::current_path()) {}
 
 JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     JobReport report;
@@ -88,7 +89,7 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     };
     const bool is_write = std::holds_alternative<WriteWork>(job.work);
     try {
-        const MemoryLimit limit(job.memory_limit);
+        const MemoryLimit limit(job.memory_limit, job.threads);
         if (const auto* reading = std::get_if<ReadWork>(&job.work)) read(job, *reading, listener, report);
         if (const auto* step = std::get_if<StepWork>(&job.work)) run(job, *step, listener, report);
         if (const auto* asking = std::get_if<ExpectWork>(&job.work)) expect(job, *asking, report);
@@ -111,6 +112,8 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     } catch (...) {
         fail(Cause::exception, Error("something was thrown that is no error and says nothing of itself"));
     }
+    std::error_code gone;
+    if (fs::current_path(gone) != folder_) fs::current_path(folder_, gone);  // relative paths count from there
     report.node.effort = use.until_now();
     report.node.effort.threads = job.threads;
     report.node.outcome = report.outcome;
@@ -220,7 +223,7 @@ std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::stri
     report.node.origin = Origin::same_inputs;
     for (const std::string& warning : report.node.warnings) listener.on_warning(warning);
     for (const ResultOutput& output : result->outputs)
-        if (cache_->has_value(output.content)) report.kept.push_back(output.port);
+        if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
     report.result = std::move(*result);
     return outputs;
 }
@@ -247,7 +250,7 @@ void Workbench::remember(const Job& job, const JobMemory& memory, const std::str
 void Workbench::keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report) {
     for (const auto& [port, value] : values_[node]) {
         const EncodedValue encoded(value);
-        bool kept = cache_->has_value(encoded.content());
+        bool kept = cache_->has_value(encoded.content(), encoded.size());
         if (!kept && (memory.keep_always || rule_.is_worth(cost, encoded.size()))) {
             const auto start = std::chrono::steady_clock::now();
             kept = cache_->keep_value(encoded);
@@ -268,6 +271,10 @@ const Value* Workbench::find(std::size_t node, const std::string& port) const {
 std::optional<Value> Workbench::fetch(const JobInput& input, JobReport& report) {
     if (const Value* value = find(input.node, input.from)) return *value;
     std::optional<Value> value = cache_ && !input.content.empty() ? cache_->value(input.content) : std::nullopt;
+    if (!value && input.leaf) {
+        value = read_leaf(*input.leaf, [](std::string) {});  // what there is to be said was said when it was read first
+        if (cache_) require_unchanged(input.leaf->file, input.leaf->content);
+    }
     if (value)
         values_[input.node].push_back({input.from, *value});
     else

@@ -46,14 +46,14 @@ private:
                   double seconds, JobReport& report);
     void keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report);
     const Value* find(std::size_t node, const std::string& port) const;
-    /// From the bench or the cache; nothing, and a word in the report, when both have lost it.
+    /// From the bench, the cache, or its file; nothing, and a word in the report, when it is lost.
     std::optional<Value> fetch(const JobInput& input, JobReport& report);
     bool uses_cache(const JobMemory& memory) const { return cache_ && memory.is_used; }
 
     FilterLibrary& library_;
     Cache* cache_;
     KeepRule rule_;
-    std::filesystem::path scratch_;
+    std::filesystem::path scratch_, folder_;
     std::map<std::size_t, std::vector<StepInput>> values_;  // by node
 };
 

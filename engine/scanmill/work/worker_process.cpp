@@ -95,8 +95,10 @@ WorkerProcess::WorkerProcess(const std::vector<std::string>& command) {
     int sockets[2], pipes[2];
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0) fail(errno);
     OwnDescriptor here(sockets[0]), there(sockets[1]);
+    if (here.get() < 0 || there.get() < 0) fail(EMFILE);
     if (::pipe2(pipes, O_CLOEXEC) != 0) fail(errno);
     OwnDescriptor log(pipes[0]), log_there(pipes[1]);
+    if (log.get() < 0 || log_there.get() < 0) fail(EMFILE);
     ::fcntl(log.get(), F_SETFL, O_NONBLOCK);
     process_ = SpawnPlan(there.get(), log_there.get()).start(command);
     descriptor_ = static_cast<int>(::syscall(SYS_pidfd_open, process_, 0));
@@ -114,12 +116,16 @@ WorkerProcess::WorkerProcess(const std::vector<std::string>& command) {
 
 WorkerProcess::~WorkerProcess() {
     end(true);
-    for (const int each : {channel_, log_pipe_, descriptor_}) ::close(each);
+    for (const int each : {channel_, log_pipe_, descriptor_})
+        if (each >= 0) ::close(each);
 }
 
 void WorkerProcess::read_log() {
+    if (log_pipe_ < 0) return;
     std::array<char, 1 << 14> block;
-    for (ssize_t length; (length = ::read(log_pipe_, block.data(), block.size())) > 0;) {
+    ssize_t length = 0;
+    // Not without end: what writes all the time must not keep us from everything else.
+    for (int blocks = 0; blocks < 64 && (length = ::read(log_pipe_, block.data(), block.size())) > 0; ++blocks) {
         for (const char c : std::string_view(block.data(), static_cast<std::size_t>(length))) {
             if (c != '\n') {
                 if (line_.size() < longest_line) line_ += c;
@@ -129,6 +135,10 @@ void WorkerProcess::read_log() {
             line_.clear();
             if (lines_.size() > log_lines) lines_.pop_front();
         }
+    }
+    if (length == 0) {  // it has closed both ends
+        ::close(log_pipe_);
+        log_pipe_ = -1;
     }
 }
 

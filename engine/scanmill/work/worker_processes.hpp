@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "scanmill/filter/error.hpp"
 #include "scanmill/work/job_messages.hpp"
 #include "scanmill/work/scratch_folder.hpp"
 #include "scanmill/work/worker_process.hpp"
@@ -47,15 +48,21 @@ private:
         std::unique_ptr<WorkerProcess> process;
         std::optional<Job> job;
         Clock::time_point begun, looked_at;
+        bool is_ready = false;  ///< its process has started
+        bool is_silenced = false;  ///< it was ended because it closed the channel
+        bool is_gone = false;  ///< no process can be started for it
         u64 peak_memory = 0;
         std::vector<std::size_t> forgotten;  ///< told with the next job
     };
 
     void ensure(std::size_t worker);
+    void tell_gone(std::size_t worker, const WorkerListener& listener);
+    u64 peak_of(const Place& place, const ProcessEnd& end) const;
     void look_at(std::size_t worker, const WorkerListener& listener);
     void take_messages(std::size_t worker, const WorkerListener& listener);
     void enforce_limits(std::size_t worker, const WorkerListener& listener);
-    void end_by_force(std::size_t worker, const WorkerListener& listener, Cause cause, Error error);
+    void end_by_force(std::size_t worker, const WorkerListener& listener, Cause cause, Error error, int number);
+    void take_report(std::size_t worker, const WorkerListener& listener, JobReport report);
     void end_of_process(std::size_t worker, const WorkerListener& listener);
     void tell_end(std::size_t worker, const WorkerListener& listener, JobReport report, bool lost_values);
     Clock::duration until_next_look(std::chrono::milliseconds patience) const;
@@ -66,6 +73,7 @@ private:
     std::vector<Place> places_;
     std::vector<std::string> notes_;
     std::optional<Clock::time_point> cancelled_;
+    std::optional<Error> start_failure_;
 };
 
 }  // namespace scanmill

@@ -16,6 +16,8 @@ struct WorkerListener {
     std::function<void(std::size_t worker, std::string_view text)> on_warning;
     /// The worker is idle again. With `lost_values` it is another one now, or as good as: it holds nothing.
     std::function<void(std::size_t worker, JobReport report, bool lost_values)> on_end;
+    /// The worker could not begin, and is gone for good: others have to do its job.
+    std::function<void(std::size_t worker)> on_gone;
 };
 
 /// Any number of workers, numbered from 0; each does one job at a time and holds the values that its jobs made or used

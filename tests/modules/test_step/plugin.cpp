@@ -32,7 +32,9 @@ SCANMILL_FILTER() {
                  {"write", P::Mode::write, "Writes to standard output and error."},
                  {"leak", P::Mode::leak, "Leaves files open."},
                  {"exit", P::Mode::exit, "Ends the process as if all were well."},
-                 {"change-folder", P::Mode::change_folder, "Changes the process's working folder."}},
+                 {"change-folder", P::Mode::change_folder, "Changes the process's working folder."},
+                 {"babble", P::Mode::babble, "Warns 50,000 times."},
+                 {"close-streams", P::Mode::close_streams, "Closes standard output and error."}},
                 "What becomes of the run.")
         .param("log", &P::log, "A file that every run appends a line to: mode, number of points.")
         .param("length", &P::length, "Legs of the tetrahedron.", above(0))

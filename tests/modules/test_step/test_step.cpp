@@ -41,6 +41,8 @@ std::string_view name_of(Mode mode) {
         case Mode::leak: return "leak";
         case Mode::exit: return "exit";
         case Mode::change_folder: return "change-folder";
+        case Mode::babble: return "babble";
+        case Mode::close_streams: return "close-streams";
     }
     return "";
 }
@@ -94,6 +96,13 @@ void misbehave(Mode mode, std::size_t points, Context& context) {
                 if (::open("/dev/null", O_RDONLY) < 0) throw Error("no file could be opened");
             break;
         case Mode::exit: std::exit(0);
+        case Mode::babble:
+            for (int i = 0; i < 50'000; ++i) context.warn(fmt::format("warning {}", i));
+            break;
+        case Mode::close_streams:
+            ::close(STDOUT_FILENO);
+            ::close(STDERR_FILENO);
+            break;
         case Mode::change_folder:
             if (::chdir("/") != 0) throw Error("the folder could not be changed");
             break;

@@ -30,7 +30,9 @@ struct TestStepParams {
         write,
         leak,
         exit,
-        change_folder
+        change_folder,
+        babble,
+        close_streams
     };
     Mode mode = Mode::pass;
     std::optional<std::filesystem::path> log;
@@ -52,7 +54,8 @@ struct TestStepResult {
 /// takes the process along or leaves something behind in it: crash stores through a null pointer, abort and exit end
 /// the process, throw_number throws an int, loop never returns, allocate takes memory until there is none, write says
 /// 100 lines on standard output and one on standard error, leak leaves three files open, change_folder leaves the
-/// process in the root folder. Metrics: `points`, the number of points that came out; `length`.
+/// process in the root folder, babble warns 50,000 times, close_streams closes standard output and error. Metrics:
+/// `points`, the number of points that came out; `length`.
 TestStepResult test_step(const PointCloud& cloud, const TestStepParams& params, Context& context);
 
 }  // namespace scanmill
