@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What follows from the end of a task: for the node, for the cells that need it, for who waits for it, and for the
+// worker that did it.
+#include <algorithm>
+#include <cassert>
+
+#include "scanmill/engine/scheduler.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/work/workbench.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// A scan may fail by what was done for another one of equal content.
+void name_scan(std::string& text, const std::string& done_for, const std::string& scan) {
+    const std::string frame = fmt::format("on scan '{}'", done_for);
+    if (const std::size_t place = text.find(frame); done_for != scan && place != std::string::npos)
+        text.replace(place, frame.size(), fmt::format("on scan '{}', which equals '{}'", scan, done_for));
+}
+
+}  // namespace
+
+void Scheduler::ended(std::size_t worker, JobReport report, bool lost_values) {
+    WorkerState& here = at_[worker];
+    assert(here.task);
+    const Task task = *here.task;
+    const std::size_t component = nodes_[task.node].component;
+    leave(worker);
+    if (lost_values) {
+        here.holds.clear();
+        here.worn_by.reset();
+    } else if (!report.worn.empty()) {
+        here.worn_by = component;
+    }
+    if (!report.lost.empty()) return lost(worker, task, report.lost);
+    if (report.outcome == Outcome::skipped) {  // cancelled
+        report_.interrupted = is_stopped_ = true;
+        return;
+    }
+    unsigned& failures = task.write > 0 ? writes_[task.write - 1].failures : nodes_[task.node].failures;
+    const Cause cause = report.node.failure.cause;
+    const bool was_ended =
+        cause == Cause::signal || cause == Cause::exit || cause == Cause::memory || cause == Cause::time;
+    if (was_ended) {
+        ++failures;
+        if (failures <= settings_.limits.retries) {
+            observer_.node_warning(graph_.nodes[task.node],
+                                   fmt::format("attempt {} of {} failed: {}", failures, settings_.limits.retries + 1,
+                                               report.node.failure.text));
+            for (const std::size_t cell : cells_of(task)) charge(cell, report.node.effort.seconds);
+            to_consider_.push_back(task);
+            return;
+        }
+    }
+    report.node.attempts = failures + !was_ended;
+    if (report.outcome == Outcome::failed && settings_.fail_fast) is_stopped_ = true;
+    if (task.write > 0) {
+        finish_write(task, std::move(report));
+    } else {
+        if (foresight_[task.node].will_run && !lost_values) here.holds.insert(task.node);
+        const bool is_away = components_[component].home != worker;
+        finish_node(task.node, std::move(report));
+        const std::set<std::string>& needed = foresight_[task.node].needed;
+        // Values that cannot be kept do not get home: helping would mean doing things twice.
+        if (is_away && nodes_[task.node].state == State::done && !std::ranges::includes(nodes_[task.node].kept, needed))
+            is_helping_useless_ = true;
+    }
+}
+
+/// The worker does nothing now.
+void Scheduler::leave(std::size_t worker) {
+    WorkerState& here = at_[worker];
+    if (here.task->write == 0) nodes_[here.task->node].state = State::pending;
+    here.task.reset();
+    here.twin.clear();
+    --busy_;
+    has_changed_ = true;
+}
+
+/// Inputs that were believed to be there are not.
+void Scheduler::lost(std::size_t worker, const Task& task, const std::vector<JobInput>& inputs) {
+    for (const Source& source : sources(task)) {
+        const auto is_it = [&](const JobInput& input) {
+            return input.node == source.node && input.from == source.port;
+        };
+        if (std::ranges::none_of(inputs, is_it)) continue;
+        nodes_[source.node].kept.erase(source.port);
+        if (at_[worker].holds.erase(source.node) > 0) workers_.forget(worker, source.node);
+    }
+    to_consider_.push_back(task);
+}
+
+/// No process can be started for this worker: others take over what is its own.
+void Scheduler::gone(std::size_t worker) {
+    WorkerState& here = at_[worker];
+    const Task task = *here.task;
+    leave(worker);
+    here.is_gone = true;
+    here.holds.clear();
+    for (const std::size_t index : here.components) {
+        components_[index].home.reset();
+        if (!components_[index].ready.empty()) fresh_.insert(index);
+    }
+    here.components.clear();
+    to_consider_.push_back(task);
+}
+
+void Scheduler::finish_node(std::size_t index, JobReport done) {
+    const RunNode& node = graph_.nodes[index];
+    NodeState& state = nodes_[index];
+    NodeForesight& seen = foresight_[index];
+    NodeReport& report = report_.nodes[index];
+    const Task task{index};
+    const std::vector<Source> used = sources(task);
+    if (seen.will_run || !only_expects(index)) {
+        report = std::move(done.node);
+    } else {  // it was known; only asked about
+        report = {};
+        scanmill::adopt(*seen.known, graph_.step(node), "", report);
+        report.attempts = done.node.attempts;
+        report.effort = std::move(done.node.effort);
+        for (const std::string& warning : report.warnings) observer_.node_warning(node, warning);
+        report.origin = Origin::cached;
+        report.outcome = done.outcome;
+        report.failure = std::move(done.node.failure);
+        if (done.outcome == Outcome::done) report.facts = std::move(done.node.facts);
+    }
+    if (seen.will_run) {
+        report.why = seen.why;
+        double cost = report.effort.seconds;
+        for (const NodeInput& input : node.inputs) cost += nodes_[input.node].cost;
+        if (!done.result.outputs.empty()) {
+            state.kept = {done.kept.begin(), done.kept.end()};
+            const bool all_kept = state.kept.size() == done.result.outputs.size();
+            state.cost = all_kept ? 0 : report.origin == Origin::ran ? cost : done.result.seconds;
+            seen.known = std::move(done.result);
+        } else {
+            state.cost = cost;
+        }
+    }
+    state.state = report.outcome == Outcome::done ? State::done : State::failed;
+    observer_.node_ended(node, report);
+    for (const Source& source : used) release(source);
+    for (const Task& waiting : state.waiting) to_consider_.push_back(waiting);
+    state.waiting.clear();
+    if (state.uses_left == 0) {
+        ++state.uses_left;
+        release({index, ""});
+    }
+    task_ended(task);
+}
+
+void Scheduler::finish_write(const Task& task, JobReport done) {
+    Write& write = writes_[task.write - 1];
+    write.failure = std::move(done.node.failure);
+    write.seconds = done.node.effort.seconds;
+    write.report = std::move(done.output);
+    observer_.output_written(graph_.cells[write.cells.front()], write.report);
+    release(write.source);
+    task_ended(task);
+}
+
+void Scheduler::skip(const Task& task) {
+    for (const Source& source : sources(task)) release(source);
+    if (task.write == 0) {
+        NodeState& node = nodes_[task.node];
+        node.state = State::skipped;
+        if (!node.is_counted) report_.nodes[task.node] = {};
+        for (const Task& waiting : node.waiting) to_consider_.push_back(waiting);
+        node.waiting.clear();
+    }
+    task_ended(task);
+}
+
+/// The cells hear of it once, even when it has to be done again.
+void Scheduler::task_ended(const Task& task) {
+    NodeState& node = nodes_[task.node];
+    Component& component = components_[node.component];
+    if (--component.tasks_left == 0 && component.home) at_[*component.home].components.erase(node.component);
+    if (task.write > 0) {
+        count_for_cells(cells_of(task), writes_[task.write - 1].seconds);
+    } else if (!node.is_counted) {
+        node.is_counted = true;
+        count_for_cells(node.cells, report_.nodes[task.node].effort.seconds);
+    }
+}
+
+void Scheduler::count_for_cells(const std::vector<std::size_t>& cells, double seconds) {
+    for (const std::size_t cell : cells) {
+        charge(cell, seconds);
+        if (--cells_[cell].tasks_left == 0) end_cell(cell);
+    }
+}
+
+void Scheduler::charge(std::size_t cell, double seconds) {
+    report_.cells[cell].seconds += seconds;
+    const double limit = settings_.limits.cell_seconds;
+    if (limit > 0 && report_.cells[cell].seconds > limit) cells_[cell].is_given_up = true;
+}
+
+void Scheduler::end_cell(std::size_t index) {
+    const RunCell& cell = graph_.cells[index];
+    CellReport& report = report_.cells[index];
+    cells_[index].has_ended = true;
+    bool is_done = true;
+    for (const std::size_t node : cell.nodes) {
+        is_done = is_done && report_.nodes[node].outcome == Outcome::done;
+        if (!report.failure && report_.nodes[node].failure) {
+            report.failure = report_.nodes[node].failure;
+            name_scan(report.failure.text, graph_.scan_names[graph_.nodes[node].scan], graph_.scan_names[cell.scan]);
+        }
+    }
+    for (const std::size_t index_of_write : writes_of_cell_[index]) {
+        const Write& write = writes_[index_of_write];
+        is_done = is_done && write.report.outcome == Outcome::done;
+        if (!report.failure) report.failure = write.failure;
+        report.outputs.push_back(write.report);
+        report.outputs.back().file = write.file;
+    }
+    if (!report.failure && cells_[index].is_given_up && !is_done)
+        report.failure = {Cause::time, 0,
+                          Error("the time did not suffice: the limit of a cell is {:g} s, {:.1f} s were spent",
+                                settings_.limits.cell_seconds, report.seconds)
+                              .add_frame(fmt::format("on scan '{}'", graph_.scan_names[cell.scan]))
+                              .what()};
+    report.outcome = report.failure ? Outcome::failed : is_done ? Outcome::done : Outcome::skipped;
+    observer_.cell_ended(cell, report);
+}
+
+const std::vector<std::size_t>& Scheduler::cells_of(const Task& task) const {
+    return task.write > 0 ? writes_[task.write - 1].cells : nodes_[task.node].cells;
+}
+
+/// One task less needs the value.
+void Scheduler::release(const Source& source) {
+    NodeState& node = nodes_[source.node];
+    if (node.uses_left > 0) --node.uses_left;
+    if (node.uses_left > 0) return;
+    for (std::size_t worker = 0; worker < at_.size(); ++worker)
+        if (at_[worker].holds.erase(source.node) > 0) workers_.forget(worker, source.node);
+}
+
+/// Another process takes the worker's place. What it held and nobody kept is made again where it is needed.
+void Scheduler::renew(std::size_t worker) {
+    at_[worker].worn_by.reset();
+    at_[worker].holds.clear();
+    workers_.replace(worker);
+}
+
+void Scheduler::skip_the_rest() {
+    assert(is_stopped_ || std::ranges::all_of(cells_, &CellState::has_ended));
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell)
+        if (!cells_[cell].has_ended) end_cell(cell);
+}
+
+}  // namespace scanmill
