@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -42,6 +43,9 @@ int run_batch(const Options& options) {
     if (!is_batch(text))
         throw Error("'{}' is no batch: it has no key `batch`", options.file)
             .hint("a workflow is run by: scanmill run WORKFLOW SCAN…");
+    const Warn warn = warning_teller();
+    const std::unique_ptr<Cache> cache = open_cache(options.execute.cache, warn);
+    Workforce workforce(options.execute, cache.get());
     FilterLibrary library = open_library();
     CheckedBatch checked = check_batch(text, options.file, library);
     nlohmann::ordered_json found = nlohmann::ordered_json::array();
@@ -54,8 +58,6 @@ int run_batch(const Options& options) {
         return bad_request;
     }
 
-    const Warn warn = warning_teller();
-    const std::unique_ptr<Cache> cache = open_cache(options.execute.cache, warn);
     std::vector<GraphPart> parts;
     for (const BatchPart& part : checked.parts)
         parts.push_back({part.plan, request_for(checked.batch, part, options.execute)});
@@ -65,7 +67,7 @@ int run_batch(const Options& options) {
     Task task{checked.batch.name, options.file, make_graph(parts, library, hash), checked.batch.limits};
     task.jobs = static_cast<unsigned>(std::clamp<std::size_t>(task.graph.cells.size(), 1, cores()));
     task.streams_events = true;
-    return execute(task, library, cache.get(), warn, options.execute);
+    return execute(task, library, cache.get(), workforce, warn, options.execute);
 }
 
 }  // namespace

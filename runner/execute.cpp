@@ -61,21 +61,6 @@ void explain_from_records(std::vector<NodeForesight>& foresight, FilterLibrary& 
     }
 }
 
-std::unique_ptr<Workers> make_workers(unsigned jobs, FilterLibrary& library, Cache* cache,
-                                      const ExecuteOptions& options, const Warn& warn,
-                                      const std::function<bool()>& is_cancelled) {
-    if (jobs == 0) return std::make_unique<InProcessWorker>(library, cache, keep_policy(options.cache), is_cancelled);
-    WorkerProcessSettings settings;
-    settings.command = {"/proc/self/exe", "worker"};
-    settings.count = jobs;
-    if (cache) settings.cache_folder = std::filesystem::absolute(cache->folder()).string();
-    settings.keep_policy = static_cast<int>(keep_policy(options.cache));
-    settings.on_note = warn;
-    auto processes = std::make_unique<WorkerProcesses>(std::move(settings));
-    processes->start_early(0);
-    return processes;
-}
-
 /// The command line's own reading takes -1 for the largest number and 010 for eight.
 template <class Number>
 CLI::Validator whole_number() {
@@ -106,6 +91,25 @@ std::string what_bars_folder(const std::string& folder) {
 constexpr unsigned most_jobs = 1024;
 
 }  // namespace
+
+Workforce::Workforce(const ExecuteOptions& options, const Cache* cache) {
+    if (options.jobs == 0u || options.dry_run) return;
+    WorkerProcessSettings settings;
+    settings.command = {"/proc/self/exe", "worker"};
+    if (cache) settings.cache_folder = cache->folder().string();
+    settings.keep_policy = static_cast<int>(keep_policy(options.cache));
+    settings.on_note = [warn = warn_](std::string text) {
+        if (*warn) (*warn)(std::move(text));
+    };
+    processes_ = std::make_unique<WorkerProcesses>(std::move(settings));
+    try {
+        processes_->start_early();
+    } catch (const Error&) {
+        // It is tried again, and told, when there is work.
+    }
+}
+
+Workforce::~Workforce() = default;
 
 unsigned cores() {
     cpu_set_t usable;
@@ -139,7 +143,8 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options, const std::
     command.add_flag("-q,--quiet", options.quiet, "No progress on stderr");
 }
 
-int execute(const Task& task, FilterLibrary& library, Cache* cache, const Warn& warn, const ExecuteOptions& options) {
+int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& workforce, const Warn& warn,
+            const ExecuteOptions& options) {
     const RunGraph& graph = task.graph;
     std::vector<NodeForesight> foresight = foresee(graph, cache);
     if (cache) explain_from_records(foresight, library, graph, options.output_folder, warn);
@@ -166,8 +171,14 @@ int execute(const Task& task, FilterLibrary& library, Cache* cache, const Warn& 
     std::signal(SIGTERM, on_interrupt);
     Progress progress(graph, settings.foresight, std::max(1u, jobs), options.quiet);
     const Warn warn_beside = [&](std::string text) { progress.say_beside([&] { warn(std::move(text)); }); };
-    const std::unique_ptr<Workers> workers =
-        make_workers(jobs, library, cache, options, warn_beside, settings.is_cancelled);
+    workforce.tell(warn_beside);
+    std::unique_ptr<Workers> in_process;
+    if (!workforce.processes())
+        in_process =
+            std::make_unique<InProcessWorker>(library, cache, keep_policy(options.cache), settings.is_cancelled);
+    else
+        workforce.processes()->resize(jobs);
+    Workers& workers = in_process ? *in_process : *workforce.processes();
 
     std::optional<EventStream> events;
     std::optional<RunRecords> records = open_records(options.output_folder, warn);
@@ -182,7 +193,7 @@ int execute(const Task& task, FilterLibrary& library, Cache* cache, const Warn& 
     }
     if (events) events->begin(task.name, jobs, settings.threads, recorder ? recorder->run() : 0);
     Observers observers(observing);
-    const RunReport report = run(library, graph, *workers, settings, observers);
+    const RunReport report = run(library, graph, workers, settings, observers);
     progress.finish();
     if (recorder) recorder->finish(report);
     if (cache) cache->evict();

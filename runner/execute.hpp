@@ -4,9 +4,15 @@
 
 #include <CLI/CLI.hpp>
 
+#include <memory>
+
 #include "cache_options.hpp"
 #include "scanmill/batch/limits.hpp"
 #include "scanmill/engine/graph.hpp"
+
+namespace scanmill {
+class WorkerProcesses;
+}
 
 namespace scanmill::runner {
 
@@ -32,8 +38,24 @@ struct Task {
     bool streams_events = false;  ///< --json prints what happens as it happens, a line each; else a report at the end
 };
 
+/// Worker processes, the first of which starts while there is still much to be read and planned. None with -j 0.
+class Workforce {
+public:
+    Workforce(const ExecuteOptions& options, const Cache* cache);
+    ~Workforce();
+
+    WorkerProcesses* processes() { return processes_.get(); }
+    /// Who is told what workers say of their surroundings.
+    void tell(Warn warn) { *warn_ = std::move(warn); }
+
+private:
+    std::shared_ptr<Warn> warn_ = std::make_shared<Warn>();
+    std::unique_ptr<WorkerProcesses> processes_;
+};
+
 /// Prints what would be done, with --dry-run, or does it. Returns the exit code.
-int execute(const Task& task, FilterLibrary& library, Cache* cache, const Warn& warn, const ExecuteOptions& options);
+int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& workforce, const Warn& warn,
+            const ExecuteOptions& options);
 
 /// Cores that this process may use.
 unsigned cores();

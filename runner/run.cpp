@@ -39,6 +39,9 @@ std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std
 }
 
 int run_workflow(const Options& options) {
+    const Warn warn = warning_teller();
+    const std::unique_ptr<Cache> cache = open_cache(options.execute.cache, warn);
+    Workforce workforce(options.execute, cache.get());
     FilterLibrary library = open_library();
     const std::string text = read_workflow_file(options.workflow);
     if (is_batch(text))
@@ -59,8 +62,6 @@ int run_workflow(const Options& options) {
     request.only = options.only;
     request.until = options.until;
     request.save = options.save;
-    const Warn warn = warning_teller();
-    const std::unique_ptr<Cache> cache = open_cache(options.execute.cache, warn);
     Task task{workflow_name(checked.plan),
               options.workflow,
               make_graph(checked.plan, library, request,
@@ -68,7 +69,7 @@ int run_workflow(const Options& options) {
                              return cache ? cache->file_hash(file) : content_hash(file);
                          }),
               {}};
-    return execute(task, library, cache.get(), warn, options.execute);
+    return execute(task, library, cache.get(), workforce, warn, options.execute);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ std::vector<std::filesystem::path> plugin_folders(std::vector<std::string>* igno
     return folders;
 }
 
-FilterLibrary::FilterLibrary(const std::vector<std::filesystem::path>& folders) {
+FilterLibrary::FilterLibrary(const std::vector<std::filesystem::path>& folders, FirstLoad first) : first_load_(first) {
     for (const std::filesystem::path& folder : folders) read_folder(folder);
 }
 
@@ -94,7 +94,7 @@ const std::string& FilterLibrary::build_id(std::string_view name) {
 const FilterDeclaration& FilterLibrary::load(std::string_view name) {
     Entry& found = entry(name);
     if (!found.declaration.run) {
-        FilterDeclaration declaration = load_module(found.module, std::string(name));
+        FilterDeclaration declaration = load_module(found.module, std::string(name), first_load_);
         if (!(declaration.spec == found.manifest.spec))
             throw Error("module '{}' differs from the manifest beside it", found.module.string())
                 .hint("build or install the module again; its manifest is written then");

@@ -12,6 +12,7 @@
 
 #include "scanmill/filter/declare.hpp"
 #include "scanmill/filter/manifest.hpp"
+#include "scanmill/filter/module.hpp"
 
 namespace scanmill {
 
@@ -27,7 +28,7 @@ struct UnusableModule {
 
 class FilterLibrary {
 public:
-    explicit FilterLibrary(const std::vector<std::filesystem::path>& folders);
+    explicit FilterLibrary(const std::vector<std::filesystem::path>& folders, FirstLoad first = FirstLoad::in_a_copy);
 
     /// nullptr when there is no usable filter of that name.
     const FilterSpec* find(std::string_view name) const;
@@ -52,6 +53,7 @@ private:
     Entry& entry(std::string_view name);
     void read_folder(const std::filesystem::path& folder);
 
+    FirstLoad first_load_;
     std::map<std::string, Entry, std::less<>> entries_;
     std::vector<UnusableModule> unusable_;
 };

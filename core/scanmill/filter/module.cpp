@@ -49,9 +49,9 @@ void require_whole(const std::filesystem::path& module) {
 std::string abi_text() { return SCANMILL_ABI_TEXT; }
 
 const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleKind kind,
-                                    const std::string& expected_name) {
+                                    const std::string& expected_name, FirstLoad first) {
     require_whole(module);
-    require_harmless_loading(module);
+    if (first == FirstLoad::in_a_copy) require_harmless_loading(module);
     // Local: two modules may define the same symbol without meeting.
     void* handle = ::dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) throw Error("module '{}' cannot be loaded: {}", module.string(), ::dlerror());
@@ -81,9 +81,9 @@ void declare(const PluginDescriptor& descriptor, const std::filesystem::path& mo
     }
 }
 
-FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name) {
+FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name, FirstLoad first) {
     FilterDeclaration declaration;
-    declare(open_module(module, {filter_magic, "filter"}, expected_name), module, &declaration);
+    declare(open_module(module, {filter_magic, "filter"}, expected_name, first), module, &declaration);
     if (declaration.spec.name != expected_name)
         throw Error("module '{}' declares the filter '{}', not '{}'", module.string(), declaration.spec.name,
                     expected_name);

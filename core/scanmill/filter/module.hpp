@@ -15,17 +15,22 @@ struct ModuleKind {
     std::string_view what;  ///< "filter"
 };
 
+/// Where a module is loaded first: in a copy of this process, which tells whether it does harm, or at once in this one,
+/// which may be one that nobody misses.
+enum class FirstLoad { in_a_copy, at_once };
+
 /// Loads the module and returns its descriptor, whose declare() may then be called. Throws Error naming the file: not a
 /// module, one cut short, one that would end this program while it is loaded, of another kind, of another ABI (both
 /// texts), of another name.
 const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleKind kind,
-                                    const std::string& expected_name);
+                                    const std::string& expected_name, FirstLoad first = FirstLoad::in_a_copy);
 
 /// Calls the descriptor's declare(). Whatever it throws becomes an Error that names the module.
 void declare(const PluginDescriptor& descriptor, const std::filesystem::path& module, void* declaration);
 
 /// Loads a filter's module and returns what it declares. Throws Error as open_module() and declare().
-FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name);
+FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name,
+                              FirstLoad first = FirstLoad::in_a_copy);
 
 /// The manifests in a folder of modules, scanmill-<name>.json, sorted; none when the folder is not there.
 std::vector<std::filesystem::path> module_manifests(const std::filesystem::path& folder);

@@ -81,10 +81,11 @@ void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
 Recorder::~Recorder() { flush(); }
 
 void Recorder::finish(const RunReport& report) {
-    flush();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
     const std::string outcome = report.interrupted ? "interrupted" : report.all_done() ? "done" : "failed";
-    attempt([&] { records_.end(run_, outcome, seconds.count()); });
+    attempt([&] { records_.end(run_, steps_, cells_, outcome, seconds.count()); });
+    steps_.clear();
+    cells_.clear();
 }
 
 void Recorder::flush_when_due() {

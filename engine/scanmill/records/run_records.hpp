@@ -102,7 +102,10 @@ public:
     std::int64_t begin(const RunStart& start);
     /// Appends to the run, all or nothing: steps, then cells. Throws Error when the disk is full.
     void add(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells);
-    void end(std::int64_t run, const std::string& outcome, double seconds);
+    /// The last rows and how the run ended, all or nothing.
+    void end(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells,
+             const std::string& outcome, double seconds);
+    void end(std::int64_t run, const std::string& outcome, double seconds) { end(run, {}, {}, outcome, seconds); }
 
     /// In the order of their numbers.
     std::vector<RunSummary> runs() const;
@@ -114,6 +117,7 @@ public:
 
 private:
     struct Database;
+    void insert(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells);
     explicit RunRecords(std::unique_ptr<Database> database);
     std::unique_ptr<Database> database_;
 };

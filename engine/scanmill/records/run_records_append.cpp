@@ -41,8 +41,14 @@ std::int64_t RunRecords::begin(const RunStart& start) {
 
 void RunRecords::add(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells) {
     about(database_->file, [&] {
+        SQLite::Transaction transaction(database_->sqlite);
+        insert(run, steps, cells);
+        transaction.commit();
+    });
+}
+
+void RunRecords::insert(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells) {
         SQLite::Database& sqlite = database_->sqlite;
-        SQLite::Transaction transaction(sqlite);
         SQLite::Statement step_row(
             sqlite,
             "INSERT INTO step (run, node, label, filter, filter_version, build, scan, plan_key, origin, why, outcome, "
@@ -110,16 +116,18 @@ void RunRecords::add(std::int64_t run, const std::vector<StepRecord>& steps, con
                 }
             }
         }
-        transaction.commit();
-    });
 }
 
-void RunRecords::end(std::int64_t run, const std::string& outcome, double seconds) {
+void RunRecords::end(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells,
+                     const std::string& outcome, double seconds) {
     about(database_->file, [&] {
-        SQLite::Statement insert(database_->sqlite,
+        SQLite::Transaction transaction(database_->sqlite);
+        insert(run, steps, cells);
+        SQLite::Statement ending(database_->sqlite,
                                  "INSERT INTO run_end VALUES (?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, ?)");
-        SQLite::bind(insert, run, outcome, seconds);
-        insert.exec();
+        SQLite::bind(ending, run, outcome, seconds);
+        ending.exec();
+        transaction.commit();
     });
 }
 

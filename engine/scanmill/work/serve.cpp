@@ -83,7 +83,7 @@ int serve(MessageReader& reader) {
     if (!start.cache_folder.empty())
         cache = std::make_unique<Cache>(start.cache_folder, Cache::default_limit,
                                         [&](std::string text) { speaker.say({.note = std::move(text)}); });
-    FilterLibrary library(plugin_folders());
+    FilterLibrary library(plugin_folders(), FirstLoad::at_once);  // nobody misses this process
     Workbench bench(library, cache.get(), static_cast<KeepRule::Policy>(start.keep_policy), start.scratch);
     const bool is_same_program = content_hash(core_library_file()) == start.core_build;
     const u64 memory_before = anonymous_memory();

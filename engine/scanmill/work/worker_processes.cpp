@@ -50,16 +50,20 @@ Error error_of(const ProcessEnd& end, u64 peak_memory, const std::vector<std::st
 }  // namespace
 
 WorkerProcesses::WorkerProcesses(WorkerProcessSettings settings)
-    : settings_(std::move(settings)),
-      places_(settings_.count) {
+    : settings_(std::move(settings)) {
+    resize(settings_.count);
+    start_ = {settings_.cache_folder, settings_.keep_policy, ::getpid(), content_hash(core_library_file()), {}};
+}
+
+void WorkerProcesses::resize(std::size_t count) {
+    places_.resize(count);
     // A process takes three descriptors here.
     rlimit files{};
-    const rlim_t wanted = 3 * settings_.count + 256;
+    const rlim_t wanted = 3 * count + 256;
     if (::getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < wanted) {
         files.rlim_cur = std::min<rlim_t>(wanted, files.rlim_max);
         ::setrlimit(RLIMIT_NOFILE, &files);
     }
-    start_ = {settings_.cache_folder, settings_.keep_policy, ::getpid(), content_hash(core_library_file()), {}};
 }
 
 void WorkerProcesses::ensure(std::size_t worker) {

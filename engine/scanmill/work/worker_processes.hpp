@@ -40,8 +40,10 @@ public:
     void replace(std::size_t worker) override;
     void wait(const WorkerListener& listener, std::chrono::milliseconds patience) override;
     void cancel() override;
-    /// Starts a process before there is a job for it, so that it is ready by then.
-    void start_early(std::size_t worker) { ensure(worker); }
+    /// Starts the first process before there is a job for it, so that it is ready by then.
+    void start_early() { ensure(0); }
+    /// From now on there are so many. Pre: no job was begun.
+    void resize(std::size_t count);
 
 private:
     struct Place {
