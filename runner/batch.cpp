@@ -32,7 +32,10 @@ RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteO
         file.frame = scan.frame;
         file.pose = scan.pose;
         request.scans.push_back(std::move(file));
+        for (const std::filesystem::path& other : {scan.truth, scan.pose_file})
+            if (!other.empty()) request.protected_files.push_back(other);
     }
+    request.protected_files.emplace_back(batch.file);
     request.output_folder = options.output_folder;
     request.seed = options.seed;
     return request;

@@ -8,6 +8,7 @@
 #include "printable.hpp"
 #include "scanmill/engine/byte_size.hpp"
 #include "scanmill/filter/error.hpp"
+#include "stderr_text.hpp"
 
 namespace scanmill::runner {
 
@@ -30,7 +31,7 @@ void add_cache_options(CLI::App& command, CacheOptions& options, bool computes) 
 
 Warn warning_teller() {
     return [told = std::make_shared<std::set<std::string>>()](const std::string& text) {  // all copies know it
-        if (told->insert(text).second) fmt::print(stderr, "warning: {}\n", printable(text));
+        if (told->insert(text).second) tell("warning: {}\n", printable(text));
     };
 }
 

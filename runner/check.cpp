@@ -72,9 +72,9 @@ private:
         if (options_.plan)
             for (const BatchPart& part : checked.parts) show(*part.plan);
         else
-            say("{}: ok, {}, {}, {}\n", file, counted(checked.batch.scans.size(), "scan", "scans"),
+            say("{}: ok, {}, {}, {}, {}\n", file, counted(checked.batch.scans.size(), "scan", "scans"),
                 counted(checked.batch.workflows.size(), "workflow", "workflows"),
-                counted(checked.variants(), "variant", "variants"));
+                counted(checked.variants(), "variant", "variants"), counted(checked.cells(), "cell", "cells"));
     }
 
     /// Whether nothing is wrong.

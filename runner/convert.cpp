@@ -8,6 +8,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/convert.hpp"
 #include "scanmill/formats/files.hpp"
+#include "stderr_text.hpp"
 
 namespace scanmill::runner {
 
@@ -60,7 +61,7 @@ Value to_unit(const Value& value, LengthUnit unit) {
 }
 
 int convert(const Options& options) {
-    const auto warn = [](const std::string& text) { fmt::print(stderr, "warning: {}\n", printable(text)); };
+    const auto warn = [](const std::string& text) { tell("warning: {}\n", printable(text)); };
     const LengthUnit unit = parse_unit(options.to_unit);
     ReadOptions read;
     read.on_warning = warn;

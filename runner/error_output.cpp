@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "printable.hpp"
+#include "stderr_text.hpp"
 
 namespace scanmill::runner {
 
@@ -15,13 +16,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 void print_json(const Json& json) {
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));  // names of files may be no UTF-8
+    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));  // names of files may be no UTF-8
 }
 
 }  // namespace
 
 void print(const Error& error, bool json) {
-    fmt::print(stderr, "error: {}\n", printable(error.what()));
+    tell("error: {}\n", printable(error.what()));
     if (!json) return;
     Json described{{"message", error.sentence()}, {"where", error.frames()}};
     if (!error.hint().empty()) described["hint"] = error.hint();
@@ -30,10 +31,10 @@ void print(const Error& error, bool json) {
 
 void print(const Diagnostics& diagnostics) {
     for (const Diagnostic& diagnostic : diagnostics.sorted())
-        fmt::print(stderr, "{}\n", printable_line(text(diagnostic, diagnostics.file())));
+        tell("{}\n", printable_line(text(diagnostic, diagnostics.file())));
     if (diagnostics.has_errors())
-        fmt::print(stderr, "{} error{} in '{}'\n", diagnostics.errors(), diagnostics.errors() == 1 ? "" : "s",
-                   printable_line(diagnostics.file()));
+        tell("{} error{} in '{}'\n", diagnostics.errors(), diagnostics.errors() == 1 ? "" : "s",
+             printable_line(diagnostics.file()));
 }
 
 Json to_json(const Diagnostics& diagnostics) {

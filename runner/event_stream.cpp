@@ -27,8 +27,9 @@ Json EventStream::step_event(const char* name, const RunNode& node) const {
 
 void EventStream::say(const Json& event) {
     const std::scoped_lock one_at_a_time(mutex_);
-    fmt::print("{}\n", event.dump(-1, ' ', false, Json::error_handler_t::replace));
-    std::fflush(stdout);
+    const std::string line = event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    has_failed_ = std::fwrite(line.data(), 1, line.size(), stdout) < line.size() || has_failed_;
+    has_failed_ = std::fflush(stdout) != 0 || has_failed_;
 }
 
 void EventStream::begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run) {

@@ -21,6 +21,8 @@ public:
     /// `run`: its number in the records; 0: it is not recorded.
     void begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run);
     void end(const RunReport& report);
+    /// Some events could not be written.
+    bool has_failed() const { return has_failed_; }
 
     void node_started(const RunNode& node, std::size_t worker) override;
     void node_progress(const RunNode& node, double fraction) override;
@@ -37,6 +39,7 @@ private:
     const RunGraph& graph_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::map<std::size_t, int> percents_;  // by node
+    bool has_failed_ = false;
     std::mutex mutex_;
 };
 

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 #include <sched.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <limits>
@@ -23,6 +25,7 @@
 #include "scanmill/records/recorder.hpp"
 #include "scanmill/work/in_process_worker.hpp"
 #include "scanmill/work/worker_processes.hpp"
+#include "stderr_text.hpp"
 
 namespace scanmill::runner {
 
@@ -46,6 +49,16 @@ std::optional<RunRecords> open_records(const std::filesystem::path& folder, cons
         warn(fmt::format("this run is not recorded: {}", error.sentence()));
         return std::nullopt;
     }
+}
+
+/// Better before the first step than after the last.
+void require_writable(const std::filesystem::path& folder) {
+    std::error_code trouble;
+    std::filesystem::create_directories(folder, trouble);
+    if (!trouble && ::access(folder.c_str(), W_OK | X_OK) != 0) trouble.assign(errno, std::generic_category());
+    if (trouble)
+        throw Error("results cannot be put into '{}': {}", folder.string(), trouble.message())
+            .hint("name another output folder: -o DIR");
 }
 
 /// What changed since the last run into the same folder; without records of one nothing is known.
@@ -126,6 +139,7 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options, const std::
                     "Worker processes: what crashes in one harms no other; 0: everything in this process, without "
                     "limits of time. " +
                         jobs_help)
+        ->check(whole_number<unsigned>())
         ->check(CLI::Range(0u, most_jobs));
     command
         .add_option("--threads", options.threads,
@@ -153,12 +167,15 @@ int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& w
         return done;
     }
 
+    require_writable(options.output_folder);
     std::set<std::filesystem::path> folders;
     for (const RunCell& cell : graph.cells)
         for (const RunOutput& output : cell.outputs) folders.insert(output.file.parent_path());
     for (const std::filesystem::path& folder : folders) remove_abandoned_parts(folder);
 
     const unsigned jobs = options.jobs.value_or(task.jobs);
+    if (jobs == 0 && (task.limits.cell_seconds > 0 || task.limits.step_seconds > 0))
+        warn("with -j 0 no limit of time is kept");
     RunSettings settings;
     settings.threads = options.threads > 0 ? options.threads : std::max(1u, cores() / std::max(1u, jobs));
     settings.limits = task.limits;
@@ -167,6 +184,7 @@ int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& w
     settings.shares_values = jobs > 0 && cache && keep_policy(options.cache) != KeepRule::Policy::never;
     settings.foresight = std::move(foresight);
     settings.is_cancelled = [] { return interrupt_requested != 0; };
+    std::signal(SIGPIPE, SIG_IGN);  // whoever reads what is said may go: the work goes on
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
     Progress progress(graph, settings.foresight, std::max(1u, jobs), options.quiet);
@@ -198,12 +216,16 @@ int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& w
     if (recorder) recorder->finish(report);
     if (cache) cache->evict();
 
-    if (events)
+    if (events) {
         events->end(report);
-    else
-        fmt::print("{}", options.json ? report_json(graph, report) + "\n" : report_text(graph, report));
+        if (events->has_failed()) {
+            tell("error: not all events could be written\n");
+            return our_fault;
+        }
+    }
+    if (!events) fmt::print("{}", options.json ? report_json(graph, report) + "\n" : report_text(graph, report));
     if (report.interrupted) {
-        fmt::print(stderr, "interrupted; what was written is whole\n");
+        tell("interrupted; what was written is whole\n");
         return interrupted;
     }
     return report.all_done() ? done : some_failed;

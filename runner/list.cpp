@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "load.hpp"
+#include "stderr_text.hpp"
 #include "table.hpp"
 
 namespace scanmill::runner {
@@ -51,8 +52,8 @@ int list(bool json, bool names) {
     }
     fmt::print("{}", table.text());
     for (const UnusableModule& module : library.unusable())
-        fmt::print(stderr, "warning: the filter '{}' cannot be used: '{}' {}\n", module.name, module.manifest.string(),
-                   module.reason);
+        tell("warning: the filter '{}' cannot be used: '{}' {}\n", module.name, module.manifest.string(),
+             module.reason);
     return done;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "load.hpp"
+#include "stderr_text.hpp"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,7 @@ FilterLibrary open_library() {
     std::vector<std::string> ignored;
     FilterLibrary library(plugin_folders(&ignored));
     for (const std::string& folder : ignored)
-        fmt::print(stderr, "warning: SCANMILL_PLUGIN_PATH: '{}' is passed over; only absolute folders are searched\n",
-                   folder);
+        tell("warning: SCANMILL_PLUGIN_PATH: '{}' is passed over; only absolute folders are searched\n", folder);
     return library;
 }
 

@@ -11,6 +11,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
 #include "scanmill/work/serve.hpp"
+#include "stderr_text.hpp"
 
 int main(int argc, char** argv) {
     using namespace scanmill::runner;
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
     try {
         const int code = chosen();
         if (std::fflush(stdout) != 0) {
-            fmt::print(stderr, "error: the output could not be written\n");
+            tell("error: the output could not be written\n");
             return our_fault;
         }
         return code;

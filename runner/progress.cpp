@@ -8,14 +8,17 @@
 #include <algorithm>
 
 #include "printable.hpp"
+#include "stderr_text.hpp"
 
 namespace scanmill::runner {
 
 namespace {
 
-std::size_t terminal_width() {
+/// Columns and lines.
+std::pair<std::size_t, std::size_t> terminal_size() {
     winsize size{};
-    return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+    if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) return {80, 24};
+    return {size.ws_col, size.ws_row};
 }
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -42,19 +45,21 @@ std::string Progress::label(const RunNode& node) const {
 
 void Progress::say(const std::string& line) {
     wipe();
-    fmt::print(stderr, "{}\n", printable(line));
+    tell("{}\n", printable(line));
 }
 
 void Progress::wipe() {
-    if (painted_ > 0) fmt::print(stderr, "\x1b[{}A\x1b[J", painted_);
+    if (painted_ > 0) tell("\x1b[{}A\x1b[J", painted_);
     painted_ = 0;
 }
 
 void Progress::paint() {
     wipe();
-    const std::size_t width = terminal_width();
-    for (const std::string& line : board_.lines(seconds_since(begin_), width > 1 ? width - 1 : 1)) {
-        fmt::print(stderr, "{}\n", line);
+    const auto [width, height] = terminal_size();
+    // The last column and the last line stay free: nothing wraps, nothing scrolls away.
+    for (const std::string& line : board_.lines(seconds_since(begin_), std::max<std::size_t>(width, 2) - 1,
+                                                std::max<std::size_t>(height, 2) - 1)) {
+        tell("{}\n", line);
         ++painted_;
     }
     std::fflush(stderr);
@@ -97,7 +102,7 @@ void Progress::node_ended(const RunNode& node, const NodeReport& report) {
     if (quiet_ || terminal_ || report.outcome != Outcome::done) return;
     const std::string took =
         report.origin == Origin::ran ? fmt::format("{:.2f} s", report.effort.seconds) : std::string("cached");
-    fmt::print(stderr, "[{}/{}] {} {}\n", ended_, graph_.nodes.size(), label(node), took);
+    tell("[{}/{}] {} {}\n", ended_, graph_.nodes.size(), label(node), took);
 }
 
 void Progress::output_started(const RunCell&, const RunOutput& output, std::size_t worker) {

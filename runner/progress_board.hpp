@@ -28,8 +28,8 @@ public:
     }
     void cell_failed() { ++failed_; }
 
-    /// At most `width` characters each.
-    std::vector<std::string> lines(double now, std::size_t width) const;
+    /// At most `width` columns wide and `height` lines high: workers that do nothing give way first.
+    std::vector<std::string> lines(double now, std::size_t width, std::size_t height = 1000) const;
     /// Seconds until the end as far as one can tell: the steps to come take as long as those that were, one by one.
     std::optional<double> time_left(double now) const;
 
@@ -40,6 +40,7 @@ private:
         double since = 0, fraction = 0;
     };
     std::vector<Doing> workers_;
+    std::string line_of(std::size_t worker, double now, std::size_t width) const;
     std::size_t steps_, to_run_, ended_ = 0, ran_ = 0, failed_ = 0;
 };
 

@@ -27,7 +27,7 @@ TEST_F(BatchSchema, WhatTheParserAccepts_IsAccepted) {
           scan + "[{path: scans/*.ply, set: , pose: [[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]\n",
           scan + "[scans/a.ply, {path: scans/b.ply, pose: {translation: [1, 2, 3], rotation: [0, 0, 0, 1]}}]\n",
           head + "set: {n: {sweep: [1, 2]}, s: 0.1 %diag, t: [1, 2], u: true, v: $$x}\n",
-          head + "limits: {memory: 8 GiB, time: 10 min, step: {memory: 1.5kB, time: 250 ms}, retries: 0}\n",
+          head + "limits: {memory: 8 GiB, time: 10 min, step: {memory: 1.5GB, time: 250 ms}, retries: 0}\n",
           head + "measure: {samples: 1000000000, thresholds: [0.5 %diag, 1 mm], self-intersections: true}\n",
           head + "measure: {thresholds: 1 mm}\n",
           head + "gate: {hausdorff: +1 %, genus: exact, seconds: 20 %, max: +0.2 mm, p50: 1 spacing, f-score: 0.01, "
@@ -95,7 +95,7 @@ std::vector<Mistake> mistakes(const std::string& head) {
         {head + "set: {n: }\n", "set n: Value type not permitted", "found nothing"},
         {head + "limits: {memory: 8}\n", "limits memory: Value type not permitted", "'8' has no unit"},
         {head + "limits: {memory: 8 Gb}\n", "limits memory: Failed to match regex", "'8 Gb' is no size"},
-        {head + "limits: {memory: 0 B}\n", "limits memory: Failed to match regex", "leaves room for nothing"},
+        {head + "limits: {memory: 0 B}\n", "limits memory: Failed to match regex", "is out of range"},
         {head + "limits: {time: 5 m}\n", "limits time: Failed to match regex", "'5 m' is no time"},
         {head + "limits: {time: -5 s}\n", "limits time: Failed to match regex", "'-5 s' is no time"},
         {head + "limits: {step: {tme: 5 s}}\n", "limits step: Object contains a property" + known_only + "'tme'",

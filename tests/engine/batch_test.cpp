@@ -128,10 +128,14 @@ TEST_F(BatchFile, WorkflowTwice_NamesTheEarlierLine) {
 TEST_F(BatchFile, LimitsThatAreNone_AreRefused) {
     const auto limit = [&](const std::string& text) { return rest("limits: {" + text + "}\n"); };
     EXPECT_THAT(limit("memory: 8 Gb"), ElementsAre(HasSubstr("memory: '8 Gb' is no size")));
-    EXPECT_THAT(limit("memory: 0 B"), ElementsAre(HasSubstr("memory: 0 B leaves room for nothing")));
+    EXPECT_THAT(limit("memory: 0 B"),
+                ElementsAre(HasSubstr("memory: 0 B is out of range; expected 64 MiB to 1024 TiB")));
     EXPECT_THAT(limit("time: 10"), ElementsAre(HasSubstr("time: '10' has no unit; expected a time, as 10 min")));
     EXPECT_THAT(limit("time: 10 minutes"), ElementsAre(HasSubstr("time: '10 minutes' is no time")));
-    EXPECT_THAT(limit("time: 0 s"), ElementsAre(HasSubstr("leaves room for nothing")));
+    EXPECT_THAT(limit("memory: 1 MiB"), ElementsAre(HasSubstr("is out of range"))) << "no process lives on that";
+    EXPECT_THAT(limit("time: 1e-300 s"), ElementsAre(HasSubstr("is out of range")));
+    EXPECT_THAT(limit("time: 1e300 h"), ElementsAre(HasSubstr("is out of range")));
+    EXPECT_THAT(limit("time: 0 s"), ElementsAre(HasSubstr("is out of range; expected 1 ms to 10000 h")));
     EXPECT_THAT(limit("time: [1 s]"), ElementsAre(HasSubstr("found a list")));
     EXPECT_THAT(limit("retries: -1"), ElementsAre(HasSubstr("retries: -1 is out of range")));
     EXPECT_THAT(limit("retries: 1.5"), ElementsAre(HasSubstr("retries: '1.5' is not a whole number")));

@@ -37,7 +37,7 @@ void require_sound(const Plan& plan) {
     for (const PlannedVariant& variant : plan.variants) {
         for (const std::size_t step : variant.steps) require_law(step < plan.steps.size(), "a step that is not there");
         for (const PlannedOutput& output : variant.outputs) {
-            const std::string file = expand_template(output.file, {"scan", variant.name, plan.workflow.name});
+            const std::string file = expand_template(output.file, {"scan", variant.name, plan.workflow.name, "folder"});
             require_law(!file.empty() && file.front() != '/' && !file.starts_with(".."), "an output elsewhere");
         }
     }

@@ -42,7 +42,7 @@ protected:
 TEST_F(CheckOfABatch, SaysHowManyOfWhat) {
     const ProgramResult found = check(with_size("{sweep: [1 u, 2 u, 3 u]}"));
     EXPECT_EQ(found.exit_code, 0);
-    EXPECT_EQ(found.out, "nightly.yaml: ok, 3 scans, 2 workflows, 4 variants\n");
+    EXPECT_EQ(found.out, "nightly.yaml: ok, 3 scans, 2 workflows, 4 variants, 12 cells\n");
     EXPECT_THAT(found.err, IsEmpty());
 }
 

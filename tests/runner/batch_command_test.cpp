@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Batches as a user meets them: what is computed and what is not, what is said of it, and what stays of it.
 
+#include <cstdlib>
+
 #include "runner/batch_fixture.hpp"
 
 namespace scanmill::test {
@@ -195,6 +197,63 @@ TEST_F(Batch, ExpectationAddedBeforeWhatIsCached_FailsItToo) {
     workflow("    expect: {points: 77}\n");
     EXPECT_EQ(run_batch({"--keep", "always"}).exit_code, 1);
     EXPECT_EQ(outputs().size(), 0u);
+}
+
+TEST_F(Batch, TruthAndPoseFiles_AreNotReplaced) {
+    folder_.write("w.yaml",
+                  "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - test-step:\noutputs: "
+                  "{'{scan}.ply': test-step}\n");
+    folder_.write("in/p.xyz", "1 2 3\n4 5 6\n");
+    folder_.write("out/p.ply", "the truth");
+    write_batch("{path: in/p.xyz, truth: out/p.ply}");
+    EXPECT_EQ(run_batch().exit_code, 2);
+    EXPECT_EQ(content_of(folder_ / "out/p.ply"), "the truth");
+    const std::string pose = "{\"scanmill\": 1, \"poses\": [{\"rotation\": [0, 0, 0, 1], \"translation\": [1, 0, 0]}]}";
+    folder_.write("out/p.ply.json", pose);
+    write_batch("{path: in/p.xyz, pose: out/p.ply.json}");
+    const ProgramResult result = run_batch();
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("is an input"));
+    EXPECT_EQ(content_of(folder_ / "out/p.ply.json"), pose);
+}
+
+TEST_F(Batch, EqualScansOfOneName_NeedTwoFiles_WhichTheFolderGives) {
+    const auto workflow = [&](const std::string& name) {
+        folder_.write("w.yaml", "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - test-step:\noutputs: {'" +
+                                    name + "': test-step}\n");
+    };
+    folder_.write("scans/one/a.xyz", "1 2 3\n4 5 6\n");
+    folder_.write("scans/two/a.xyz", "1 2 3\n4 5 6\n");
+    write_batch("{path: scans/*/a.xyz, frame: lab, unit: mm}");
+    workflow("{scan}.ply");
+    EXPECT_EQ(run_batch().exit_code, 2);
+    workflow("{folder}/{scan}.ply");
+    ASSERT_EQ(run_batch().exit_code, 0);
+    const Json described = Json::parse(content_of(folder_ / "out/two/a.ply.json"));
+    EXPECT_EQ(described["scan"], "scans/two/a.xyz");
+    EXPECT_EQ(described["steps"][0]["file"], "scans/two/a.xyz") << "though it was read as the other one";
+    EXPECT_EQ(described["steps"][0]["frame"], "lab");
+    EXPECT_EQ(described["steps"][0]["unit"], "mm");
+}
+
+TEST_F(Batch, NobodyListening_IsNoReasonToStop) {
+    write_workflow("1");
+    write_scans("scan", 3);
+    write_batch("scans/*.xyz");
+    for (const char* where : {">/dev/full", ">&-", "2>/dev/full", "2>&-", "--json >/dev/full", "--json | head -1"}) {
+        std::filesystem::remove_all(folder_ / "out");
+        const std::string command = "cd '" + folder_.path().string() +
+                                    "' && (SCANMILL_PLUGIN_PATH='" SCANMILL_TEST_PLUGIN_DIR
+                                    "' XDG_CACHE_HOME=home '" SCANMILL_PROGRAM "' batch b.yaml -o out --no-cache " +
+                                    where + ") > /dev/null 2>&1";
+        const int status = std::system(command.c_str());
+        EXPECT_TRUE(WIFEXITED(status)) << where;
+        EXPECT_EQ(outputs().size(), 3u) << where;
+        const bool loses_results = std::string(where).starts_with(">") || std::string(where).ends_with("full");
+        if (loses_results && !std::string(where).starts_with("2")) {
+            EXPECT_EQ(WEXITSTATUS(status), 3) << where;
+        }
+    }
 }
 
 TEST_F(Batch, Json_IsALineForEverythingThatHappens) {

@@ -101,7 +101,7 @@ TEST_F(Hostile, FullDisk_LeavesTheResultOfAnEarlierRun) {
 /// Everyone may look, no one may write.
 void open_to_readers(const fs::path& folder) { fs::permissions(folder, fs::perms(0555)); }
 
-TEST_F(Hostile, OutputFolderThatMayNotBeWritten_IsSaidForTheScan) {
+TEST_F(Hostile, OutputFolderThatMayNotBeWritten_IsSaidBeforeAnythingRuns) {
     folder_.write("w.yaml", workflow("{scan}.ply"));
     folder_.write("scan.xyz", four_points);
     fs::create_directory(folder_ / "out");
@@ -113,8 +113,8 @@ TEST_F(Hostile, OutputFolderThatMayNotBeWritten_IsSaidForTheScan) {
     fs::permissions(folder_.path(), fs::perms::owner_all);
     fs::permissions(folder_ / "out", fs::perms::owner_all);
     if (ran.exit_code > 100) GTEST_SKIP() << "skipped: the program may not be run without root's rights here";
-    expect_refused(ran, 1, "Permission denied");
-    expect_refused(below, 1, "Permission denied");
+    expect_refused(ran, 2, "Permission denied");
+    expect_refused(below, 2, "Permission denied");
 }
 
 struct StrangeName {

@@ -51,7 +51,27 @@ TEST(ProgressBoard, LongNames_KeepTheirEnd_AndWholeCharacters) {
     ProgressBoard board(1, 2, 2);
     board.started(0, &board, "very/long/folder/Größe.ply: decimate", 0);
     EXPECT_EQ(board.lines(0, 25).front(), "…Größe.ply: decimate 0:00");
-    EXPECT_EQ(board.lines(0, 3).front(), " 0:00") << "the time at least";
+    EXPECT_EQ(board.lines(0, 3).front(), "…00") << "never wider than that";
+}
+
+TEST(ProgressBoard, WideCharacters_CountTwice) {
+    ProgressBoard board(1, 2, 2);
+    board.started(0, &board, "日本語日本語.off: read", 0);
+    EXPECT_EQ(board.lines(0, 80).front(), "日本語日本語.off: read 0:00");
+    EXPECT_EQ(board.lines(0, 27).front(), "日本語日本語.off: read 0:00") << "twelve columns of names and fifteen";
+    EXPECT_EQ(board.lines(0, 26).front(), "…本語日本語.off: read 0:00");
+    EXPECT_EQ(board.lines(0, 25).front(), "…語日本語.off: read 0:00");
+}
+
+TEST(ProgressBoard, LowTerminals_ShowWhoWorks) {
+    ProgressBoard board(5, 10, 10);
+    board.started(3, &board, "a", 0);
+    const std::vector<std::string> lines = board.lines(0, 80, 3);
+    EXPECT_THAT(lines, ElementsAre("  4 a 0:00", HasSubstr("0/10 steps")));
+    for (int worker = 0; worker < 5; ++worker)
+        board.started(static_cast<std::size_t>(worker), &lines[0] + worker, "a", 0);
+    EXPECT_EQ(board.lines(0, 80, 3).size(), 3u);
+    EXPECT_EQ(board.lines(0, 3, 3).front().size(), 0u + std::string("…0").size() + 1);
 }
 
 TEST(ClockText, Examples) {

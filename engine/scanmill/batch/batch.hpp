@@ -24,6 +24,7 @@ struct BatchScan {
     LengthUnit unit = LengthUnit::unknown;
     std::string frame;                   ///< its {stem} replaced; empty: what the workflow or the file says
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
+    std::filesystem::path pose_file;     ///< empty: the pose stands in the batch
     std::filesystem::path truth;         ///< empty: there is none
     Settings settings;                   ///< the scan's own, before the batch's
 };

@@ -15,11 +15,11 @@ namespace {
 
 template <class Value>
 struct Cap {
-    std::string_view expected, smallest;
+    std::string_view expected, smallest, largest;
     Value (*parse)(std::string_view);
 };
-constexpr Cap<u64> size_cap{"a size, as 8 GiB", "1 B", parse_byte_size};
-constexpr Cap<double> time_cap{"a time, as 10 min", "1 ms", parse_duration};
+constexpr Cap<u64> size_cap{"a size, as 8 GiB", "64 MiB", "1024 TiB", parse_byte_size};
+constexpr Cap<double> time_cap{"a time, as 10 min", "1 ms", "10000 h", parse_duration};
 
 /// 0 when there is none, or after reporting.
 template <class Value>
@@ -35,9 +35,9 @@ Value cap(const YamlEntry* entry, const Cap<Value>& form, Diagnostics& diagnosti
     }
     try {
         const Value value = form.parse(*text);
-        if (!(value > 0))
-            diagnostics.error(place, fmt::format("{}: {} leaves room for nothing; expected {} or more", entry->key,
-                                                 *text, form.smallest));
+        if (value < form.parse(form.smallest) || value > form.parse(form.largest))
+            diagnostics.error(place, fmt::format("{}: {} is out of range; expected {} to {}", entry->key, *text,
+                                                 form.smallest, form.largest));
         return value;
     } catch (const Error& error) {
         diagnostics.error(place, fmt::format("{}: {}", entry->key, error.sentence()));

@@ -154,6 +154,7 @@ private:
         for (BatchScan& scan : scans)
             files.apply(scan.file, [&](const fs::path& file) {
                 scan.pose = pose_files_.pose_of(scan.file, file, files.position(), diagnostics_);
+                scan.pose_file = file;
             });
         files.finish();
     }

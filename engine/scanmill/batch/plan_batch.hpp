@@ -29,6 +29,8 @@ struct CheckedBatch {
     bool has_errors() const;
     /// Variants of all workflows; one that several parts of a workflow have counts once.
     std::size_t variants() const;
+    /// Scans times variants, over all workflows.
+    std::size_t cells() const;
 };
 
 /// Checks the batch in `text`, which stands in `file`. A scan's values are the batch's `set`, overridden by its own, as

@@ -32,6 +32,13 @@ std::string builds_of_readers(const std::string& core) {
     return builds;
 }
 
+/// Of the folder that the file lies in.
+std::string folder_name(const fs::path& file) {
+    std::error_code gone;
+    const std::string name = fs::absolute(file, gone).lexically_normal().parent_path().filename().string();
+    return name.empty() ? "root" : name;
+}
+
 class GraphBuilder {
 public:
     GraphBuilder(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash)
@@ -59,6 +66,7 @@ private:
         for (const ScanFile& scan : part.request.scans) output_files_.protect(scan.path);
         for (const auto& [name, files] : part.request.inputs)
             for (const fs::path& file : files) output_files_.protect(file);
+        for (const fs::path& file : part.request.protected_files) output_files_.protect(file);
         for (const PlannedStep& step : part.plan->steps)
             for (const auto& [name, value] : step.parameters.values)
                 if (step.spec.parameter(name)->type == ParameterType::path)
@@ -102,17 +110,18 @@ private:
                 add_to(cell, node_of_step[step]);
             }
             const TemplateValues values{file ? file->path.stem().string() : scan_name, planned.name,
-                                        workflow_name(*plan_)};
+                                        workflow_name(*plan_), file ? folder_name(file->path) : scan_name};
             for (const auto& [name, source] : outputs(planned)) {
                 if (source.step && !node_of_step.contains(*source.step)) continue;  // beyond --until
                 const std::size_t node = sources_of(source, node_of_step, scan, file, cell).front();
                 const std::string writer =
                     fmt::format("scan '{}' under variant '{}'{}", scan_name, planned.name,
                                 parts_.size() > 1 ? " of workflow '" + values.workflow + "'" : "");
+                const std::string content = fmt::format("{} {} {}", node, scan, plan_->workflow.file);
                 const fs::path target =
-                    output_files_.add(expand_template(name, values), {std::to_string(node), source.port}, writer);
-                output_files_.add(description_of(expand_template(name, values)),
-                                  {std::to_string(node), source.port + " described"}, writer);
+                    output_files_.add(expand_template(name, values), {content, source.port}, writer);
+                output_files_.add(description_of(expand_template(name, values)), {content, source.port + " described"},
+                                  writer);
                 cell.outputs.push_back({target, node, source.port});
             }
             graph_.cells.push_back(std::move(cell));
@@ -283,6 +292,20 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> declared_of(const LeafSource& leaf) {
+    std::vector<std::pair<std::string, std::string>> texts;
+    if (leaf.unit != LengthUnit::unknown) texts.emplace_back("unit", symbol(leaf.unit));
+    if (!leaf.frame.empty()) texts.emplace_back("frame", leaf.frame);
+    if (leaf.pose) {
+        std::string rows;
+        for (int row = 0; row < 3; ++row)
+            rows += fmt::format("{}[{}, {}, {}, {}]", row > 0 ? ", " : "", leaf.pose->rotation(row, 0),
+                                leaf.pose->rotation(row, 1), leaf.pose->rotation(row, 2), leaf.pose->translation[row]);
+        texts.emplace_back("pose", "[" + rows + ", [0, 0, 0, 1]]");
+    }
+    return texts;
+}
 
 const std::string& RunGraph::label(const RunNode& node) const {
     static const std::string read = "read";

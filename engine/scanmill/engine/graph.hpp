@@ -41,6 +41,9 @@ struct LeafSource {
     std::optional<RigidTransform> pose;
 };
 
+/// What was declared of the file: unit, frame and pose, as far as there is something, as text.
+std::vector<std::pair<std::string, std::string>> declared_of(const LeafSource& leaf);
+
 struct RunNode {
     std::string key;  ///< plan key: what identifies the result before anything runs
     std::string code;  ///< of a step: hash of filter, builds, seed and the content of files that parameters name

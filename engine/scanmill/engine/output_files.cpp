@@ -38,7 +38,9 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
     if (!is_new) {
         if (known->second.content != content)
             throw Error("{} and {} would both write '{}'", known->second.writer, writer, file.string())
-                .hint("use {scan}, {variant} and {workflow} in the output's name, or rename a scan");
+                .hint(
+                    "put {variant}, {workflow} or {folder}, the name of the scan's folder, into the output's name, or "
+                    "rename a scan");
         return file;
     }
     require_no_clash(file, writer);

@@ -9,7 +9,7 @@
 
 namespace scanmill {
 
-/// What a file will hold: one output port of one node.
+/// What a file will hold: one output port of one node, for one scan under one workflow.
 struct OutputContent {
     std::string node;
     std::string port;

@@ -14,7 +14,7 @@ namespace scanmill {
 
 namespace {
 
-const std::array<std::string, 3> placeholders{"scan", "variant", "workflow"};
+const std::array<std::string, 4> placeholders{"scan", "folder", "variant", "workflow"};
 
 bool leaves_folder(const std::filesystem::path& path) {
     const std::filesystem::path normal = path.lexically_normal();
@@ -57,8 +57,9 @@ void check_template(const std::string& file, Position position, Diagnostics& dia
         if (std::ranges::find(placeholders, name) == placeholders.end())
             diagnostics.error(
                 position,
-                fmt::format("'{}' has no meaning for {{{}}}; expected {{scan}}, {{variant}} or {{workflow}}{}", file,
-                            name, did_you_mean(name, placeholders)));
+                fmt::format(
+                    "'{}' has no meaning for {{{}}}; expected {{scan}}, {{folder}}, {{variant}} or {{workflow}}{}",
+                    file, name, did_you_mean(name, placeholders)));
         at = end;
     }
     if (file.find('\0') != std::string::npos) diagnostics.error(position, "a file's name has a zero byte");
@@ -84,7 +85,10 @@ std::string expand_template(const std::string& file, const TemplateValues& value
         }
         const std::size_t end = file.find('}', at);
         const std::string placeholder = file.substr(at + 1, end - at - 1);
-        name += placeholder == "scan" ? values.scan : placeholder == "variant" ? values.variant : values.workflow;
+        name += placeholder == "scan"      ? values.scan
+                : placeholder == "folder"  ? values.folder
+                : placeholder == "variant" ? values.variant
+                                           : values.workflow;
         at = end;
     }
     if (leaves_folder(name) || names_a_folder(name))

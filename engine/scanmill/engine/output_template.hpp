@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Names of output files: templates over {scan} (the file's stem), {variant} and {workflow}.
+/// Names of output files: templates over {scan} (the file's stem), {folder} (the name of the
+/// folder that it lies in), {variant} and {workflow}.
 
 #include <string>
 
@@ -9,7 +10,7 @@
 namespace scanmill {
 
 struct TemplateValues {
-    std::string scan, variant, workflow;
+    std::string scan, variant, workflow, folder;
 };
 
 /// Reports unknown placeholders, unbalanced braces, absolute paths, paths that leave the output folder and paths that

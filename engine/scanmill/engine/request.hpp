@@ -27,6 +27,7 @@ struct ScanFile {
 struct RunRequest {
     std::vector<ScanFile> scans;  ///< feed the first input: one a run, or all of them one run's list
     std::map<std::string, std::vector<std::filesystem::path>> inputs;  ///< feed the other inputs
+    std::vector<std::filesystem::path> protected_files;  ///< others that no output may replace
     std::filesystem::path output_folder;
     LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: what the workflow or the file says
     std::uint64_t seed = 0;

@@ -28,7 +28,7 @@ Recorder::Recorder(RunRecords& records, const RunStart& start, FilterLibrary& li
       on_warning_(std::move(on_warning)),
       begin_(std::chrono::steady_clock::now()),
       flushed_(begin_) {
-    attempt([&] { run_ = records_.begin(start); });
+    broken_ = !attempt([&] { run_ = records_.begin(start); });
 }
 
 void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
@@ -43,6 +43,8 @@ void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
         step.filter_version = planned->spec.version;
         step.build = library_.build_id(planned->spec.name);
         step.authored = texts_of(planned->parameters);
+    } else {
+        step.authored = declared_of(node.leaf);
     }
     step.origin = name_of(report.origin);
     step.why = report.why;
@@ -83,32 +85,36 @@ Recorder::~Recorder() { flush(); }
 void Recorder::finish(const RunReport& report) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
     const std::string outcome = report.interrupted ? "interrupted" : report.all_done() ? "done" : "failed";
-    attempt([&] { records_.end(run_, steps_, cells_, outcome, seconds.count()); });
+    const bool is_recorded = attempt([&] { records_.end(run_, steps_, cells_, outcome, seconds.count()); });
+    if (!is_recorded && on_warning_) on_warning_(fmt::format("this run is not recorded to its end: {}", trouble_));
     steps_.clear();
     cells_.clear();
 }
 
 void Recorder::flush_when_due() {
-    constexpr std::chrono::seconds patience(1);
+    const std::chrono::seconds patience(trouble_.empty() ? 1 : 10);
     if (std::chrono::steady_clock::now() - flushed_ > patience) flush();
 }
 
-void Recorder::flush() {
-    if (steps_.empty() && cells_.empty()) return;
-    attempt([&] { records_.add(run_, steps_, cells_); });
+bool Recorder::flush() {
+    flushed_ = std::chrono::steady_clock::now();
+    if (steps_.empty() && cells_.empty()) return true;
+    if (!attempt([&] { records_.add(run_, steps_, cells_); })) return false;
     steps_.clear();
     cells_.clear();
-    flushed_ = std::chrono::steady_clock::now();
+    return true;
 }
 
 template <class Action>
-void Recorder::attempt(Action&& action) {
-    if (broken_) return;
+bool Recorder::attempt(Action&& action) {
+    if (broken_) return false;
     try {
         action();
+        trouble_.clear();
+        return true;
     } catch (const Error& error) {
-        broken_ = true;
-        if (on_warning_) on_warning_(fmt::format("this run is not recorded to its end: {}", error.sentence()));
+        trouble_ = error.sentence();
+        return false;
     }
 }
 

@@ -13,8 +13,9 @@
 namespace scanmill {
 
 /// Gathers what ends within a second before it writes, so that many small steps cost few syncs; a run that is killed
-/// loses what ended in its last second, and the step that it was at. When the records cannot be written any longer,
-/// that is told once and the run goes on without them.
+/// loses what ended in its last second, and the step that it was at. When the records cannot be written, because
+/// somebody else has locked them or the disk is full, that is tried again now and then; what could not be written until
+/// the end is told, and lost.
 class Recorder : public RunObserver {
 public:
     using OnWarning = std::function<void(std::string)>;
@@ -34,10 +35,10 @@ public:
     std::int64_t run() const { return run_; }
 
 private:
-    void flush();
+    bool flush();
     void flush_when_due();
     template <class Action>
-    void attempt(Action&& action);
+    bool attempt(Action&& action);
 
     RunRecords& records_;
     FilterLibrary& library_;
@@ -45,6 +46,7 @@ private:
     OnWarning on_warning_;
     std::int64_t run_ = 0;
     bool broken_ = false;
+    std::string trouble_;
     std::vector<StepRecord> steps_;
     std::vector<CellRecord> cells_;
     std::chrono::steady_clock::time_point begin_, flushed_;

@@ -32,7 +32,7 @@ struct RunRecords::Database {
     /// Throws Error for tables of a newer Scanmill.
     void require_known(int version) const;
 
-    static constexpr int patience = 10'000;  // milliseconds, while another run writes
+    static constexpr int patience = 1000;  // milliseconds, while another run writes
     std::string file;
     SQLite::Database sqlite;
     std::map<std::pair<std::int64_t, std::size_t>, std::int64_t> step_ids;  // of a run's nodes

@@ -102,8 +102,11 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
             entry["parameters"] = to_json(reports[each].resolved);
             entry["metrics"] = to_json(reports[each].metrics);
         } else {
-            entry["file"] = made.leaf.file.string();
+            // A scan that equals another one is read once, under the other's name.
+            const bool is_this_scan = made.is_scan && !graph.plans[cell.plan]->workflow.inputs.front().list;
+            entry["file"] = is_this_scan ? graph.scan_names[cell.scan] : made.leaf.file.string();
             entry["content"] = made.leaf.content;
+            for (const auto& [name, value] : declared_of(made.leaf)) entry[name] = value;
         }
         json["steps"].push_back(std::move(entry));
     }

@@ -67,9 +67,12 @@ ScratchFolder::~ScratchFolder() {
 
 fs::path ScratchFolder::folder(const std::string& name) const {
     const fs::path folder = path_ / name;
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-    fs::create_directory(folder);
+    std::error_code trouble;
+    fs::remove_all(folder, trouble);
+    fs::create_directory(folder, trouble);
+    if (trouble)
+        throw Error("no scratch folder could be made in '{}': {}", path_.string(), trouble.message())
+            .hint("set TMPDIR to a folder with room");
     return folder;
 }
 
