@@ -2,9 +2,10 @@
 /// What the engine costs: `scanmill run workflows/quickstart.yaml` beside a program that calls the same filters one
 /// after the other, and nothing else.
 ///
-/// Equal: the scan, the parameters, the threads, the STL that is written, one process started and waited for; all in
-/// turn. Not equal: the engine also starts a worker process, keys and checks everything, hashes the scan, and writes
-/// its records and the output's description. usage: engine_overhead_bench [rounds = 11]
+/// Equal: the scan, the filters' modules, their parameters, the threads, the STL that is written, one process started
+/// and waited for; all in turn. Not equal: the engine also starts a worker process, keys and checks everything, hashes
+/// the scan, looks whether the result is what the workflow expects, and writes its records and a description. usage:
+/// engine_overhead_bench [rounds = 11]
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -23,30 +24,44 @@
 #include <thread>
 #include <vector>
 
-#include "alpha_solid/alpha_solid.hpp"
-#include "delaunay/delaunay.hpp"
+#include "scanmill/filter/library.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/length_scale.hpp"
-#include "scanmill/geometry/topology.hpp"
-#include "voxel_thin/voxel_thin.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The quickstart workflow as a C++ program would write it.
+using scanmill::Value;
+
+/// Runs one filter out of its module, with its defaults but for what is given.
+Value run_filter(scanmill::FilterLibrary& library, const std::string& name, const std::string& port, Value input,
+                 const scanmill::ParameterSet& given, scanmill::Context& context) {
+    const scanmill::FilterDeclaration& filter = library.load(name);
+    scanmill::ParameterSet parameters;
+    for (const scanmill::ParameterSpec& parameter : filter.spec.parameters) {
+        const scanmill::ParameterValue* value = given.find(parameter.name);
+        parameters.values.emplace_back(parameter.name, value ? *value : parameter.default_value);
+    }
+    scanmill::Inputs inputs;
+    inputs.add(port, std::move(input));
+    return *filter.run(inputs, parameters, context).find(filter.spec.outputs.front().name);
+}
+
+/// The quickstart workflow as a C++ program would write it, with the same code of the filters: that of their modules.
 int run_filters(const fs::path& scan, const fs::path& output) {
     using namespace scanmill;
     ContextOptions options;
     options.threads = std::max(1u, std::thread::hardware_concurrency());
     Context context(std::move(options));
-    const std::shared_ptr<const PointCloud> points = read_points(scan);
-    VoxelThinParams thinning;
-    thinning.bin_size = Length::percent_of_diagonal(0.5).resolved(length_scale(points));
-    const VoxelThinResult thin = voxel_thin(*points, thinning, context);
-    const DelaunayResult delaunay = scanmill::delaunay(thin.points, {}, context);
-    auto solid = std::make_shared<const TriangleMesh>(alpha_solid(delaunay.tets, {}, context).mesh);
-    write_file(output, solid);
+    FilterLibrary library(plugin_folders(), FirstLoad::at_once);
+    const Value points = read_points(scan);
+    ParameterSet thinning;
+    thinning.values.emplace_back("bin-size",
+                                 ParameterScalar(Length::percent_of_diagonal(0.5).resolved(length_scale(points))));
+    const Value thin = run_filter(library, "voxel-thin", "points", points, thinning, context);
+    const Value tets = run_filter(library, "delaunay", "points", thin, {}, context);
+    write_file(output, run_filter(library, "alpha-solid", "tets", tets, {}, context));
     return 0;
 }
 

@@ -28,7 +28,7 @@ Recorder::Recorder(RunRecords& records, const RunStart& start, FilterLibrary& li
       on_warning_(std::move(on_warning)),
       begin_(std::chrono::steady_clock::now()),
       flushed_(begin_) {
-    broken_ = !attempt([&] { run_ = records_.begin(start); });
+    beginning_ = std::async(std::launch::async, [this, start] { return records_.begin(start); });
 }
 
 void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
@@ -80,7 +80,10 @@ void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
     flush_when_due();
 }
 
-Recorder::~Recorder() { flush(); }
+Recorder::~Recorder() {
+    wait_for_begin();
+    flush();
+}
 
 void Recorder::finish(const RunReport& report) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
@@ -105,8 +108,19 @@ bool Recorder::flush() {
     return true;
 }
 
+void Recorder::wait_for_begin() {
+    if (!beginning_.valid()) return;
+    try {
+        run_ = beginning_.get();
+    } catch (const Error& error) {
+        trouble_ = error.sentence();
+        broken_ = true;
+    }
+}
+
 template <class Action>
 bool Recorder::attempt(Action&& action) {
+    wait_for_begin();
     if (broken_) return false;
     try {
         action();

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <functional>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,14 @@ public:
     /// The rest, and how the run ended.
     void finish(const RunReport& report);
 
-    std::int64_t run() const { return run_; }
+    /// The run's number; 0 when the records cannot be written.
+    std::int64_t run() {
+        wait_for_begin();
+        return run_;
+    }
 
 private:
+    void wait_for_begin();
     bool flush();
     void flush_when_due();
     template <class Action>
@@ -44,6 +50,7 @@ private:
     FilterLibrary& library_;
     const RunGraph& graph_;
     OnWarning on_warning_;
+    std::future<std::int64_t> beginning_;  // the disk takes its time; the work need not wait for it
     std::int64_t run_ = 0;
     bool broken_ = false;
     std::string trouble_;
