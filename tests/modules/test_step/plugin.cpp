@@ -24,7 +24,7 @@ SCANMILL_FILTER() {
                  {"wait", P::Mode::wait, "Goes on until it is cancelled."},
                  {"warn", P::Mode::warn, "Warns once."},
                  {"slow", P::Mode::slow, "Takes 30 ms."},
-                 {"crash", P::Mode::crash, "Stores through a null pointer."},
+                 {"crash", P::Mode::crash, "Raises SIGSEGV."},
                  {"abort", P::Mode::abort, "Aborts the process."},
                  {"throw-number", P::Mode::throw_number, "Throws an int."},
                  {"loop", P::Mode::loop, "Never returns, whoever asks."},
