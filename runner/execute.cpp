@@ -42,8 +42,6 @@ void on_interrupt(int signal) {
 /// Nothing, after a warning, where they cannot be opened: results count more than records of them.
 std::optional<RunRecords> open_records(const std::filesystem::path& folder, const Warn& warn) {
     try {
-        std::error_code trouble;
-        std::filesystem::create_directories(folder, trouble);
         return RunRecords::append_to(folder / records_file);
     } catch (const Error& error) {
         warn(fmt::format("this run is not recorded: {}", error.sentence()));
@@ -222,8 +220,9 @@ int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& w
             tell("error: not all events could be written\n");
             return our_fault;
         }
+    } else {
+        fmt::print("{}", options.json ? report_json(graph, report) + "\n" : report_text(graph, report));
     }
-    if (!events) fmt::print("{}", options.json ? report_json(graph, report) + "\n" : report_text(graph, report));
     if (report.interrupted) {
         tell("interrupted; what was written is whole\n");
         return interrupted;

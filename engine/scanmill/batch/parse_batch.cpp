@@ -116,6 +116,7 @@ Batch parse_batch(const std::string& text, const FilterLibrary& library, Diagnos
 }
 
 bool is_batch(const std::string& text) {
+    if (text.find("batch") == std::string::npos) return false;  // most texts are workflows, and some are long
     Diagnostics unheard("");
     return parse_yaml(text, unheard).find("batch") != nullptr;
 }

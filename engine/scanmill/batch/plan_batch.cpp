@@ -49,10 +49,10 @@ public:
         for (std::size_t i = 0; i < checked_.batch.workflows.size(); ++i) plan_workflow(i);
         if (!unreadable_) complain_of_undeclared();
         constexpr std::size_t most_cells = 100'000;
-        if (cells_ > most_cells)
+        if (const std::size_t cells = checked_.cells(); cells > most_cells)
             batch_diagnostics_.error({}, fmt::format("has {} cells (scans times variants); expected at most {}: make "
                                                      "several batches of it",
-                                                     cells_, most_cells));
+                                                     cells, most_cells));
         checked_.diagnostics.insert(checked_.diagnostics.begin(), std::move(batch_diagnostics_));
         return std::move(checked_);
     }
@@ -86,15 +86,12 @@ private:
     void add_parts(const Workflow& workflow, std::size_t index, Diagnostics& diagnostics) {
         const Batch& batch = checked_.batch;
         std::map<std::string, std::size_t> part_of_settings;
-        const std::size_t first = checked_.parts.size();
         for (std::size_t scan = 0; scan < batch.scans.size(); ++scan) {
             const Settings settings = settings_for(workflow, batch.settings, batch.scans[scan].settings);
             const auto [part, is_new] = part_of_settings.emplace(key_of(settings), checked_.parts.size());
             if (is_new) checked_.parts.push_back({plan(workflow, settings, diagnostics), index, {}});
             checked_.parts[part->second].scans.push_back(scan);
         }
-        for (std::size_t part = first; part < checked_.parts.size(); ++part)
-            cells_ += checked_.parts[part].plan->variants.size() * checked_.parts[part].scans.size();
         if (batch.scans.empty())  // what is wrong is found all the same
             plan(workflow, settings_for(workflow, batch.settings, {}), diagnostics);
     }
@@ -137,7 +134,6 @@ private:
     Diagnostics batch_diagnostics_;
     CheckedBatch checked_;
     std::set<std::string> declared_;
-    std::size_t cells_ = 0;
     bool unreadable_ = false;  // a workflow, so what it declares is not known
 };
 

@@ -69,7 +69,7 @@ private:
         for (const fs::path& file : part.request.protected_files) output_files_.protect(file);
         for (const PlannedStep& step : part.plan->steps)
             for (const auto& [name, value] : step.parameters.values)
-                if (step.spec.parameter(name)->type == ParameterType::path)
+                if (names_files(step.spec, name))
                     key_text_of_paths(value, [this](const fs::path& file) {
                         output_files_.protect(file);
                         return std::string();
@@ -176,14 +176,11 @@ private:
             node.is_uncacheable = node.is_uncacheable || !unreadable.empty();
             return hash;
         };
-        const auto names_files = [&](const std::string& name) {
-            return planned.spec.parameter(name)->type == ParameterType::path;
-        };
         for (const auto& [name, value] : planned.parameters.values)
-            if (names_files(name)) key.field("parameter " + name, key_text_of_paths(value, content));
+            if (names_files(planned.spec, name)) key.field("parameter " + name, key_text_of_paths(value, content));
         node.code = key.key();
         for (const auto& [name, value] : planned.parameters.values)
-            if (!names_files(name)) key.field("parameter " + name, canonical_text(value));
+            if (!names_files(planned.spec, name)) key.field("parameter " + name, canonical_text(value));
         for (const PlannedInput& input : planned.inputs)
             for (const ValueSource& source : input.sources)
                 for (const std::size_t from : sources_of(source, node_of_step, scan, file, cell)) {

@@ -30,4 +30,8 @@ std::string key_text_of_paths(const ParameterValue& value,
         value, [&](const std::filesystem::path& path) { return path.extension().string() + " " + content_of(path); }));
 }
 
+bool names_files(const FilterSpec& spec, std::string_view parameter) {
+    return spec.parameter(parameter)->type == ParameterType::path;
+}
+
 }  // namespace scanmill

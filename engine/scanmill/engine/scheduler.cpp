@@ -5,7 +5,6 @@
 #include <cassert>
 
 #include "scanmill/engine/components.hpp"
-#include "scanmill/engine/key.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/work/workbench.hpp"
 
@@ -282,15 +281,8 @@ std::string Scheduler::twin_key(const Task& task) const {
     const RunNode& node = graph_.nodes[task.node];
     if (task.write > 0 || !node.step || !foresight_[task.node].will_run || !settings_.cache || node.is_uncacheable)
         return {};
-    KeyBuilder key;
-    key.field("code", node.code);
     const PlannedStep& step = *graph_.step(node);
-    for (const auto& [name, value] : step.parameters.values)
-        if (step.spec.parameter(name)->type != ParameterType::path)
-            key.field("parameter " + name, canonical_text(value));
-    for (const NodeInput& input : node.inputs)
-        key.field("port " + input.port, input_from({input.node, input.from}, input.port).content);
-    return key.key();
+    return work_key(step, node.code, step.parameters, inputs_of(node));
 }
 
 bool Scheduler::is_being_computed(const Task& task) const {

@@ -77,7 +77,6 @@ private:
     };
 
     void lay_out();
-    void find_components();
     std::vector<Source> sources(const Task& task) const;
     std::vector<std::size_t> prerequisites(const Task& task) const;
     bool only_expects(std::size_t node) const;
@@ -101,6 +100,7 @@ private:
     Job job(const Task& task, std::size_t worker) const;
     JobMemory memory_of(std::size_t node, std::size_t worker) const;
     JobInput input_from(const Source& source, const std::string& port) const;
+    std::vector<JobInput> inputs_of(const RunNode& node) const;
     void limit_time(const Task& task, Job& job) const;
 
     void ended(std::size_t worker, JobReport report, bool lost_values);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "scanmill/engine/duration.hpp"
 #include "scanmill/engine/scheduler.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/work/workbench.hpp"
@@ -32,6 +33,7 @@ void Scheduler::ended(std::size_t worker, JobReport report, bool lost_values) {
         here.worn_by.reset();
     } else if (!report.worn.empty()) {
         here.worn_by = component;
+        report.node.effort.log.push_back(fmt::format("scanmill: the worker is replaced: {}", report.worn));
     }
     if (!report.lost.empty()) return lost(worker, task, report.lost);
     if (report.outcome == Outcome::skipped) {  // cancelled
@@ -156,6 +158,8 @@ void Scheduler::finish_write(const Task& task, JobReport done) {
     write.failure = std::move(done.node.failure);
     write.seconds = done.node.effort.seconds;
     write.report = std::move(done.output);
+    write.report.file = write.file;  // a worker that ended in between told nothing
+    if (write.failure) write.report.outcome = Outcome::failed;
     observer_.output_written(graph_.cells[write.cells.front()], write.report);
     release(write.source);
     task_ended(task);
@@ -220,8 +224,8 @@ void Scheduler::end_cell(std::size_t index) {
     }
     if (!report.failure && cells_[index].is_given_up && !is_done)
         report.failure = {Cause::time, 0,
-                          Error("the time did not suffice: the limit of a cell is {:g} s, {:.1f} s were spent",
-                                settings_.limits.cell_seconds, report.seconds)
+                          Error("the time did not suffice: the limit of a cell is {}, {:.2f} s were spent",
+                                duration_text(settings_.limits.cell_seconds), report.seconds)
                               .add_frame(fmt::format("on scan '{}'", graph_.scan_names[cell.scan]))
                               .what()};
     report.outcome = report.failure ? Outcome::failed : is_done ? Outcome::done : Outcome::skipped;

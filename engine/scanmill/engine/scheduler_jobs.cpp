@@ -46,6 +46,12 @@ JobInput Scheduler::input_from(const Source& source, const std::string& port) co
     return input;
 }
 
+std::vector<JobInput> Scheduler::inputs_of(const RunNode& node) const {
+    std::vector<JobInput> inputs;
+    for (const NodeInput& input : node.inputs) inputs.push_back(input_from({input.node, input.from}, input.port));
+    return inputs;
+}
+
 JobMemory Scheduler::memory_of(std::size_t index, std::size_t worker) const {
     const RunNode& node = graph_.nodes[index];
     const NodeState& state = nodes_[index];
@@ -94,9 +100,8 @@ Job Scheduler::job(const Task& task, std::size_t worker) const {
         job.work = ExpectWork{step(), foresight_[task.node].known->metrics, input_from({task.node, primary}, primary)};
         return job;
     }
-    StepWork work{step(), library_.build_id(planned.spec.name), {}, node.parameter_files, memory_of(task.node, worker)};
-    for (const NodeInput& input : node.inputs) work.inputs.push_back(input_from({input.node, input.from}, input.port));
-    job.work = std::move(work);
+    job.work = StepWork{step(), library_.build_id(planned.spec.name), inputs_of(node), node.parameter_files,
+                        memory_of(task.node, worker)};
     return job;
 }
 

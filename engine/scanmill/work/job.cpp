@@ -1,7 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/work/job.hpp"
 
+#include "scanmill/engine/key.hpp"
+#include "scanmill/engine/path_parameters.hpp"
+
 namespace scanmill {
+
+std::string work_key(const PlannedStep& step, const std::string& code, const ParameterSet& parameters,
+                     const std::vector<JobInput>& inputs) {
+    KeyBuilder key;
+    key.field("code", code);  // it knows the files that parameters name
+    for (const auto& [name, value] : parameters.values)
+        if (!names_files(step.spec, name)) key.field("parameter " + name, canonical_text(value));
+    for (const JobInput& input : inputs) key.field("port " + input.port, input.content);
+    return key.key();
+}
 
 Failure failure_of(const Job& job, Cause cause, Error error, int number) {
     for (const std::string& frame : job.frames) error.add_frame(frame);

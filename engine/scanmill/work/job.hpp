@@ -80,6 +80,11 @@ struct JobReport {
     std::string worn;  ///< why whoever did this should do nothing else; empty: it may
 };
 
+/// Filter, parameters and the content of the inputs: what decides the result, whatever else changes. With parameters
+/// as the filter gets them it is the run key; as they are authored, it is equal for steps that will have one run key.
+std::string work_key(const PlannedStep& step, const std::string& code, const ParameterSet& parameters,
+                     const std::vector<JobInput>& inputs);
+
 /// The error with the job's frames, as a failure of this cause.
 Failure failure_of(const Job& job, Cause cause, Error error, int number = 0);
 

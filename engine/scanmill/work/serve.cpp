@@ -85,30 +85,23 @@ int serve(MessageReader& reader) {
                                         [&](std::string text) { speaker.say({.note = std::move(text)}); });
     FilterLibrary library(plugin_folders(), FirstLoad::at_once);  // nobody misses this process
     Workbench bench(library, cache.get(), static_cast<KeepRule::Policy>(start.keep_policy), start.scratch);
-    const bool is_same_program = content_hash(core_library_file()) == start.core_build;
+    if (content_hash(core_library_file()) != start.core_build)
+        throw Error("Scanmill was installed anew while the run was going on; run it again");
     const u64 memory_before = anonymous_memory();
     const JobListener listener{[&](double fraction) { speaker.say_progress(fraction); },
                                [&](std::string_view text) { speaker.say({.warning = std::string(text)}); },
                                [] { return cancel_requested != 0; }};
     speaker.say({.is_ready = true});
     while (const std::optional<std::string> message = next()) {
-        JobReport report;
-        try {
-            const ReceivedJob received = job_from(*message, library);
-            for (const std::size_t node : received.forgotten) bench.forget(node);
-            if (!received.job) continue;
-            if (!is_same_program)
-                throw Error("Scanmill was installed anew while the run was going on").hint("run it again");
-            const std::string heavy = bench.is_empty() ? what_memory_stayed(memory_before) : "";
-            const ProcessState before = ProcessState::now();
-            report = bench.perform(*received.job, listener);
-            std::fflush(nullptr);
-            report.worn = ProcessState::now().changes_since(before);
-            if (report.worn.empty()) report.worn = heavy;
-        } catch (const Error& error) {
-            report.outcome = Outcome::failed;
-            report.node.failure = {Cause::refused, 0, error.what()};
-        }
+        const ReceivedJob received = job_from(*message, library);
+        for (const std::size_t node : received.forgotten) bench.forget(node);
+        if (!received.job) continue;
+        const std::string heavy = bench.is_empty() ? what_memory_stayed(memory_before) : "";
+        const ProcessState before = ProcessState::now();
+        JobReport report = bench.perform(*received.job, listener);
+        std::fflush(nullptr);
+        report.worn = ProcessState::now().changes_since(before);
+        if (report.worn.empty()) report.worn = heavy;
         speaker.say({.report = std::move(report)});
     }
     return 0;
@@ -127,7 +120,7 @@ int serve_as_worker() {
     try {
         return serve(reader);
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
+        std::fprintf(stderr, "%s\n", error.what());  // the runner tells a process's last words
         return 1;
     }
 }

@@ -9,7 +9,7 @@
 
 #include "scanmill/engine/byte_size.hpp"
 #include "scanmill/engine/facts.hpp"
-#include "scanmill/engine/key.hpp"
+#include "scanmill/engine/path_parameters.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/module.hpp"
 #include "scanmill/formats/files.hpp"
@@ -35,24 +35,10 @@ struct Unmet {
     Error error;
 };
 
-bool names_files(const PlannedStep& step, const std::string& parameter) {
-    return step.spec.parameter(parameter)->type == ParameterType::path;
-}
-
 /// The key knows a file as it was when the run was planned; what it holds now must not be kept under that key.
 void require_unchanged(const fs::path& file, const std::string& content) {
     if (content_hash(file) != content)
         throw Error("'{}' changed while the run was going on", file.string()).hint("run it again");
-}
-
-/// Filter, parameters as it gets them, and the content of its inputs: whatever else changed makes no difference.
-std::string run_key_of(const StepWork& work, const ParameterSet& resolved) {
-    KeyBuilder key;
-    key.field("code", work.memory.code);
-    for (const auto& [name, value] : resolved.values)
-        if (!names_files(*work.step, name)) key.field("parameter " + name, canonical_text(value));
-    for (const JobInput& input : work.inputs) key.field("port " + input.port, input.content);
-    return key.key();
 }
 
 fs::path emptied(const fs::path& folder) {
@@ -155,7 +141,7 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     auto start = std::chrono::steady_clock::now();
     const Recall recall = [&](const ParameterSet& resolved, NodeReport&) -> std::optional<Outputs> {
         if (!uses_cache(work.memory)) return std::nullopt;
-        run_key = run_key_of(work, resolved);
+        run_key = work_key(step, work.memory.code, resolved, work.inputs);
         std::optional<Outputs> known = recalled(work, run_key, listener, report);
         start = std::chrono::steady_clock::now();
         return known;
@@ -174,8 +160,10 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     for (const auto& [port, value] : outputs) values.push_back({port, value});
     if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
     if (report.node.origin == Origin::ran) remember(job, work.memory, run_key, "", seconds, report);
-    if (!step.expectations.empty())
-        check_expectations(step, *find(job.node, step.spec.outputs.front().name), report.node);
+    if (step.expectations.empty()) return;
+    const std::string& primary = step.spec.outputs.front().name;
+    check_expectations(step, *find(job.node, primary), report.node);
+    facts_[{job.node, primary}] = report.node.facts;
 }
 
 void Workbench::expect(const Job&, const ExpectWork& work, JobReport& report) {
@@ -197,7 +185,8 @@ void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
     WriteOptions options;
     options.on_warning = [&](std::string text) { written.warnings.push_back(std::move(text)); };
     write_file(work.file, *value, options);
-    written.facts = facts_of(*value);
+    const auto known = facts_.find({work.value.node, work.value.from});
+    written.facts = known != facts_.end() ? known->second : facts_of(*value);
     constexpr std::size_t longest_name = NAME_MAX;
     if (description_of(work.file).filename().native().size() <= longest_name)
         write_description(work.file, work.made_how, *value, written.facts);
@@ -235,7 +224,7 @@ void Workbench::remember(const Job& job, const JobMemory& memory, const std::str
     StepResult& result = report.result;
     const auto* work = std::get_if<StepWork>(&job.work);
     for (const auto& [name, value] : report.node.resolved.values)
-        if (!std::holds_alternative<std::monostate>(value) && !names_files(*work->step, name))
+        if (!std::holds_alternative<std::monostate>(value) && !names_files(work->step->spec, name))
             result.resolved.emplace_back(name, written(value));
     result.metrics = report.node.metrics;
     result.facts = report.node.facts;
@@ -290,7 +279,7 @@ void adopt(const StepResult& result, const PlannedStep* step, const std::string&
     if (!step) return;
     report.resolved = {};
     for (const auto& [name, value] : step->parameters.values)
-        if (names_files(*step, name)) report.resolved.values.emplace_back(name, value);
+        if (names_files(step->spec, name)) report.resolved.values.emplace_back(name, value);
     for (const auto& [name, text] : result.resolved)
         report.resolved.values.emplace_back(name, parse(*step->spec.parameter(name), text));
 }

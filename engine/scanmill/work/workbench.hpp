@@ -31,7 +31,10 @@ public:
     /// Never throws: whatever goes wrong is in the report. Limits are for the surroundings to enforce.
     JobReport perform(const Job& job, const JobListener& listener);
     /// Drops the node's values.
-    void forget(std::size_t node) { values_.erase(node); }
+    void forget(std::size_t node) {
+        values_.erase(node);
+        std::erase_if(facts_, [&](const auto& facts) { return facts.first.first == node; });
+    }
     bool is_empty() const { return values_.empty(); }
 
 private:
@@ -55,6 +58,8 @@ private:
     KeepRule rule_;
     std::filesystem::path scratch_, folder_;
     std::map<std::size_t, std::vector<StepInput>> values_;  // by node
+    std::map<std::pair<std::size_t, std::string>, Metrics>
+        facts_;  // of values, by node and port, where they were asked for
 };
 
 /// What `step` remembers of a result, in the words of this node: warnings of reading begin with `said_of`.
