@@ -39,16 +39,6 @@ void on_interrupt(int signal) {
     std::signal(signal, SIG_DFL);  // a second one ends the program at once
 }
 
-/// Nothing, after a warning, where they cannot be opened: results count more than records of them.
-std::optional<RunRecords> open_records(const std::filesystem::path& folder, const Warn& warn) {
-    try {
-        return RunRecords::append_to(folder / records_file);
-    } catch (const Error& error) {
-        warn(fmt::format("this run is not recorded: {}", error.sentence()));
-        return std::nullopt;
-    }
-}
-
 /// Better before the first step than after the last.
 void require_writable(const std::filesystem::path& folder) {
     std::error_code trouble;
@@ -197,21 +187,18 @@ int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& w
     Workers& workers = in_process ? *in_process : *workforce.processes();
 
     std::optional<EventStream> events;
-    std::optional<RunRecords> records = open_records(options.output_folder, warn);
-    std::optional<Recorder> recorder;
-    std::vector<RunObserver*> observing{&progress};
+    RunStart start{task.name, task.file,        options.command_line, graph.seed,      settings.threads,
+                   jobs,      SCANMILL_VERSION, machine_text(),       libraries_text()};
+    Recorder recorder(std::filesystem::path(options.output_folder) / records_file, std::move(start), library, graph,
+                      warn_beside);
+    std::vector<RunObserver*> observing{&progress, &recorder};
     if (options.json && task.streams_events) observing.push_back(&events.emplace(graph));
-    if (records) {
-        const RunStart start{task.name, task.file,        options.command_line, graph.seed,      settings.threads,
-                             jobs,      SCANMILL_VERSION, machine_text(),       libraries_text()};
-        recorder.emplace(*records, start, library, graph, warn_beside);
-        observing.push_back(&*recorder);
-    }
-    if (events) events->begin(task.name, jobs, settings.threads, recorder ? recorder->run() : 0);
+    if (events) events->begin(task.name, jobs, settings.threads, recorder.run());
     Observers observers(observing);
     const RunReport report = run(library, graph, workers, settings, observers);
     progress.finish();
-    if (recorder) recorder->finish(report);
+    if (workforce.processes()) workforce.processes()->dismiss();
+    recorder.finish(report);
     if (cache) cache->evict();
 
     if (events) {

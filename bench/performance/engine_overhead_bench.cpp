@@ -2,10 +2,11 @@
 /// What the engine costs: `scanmill run workflows/quickstart.yaml` beside a program that calls the same filters one
 /// after the other, and nothing else.
 ///
-/// Equal: the scan, the filters' modules, their parameters, the threads, the STL that is written, one process started
+/// Equal: the scans, the filters' modules, their parameters, the threads, the STL that is written, one process started
 /// and waited for; all in turn. Not equal: the engine also starts a worker process, keys and checks everything, hashes
-/// the scan, looks whether the result is what the workflow expects, and writes its records and a description. usage:
-/// engine_overhead_bench [rounds = 11]
+/// the scans, looks whether the results are what the workflow expects, and writes its records and a description of
+/// every file. What it does once in a run weighs less the more scans there are. usage: engine_overhead_bench [rounds =
+/// 11]
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -48,20 +49,27 @@ Value run_filter(scanmill::FilterLibrary& library, const std::string& name, cons
     return *filter.run(inputs, parameters, context).find(filter.spec.outputs.front().name);
 }
 
-/// The quickstart workflow as a C++ program would write it, with the same code of the filters: that of their modules.
-int run_filters(const fs::path& scan, const fs::path& output) {
+void run_filters(scanmill::FilterLibrary& library, scanmill::Context& context, double percent, const fs::path& scan,
+                 const fs::path& output) {
     using namespace scanmill;
-    ContextOptions options;
-    options.threads = std::max(1u, std::thread::hardware_concurrency());
-    Context context(std::move(options));
-    FilterLibrary library(plugin_folders(), FirstLoad::at_once);
     const Value points = read_points(scan);
     ParameterSet thinning;
     thinning.values.emplace_back("bin-size",
-                                 ParameterScalar(Length::percent_of_diagonal(0.5).resolved(length_scale(points))));
+                                 ParameterScalar(Length::percent_of_diagonal(percent).resolved(length_scale(points))));
     const Value thin = run_filter(library, "voxel-thin", "points", points, thinning, context);
     const Value tets = run_filter(library, "delaunay", "points", thin, {}, context);
     write_file(output, run_filter(library, "alpha-solid", "tets", tets, {}, context));
+}
+
+/// The quickstart workflow as a C++ program would write it, with the same code of the filters: that of their modules.
+int run_filters(double percent, const fs::path& folder, const std::vector<fs::path>& scans) {
+    fs::create_directories(folder);
+    scanmill::ContextOptions options;
+    options.threads = std::max(1u, std::thread::hardware_concurrency());
+    scanmill::Context context(std::move(options));
+    scanmill::FilterLibrary library(scanmill::plugin_folders(), scanmill::FirstLoad::at_once);
+    for (const fs::path& scan : scans)
+        run_filters(library, context, percent, scan, folder / scan.stem().concat(".stl"));
     return 0;
 }
 
@@ -97,18 +105,24 @@ double median(std::vector<double> numbers) {
     return numbers[numbers.size() / 2];
 }
 
-void compare(const fs::path& scan, const fs::path& programs, const fs::path& folder, int rounds) {
+void compare(double percent, const std::vector<std::string>& scans, const fs::path& programs, const fs::path& folder,
+             int rounds) {
     const std::string out = (folder / "out").string(), cache = (folder / "cache").string();
+    const auto with_scans = [&](std::vector<std::string> command) {
+        command.insert(command.end(), scans.begin(), scans.end());
+        return command;
+    };
     const auto run = [&](std::vector<std::string> more) {
         std::vector<std::string> command{
-            (programs / "scanmill").string(), "run", "workflows/quickstart.yaml", scan.string(), "-q", "-o", out};
+            (programs / "scanmill").string(),         "run", "workflows/quickstart.yaml", "-q", "-o", out, "--set",
+            fmt::format("bin-size={} %diag", percent)};
         command.insert(command.end(), more.begin(), more.end());
-        return command;
+        return with_scans(std::move(command));
     };
     const auto without_cache = [&] { fs::remove_all(cache); };
     std::vector<Contender> contenders{
-        {"the filters alone",
-         {(programs / "engine_overhead_bench").string(), "--filters", scan.string(), (folder / "alone.stl").string()}},
+        {"the filters alone", with_scans({(programs / "engine_overhead_bench").string(), "--filters",
+                                          fmt::format("{}", percent), (folder / "alone").string()})},
         {"no cache", run({"--no-cache"})},
         {"no cache, in one process", run({"--no-cache", "-j", "0"})},
         {"a warm cache, nothing to store", run({"--cache", cache + "-never", "--keep", "never"})},
@@ -122,7 +136,8 @@ void compare(const fs::path& scan, const fs::path& programs, const fs::path& fol
             const double seconds = seconds_of(contender.command);
             if (round > 0) contender.seconds.push_back(seconds);
         }
-    fmt::print("{}\n", scan.filename().string());
+    for (const std::string& scan : scans) fmt::print("{}, ", fs::path(scan).filename().string());
+    fmt::print("bin size {} % of the diagonal\n", percent);
     for (const Contender& contender : contenders) {
         std::vector<double> ratios;
         for (std::size_t i = 0; i < contender.seconds.size(); ++i)
@@ -136,16 +151,21 @@ void compare(const fs::path& scan, const fs::path& programs, const fs::path& fol
 }  // namespace
 
 int main(int argc, char** argv) try {
-    if (argc == 4 && std::strcmp(argv[1], "--filters") == 0) return run_filters(argv[2], argv[3]);
+    if (argc > 4 && std::strcmp(argv[1], "--filters") == 0)
+        return run_filters(std::strtod(argv[2], nullptr), argv[3], {argv + 4, argv + argc});
     const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 11;
     const fs::path programs = fs::canonical("/proc/self/exe").parent_path();
     const fs::path folder = fs::temp_directory_path() / fmt::format("engine-overhead-{}", ::getpid());
     fs::create_directories(folder);
-    for (const char* scan : {"build/data/meshes/bunny00.off", "build/data/dragon/dragon_vrip.ply"}) {
-        if (fs::exists(scan))
-            compare(scan, programs, folder, rounds);
-        else
-            fmt::print("{}: not there; make data fetches it\n", scan);
+    const std::string data = "build/data/", bunny = data + "meshes/bunny00.off";
+    const std::vector<std::string> demo{data + "points_3/kitten.xyz", data + "points_3/ball.ply", bunny,
+                                        data + "meshes/fandisk_large.off"};
+    const std::string dragon = data + "dragon/dragon_vrip.ply";
+    for (const auto& [percent, scans] : {std::pair(0.5, std::vector{bunny}), std::pair(0.5, std::vector{dragon}),
+                                         std::pair(0.5, demo), std::pair(0.25, std::vector{dragon})}) {
+        for (const std::string& scan : scans)
+            if (!fs::exists(scan)) throw std::runtime_error(scan + " is not there; make data fetches it");
+        compare(percent, scans, programs, folder, rounds);
     }
     fs::remove_all(folder);
     return 0;

@@ -168,6 +168,13 @@ TEST_F(Records, TwoWritersAtOnce_BothArrive) {
     EXPECT_EQ(one.run(second).steps.size(), 10u);
 }
 
+TEST_F(Records, OpenedAgain_AreNotWrittenTo) {
+    RunRecords::append_to(file()).begin(some_start());
+    const std::string before = content_of(file());
+    RunRecords::append_to(file());
+    EXPECT_EQ(content_of(file()), before);
+}
+
 TEST_F(Records, OfANewerScanmill_AreLeftAlone) {
     RunRecords::append_to(file());
     SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
@@ -188,11 +195,11 @@ TEST_F(Records, WhatIsNone_IsRefused) {
 TEST_F(Run, Recorder_WritesWhatTheRunReports) {
     prepare("  - test-step: {factor: 2, mode: warn}\n    expect: {points: 4}\n", {scan("a.xyz")},
             "outputs: {'{scan}.ply': test-step}\n");
-    RunRecords records = RunRecords::append_to(folder_ / "records.sqlite");
+    const std::filesystem::path file = folder_ / "records.sqlite";
     std::vector<std::string> told;
-    Recorder recorder(records, some_start(), library_, graph_, [&](std::string text) { told.push_back(text); });
+    Recorder recorder(file, some_start(), library_, graph_, [&](std::string text) { told.push_back(text); });
     recorder.finish(run_graph(recorder));
-    const RunDetails run = records.run(recorder.run());
+    const RunDetails run = RunRecords::read(file).run(recorder.run());
     EXPECT_EQ(run.summary.outcome, "done");
     ASSERT_EQ(run.steps.size(), 2u);
     EXPECT_EQ(run.steps[0].label, "read");
@@ -203,6 +210,16 @@ TEST_F(Run, Recorder_WritesWhatTheRunReports) {
     ASSERT_EQ(run.cells.size(), 1u);
     EXPECT_EQ(run.cells[0].outputs[0].kind, "points");
     EXPECT_THAT(told, IsEmpty());
+}
+
+TEST_F(Run, RecorderWithoutAPlaceForRecords_TellsItOnce) {
+    prepare("  - test-step: {factor: 2}\n", {scan("a.xyz")}, "");
+    std::vector<std::string> told;
+    Recorder recorder(folder_ / "no/such/folder/records.sqlite", some_start(), library_, graph_,
+                      [&](std::string text) { told.push_back(text); });
+    recorder.finish(run_graph(recorder));
+    EXPECT_EQ(recorder.run(), 0);
+    EXPECT_THAT(told, ElementsAre(HasSubstr("this run is not recorded: the records")));
 }
 
 }  // namespace

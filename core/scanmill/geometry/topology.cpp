@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 
 namespace scanmill {
 
@@ -25,48 +26,77 @@ private:
     std::vector<u32> parent_;
 };
 
-/// One side of a triangle, from `from` to the next corner.
-struct Side {
-    u64 edge;  // smaller vertex in the high half
-    u32 triangle;
-    bool forward;  // from the smaller to the larger vertex
-};
-
-u32 low(const Side& side) { return static_cast<u32>(side.edge >> 32); }
-u32 high(const Side& side) { return static_cast<u32>(side.edge); }
-
 bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-/// The sides of all proper triangles, those of one edge together: a counting sort by the smaller vertex, then tiny
-/// sorts.
-std::vector<Side> sides_by_edge(const TriangleMesh& mesh) {
-    std::vector<u32> begin(mesh.positions.size() + 1, 0);
-    const auto for_each_side = [&](auto&& action) {
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-            const Triangle& triangle = mesh.triangles[t];
-            if (is_degenerate(triangle)) continue;
-            for (int corner = 0; corner < 3; ++corner)
-                action(static_cast<u32>(t), triangle[corner], triangle[(corner + 1) % 3]);
-        }
-    };
-    for_each_side([&](u32, u32 a, u32 b) { ++begin[std::min(a, b) + 1]; });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<Side> sides(begin.back());
-    std::vector<u32> next(begin.begin(), begin.end() - 1);
-    for_each_side([&](u32 t, u32 a, u32 b) {
-        sides[next[std::min(a, b)]++] = {u64(std::min(a, b)) << 32 | std::max(a, b), t, a < b};
-    });
-    for (std::size_t vertex = 0; vertex + 1 < begin.size(); ++vertex)
-        std::sort(sides.begin() + begin[vertex], sides.begin() + begin[vertex + 1], [](const Side& a, const Side& b) {
-            return std::pair(a.edge, a.triangle) < std::pair(b.edge, b.triangle);
-        });
-    return sides;
+// A side has the number 3 t + i: the one of triangle t from its corner i to the next. So has that corner.
+u32 after(u32 side) { return side % 3 == 2 ? side - 2 : side + 1; }
+u32 before(u32 side) { return side % 3 == 0 ? side + 2 : side - 1; }
+u32 vertex_at(const TriangleMesh& mesh, u32 corner) { return mesh.triangles[corner / 3][corner % 3]; }
+
+constexpr u32 none = ~u32(0);
+
+struct Side {
+    u32 other;  ///< the edge's larger vertex
+    u32 number;
+};
+
+/// The sides of proper triangles, by the smaller vertex of their edges.
+struct SidesOfVertices {
+    std::vector<u32> begin;  ///< where a vertex's sides begin, and one more
+    std::vector<Side> sides;  ///< of one vertex: by edge, then by number
+};
+
+/// By edge, then by number. Pre: they stand by number, and all have one smaller vertex.
+void sort_by_edge(std::span<Side> sides) {
+    constexpr std::size_t few = 32;
+    if (sides.size() > few) {
+        std::ranges::stable_sort(sides, {}, &Side::other);
+        return;
+    }
+    for (std::size_t i = 1; i < sides.size(); ++i) {
+        const Side side = sides[i];
+        std::size_t place = i;
+        for (; place > 0 && sides[place - 1].other > side.other; --place) sides[place] = sides[place - 1];
+        sides[place] = side;
+    }
 }
 
-/// The corner number of `vertex` in triangle t.
-u32 corner_of(const TriangleMesh& mesh, u32 t, u32 vertex) {
-    const Triangle& triangle = mesh.triangles[t];
-    return 3 * t + (triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2);
+SidesOfVertices sides_of_vertices(const TriangleMesh& mesh) {
+    SidesOfVertices result;
+    std::vector<u32>& begin = result.begin;
+    begin.resize(mesh.positions.size() + 1);
+    const auto for_each_side = [&](auto&& action) {
+        for (u32 t = 0; t < mesh.triangles.size(); ++t) {
+            const Triangle& triangle = mesh.triangles[t];
+            if (is_degenerate(triangle)) continue;
+            for (u32 i = 0; i < 3; ++i) action(3 * t + i, triangle[i], triangle[i == 2 ? 0 : i + 1]);
+        }
+    };
+    for_each_side([&](u32, u32 a, u32 b) { ++begin[std::min(a, b)]; });
+    std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), u32(0));
+    result.sides.resize(begin.back());
+    std::vector<u32> next(begin.begin(), begin.end() - 1);
+    for_each_side([&](u32 side, u32 a, u32 b) { result.sides[next[std::min(a, b)]++] = {std::max(a, b), side}; });
+    for (std::size_t vertex = 0; vertex + 1 < begin.size(); ++vertex)
+        sort_by_edge({result.sides.data() + begin[vertex], result.sides.data() + begin[vertex + 1]});
+    return result;
+}
+
+/// Whether the corner's fan, found by going around its vertex from triangle to triangle, has so many corners. Pre: no
+/// edge at the vertex is in more than two triangles.
+bool fan_has(const TriangleMesh& mesh, const std::vector<u32>& twins, u32 corner, u32 corners) {
+    const u32 vertex = vertex_at(mesh, corner);
+    u32 seen = 1;
+    for (const u32 first : {corner, before(corner)}) {
+        for (u32 side = first; twins[side] != none; ++seen) {
+            const u32 twin = twins[side];
+            const bool starts_here = vertex_at(mesh, twin) == vertex;
+            const u32 here = starts_here ? twin : after(twin);
+            if (here == corner) return seen == corners;
+            side = starts_here ? before(twin) : here;
+        }
+    }
+    return seen == corners;
 }
 
 }  // namespace
@@ -83,50 +113,45 @@ MeshTopology topology(const TriangleMesh& mesh) {
     facts.vertices = static_cast<std::size_t>(std::ranges::count(used, true));
     facts.unused_vertices = used.size() - facts.vertices;
 
-    const std::vector<Side> sides = sides_by_edge(mesh);
+    const SidesOfVertices by_vertex = sides_of_vertices(mesh);
+    std::vector<u32> twins(3 * mesh.triangles.size(), none);  // across edges of two triangles
     UnionFind faces(mesh.triangles.size());
-    // Corners of one vertex that meet across an edge belong to one fan; a manifold vertex has exactly one.
-    UnionFind fans(3 * mesh.triangles.size());
     UnionFind boundary(mesh.positions.size());
     std::vector<bool> on_boundary(mesh.positions.size(), false);
-    for (std::size_t first = 0, last; first < sides.size(); first = last) {
-        last = first + 1;
-        while (last < sides.size() && sides[last].edge == sides[first].edge) ++last;
-        const std::size_t count = last - first;
-        const u32 a = low(sides[first]), b = high(sides[first]);
-        ++facts.edges;
-        for (std::size_t side = first + 1; side < last; ++side) {
-            const u32 t = sides[first].triangle, other = sides[side].triangle;
-            faces.join(t, other);
-            fans.join(corner_of(mesh, t, a), corner_of(mesh, other, a));
-            fans.join(corner_of(mesh, t, b), corner_of(mesh, other, b));
+    for (u32 a = 0; a < mesh.positions.size(); ++a)
+        for (u32 first = by_vertex.begin[a], last; first < by_vertex.begin[a + 1]; first = last) {
+            const u32 b = by_vertex.sides[first].other, side = by_vertex.sides[first].number;
+            for (last = first + 1; last < by_vertex.begin[a + 1] && by_vertex.sides[last].other == b; ++last)
+                faces.join(side / 3, by_vertex.sides[last].number / 3);
+            ++facts.edges;
+            if (last - first == 1) {
+                ++facts.boundary_edges;
+                boundary.join(a, b);
+                on_boundary[a] = on_boundary[b] = true;
+            } else if (last - first > 2) {
+                ++facts.nonmanifold_edges;
+                unmanifold[a] = unmanifold[b] = true;
+            } else {
+                const u32 twin = by_vertex.sides[first + 1].number;
+                twins[side] = twin;
+                twins[twin] = side;
+                if (vertex_at(mesh, side) == vertex_at(mesh, twin)) ++facts.misoriented_edges;
+            }
         }
-        if (count == 1) {
-            ++facts.boundary_edges;
-            boundary.join(a, b);
-            on_boundary[a] = on_boundary[b] = true;
-        } else if (count > 2) {
-            ++facts.nonmanifold_edges;
-            unmanifold[a] = unmanifold[b] = true;
-        } else if (sides[first].forward == sides[first + 1].forward) {
-            ++facts.misoriented_edges;
-        }
-    }
 
-    constexpr u32 none = ~u32(0);
-    std::vector<u32> fan_of_vertex(mesh.positions.size(), none);
+    std::vector<u32> corner_of(mesh.positions.size(), none), corners(mesh.positions.size(), 0);
     for (u32 t = 0; t < mesh.triangles.size(); ++t) {
         if (is_degenerate(mesh.triangles[t])) continue;
         if (faces.root(t) == t) ++facts.components;
-        for (u32 corner = 0; corner < 3; ++corner) {
-            const u32 vertex = mesh.triangles[t][corner];
-            const u32 fan = fans.root(3 * t + corner);
-            if (fan_of_vertex[vertex] == none)
-                fan_of_vertex[vertex] = fan;
-            else if (fan_of_vertex[vertex] != fan)
-                unmanifold[vertex] = true;
+        for (u32 i = 0; i < 3; ++i) {
+            const u32 vertex = mesh.triangles[t][i];
+            corner_of[vertex] = 3 * t + i;
+            ++corners[vertex];
         }
     }
+    for (u32 vertex = 0; vertex < mesh.positions.size(); ++vertex)
+        if (corners[vertex] > 0 && !unmanifold[vertex])
+            unmanifold[vertex] = !fan_has(mesh, twins, corner_of[vertex], corners[vertex]);
     facts.nonmanifold_vertices = static_cast<std::size_t>(std::ranges::count(unmanifold, true));
     for (u32 vertex = 0; vertex < on_boundary.size(); ++vertex)
         if (on_boundary[vertex] && boundary.root(vertex) == vertex) ++facts.boundary_loops;

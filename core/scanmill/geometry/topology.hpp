@@ -3,7 +3,8 @@
 /// The combinatorial facts of a triangle mesh: is it closed, manifold, oriented, of which genus, in how many pieces.
 ///
 /// Edges are identified by vertex index: a soup whose corners were not merged is all boundary. Vertices in no triangle
-/// are counted, and count for nothing else. Cost: O(F) time with one sort of the edges, about 60 bytes per triangle.
+/// are counted, and count for nothing else. Cost: O(F) time where no vertex has many edges, about 60 bytes per
+/// triangle.
 
 #include <optional>
 

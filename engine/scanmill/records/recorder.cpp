@@ -20,15 +20,18 @@ FailureRecord record_of(const Failure& failure) {
 
 }  // namespace
 
-Recorder::Recorder(RunRecords& records, const RunStart& start, FilterLibrary& library, const RunGraph& graph,
+Recorder::Recorder(std::filesystem::path file, RunStart start, FilterLibrary& library, const RunGraph& graph,
                    OnWarning on_warning)
-    : records_(records),
-      library_(library),
+    : library_(library),
       graph_(graph),
       on_warning_(std::move(on_warning)),
       begin_(std::chrono::steady_clock::now()),
       flushed_(begin_) {
-    beginning_ = std::async(std::launch::async, [this, start] { return records_.begin(start); });
+    beginning_ = std::async(std::launch::async, [this, file = std::move(file), start = std::move(start)] {
+        RunRecords records = RunRecords::append_to(file);
+        run_ = records.begin(start);
+        records_.emplace(std::move(records));
+    });
 }
 
 void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
@@ -88,8 +91,8 @@ Recorder::~Recorder() {
 void Recorder::finish(const RunReport& report) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
     const std::string outcome = report.interrupted ? "interrupted" : report.all_done() ? "done" : "failed";
-    const bool is_recorded = attempt([&] { records_.end(run_, steps_, cells_, outcome, seconds.count()); });
-    if (!is_recorded && on_warning_) on_warning_(fmt::format("this run is not recorded to its end: {}", trouble_));
+    if (!attempt([&] { records_->end(run_, steps_, cells_, outcome, seconds.count()); }) && records_)
+        warn(fmt::format("this run is not recorded to its end: {}", trouble_));
     steps_.clear();
     cells_.clear();
 }
@@ -102,7 +105,7 @@ void Recorder::flush_when_due() {
 bool Recorder::flush() {
     flushed_ = std::chrono::steady_clock::now();
     if (steps_.empty() && cells_.empty()) return true;
-    if (!attempt([&] { records_.add(run_, steps_, cells_); })) return false;
+    if (!attempt([&] { records_->add(run_, steps_, cells_); })) return false;
     steps_.clear();
     cells_.clear();
     return true;
@@ -111,17 +114,20 @@ bool Recorder::flush() {
 void Recorder::wait_for_begin() {
     if (!beginning_.valid()) return;
     try {
-        run_ = beginning_.get();
+        beginning_.get();
     } catch (const Error& error) {
-        trouble_ = error.sentence();
-        broken_ = true;
+        warn(fmt::format("this run is not recorded: {}", error.sentence()));
     }
+}
+
+void Recorder::warn(std::string text) const {
+    if (on_warning_) on_warning_(std::move(text));
 }
 
 template <class Action>
 bool Recorder::attempt(Action&& action) {
     wait_for_begin();
-    if (broken_) return false;
+    if (!records_) return false;
     try {
         action();
         trouble_.clear();

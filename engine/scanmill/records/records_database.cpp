@@ -56,6 +56,7 @@ CREATE INDEX log_of_step ON log (step);
 }  // namespace
 
 void RunRecords::Database::migrate() {
+    if (version() == static_cast<int>(migrations.size())) return;  // writing that again would cost four syncs
     SQLite::Transaction transaction(sqlite, SQLite::TransactionBehavior::IMMEDIATE);
     const int found = version();
     require_known(found);

@@ -48,14 +48,6 @@ fs::path emptied(const fs::path& folder) {
     return folder;
 }
 
-void check_expectations(const PlannedStep& step, const Value& primary, NodeReport& report) {
-    try {
-        require_expectations(step, primary, report);
-    } catch (const Error& error) {
-        throw Unmet{error};
-    }
-}
-
 }  // namespace
 
 Workbench::Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, fs::path scratch)
@@ -162,15 +154,24 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     if (report.node.origin == Origin::ran) remember(job, work.memory, run_key, "", seconds, report);
     if (step.expectations.empty()) return;
     const std::string& primary = step.spec.outputs.front().name;
-    check_expectations(step, *find(job.node, primary), report.node);
-    facts_[{job.node, primary}] = report.node.facts;
+    check_expectations(step, *find(job.node, primary), {job.node, primary}, report.node);
 }
 
 void Workbench::expect(const Job&, const ExpectWork& work, JobReport& report) {
     const std::optional<Value> primary = fetch(work.primary, report);
     if (!primary) throw InputLost{};
     report.node.metrics = work.metrics;
-    check_expectations(*work.step, *primary, report.node);
+    check_expectations(*work.step, *primary, {work.primary.node, work.primary.from}, report.node);
+}
+
+void Workbench::check_expectations(const PlannedStep& step, const Value& primary, const Place& place,
+                                   NodeReport& report) {
+    try {
+        require_expectations(step, primary, report);
+    } catch (const Error& error) {
+        throw Unmet{error};
+    }
+    facts_[place] = report.facts;
 }
 
 void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {

@@ -38,9 +38,12 @@ public:
     bool is_empty() const { return values_.empty(); }
 
 private:
+    using Place = std::pair<std::size_t, std::string>;  // node and port
+
     void read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report);
     void run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report);
     void expect(const Job& job, const ExpectWork& work, JobReport& report);
+    void check_expectations(const PlannedStep& step, const Value& primary, const Place& place, NodeReport& report);
     void write(const Job& job, const WriteWork& work, JobReport& report);
 
     std::optional<Outputs> recalled(const StepWork& work, const std::string& run_key, const JobListener& listener,
@@ -58,8 +61,7 @@ private:
     KeepRule rule_;
     std::filesystem::path scratch_, folder_;
     std::map<std::size_t, std::vector<StepInput>> values_;  // by node
-    std::map<std::pair<std::size_t, std::string>, Metrics>
-        facts_;  // of values, by node and port, where they were asked for
+    std::map<Place, Metrics> facts_;                        // of values, where they were asked for
 };
 
 /// What `step` remembers of a result, in the words of this node: warnings of reading begin with `said_of`.

@@ -105,6 +105,11 @@ void WorkerProcesses::forget(std::size_t worker, std::size_t node) {
 
 void WorkerProcesses::replace(std::size_t worker) { places_[worker].process.reset(); }
 
+void WorkerProcesses::dismiss() {
+    for (const Place& place : places_)
+        if (place.process) place.process->signal(SIGKILL);
+}
+
 bool WorkerProcesses::has_room(u64 memory_limit) const {
     if (memory_limit == 0) return true;
     u64 promised = 0;

@@ -42,6 +42,8 @@ public:
     void cancel() override;
     /// Starts the first process before there is a job for it, so that it is ready by then.
     void start_early() { ensure(0); }
+    /// Begins to end all processes: no more jobs are to come. Whoever lets go of this object waits for their ends.
+    void dismiss();
     /// From now on there are so many. Pre: no job was begun.
     void resize(std::size_t count);
 
