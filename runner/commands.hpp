@@ -20,6 +20,7 @@ void add_check(CLI::App& app, Action& chosen);
 void add_list(CLI::App& app, Action& chosen);
 void add_show(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);
+void add_measure(CLI::App& app, Action& chosen);
 void add_convert(CLI::App& app, Action& chosen);
 void add_schema(CLI::App& app, Action& chosen);
 void add_docs(CLI::App& app, Action& chosen);

@@ -9,10 +9,12 @@
 #include <map>
 #include <mutex>
 
-#include "metrics_json.hpp"
 #include "scanmill/engine/run.hpp"
+#include "scanmill/formats/metrics_json.hpp"
 
 namespace scanmill::runner {
+
+using Json = nlohmann::ordered_json;
 
 class EventStream : public RunObserver {
 public:

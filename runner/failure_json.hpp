@@ -2,10 +2,13 @@
 #pragma once
 /// Failures in the JSON that commands print.
 
-#include "metrics_json.hpp"
+#include <nlohmann/json.hpp>
+
 #include "scanmill/engine/report.hpp"
 
 namespace scanmill::runner {
+
+using Json = nlohmann::ordered_json;
 
 /// Adds `error`, `cause` and, where there is one, `signal` or `exit-code` to an object.
 inline void add_failure(Json& entry, const Failure& failure) {

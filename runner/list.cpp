@@ -15,8 +15,7 @@ namespace {
 std::string kinds(const std::vector<PortSpec>& ports) {
     std::string text;
     for (const PortSpec& port : ports)
-        text += (text.empty() ? "" : ", ") + std::string(name_of(port.kind)) + (port.list ? "…" : "") +
-                (port.optional ? "?" : "");
+        text += (text.empty() ? "" : ", ") + kinds_text(port) + (port.list ? "…" : "") + (port.optional ? "?" : "");
     return text.empty() ? "-" : text;
 }
 

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
     add_show(app, chosen);
     add_info(app, chosen);
     add_convert(app, chosen);
+    add_measure(app, chosen);
     add_schema(app, chosen);
     add_docs(app, chosen);
     add_runs(app, chosen);

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "failure_json.hpp"
-#include "metrics_json.hpp"
 #include "scanmill/engine/facts.hpp"
+#include "scanmill/formats/metrics_json.hpp"
 #include "table.hpp"
 
 namespace scanmill::runner {

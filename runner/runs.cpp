@@ -5,14 +5,16 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "metrics_json.hpp"
 #include "printable.hpp"
 #include "scanmill/engine/facts.hpp"
 #include "scanmill/filter/error.hpp"
+#include "scanmill/formats/metrics_json.hpp"
 #include "scanmill/records/run_records.hpp"
 #include "table.hpp"
 
 namespace scanmill::runner {
+
+using Json = nlohmann::ordered_json;
 
 namespace {
 

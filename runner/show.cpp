@@ -17,7 +17,7 @@ void print_ports(std::string_view title, const std::vector<PortSpec>& ports) {
     if (ports.empty()) return;
     fmt::print("\n{}\n", title);
     for (const PortSpec& port : ports)
-        fmt::print("  {} ({}{}{})\n      {}\n", port.name, name_of(port.kind), port.list ? ", any number" : "",
+        fmt::print("  {} ({}{}{})\n      {}\n", port.name, kinds_text(port), port.list ? ", any number" : "",
                    port.optional ? ", optional" : "", port.help);
 }
 

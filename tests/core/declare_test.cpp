@@ -54,6 +54,7 @@ Declare<AllParams> declaration() {
         .in<TriangleMesh>("mesh", help, optional)
         .in<PointCloud>("others", help, list)
         .in<TetMesh>("tets", help, list, optional)
+        .in<TriangleMesh, PointCloud>("truth", help)
         .out<TriangleMesh>("mesh", help)
         .out<Metrics>("numbers", help)
         .param("flag", &P::flag, help)
@@ -114,11 +115,28 @@ TEST(Declare, FilterAndItsPorts_AreAsDeclaredAndInOrder) {
     EXPECT_THAT(spec.inputs, ElementsAre(PortSpec{"points", Kind::points, help, false, false},
                                          PortSpec{"mesh", Kind::mesh, help, false, true},
                                          PortSpec{"others", Kind::points, help, true, false},
-                                         PortSpec{"tets", Kind::tets, help, true, true}));
+                                         PortSpec{"tets", Kind::tets, help, true, true},
+                                         PortSpec{"truth", Kind::mesh, help, false, false, {Kind::points}}));
+    EXPECT_EQ(kinds_text(spec.inputs.back()), "mesh or points");
+    EXPECT_TRUE(spec.inputs.back().takes(Kind::points));
+    EXPECT_FALSE(spec.inputs.back().takes(Kind::tets));
     EXPECT_THAT(spec.outputs, ElementsAre(PortSpec{"mesh", Kind::mesh, help, false, false},
                                           PortSpec{"numbers", Kind::metrics, help, false, false}));
     EXPECT_THAT(spec.metrics, ElementsAre(MetricSpec{"kept", Unit::count, help, true},
                                           MetricSpec{"error", Unit::length, help, false}));
+}
+
+TEST(Declare, MetricAtAPlace_IsTheMetricOfThatName) {
+    const FilterSpec spec = FilterDeclaration(declaration()).spec;
+    EXPECT_EQ(spec.metric("kept@2"), spec.metric("kept"));
+    EXPECT_EQ(spec.metric("kep@2"), nullptr);
+}
+
+TEST(Declare, PortOfSeveralKinds_GivesWhatIsThere) {
+    Inputs inputs;
+    inputs.add("truth", std::make_shared<const PointCloud>());
+    EXPECT_NE(inputs.find<PointCloud>("truth"), nullptr);
+    EXPECT_EQ(inputs.find<TriangleMesh>("truth"), nullptr);
 }
 
 TEST(Declare, TypesAndDefaults_ComeFromTheMembers) {

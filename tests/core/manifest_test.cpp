@@ -41,7 +41,8 @@ Manifest everything() {
     spec.inputs = {{"plain", Kind::points, "Takes points.", false, false},
                    {"some", Kind::mesh, "Takes meshes.", true, false},
                    {"maybe", Kind::tets, "Takes tets.", false, true},
-                   {"both", Kind::tets, "Takes tets.", true, true}};
+                   {"both", Kind::tets, "Takes tets.", true, true},
+                   {"either", Kind::mesh, "Takes meshes or points.", false, false, {Kind::points}}};
     spec.parameters = {parameter("flag", ParameterType::boolean, ParameterScalar(false)),
                        parameter("count", ParameterType::integer, ParameterScalar(std::int64_t(-9007199254740993))),
                        parameter("weight", ParameterType::number, ParameterScalar(0.1 + 0.2)),
@@ -106,6 +107,7 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.not_finite = "?"; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.inputs[0].list = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.inputs[0].optional = true; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.inputs[0].also = {Kind::mesh}; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[2].low->inclusive = false; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[9].size.reset(); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[11].required = false; }));

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// `metrics`: named numbers with units, in the order they were reported.
+///
+/// A set of them that is about something of a size holds that size as `diagonal`: what `%diag` means beside it.
 
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "scanmill/data/frame.hpp"
 
 namespace scanmill {
 
@@ -24,6 +28,7 @@ struct Metric {
 
 struct Metrics {
     std::vector<Metric> values;
+    LengthUnit unit = LengthUnit::unknown;  ///< that lengths are in, areas and volumes in its powers
 
     /// Replaces an earlier metric of the same name.
     void set(std::string_view name, double value, Unit unit);

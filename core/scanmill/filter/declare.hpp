@@ -32,6 +32,7 @@ struct FilterDeclaration {
 };
 
 /// Port options, none, one or both: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points", "…", list)`.
+/// A port that takes one kind or another: `.in<TriangleMesh, PointCloud>("truth", "…")`.
 enum class PortOption { optional, list };
 inline constexpr PortOption optional = PortOption::optional;
 inline constexpr PortOption list = PortOption::list;
@@ -74,17 +75,20 @@ public:
         declaration_.spec.not_finite = std::move(text);
         return *this;
     }
-    template <class T, std::same_as<PortOption>... Options>
+    template <class T, class... Others, std::same_as<PortOption>... Options>
     Declare& in(std::string port, std::string help, Options... options) {
-        declaration_.spec.inputs.push_back({std::move(port), kind_of<T>(), std::move(help),
+        declaration_.spec.inputs.push_back({std::move(port),
+                                            kind_of<T>(),
+                                            std::move(help),
                                             ((options == PortOption::list) || ...),
-                                            ((options == PortOption::optional) || ...)});
+                                            ((options == PortOption::optional) || ...),
+                                            {kind_of<Others>()...}});
         return *this;
     }
     /// The first output is the primary one.
     template <class T>
     Declare& out(std::string port, std::string help) {
-        declaration_.spec.outputs.push_back({std::move(port), kind_of<T>(), std::move(help), false, false});
+        declaration_.spec.outputs.push_back({std::move(port), kind_of<T>(), std::move(help), false, false, {}});
         return *this;
     }
     /// The member may be one that the params struct inherits.

@@ -14,6 +14,7 @@ Json to_json(const PortSpec& port) {
     Json json{{"name", port.name}, {"kind", name_of(port.kind)}, {"help", port.help}};
     if (port.list) json["list"] = true;
     if (port.optional) json["optional"] = true;
+    for (const Kind kind : port.also) json["also"].push_back(name_of(kind));
     return json;
 }
 
@@ -55,10 +56,13 @@ T required_name(const std::optional<T>& named, std::string_view what, const std:
     return *named;
 }
 
+Kind kind_from(const std::string& name) { return required_name(kind_named(name), "kind", name); }
+
 PortSpec port_from(const Json& json) {
-    const std::string kind = json.at("kind");
-    return {json.at("name"), required_name(kind_named(kind), "kind", kind), json.at("help"), json.value("list", false),
-            json.value("optional", false)};
+    PortSpec port{json.at("name"), kind_from(json.at("kind")), json.at("help"), json.value("list", false),
+                  json.value("optional", false)};
+    for (const auto& also : json.value("also", Json::array())) port.also.push_back(kind_from(also));
+    return port;
 }
 
 std::optional<Bound> bound_from(const Json& json, const char* key) {

@@ -24,11 +24,13 @@ public:
         assert(object);
         return *object;
     }
-    /// nullptr when nothing is wired.
+    /// nullptr when nothing is wired, or a value of another kind that the port takes as well.
     template <class T>
     const T* find(std::string_view port) const {
         const auto found = values_.find(port);
-        return found == values_.end() ? nullptr : std::get<std::shared_ptr<const T>>(found->second.front()).get();
+        if (found == values_.end()) return nullptr;
+        const auto* object = std::get_if<std::shared_ptr<const T>>(&found->second.front());
+        return object ? object->get() : nullptr;
     }
     /// Everything wired to a list port, in order.
     template <class T>

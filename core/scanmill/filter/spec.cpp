@@ -85,7 +85,15 @@ void require_sound_parameter(std::string_view filter, const ParameterSpec& param
 const PortSpec* FilterSpec::input(std::string_view port) const { return find_named(inputs, port); }
 const PortSpec* FilterSpec::output(std::string_view port) const { return find_named(outputs, port); }
 const ParameterSpec* FilterSpec::parameter(std::string_view wanted) const { return find_named(parameters, wanted); }
-const MetricSpec* FilterSpec::metric(std::string_view wanted) const { return find_named(metrics, wanted); }
+const MetricSpec* FilterSpec::metric(std::string_view wanted) const {
+    return find_named(metrics, wanted.substr(0, wanted.find('@')));
+}
+
+std::string kinds_text(const PortSpec& port) {
+    std::string text(name_of(port.kind));
+    for (const Kind kind : port.also) text.append(" or ").append(name_of(kind));
+    return text;
+}
 
 void require_sound(const FilterSpec& spec) {
     if (!is_name(spec.name)) throw Error("filter '{}': the name is not lower-case-with-hyphens", spec.name);
@@ -99,7 +107,7 @@ void require_sound(const FilterSpec& spec) {
     require_names(spec.name, "metric", spec.metrics);
     if (!spec.inputs.empty()) require_said(spec.name, "ties", spec.ties);
     const auto has_coordinates = [](const PortSpec& port) {
-        return port.kind == Kind::points || port.kind == Kind::mesh;
+        return port.takes(Kind::points) || port.takes(Kind::mesh);
     };
     if (std::ranges::any_of(spec.inputs, has_coordinates)) require_said(spec.name, "NaN", spec.not_finite);
     for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec.name, parameter);

@@ -3,6 +3,7 @@
 /// What a filter says of itself: name, ports, parameters, metrics. Pure data: help, validation, schema and pages all
 /// derive from it, and it can be read from a manifest without loading the filter.
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,12 +19,17 @@ struct PortSpec {
     std::string help;
     bool list = false;      ///< takes any number of values; inputs only
     bool optional = false;  ///< may stay unwired; inputs only
+    std::vector<Kind> also{};  ///< kinds that it takes as well; inputs only. Such a port is wired by `in` alone
 
+    bool takes(Kind other) const { return kind == other || std::ranges::find(also, other) != also.end(); }
     bool operator==(const PortSpec&) const = default;
 };
 
+/// "mesh or points".
+std::string kinds_text(const PortSpec& port);
+
 struct MetricSpec {
-    std::string name;
+    std::string name;  ///< a filter may report it several times, as `NAME@WHERE` for different places
     Unit unit = Unit::number;
     std::string help;
     bool headline = false;  ///< worth a column in a run's summary
@@ -46,6 +52,7 @@ struct FilterSpec {
     const PortSpec* input(std::string_view port) const;
     const PortSpec* output(std::string_view port) const;
     const ParameterSpec* parameter(std::string_view parameter) const;
+    /// Also of `NAME@WHERE`.
     const MetricSpec* metric(std::string_view metric) const;
     bool operator==(const FilterSpec&) const = default;
 };

@@ -96,6 +96,19 @@ std::function<double()> memoised(std::function<double()> compute) {
     };
 }
 
+LengthScale scale_beside(const std::shared_ptr<const Metrics>& metrics) {
+    return {metrics->unit,
+            [metrics] {
+                const Metric* diagonal = metrics->find("diagonal");
+                if (!diagonal)
+                    throw Error("%diag means nothing here: no metric `diagonal` says how large the object is");
+                return diagonal->value;
+            },
+            []() -> double {
+                throw Error("spacing means nothing beside metrics").hint("give the length in a unit, in u or in %diag");
+            }};
+}
+
 }  // namespace
 
 double point_spacing(std::span<const Vec3> positions) {
@@ -138,6 +151,7 @@ double edge_spacing(const TriangleMesh& mesh) {
 }
 
 LengthScale length_scale(const Value& value) {
+    if (const auto* metrics = std::get_if<std::shared_ptr<const Metrics>>(&value)) return scale_beside(*metrics);
     const Frame* frame = frame_of(value);
     return {frame ? frame->unit : LengthUnit::unknown, memoised([value] { return diagonal_of(positions_of(value)); }),
             memoised([value] { return spacing_of(value); })};

@@ -18,7 +18,7 @@ double point_spacing(std::span<const Vec3> positions);
 double edge_spacing(const TriangleMesh& mesh);
 
 /// What `%diag` and `spacing` mean for this value: points by point_spacing, meshes by edge_spacing, everything else by
-/// its positions. Both are computed at most once, on demand.
+/// its positions. Both are computed at most once, on demand. Metrics know the diagonal that they report, no spacing.
 LengthScale length_scale(const Value& value);
 
 }  // namespace scanmill

@@ -210,6 +210,7 @@ void describe(Archive& archive, Numbers& numbers)
     requires std::same_as<std::remove_const_t<Numbers>, Metrics>
 {
     archive.field("values", numbers.values);
+    archive.field("unit", numbers.unit);
 }
 
 /// The kind whose index in Value is `kind`; the others in turn.

@@ -43,7 +43,7 @@ std::string ports_table(std::string_view title, std::string_view column, const s
     if (ports.empty()) return {};
     std::string table = fmt::format("\n## {}\n\n| {} | kind | what it is |\n|---|---|---|\n", title, column);
     for (const PortSpec& port : ports)
-        table += fmt::format("| {} | {}{}{} | {} |\n", code(port.name), name_of(port.kind),
+        table += fmt::format("| {} | {}{}{} | {} |\n", code(port.name), kinds_text(port),
                              port.list ? ", any number" : "", port.optional ? ", optional" : "", cell(port.help));
     return table;
 }
@@ -102,6 +102,15 @@ std::string example_step(const FilterSpec& spec, bool whole) {
     return step;
 }
 
+/// `in:` for a filter with a port that is not wired without it; every port is fed by the input of its name.
+std::string example_wiring(const FilterSpec& spec) {
+    if (std::ranges::all_of(spec.inputs, [](const PortSpec& port) { return port.also.empty(); })) return {};
+    std::string wiring;
+    for (const PortSpec& port : spec.inputs)
+        wiring += fmt::format("{}{}: {}", wiring.empty() ? "" : ", ", port.name, port.name);
+    return fmt::format("    in: {{{}}}\n", wiring);
+}
+
 }  // namespace
 
 std::string example_workflow(const FilterSpec& spec, const FilterLibrary& library) {
@@ -126,8 +135,10 @@ std::string example_workflow(const FilterSpec& spec, const FilterLibrary& librar
                 "  {}: {}\n", port->name,
                 port->list ? "[" + std::string(name_of(port->kind)) + "]" : std::string(name_of(port->kind)));
     example += "steps:\n";
-    for (const FilterSpec* step : steps) example += example_step(*step, step == &spec);
-    if (is_readable(spec.outputs.front().kind)) example += fmt::format("outputs:\n  \"{{scan}}.ply\": {}\n", spec.name);
+    for (const FilterSpec* step : steps) example += example_step(*step, step == &spec) + example_wiring(*step);
+    const Kind kind = spec.outputs.front().kind;
+    if (is_readable(kind) || kind == Kind::metrics)
+        example += fmt::format("outputs:\n  \"{{scan}}.{}\": {}\n", is_readable(kind) ? "ply" : "json", spec.name);
     return example;
 }
 

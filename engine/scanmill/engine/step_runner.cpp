@@ -126,8 +126,9 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
     const auto keep_findings = [&] {
         report.warnings = context.warnings();
         for (const MetricSpec& declared : step.spec.metrics)
-            if (const Metric* metric = context.metrics().find(declared.name))
-                report.metrics.set(declared.name, metric->value, declared.unit);
+            for (const Metric& metric : context.metrics().values)
+                if (step.spec.metric(metric.name) == &declared)
+                    report.metrics.set(metric.name, metric.value, declared.unit);
     };
     try {
         const Inputs ports = rebased(inputs, first, context);

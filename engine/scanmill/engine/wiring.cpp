@@ -84,10 +84,10 @@ private:
 
     bool fits(const PortSpec& port, const ValueSource& source, const Reference& reference) {
         const Kind kind = kind_of(scope_.plan, source);
-        if (kind != port.kind) {
-            diagnostics_.error(reference.position, fmt::format("'{}' is {}; the port '{}' of {} takes {}{}",
-                                                               reference.text, name_of(kind), port.name, spec_.name,
-                                                               name_of(port.kind), givers(scope_.library, port.kind)));
+        if (!port.takes(kind)) {
+            diagnostics_.error(reference.position,
+                               fmt::format("'{}' is {}; the port '{}' of {} takes {}{}", reference.text, name_of(kind),
+                                           port.name, spec_.name, kinds_text(port), givers(scope_.library, port.kind)));
             return false;
         }
         if (!source.step && scope_.plan.workflow.inputs[source.input].list && !port.list) {
@@ -99,9 +99,16 @@ private:
     }
 
     std::vector<ValueSource> nearest(const PortSpec& port) {
+        if (!port.also.empty()) {
+            if (!port.optional)
+                diagnostics_.error(step_.position,
+                                   fmt::format("{} takes {} at its port '{}'; say which value: `in: {{{}: …}}`",
+                                               spec_.name, kinds_text(port), port.name, port.name));
+            return {};
+        }
         std::size_t rivals = 0;
         for (const PortSpec& other : spec_.inputs) {
-            if (other.kind != port.kind || other.name == port.name) continue;
+            if (other.kind != port.kind || other.name == port.name || !other.also.empty()) continue;
             // An optional port would get what the port before it gets; who wants that says so.
             if (port.optional && &other < &port) return {};
             rivals += other.optional ? 0 : 1;

@@ -62,7 +62,7 @@ Json in_schema(const FilterSpec& spec) {
     const Json reference{{"type", "string"}};
     Json ports = Json::object();
     for (const PortSpec& port : spec.inputs) {
-        ports[port.name] = {{"description", std::string(name_of(port.kind)) + ": " + port.help},
+        ports[port.name] = {{"description", kinds_text(port) + ": " + port.help},
                             {"anyOf", Json::array({reference, Json{{"type", "array"}, {"items", reference}}})}};
     }
     Json map = object_of(std::move(ports));

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/formats/metrics_json.hpp"
+
+#include <cmath>
+
+#include "scanmill/filter/error.hpp"
+#include "scanmill/formats/output_buffer.hpp"
+
+namespace scanmill {
+
+using Json = nlohmann::ordered_json;
+
+Json metrics_json(const Metrics& metrics) {
+    Json json = Json::object();
+    for (const Metric& metric : metrics.values) {
+        if (metric.unit == Unit::boolean)
+            json[metric.name] = metric.value != 0;
+        else if (std::isfinite(metric.value))
+            json[metric.name] = metric.value;
+        else
+            json[metric.name] = nullptr;
+    }
+    return json;
+}
+
+void write_metrics_json(const Value& value, OutputBuffer& out, const WriteOptions&) {
+    const Metrics& metrics = *std::get<std::shared_ptr<const Metrics>>(value);
+    const bool is_known = metrics.unit != LengthUnit::unknown;
+    Json json{{"scanmill", 1},
+              {"unit", is_known ? Json(symbol(metrics.unit)) : Json(nullptr)},
+              {"metrics", metrics_json(metrics)},
+              {"units", Json::object()}};
+    for (const Metric& metric : metrics.values) json["units"][metric.name] = name_of(metric.unit);
+    out.text(json.dump(2));
+    out.text("\n");
+}
+
+Recognition recognise_json(std::string_view, u64) { return Recognition::no; }  // by its extension alone
+
+LoadedFile refuse_json(const FileBytes&, const ReadOptions&) {
+    throw Error("a JSON file holds no points and no mesh").hint("name the scan or mesh itself");
+}
+
+}  // namespace scanmill
