@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <pcl/io/pcd_io.h>
 
-#include <set>
-
 #include "pcd/pcd.hpp"
 #include "pcd/pcd_fields.hpp"
 #include "scanmill/formats/output_buffer.hpp"
 #include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/writing.hpp"
+#include "scanmill/formats/written_names.hpp"
 
 namespace scanmill::pcd {
 
@@ -44,20 +43,15 @@ struct WrittenColumn {
 
 /// Every column under a name that no other field has; names that had to change are told.
 std::vector<WrittenColumn> written_columns(const PointCloud& cloud, const WriteOptions& options) {
-    std::set<std::string> taken{"x", "y", "z", "_", "normal_x", "normal_y", "normal_z", "rgb", "rgba"};
+    WrittenNames names("PCD", options, {"x", "y", "z", "_", "normal_x", "normal_y", "normal_z", "rgb", "rgba"});
     std::vector<WrittenColumn> columns;
     for (const Column& column : cloud.columns) {
         if (column.is_list()) {
             warn(options.on_warning, "PCD left out the lists of the column '{}'; PLY keeps them", column.name());
             continue;
         }
-        std::string field = field_name(column.name());
-        if (!is_normal(column) && !is_colour(column)) {
-            while (!taken.insert(field).second) field += "_2";
-            if (field != column.name())
-                warn(options.on_warning, "PCD holds the column '{}' under the name '{}'", column.name(), field);
-        }
-        columns.push_back({&column, std::move(field)});
+        const bool has_meaning = is_normal(column) || is_colour(column);
+        columns.push_back({&column, has_meaning ? "" : names.add(column.name(), field_name(column.name()))});
     }
     return columns;
 }

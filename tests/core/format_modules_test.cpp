@@ -30,6 +30,13 @@ TEST(FormatManifest, ComesBackTheSame) {
     EXPECT_EQ(back.abi, manifest.abi);
 }
 
+TEST(FormatManifest, FormatsThatAreOnlyWritten_ComeBackTheSame) {
+    FormatManifest written = manifest;
+    written.spec.reads = false;
+    EXPECT_EQ(parse_format_manifest(to_json_text(written)).spec, written.spec);
+    EXPECT_NE(written.spec, manifest.spec);
+}
+
 TEST(FormatManifest, WhatIsNone_IsRefused) {
     EXPECT_THAT(sentence_of([] { parse_format_manifest("{"); }), HasSubstr("is no manifest"));
     EXPECT_THAT(sentence_of([] { parse_format_manifest("{\"scanmill-format\": 2}"); }), HasSubstr("of version 2"));
@@ -50,6 +57,19 @@ TEST(FormatModules, Recognition_NeedsNoCode) {
     EXPECT_TRUE(rows[0].writer(Kind::points));
     EXPECT_FALSE(rows[0].writer(Kind::mesh));
     EXPECT_THAT(refusal(rows[0]), HasSubstr("cannot be loaded")) << "only now the module is opened";
+}
+
+TEST(FormatModules, OnlyWritten_RefusesToReadWithoutItsCode) {
+    const TemporaryFolder folder;
+    FormatManifest written = manifest;
+    written.spec.reads = false;
+    folder.write("scanmill-abc.json", to_json_text(written));
+    folder.write("scanmill-abc.so", "no code at all");
+    const std::vector<Format> rows = format_modules(folder.path());
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].recognises("#ABC 1\n", 7), Recognition::certain);
+    EXPECT_TRUE(rows[0].is_refused);
+    EXPECT_THAT(refusal(rows[0]), HasSubstr("ABC is written for other programs, and not read"));
 }
 
 TEST(FormatModules, OnesThatCannotBeUsed_SayWhyToWhomNeedsThem) {

@@ -86,8 +86,8 @@ TEST(CanWrite_Table, KnowsExtensionsInAnyCase_AndKinds) {
     EXPECT_FALSE(can_write("xyz", Kind::mesh));
     EXPECT_FALSE(can_write("", Kind::mesh));
     EXPECT_FALSE(can_write("ply", Kind::metrics));
-    EXPECT_EQ(writable_extensions(Kind::mesh), "ply, stl, off, obj");
     // Formats of modules follow, when they were built.
+    EXPECT_TRUE(writable_extensions(Kind::mesh).starts_with("ply, stl, off, obj"));
     EXPECT_TRUE(writable_extensions(Kind::points).starts_with("ply, xyz, txt"));
     EXPECT_EQ(writable_extensions(Kind::metrics), "");
 }

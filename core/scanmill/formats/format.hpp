@@ -39,7 +39,7 @@ struct Format {
     Recognise recognises;
     Read read;
     std::vector<std::pair<Kind, Write>> writers;
-    /// Listed so that `read` can say what to do instead: it always throws.
+    /// `read` always throws: the format is only written, or listed so that it can say what to do instead.
     bool is_refused = false;
     /// Why its module cannot be used, as a part of a sentence; `read` throws with it.
     std::string unusable = {};

@@ -54,6 +54,11 @@ std::string text_of(const std::filesystem::path& file) {
     return text.str();
 }
 
+LoadedFile refuse_to_read(const std::string& format) {
+    throw Error("{} is written for other programs, and not read", format)
+        .hint("read the file that it was made from; PLY keeps everything and is read");
+}
+
 Format row_of(const std::filesystem::path& manifest_file, const std::string& name) {
     const FormatManifest manifest = parse_format_manifest(text_of(manifest_file));
     if (manifest.abi != abi_text())
@@ -69,9 +74,13 @@ Format row_of(const std::filesystem::path& manifest_file, const std::string& nam
         const auto at_start = [&](const std::string& text) { return head.starts_with(text); };
         return std::ranges::any_of(begins, at_start) ? Recognition::certain : Recognition::no;
     };
-    row.read = [module](const FileBytes& file, const ReadOptions& options) {
-        return module->declaration().read(file, options);
-    };
+    row.is_refused = !spec.reads;
+    if (spec.reads)
+        row.read = [module](const FileBytes& file, const ReadOptions& options) {
+            return module->declaration().read(file, options);
+        };
+    else
+        row.read = [format = spec.name](const FileBytes&, const ReadOptions&) -> LoadedFile { return refuse_to_read(format); };
     for (const Kind kind : spec.writes)
         row.writers.emplace_back(kind,
                                  [module, kind](const Value& value, OutputBuffer& out, const WriteOptions& options) {
@@ -101,8 +110,9 @@ FormatDeclaration load_format_module(const std::filesystem::path& module, const 
     declare(open_module(module, {format_magic, "file format"}, name), module, &declaration);
     std::vector<Kind> written;
     for (const auto& [kind, write] : declaration.writers) written.push_back(kind);
-    if (!declaration.read || written != declaration.spec.writes)
-        throw Error("module '{}' lacks a reader, or a writer that it announces", module.string());
+    if (bool(declaration.read) != declaration.spec.reads || written != declaration.spec.writes)
+        throw Error("module '{}' lacks a reader or a writer that it announces, or has one that it does not",
+                    module.string());
     return declaration;
 }
 

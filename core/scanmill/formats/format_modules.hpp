@@ -8,7 +8,7 @@
 namespace scanmill {
 
 /// Loads the module of the format whose file is scanmill-<name>.so. Throws Error as open_module(), when the declaration
-/// throws, and when it lacks a reader or a writer that it announces.
+/// throws, and when it lacks a reader or a writer that it announces or has one more.
 FormatDeclaration load_format_module(const std::filesystem::path& module, const std::string& name);
 
 /// The rows of the modules in the folder, sorted by name. One whose manifest or module cannot be used stays in the

@@ -16,7 +16,7 @@ inline constexpr char format_magic[16] = "scanmill-format";
 
 struct FormatDeclaration {
     FormatSpec spec;
-    Format::Read read;
+    Format::Read read;  ///< empty when the spec says that the format is not read
     std::vector<std::pair<Kind, Format::Write>> writers;  ///< one for each kind of spec.writes
 };
 

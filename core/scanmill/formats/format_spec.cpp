@@ -17,7 +17,8 @@ constexpr int manifest_version = 1;
 std::string to_json_text(const FormatManifest& manifest) {
     const FormatSpec& spec = manifest.spec;
     Json json{{"scanmill-format", manifest_version}, {"abi", manifest.abi},   {"name", spec.name},
-              {"extensions", spec.extensions},       {"begins", spec.begins}, {"writes", Json::array()}};
+              {"extensions", spec.extensions},       {"begins", spec.begins}, {"writes", Json::array()},
+              {"reads", spec.reads}};
     for (const Kind kind : spec.writes) json["writes"].push_back(name_of(kind));
     return json.dump(2) + "\n";
 }
@@ -36,6 +37,7 @@ FormatManifest parse_format_manifest(std::string_view text) try {
         if (!kind) throw Error("'{}' is no kind", name);
         spec.writes.push_back(*kind);
     }
+    spec.reads = json.value("reads", true);
     if (spec.name.empty() || spec.extensions.empty()) throw Error("names no format, or no extension");
     return manifest;
 } catch (const Json::exception& error) {

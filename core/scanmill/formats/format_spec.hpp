@@ -18,6 +18,8 @@ struct FormatSpec {
     /// A file that begins with one of these is certainly of this format.
     std::vector<std::string> begins;
     std::vector<Kind> writes;
+    /// False for a format that is written for other programs and not read.
+    bool reads = true;
 
     bool operator==(const FormatSpec&) const = default;
 };

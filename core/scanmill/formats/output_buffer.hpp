@@ -31,7 +31,14 @@ public:
     using Sink = std::function<void(std::string_view)>;
     explicit OutputBuffer(Sink sink) : sink_(std::move(sink)), space_(capacity) {}
 
-    void text(std::string_view piece) { std::memcpy(room(piece.size()), piece.data(), piece.size()); }
+    void text(std::string_view piece) {
+        if (piece.size() < capacity) {
+            std::memcpy(room(piece.size()), piece.data(), piece.size());
+        } else {
+            flush();
+            sink_(piece);
+        }
+    }
     /// A number as text.
     template <class Number>
     void number(Number value) {

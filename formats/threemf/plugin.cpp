@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/formats/format_plugin.hpp"
+#include "threemf/threemf.hpp"
+
+SCANMILL_FORMAT() {
+    using namespace scanmill;
+    // Its files begin as every ZIP archive does: the extension must tell.
+    return {{"3MF", {"3mf"}, {}, {Kind::mesh}, false}, {}, {{Kind::mesh, threemf::write_threemf}}};
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Our values as VTK's arrays, and VTK's XML files as bytes: what VTP and VTU share.
+///
+/// Columns, and whatever else already lies in memory as VTK wants it, are viewed and not copied: the value must outlive
+/// the data set. Column names are kept, but for control characters and bytes that are no UTF-8, which become '_' and
+/// are told. `normal` (3 numbers), `colour` (3 or 4 uint8) and `texture` (2 numbers) are also marked as VTK's normals,
+/// scalars and texture coordinates. Lists have no form in VTK: they are left out and told.
+///
+/// In the field data, as far as known: `unit` (a string as `mm`), `frame` (its name), `origin` (three doubles near the
+/// data; the positions contain it already, so it is what a viewer of single precision may subtract).
+
+#include <vtkCellArray.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkPointSet.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLWriter.h>
+
+#include <span>
+#include <string>
+
+#include "scanmill/data/columns.hpp"
+#include "scanmill/data/frame.hpp"
+#include "scanmill/formats/files.hpp"
+#include "scanmill/formats/output_buffer.hpp"
+
+namespace scanmill::vtk {
+
+/// `name` as an attribute of XML: VTK writes names as they are, so what XML needs for itself is escaped here. Pre: valid
+/// UTF-8.
+std::string escaped(std::string_view name);
+
+/// A view of `rows` × `components` numbers.
+vtkSmartPointer<vtkDataArray> array_of(ScalarType type, const void* numbers, std::size_t rows, u32 components,
+                                       std::string_view name);
+template <class T>
+vtkSmartPointer<vtkDataArray> array_of(std::span<const T> numbers, u32 components, std::string_view name) {
+    return array_of(scalar_type_of<T>(), numbers.data(), numbers.size() / components, components, name);
+}
+
+/// Adds the columns; `format` is for what is told.
+void add_columns(const ColumnTable& columns, std::string_view format, const WriteOptions& options,
+                 vtkDataSetAttributes& attributes);
+/// The same among arrays that belong to the whole file, each name behind `prefix`.
+void add_columns(const ColumnTable& columns, std::string_view prefix, std::string_view format,
+                 const WriteOptions& options, vtkFieldData& field);
+
+/// World coordinates, as double.
+vtkSmartPointer<vtkPoints> points_of(const Frame& frame, std::span<const Vec3> positions);
+
+/// Cells of `corners` vertices each; 32-bit numbers where they suffice.
+vtkSmartPointer<vtkCellArray> cells_of(std::span<const u32> vertices, vtkIdType corners, std::size_t points);
+/// The cells { first }, { first + 1 }, … , `count` of them: makes points visible.
+vtkSmartPointer<vtkCellArray> single_points(u32 first, std::size_t count);
+
+void add_frame(const Frame& frame, vtkFieldData& field);
+void add_text(std::string_view name, std::span<const std::string> texts, vtkFieldData& field);
+
+/// Writes the data set: XML with one block of raw binary behind it, not compressed, so that equal data are equal bytes
+/// everywhere. Throws Error when VTK fails.
+void write(vtkXMLWriter& writer, vtkPointSet& data, OutputBuffer& out);
+
+}  // namespace scanmill::vtk

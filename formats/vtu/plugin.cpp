@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/formats/format_plugin.hpp"
+#include "vtu/vtu.hpp"
+
+SCANMILL_FORMAT() {
+    using namespace scanmill;
+    return {{"VTU",
+             {"vtu"},
+             {"<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\"", "<VTKFile type=\"UnstructuredGrid\""},
+             {Kind::tets},
+             false},
+            {},
+            {{Kind::tets, vtk::write_vtu}}};
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkFieldData.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include "scanmill/formats/writing.hpp"
+#include "vtk/vtk_arrays.hpp"
+#include "vtu/vtu.hpp"
+
+namespace scanmill::vtk {
+
+namespace {
+
+constexpr std::string_view format = "VTU";
+
+}  // namespace
+
+void write_vtu(const Value& value, OutputBuffer& out, const WriteOptions& options) {
+    const TetMesh& tets = *std::get<std::shared_ptr<const TetMesh>>(value);
+    tell_lost_precision(tets.frame, tets.positions.span(), false, format, options);
+    const auto data = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    data->SetPoints(points_of(tets.frame, tets.positions.span()));
+    const std::span vertices(reinterpret_cast<const u32*>(tets.cells.data()), 4 * tets.cells.size());
+    // Their corners are ordered as ours: the fourth lies where the normal of the first three points to.
+    data->SetCells(VTK_TETRA, cells_of(vertices, 4, tets.positions.size()));
+    add_columns(tets.vertex_columns, format, options, *data->GetPointData());
+    if (!tets.inside.empty()) data->GetCellData()->AddArray(array_of(tets.inside.span(), 1, "inside"));
+    add_frame(tets.frame, *data->GetFieldData());
+    write(*vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New(), *data, out);
+}
+
+}  // namespace scanmill::vtk
