@@ -129,8 +129,7 @@ std::string why_left_out(const Column& column, const WriteOptions& options) {
     if (column.is_list()) return "it holds lists";
     if (column.components() > most_components)
         return fmt::format("it has {} numbers per row, and glTF at most {}", column.components(), most_components);
-    const Fitness found =
-        visit_scalar(column.type(), [&]<class T>(T) { return fitness_of(column.values<T>()); });
+    const Fitness found = visit_scalar(column.type(), [&]<class T>(T) { return fitness_of(column.values<T>()); });
     if (found.not_finite > 0)
         return fmt::format("{} NaN or infinite, which glTF does not allow",
                            counted(found.not_finite, "of its numbers is", "of its numbers are"));
@@ -178,12 +177,12 @@ std::vector<Attribute> attributes_of(const ColumnTable& columns, const WriteOpti
             warn(options.on_warning, "GLB left out the column '{}': {}; PLY keeps it", column.name(), reason);
         } else {
             const std::string expected = upper_case(column.name());
-            Attribute attribute =
-                visit_scalar(column.type(), [&]<class T>(T) { return number_attribute<T>(column); });
+            Attribute attribute = visit_scalar(column.type(), [&]<class T>(T) { return number_attribute<T>(column); });
             attribute.name = names.add(column.name(), identifier(expected), expected);
             if (lost > 0)
-                warn(options.on_warning, "GLB holds the column 'normal' as '{}' and not as its normals: {} no direction",
-                     attribute.name, counted(lost, "of them has", "of them have"));
+                warn(options.on_warning,
+                     "GLB holds the column 'normal' as '{}' and not as its normals: {} no direction", attribute.name,
+                     counted(lost, "of them has", "of them have"));
             attributes.push_back(std::move(attribute));
         }
     }

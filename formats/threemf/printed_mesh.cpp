@@ -58,8 +58,10 @@ void require_solid(const TriangleMesh& mesh) {
     const MeshTopology found = topology(mesh);
     if (!found.closed)
         throw Error(
-            "3MF holds closed, oriented manifolds only; the mesh has {} boundary edges in {} loops, {} edges in three or "
-            "more triangles, {} edges whose two triangles disagree, {} vertices of several fans and {} triangles that name "
+            "3MF holds closed, oriented manifolds only; the mesh has {} boundary edges in {} loops, {} edges in three "
+            "or "
+            "more triangles, {} edges whose two triangles disagree, {} vertices of several fans and {} triangles that "
+            "name "
             "a vertex twice",
             found.boundary_edges, found.boundary_loops, found.nonmanifold_edges, found.misoriented_edges,
             found.nonmanifold_vertices, found.degenerate_triangles)

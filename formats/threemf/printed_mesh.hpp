@@ -11,8 +11,8 @@
 
 namespace scanmill::threemf {
 
-/// Throws Error, with numbers, unless the mesh is a closed, oriented manifold whose triangles face outwards, with finite
-/// coordinates that lib3mf takes.
+/// Throws Error, with numbers, unless the mesh is a closed, oriented manifold whose triangles face outwards, with
+/// finite coordinates that lib3mf takes.
 void require_solid(const TriangleMesh& mesh);
 
 struct PrintedMesh {

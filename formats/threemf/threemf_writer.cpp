@@ -9,6 +9,7 @@
 #include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/writing.hpp"
 #include "scanmill/formats/written_names.hpp"
+#include "threemf/plain_zip.hpp"
 #include "threemf/printed_mesh.hpp"
 #include "threemf/threemf.hpp"
 
@@ -129,7 +130,7 @@ void write_threemf(const Value& value, OutputBuffer& out, const WriteOptions& op
     require(NMR::lib3mf_writer_writetocallback(writer.get(), reinterpret_cast<void*>(&Archive::write),
                                                reinterpret_cast<void*>(&Archive::seek), &archive),
             writer, "write it");
-    out.text(archive.bytes);
+    write_plain_zip(archive.bytes, out);
 }
 
 }  // namespace scanmill::threemf

@@ -26,8 +26,8 @@
 
 namespace scanmill::vtk {
 
-/// `name` as an attribute of XML: VTK writes names as they are, so what XML needs for itself is escaped here. Pre: valid
-/// UTF-8.
+/// `name` as an attribute of XML: VTK writes names as they are, so what XML needs for itself is escaped here. Pre:
+/// valid UTF-8.
 std::string escaped(std::string_view name);
 
 /// A view of `rows` × `components` numbers.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// VTP, the XML files of VTK's polygonal data: points, meshes and features for ParaView, PyVista and all that VTK reads.
+/// VTP, the XML files of VTK's polygonal data: points, meshes and features for ParaView, PyVista and all that VTK
+/// reads.
 ///
 /// Positions are world coordinates, as double. Columns, unit and frame: vtk/vtk_arrays.hpp. NaN is written as it is.
 ///
 /// Points: every point is also a cell of its own (`Verts`), so that it is seen. A mesh: vertex columns are point data,
-/// face columns cell data; what VTK has no place for is in the field data: `sharp_edges` (2 × uint32, vertices), `edges`
-/// and for each edge column `edge:NAME`. Nothing but lists is lost.
+/// face columns cell data; what VTK has no place for is in the field data: `sharp_edges` (2 × uint32, vertices),
+/// `edges` and for each edge column `edge:NAME`. Nothing but lists is lost.
 ///
 /// Features: every polyline is a cell (`Lines`); a closed one ends with the point it began with. Points are not shared:
 /// each polyline and each corner has its own, so that the normals on both sides can be point data (`left_normal`,

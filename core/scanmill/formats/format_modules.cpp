@@ -80,7 +80,9 @@ Format row_of(const std::filesystem::path& manifest_file, const std::string& nam
             return module->declaration().read(file, options);
         };
     else
-        row.read = [format = spec.name](const FileBytes&, const ReadOptions&) -> LoadedFile { return refuse_to_read(format); };
+        row.read = [format = spec.name](const FileBytes&, const ReadOptions&) -> LoadedFile {
+            return refuse_to_read(format);
+        };
     for (const Kind kind : spec.writes)
         row.writers.emplace_back(kind,
                                  [module, kind](const Value& value, OutputBuffer& out, const WriteOptions& options) {

@@ -16,8 +16,12 @@ constexpr int manifest_version = 1;
 
 std::string to_json_text(const FormatManifest& manifest) {
     const FormatSpec& spec = manifest.spec;
-    Json json{{"scanmill-format", manifest_version}, {"abi", manifest.abi},   {"name", spec.name},
-              {"extensions", spec.extensions},       {"begins", spec.begins}, {"writes", Json::array()},
+    Json json{{"scanmill-format", manifest_version},
+              {"abi", manifest.abi},
+              {"name", spec.name},
+              {"extensions", spec.extensions},
+              {"begins", spec.begins},
+              {"writes", Json::array()},
               {"reads", spec.reads}};
     for (const Kind kind : spec.writes) json["writes"].push_back(name_of(kind));
     return json.dump(2) + "\n";
