@@ -7,6 +7,7 @@
 #include <vtkStringArray.h>
 #include <vtkTypeInt32Array.h>
 #include <vtkTypeInt64Array.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <limits>
 #include <numeric>
@@ -155,8 +156,14 @@ void add_text(std::string_view name, std::span<const std::string> texts, vtkFiel
     field.AddArray(array);
 }
 
-void add_frame(const Frame& frame, vtkFieldData& field) {
-    const auto add_one = [&](std::string_view name, std::string text) { add_text(name, {&text, 1}, field); };
+void add_frame(const Frame& frame, Text form, vtkFieldData& field) {
+    const auto add_one = [&](std::string_view name, std::string text) {
+        if (form == Text::as_string) return add_text(name, {&text, 1}, field);
+        const auto bytes = vtkSmartPointer<vtkUnsignedCharArray>::New();
+        bytes->SetName(std::string(name).c_str());
+        for (const char c : text) bytes->InsertNextValue(static_cast<unsigned char>(c));
+        field.AddArray(bytes);
+    };
     if (frame.unit != LengthUnit::unknown) add_one("unit", std::string(symbol(frame.unit)));
     if (!frame.name.empty()) add_one("frame", frame.name);
     if (frame.origin == Vec3::Zero()) return;

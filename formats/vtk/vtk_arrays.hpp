@@ -7,7 +7,7 @@
 /// are told. `normal` (3 numbers), `colour` (3 or 4 uint8) and `texture` (2 numbers) are also marked as VTK's normals,
 /// scalars and texture coordinates. Lists have no form in VTK: they are left out and told.
 ///
-/// In the field data, as far as known: `unit` (a string as `mm`), `frame` (its name), `origin` (three doubles near the
+/// In the field data, as far as known: `unit` (a text as `mm`), `frame` (its name), `origin` (three doubles near the
 /// data; the positions contain it already, so it is what a viewer of single precision may subtract).
 
 #include <vtkCellArray.h>
@@ -53,7 +53,9 @@ vtkSmartPointer<vtkCellArray> cells_of(std::span<const u32> vertices, vtkIdType 
 /// The cells { first }, { first + 1 }, … , `count` of them: makes points visible.
 vtkSmartPointer<vtkCellArray> single_points(u32 first, std::size_t count);
 
-void add_frame(const Frame& frame, vtkFieldData& field);
+/// As numbers, a text is one uint8 for each byte of its UTF-8: meshio reads no file that has strings.
+enum class Text { as_string, as_numbers };
+void add_frame(const Frame& frame, Text text, vtkFieldData& field);
 void add_text(std::string_view name, std::span<const std::string> texts, vtkFieldData& field);
 
 /// Writes the data set: XML with one block of raw binary behind it, not compressed, so that equal data are equal bytes

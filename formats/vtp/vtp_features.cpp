@@ -89,7 +89,7 @@ void write_vtp_features(const Value& value, OutputBuffer& out, const WriteOption
     data->GetPointData()->AddArray(view(points.right_normal, "right_normal"));
     data->GetCellData()->AddArray(view(type, "type"));
     data->GetCellData()->AddArray(view(closed, "closed"));
-    add_frame(graph.frame, *data->GetFieldData());
+    add_frame(graph.frame, Text::as_string, *data->GetFieldData());
     add_text("type_names", type_names, *data->GetFieldData());
     write(*vtkSmartPointer<vtkXMLPolyDataWriter>::New(), *data, out);
 }

@@ -31,7 +31,7 @@ void write_vtp_points(const Value& value, OutputBuffer& out, const WriteOptions&
     data->SetPoints(points_of(cloud.frame, cloud.positions.span()));
     data->SetVerts(single_points(0, cloud.size()));
     add_columns(cloud.columns, format, options, *data->GetPointData());
-    add_frame(cloud.frame, *data->GetFieldData());
+    add_frame(cloud.frame, Text::as_string, *data->GetFieldData());
     write(*vtkSmartPointer<vtkXMLPolyDataWriter>::New(), *data, out);
 }
 
@@ -44,7 +44,7 @@ void write_vtp_mesh(const Value& value, OutputBuffer& out, const WriteOptions& o
     add_columns(mesh.vertex_columns, format, options, *data->GetPointData());
     add_columns(mesh.face_columns, format, options, *data->GetCellData());
     vtkFieldData& field = *data->GetFieldData();
-    add_frame(mesh.frame, field);
+    add_frame(mesh.frame, Text::as_string, field);
     if (!mesh.edges.empty()) field.AddArray(array_of(vertices_of(mesh.edges), 2, "edges"));
     add_columns(mesh.edge_columns, "edge:", format, options, field);
     if (!mesh.sharp_edges.empty()) field.AddArray(array_of(vertices_of(mesh.sharp_edges), 2, "sharp_edges"));

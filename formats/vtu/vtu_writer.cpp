@@ -28,7 +28,7 @@ void write_vtu(const Value& value, OutputBuffer& out, const WriteOptions& option
     data->SetCells(VTK_TETRA, cells_of(vertices, 4, tets.positions.size()));
     add_columns(tets.vertex_columns, format, options, *data->GetPointData());
     if (!tets.inside.empty()) data->GetCellData()->AddArray(array_of(tets.inside.span(), 1, "inside"));
-    add_frame(tets.frame, *data->GetFieldData());
+    add_frame(tets.frame, Text::as_numbers, *data->GetFieldData());
     write(*vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New(), *data, out);
 }
 
