@@ -73,6 +73,7 @@ void require_coming_back(const Value& value, const Format& format) {
     } catch (const Error&) {
         return;  // coordinates beyond what the format has
     }
+    if (format.is_refused) return;  // written only
     const Value copy = read_bytes(bytes, name).value;
     if (format.name == "STL") return;  // merges corners, keeps single precision
     const Array<Vec3> positions = world_positions(value);
