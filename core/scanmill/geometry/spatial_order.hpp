@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// An order in which neighbours follow each other: queries asked in it find the last answer's surroundings in the cache
+/// and its answer a good hint.
+
+#include <span>
+
+#include "scanmill/data/array.hpp"
+#include "scanmill/data/frame.hpp"
+
+namespace scanmill {
+
+/// The rows of the positions along the Morton curve through their bounding box, cut into 2^21 steps per axis; equal
+/// ones by row. Pre: finite positions, fewer than 2^32. Cost: O(n) time, 32 bytes per point for the time of the call.
+Array<u32> spatial_order(std::span<const Vec3> positions);
+
+}  // namespace scanmill

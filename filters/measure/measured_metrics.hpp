@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A measurement under the names that workflows, gates and reports use.
+
+#include <span>
+#include <string>
+
+#include "measure/measure.hpp"
+#include "scanmill/data/metrics.hpp"
+
+namespace scanmill {
+
+/// Only what exists: a number that is absent from the measurement has no metric.
+///
+///   mean, mean-spread, rms, p50, p90, p95, p99, max     over both sides (for a cloud as truth: from the truth)
+///   the same with -to-truth, -from-truth, -to-points    one side
+///   hausdorff, chamfer
+///   f-score, precision, recall                          at the first threshold
+///   f-score@NAME, precision@NAME, recall@NAME           at each threshold; NAME is its entry of `threshold_names`
+///   normal-consistency, normal-consistency-unsigned, without-normal
+///   hausdorff-lower, hausdorff-upper, certified, cuts
+///   triangles, area, volume, components, genus, boundary-loops, …, self-intersections      the mesh
+///   the same with truth- in front, but no self-intersections                              the truth, if a mesh
+///
+/// `threshold_names`: one per threshold, "0.5pctdiag"; none: the threshold's number in the scan's unit.
+Metrics metrics_of(const Measurement& measured, std::span<const std::string> threshold_names = {});
+
+}  // namespace scanmill

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/mesh_numbers.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+#include "measure/compensated_sum.hpp"
+#include "measure/distance_numbers.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/parallel.hpp"
+
+namespace scanmill {
+
+namespace measuring {
+
+double angle_of(double cosine, double sine) {
+    assert(sine >= 0);
+    if (cosine < 0) return std::numbers::pi - angle_of(-cosine, sine);
+    if (sine > cosine) return std::numbers::pi / 2 - angle_of(sine, cosine);
+    if (!(cosine > 0)) return 0;
+    double tangent = sine / cosine;  // in [0, 1]; two halvings of the angle bring it below 0.2
+    for (int halving = 0; halving < 2; ++halving) tangent /= 1 + std::sqrt(1 + tangent * tangent);
+    double sum = 0;
+    for (int degree = 25; degree > 0; degree -= 2) sum = 1.0 / degree - sum * (tangent * tangent);
+    return 4 * tangent * sum;
+}
+
+double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+    // Opposite the shortest edge.
+    const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+    const Vec3& apex = ab <= bc && ab <= ca ? c : bc <= ca ? a : b;
+    const Vec3& left = &apex == &a ? b : a;
+    const Vec3& right = &apex == &c ? b : c;
+    const Vec3 to_left = left - apex, to_right = right - apex;
+    return angle_of(to_left.dot(to_right), to_left.cross(to_right).norm());
+}
+
+}  // namespace measuring
+
+namespace {
+
+using namespace measuring;
+
+struct TriangleShape {
+    double area, angle, aspect, six_volumes;
+    bool collinear;
+};
+
+bool are_collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
+    using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+    const auto point = [](const Vec3& p) { return Point(p.x(), p.y(), p.z()); };
+    return CGAL::collinear(point(a), point(b), point(c));
+}
+
+/// `origin` is near the mesh, so that volumes of far meshes are no differences of large numbers.
+TriangleShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& origin) {
+    const double doubled_area = (b - a).cross(c - a).norm();
+    const std::array<double, 3> edges{(b - a).norm(), (c - b).norm(), (a - c).norm()};
+    const double longest = std::ranges::max(edges);
+    TriangleShape shape;
+    shape.area = doubled_area / 2;
+    shape.collinear = are_collinear(a, b, c);
+    shape.angle = shape.collinear ? 0 : smallest_angle(a, b, c);
+    shape.aspect = longest * (edges[0] + edges[1] + edges[2]) / (2 * std::numbers::sqrt3 * doubled_area);
+    shape.six_volumes = (a - origin).dot((b - origin).cross(c - origin));
+    return shape;
+}
+
+Array<TriangleShape> shapes_of(const TriangleMesh& mesh, unsigned threads) {
+    const BoundingBox box = bounding_box(mesh.positions.span());
+    const Vec3 origin = box.low + (box.high - box.low) / 2;
+    Array<TriangleShape> shapes(mesh.triangles.size());
+    for_each_chunk(threads, shapes.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+            const auto& [a, b, c] = mesh.triangles[row];
+            shapes[row] = shape_of(mesh.positions[a], mesh.positions[b], mesh.positions[c], origin);
+        }
+    });
+    return shapes;
+}
+
+}  // namespace
+
+MeshNumbers mesh_numbers(const TriangleMesh& mesh, unsigned threads) {
+    MeshNumbers numbers;
+    numbers.topology = topology(mesh);
+    if (mesh.triangles.empty()) return numbers;
+    CompensatedSum area, six_volumes;
+    Array<double> angles, aspects;
+    for (const TriangleShape& shape : shapes_of(mesh, threads)) {
+        area.add(shape.area);
+        six_volumes.add(shape.six_volumes);
+        numbers.collinear_triangles += shape.collinear;
+        angles.push_back(shape.angle);
+        if (!shape.collinear && std::isfinite(shape.aspect)) aspects.push_back(shape.aspect);
+    }
+    numbers.area = area.value();
+    if (numbers.topology.closed) numbers.volume = six_volumes.value() / 6;
+    std::ranges::sort(angles);
+    numbers.least_angle = angles.front();
+    numbers.angle_p5 = quantile(angles, 0.05);
+    numbers.angle_p50 = quantile(angles, 0.5);
+    if (aspects.empty()) return numbers;
+    std::ranges::sort(aspects);
+    numbers.aspect_p50 = quantile(aspects, 0.5);
+    numbers.aspect_p95 = quantile(aspects, 0.95);
+    numbers.largest_aspect = aspects.back();
+    return numbers;
+}
+
+}  // namespace scanmill

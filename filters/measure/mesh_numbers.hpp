@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What is said of one mesh by itself: size, topology, the shape of its triangles.
+
+#include <optional>
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/geometry/topology.hpp"
+
+namespace scanmill {
+
+struct MeshNumbers {
+    MeshTopology topology;
+    double area = 0;
+    /// By the divergence theorem: positive when triangles are counter-clockwise from outside. Absent unless closed.
+    std::optional<double> volume;
+    /// Triangles whose corners lie on one line, decided exactly.
+    std::size_t collinear_triangles = 0;
+    /// Of every triangle's smallest angle, radians: least, 5 % and 50 % quantile. Collinear triangles have 0.
+    double least_angle = 0, angle_p5 = 0, angle_p50 = 0;
+    /// Longest edge over 2 √3 inradii: 1 for an equilateral triangle. Over those that are not collinear.
+    double aspect_p50 = 1, aspect_p95 = 1, largest_aspect = 1;
+};
+
+/// Pre: consistent, finite coordinates. Bytes do not depend on the number of threads. Cost: O(F log F).
+MeshNumbers mesh_numbers(const TriangleMesh& mesh, unsigned threads);
+
+namespace measuring {
+
+/// The angle in [0, π] whose cosine and sine are as `cosine` to `sine` ≥ 0, to about 1e-15; takes the same roundings on
+/// every processor, which the C library's arctangent does not.
+double angle_of(double cosine, double sine);
+
+/// Smallest angle of a triangle with these corners; 0 when one of its edges has no length.
+double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace measuring
+
+}  // namespace scanmill

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// How the tests call measure, and what they make of shapes.
+
+#include <Eigen/Geometry>
+#include <utility>
+
+#include "measure/measure.hpp"
+#include "support/shapes.hpp"
+
+namespace scanmill::test {
+
+template <class Truth>
+Measurement measured(const TriangleMesh& mesh, const Truth& truth, const MeasureParams& params = {},
+                     unsigned threads = 2) {
+    ContextOptions options;
+    options.threads = threads;
+    Context context(options);
+    return measure(mesh, truth, params, context);
+}
+
+/// Few samples: where a test is about vertices, topology or refusals.
+inline MeasureParams few_samples() {
+    MeasureParams params;
+    params.samples = 2000;
+    return params;
+}
+
+inline MeasureParams certified(double percent = 1) {
+    MeasureParams params = few_samples();
+    params.certify = true;
+    params.gap = Ratio::percent(percent);
+    return params;
+}
+
+template <class Motion>
+TriangleMesh with_positions(const TriangleMesh& mesh, Motion&& motion) {
+    Array<Vec3> positions(mesh.positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = motion(mesh.positions[i]);
+    TriangleMesh result = mesh;
+    result.positions = std::move(positions);
+    return result;
+}
+
+inline TriangleMesh shifted(const TriangleMesh& mesh, const Vec3& shift) {
+    return with_positions(mesh, [&](const Vec3& p) -> Vec3 { return p + shift; });
+}
+
+inline TriangleMesh scaled(const TriangleMesh& mesh, double factor) {
+    return with_positions(mesh, [&](const Vec3& p) -> Vec3 { return p * factor; });
+}
+
+inline TriangleMesh turned(const TriangleMesh& mesh, double angle, const Vec3& axis) {
+    const Eigen::AngleAxisd rotation(angle, axis.normalized());
+    return with_positions(mesh, [&](const Vec3& p) -> Vec3 { return rotation * p; });
+}
+
+inline TriangleMesh inside_out(const TriangleMesh& mesh) {
+    Array<Triangle> triangles;
+    for (const auto& [a, b, c] : mesh.triangles) triangles.push_back({a, c, b});
+    TriangleMesh result = mesh;
+    result.triangles = std::move(triangles);
+    return result;
+}
+
+/// Both, with no vertex in common.
+inline TriangleMesh both(const TriangleMesh& one, const TriangleMesh& other) {
+    Array<Vec3> positions(one.positions.begin(), one.positions.end());
+    positions.insert(positions.end(), other.positions.begin(), other.positions.end());
+    Array<Triangle> triangles(one.triangles.begin(), one.triangles.end());
+    const u32 first = static_cast<u32>(one.positions.size());
+    for (const auto& [a, b, c] : other.triangles) triangles.push_back({a + first, b + first, c + first});
+    TriangleMesh result;
+    result.positions = std::move(positions);
+    result.triangles = std::move(triangles);
+    return result;
+}
+
+inline TriangleMesh soup(Array<Vec3> positions, Array<Triangle> triangles) {
+    TriangleMesh mesh;
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
+/// [0, width] × [0, depth] at this height, two triangles, facing up.
+inline TriangleMesh rectangle(double width, double depth, double height = 0) {
+    return soup({{0, 0, height}, {width, 0, height}, {width, depth, height}, {0, depth, height}},
+                {{0, 1, 2}, {0, 2, 3}});
+}
+
+}  // namespace scanmill::test

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// measure on real scans.
+#include <gtest/gtest.h>
+
+#include "filters/measure_cases.hpp"
+#include "scanmill/formats/files.hpp"
+#include "support/real_data.hpp"
+
+namespace scanmill::test {
+namespace {
+
+TEST(MeasureOfRealScan, AgainstItself_IsExactlyZero) {
+    SCANMILL_REAL_SCAN(path, fetched_data, "meshes/elephant.off");
+    const auto mesh = read_mesh(path);
+    const Measurement result = measured(*mesh, *mesh, certified());
+    EXPECT_EQ(result.both.max, 0);
+    EXPECT_EQ(result.both.rms, 0);
+    EXPECT_EQ(result.certified->upper, 0);
+}
+
+TEST(MeasureOfRealScan, CoarseDragonAgainstTheFineOne_LiesWithinCertifiedBounds) {
+    SCANMILL_REAL_SCAN(coarse, fetched_data, "dragon/dragon_vrip_res4.ply");
+    SCANMILL_REAL_SCAN(fine, fetched_data, "dragon/dragon_vrip_res3.ply");
+    const auto mesh = read_mesh(coarse), truth = read_mesh(fine);
+    MeasureParams params = certified();
+    params.samples = 100'000;
+    const Measurement result = measured(*mesh, *truth, params);
+    EXPECT_TRUE(result.certified->reached);
+    EXPECT_LE(*result.hausdorff, result.certified->upper);
+    EXPECT_LE(result.certified->lower, result.certified->upper);
+    EXPECT_LE(result.certified->upper - result.certified->lower, 0.01 * result.certified->upper * (1 + 1e-9));
+    // One object, scanned once: the mean is far below the coarse mesh's edges, and normals agree.
+    EXPECT_LT(result.both.mean, 0.005 * bounding_box(truth->positions.span()).diagonal());
+    EXPECT_GT(*result.normal_consistency, 0.8);
+    EXPECT_LE(result.to_truth->p50, result.to_truth->p90);
+    EXPECT_LE(result.to_truth->p90, result.to_truth->p99);
+    EXPECT_LE(result.to_truth->p99, result.to_truth->max);
+}
+
+TEST(MeasureOfRealScan, AgainstItsOwnPoints_IsExactlyZeroFromThem) {
+    SCANMILL_REAL_SCAN(path, fetched_data, "dragon/dragon_vrip_res3.ply");
+    const auto mesh = read_mesh(path);
+    const Measurement result = measured(*mesh, vertices_of(without_unused_vertices(*mesh)), few_samples());
+    EXPECT_EQ(result.from_truth.max, 0);
+    EXPECT_GT(result.to_points->mean, 0);
+}
+
+}  // namespace
+}  // namespace scanmill::test
