@@ -12,14 +12,14 @@ struct CertifiedHausdorff {
     double lower = 0, upper = 0;
     /// Whether upper - lower is as small as was asked, or upper below 1e-9 of the diagonal; otherwise the work ended.
     bool reached = false;
-    /// Triangles that were cut in two.
+    /// Pieces that were cut.
     u64 cuts = 0;
 };
 
 struct CertifyLimits {
     /// Wanted: upper - lower ≤ gap · upper. In (0, 1).
     double gap = 0.01;
-    u64 most_cuts = 4'000'000;
+    u64 most_cuts = 10'000'000;
 };
 
 /// One of the two surfaces: positions that its triangles use, and the tree over exactly these.
@@ -31,16 +31,16 @@ struct CertifiedSurface {
 
 /// Branch and bound over the triangles of both surfaces. The largest distance over a piece of a triangle is at most
 ///  - the largest of its corners' distances to any one triangle of the other surface, as the distance to a convex set
-///    is convex; tried with the triangles nearest to the corners and to the centre;
+///    is convex; tried with the triangles nearest to the centre and to the corners;
 ///  - the distance at its centre plus the distance from there to its farthest corner.
-/// The largest distance seen at a corner or centre is the lower bound. The piece with the largest upper bound is cut in
-/// two across its longest edge, until all are near enough to the lower bound.
+/// The largest distance seen at a corner or centre is the lower bound. The pieces with the largest upper bounds are
+/// cut, along the edges of the triangle under them (see certify_piece.hpp), until all are near enough to the lower
+/// bound.
 ///
 /// Both bounds are widened by 2^-46 of the largest coordinate, the rounding of positions; an upper bound not above that
 /// is 0: equal surfaces of equal triangles are at 0. Bytes do not depend on the number of threads.
-/// Cost: seldom more than a few cuts per triangle; parallel surfaces with triangles much larger than their distance
-/// need pieces about as large as that distance along all edges, and end with a wider gap. Source: Guthe, Borodin, Klein
-/// 2005; Tang, Lee, Kim 2009.
+/// Cost: a few cuts per triangle, some microseconds each; more where the surfaces meet at angles.
+/// Source: Guthe, Borodin, Klein 2005; Tang, Lee, Kim 2009.
 CertifiedHausdorff certified_hausdorff(const CertifiedSurface& one, const CertifiedSurface& other,
                                        const CertifyLimits& limits, Context& context);
 

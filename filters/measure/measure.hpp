@@ -31,8 +31,8 @@ struct MeasureParams {
     bool certify = false;
     /// The bounds are refined until upper - lower is at most this share of upper; in (0, 1).
     Ratio gap = Ratio::percent(1);
-    /// Triangles cut in two before the refinement ends with the bounds that it has.
-    u64 most_cuts = 4'000'000;
+    /// Pieces of triangles cut before the refinement ends with the bounds that it has.
+    u64 most_cuts = 10'000'000;
 };
 
 /// How near is near enough: shares of samples, in [0, 1].

@@ -10,6 +10,7 @@
 /// A soup is welcome: nothing is asked of the topology, degenerate triangles are segments or points. A cloud of points
 /// is a soup too, of triangles with three equal corners: see tree_of_points().
 
+#include <array>
 #include <span>
 
 #include "scanmill/data/mesh.hpp"
@@ -44,6 +45,9 @@ public:
     double squared_distance(const Vec3& point, u32 place) const {
         return (nearest_point(point, place) - point).squaredNorm();
     }
+
+    /// The corners of triangle `place`.
+    std::array<Vec3, 3> corners(u32 place) const { return {corners_[place].a, corners_[place].b, corners_[place].c}; }
 
     /// Appends the rows of all triangles whose bounding boxes meet `box` (borders included), in the tree's order.
     void meeting(const BoundingBox& box, Array<u32>& rows) const;
