@@ -210,11 +210,54 @@ def virtual_scan():
     return picture
 
 
+def nearest_on_profile(p, profile):
+    """The nearest point of a polyline."""
+    best = None
+    for (ax, ay), (bx, by) in itertools.pairwise(profile):
+        along = ((p[0] - ax) * (bx - ax) + (p[1] - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
+        along = min(1, max(0, along))
+        q = (ax + along * (bx - ax), ay + along * (by - ay))
+        if best is None or math.dist(p, q) < math.dist(p, best):
+            best = q
+    return best
+
+
+def spread_over(profile, step):
+    """Points at equal steps along a polyline."""
+    at = step / 2
+    for a, b in itertools.pairwise(profile):
+        length = math.dist(a, b)
+        while at < length:
+            yield a[0] + (b[0] - a[0]) * at / length, a[1] + (b[1] - a[1]) * at / length
+            at += step
+        at -= length
+
+
+def measure():
+    picture = Picture(9, 4.2)
+    truth = [(0.3, 0.8), (2.6, 0.8), (3.4, 3.2), (4.2, 0.8), (8.6, 0.8)]
+    mesh = [(0.3, 1.1), (2.4, 1.2), (3.4, 1.9), (4.4, 1.2), (5.8, 1.0), (6.6, 2.3), (7.4, 1.0), (8.6, 1.1)]
+    for one, other, colour in ((mesh, truth, INK), (truth, mesh, BRIGHT)):
+        found = [(p, nearest_on_profile(p, other)) for p in [*spread_over(one, 0.3), *one]]
+        farthest = max(found, key=lambda pair: math.dist(*pair))
+        for p, q in found:
+            picture.line(p, q, colour, 3 if (p, q) == farthest else 1, "" if (p, q) == farthest else "3 3")
+    for profile, colour in ((truth, BRIGHT), (mesh, INK)):
+        for a, b in itertools.pairwise(profile):
+            picture.line(a, b, colour, 2)
+        for p in spread_over(profile, 0.3):
+            picture.dot(p, colour, 3)
+    picture.text((7.0, 1.9), "mesh: too much")
+    picture.text((0.9, 2.9), "truth: missing", BRIGHT)
+    return picture
+
+
 def main():
     filters = pathlib.Path(__file__).resolve().parent.parent / "filters"
     for name, draw in (
         ("alpha_solid", alpha_solid),
         ("delaunay", delaunay_filter),
+        ("measure", measure),
         ("merge", merge),
         ("virtual_scan", virtual_scan),
         ("voxel_thin", voxel_thin),
