@@ -247,7 +247,7 @@ def measure():
             picture.line(a, b, colour, 2)
         for p in spread_over(profile, 0.3):
             picture.dot(p, colour, 3)
-    picture.text((7.0, 1.9), "mesh: too much")
+    picture.text((6.85, 2.15), "mesh: too much")
     picture.text((0.9, 2.9), "truth: missing", BRIGHT)
     return picture
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scanmill/filter/random.hpp"
@@ -84,6 +85,23 @@ TEST(NearestOnTriangle, ThinTriangles_AgreeWithTheirSegment) {
                   (nearest_on_triangle(at, r, q, p) - at).norm()}) {
                 EXPECT_LE(found, to_edge * (1 + 1e-12));
                 EXPECT_GE(found, to_edge - height - 1e-12);
+            }
+        }
+}
+
+TEST(NearestOnTriangle, PointsOnThinTriangles_AreAtZero) {
+    // Thinner and thinner, in any direction, from whatever corner they are written.
+    Random random(9);
+    const auto point = [&]() -> Vec3 { return {random.normal(), random.normal(), random.normal()}; };
+    for (double height = 1; height > 1e-17; height /= 10)
+        for (int i = 0; i < 300; ++i) {
+            const Vec3 p = point(), q = point(), r = p + random.uniform() * (q - p) + height * point();
+            const double along = random.uniform(), across = (1 - along) * random.uniform();
+            const Vec3 on_edge = p + along * (q - p), inside = on_edge + across * (r - p);
+            const double size = (q - p).norm() + (r - p).norm();
+            for (const auto& [a1, b1, c1] : {std::array{p, q, r}, std::array{q, r, p}, std::array{r, p, q}}) {
+                EXPECT_LE((nearest_on_triangle(on_edge, a1, b1, c1) - on_edge).norm(), 1e-12 * size) << height;
+                EXPECT_LE((nearest_on_triangle(inside, a1, b1, c1) - inside).norm(), 2e-8 * size) << height;
             }
         }
 }

@@ -2,9 +2,12 @@
 /// The certified Hausdorff distance: it holds the true one, and ends.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "filters/measure_cases.hpp"
+#include "measure/certify_piece.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -103,6 +106,75 @@ TEST(CertifiedHausdorff, RandomSurfaces_HoldEverySample) {
         EXPECT_GE(*sampled.hausdorff, found.lower * 0.9);
         EXPECT_GE(found.upper, found.lower);
     }
+}
+
+double area_of(const measuring::Piece& piece) {
+    const auto& [a, b, c] = piece.corners;
+    return (b.position - a.position).cross(c.position - a.position).norm() / 2;
+}
+
+/// No point of the piece is farther from the other surface than its bound.
+void expect_bounded(const measuring::Piece& piece, Random& random) {
+    const auto& [a, b, c] = piece.corners;
+    for (int i = 0; i < 30; ++i) {
+        const double across = random.uniform(), along = (1 - across) * random.uniform();
+        const Vec3 point = a.position + along * (b.position - a.position) + across * (c.position - a.position);
+        EXPECT_LE(std::sqrt(piece.other->nearest(point).squared_distance), piece.upper * (1 + 1e-12));
+    }
+}
+
+TEST(CertifiedHausdorff, EveryPiece_IsBoundedAndCutWithoutLoss) {
+    // Patches of other triangles, near and far, under and beside a large triangle; cut four times over.
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        Random random(seed);
+        Array<Vec3> positions;
+        Array<Triangle> triangles;
+        for (u32 i = 0; i < 12; ++i) {
+            const Vec3 middle(random.uniform(), random.uniform(), 0.3 * random.uniform());
+            for (int corner = 0; corner < 3; ++corner)
+                positions.push_back(middle + random.uniform(0, 0.3) * Vec3(random.normal(), random.normal(), 0));
+            triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+        }
+        const TriangleTree tree(positions, triangles, 1);
+        measuring::Piece whole;
+        whole.corners = {{{Vec3(0, 0, 0)}, {Vec3(1, 0, 0)}, {Vec3(0, 1, 0)}}};
+        whole.other = &tree;
+        measuring::bound(whole, 0);
+        std::vector<measuring::Piece> pieces{whole};
+        for (int level = 0; level < 4; ++level) {
+            std::vector<measuring::Piece> parts;
+            double area = 0;
+            for (const measuring::Piece& piece : pieces) {
+                expect_bounded(piece, random);
+                const measuring::Cut cut = measuring::cut(piece, 0);
+                for (std::size_t i = 0; i < cut.count; ++i) {
+                    parts.push_back(cut.pieces[i]);
+                    area += area_of(cut.pieces[i]);
+                    EXPECT_LE(cut.pieces[i].upper, piece.upper);
+                }
+            }
+            EXPECT_NEAR(area, 0.5, 1e-12);
+            pieces = std::move(parts);
+        }
+    }
+}
+
+TEST(CertifiedHausdorff, BoundsHoldAfterAnyNumberOfCuts) {
+    // An equilateral triangle of circumradius 1 against specks at its corners and centre: 1/√3 on its edges, where the
+    // way to the centre is that to the next corner.
+    const double height = 1.5, half = std::sqrt(3) / 2;
+    const TriangleMesh large = soup({{0, 1, 0}, {-half, 1 - height, 0}, {half, 1 - height, 0}}, {{0, 1, 2}});
+    TriangleMesh specks = scaled(large, 1e-7);
+    for (const Vec3& corner : large.positions) specks = both(specks, shifted(scaled(large, 1e-7), 0.9999999 * corner));
+    const double truth = 1 / std::numbers::sqrt3;
+    for (u64 cuts = 0; cuts < 200; cuts = 2 * cuts + 1) {
+        const CertifiedHausdorff found = bounds(large, specks, {0.001, cuts});
+        EXPECT_LE(found.lower, truth + 1e-6) << cuts;
+        EXPECT_GE(found.upper, truth - 1e-6) << cuts;
+    }
+    const CertifiedHausdorff found = bounds(large, specks);
+    EXPECT_TRUE(found.reached);
+    EXPECT_LE(found.upper - found.lower, 0.01 * found.upper + 1e-12);
 }
 
 TEST(CertifiedHausdorff, TwoWays_AreOne) {

@@ -8,8 +8,9 @@ namespace scanmill {
 
 namespace {
 
-/// Squared height over longest edge below which the regions of Ericson's method are decided by rounding.
-constexpr double thin = 1e-8;
+/// Squared height over longest edge below which rounding decides between the regions of Ericson's method: its weights
+/// lose the square of that ratio.
+constexpr double thin = 1e-4;
 
 /// Ericson's walk through the Voronoi regions of corners, edges and face. Pre: not thin.
 Vec3 nearest_by_region(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c) {
