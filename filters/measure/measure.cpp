@@ -10,6 +10,7 @@
 #include "measure/self_intersections.hpp"
 #include "measure/surface_samples.hpp"
 #include "scanmill/filter/error.hpp"
+#include "scanmill/geometry/length_scale.hpp"
 
 namespace scanmill {
 
@@ -17,16 +18,24 @@ namespace {
 
 using namespace measuring;
 
-constexpr u32 fewest_samples = 32;
-
 void require_sound(const MeasureParams& params) {
     if (params.samples < fewest_samples)
         throw Error("samples is {}; at least {} are needed for a spread of the mean", params.samples, fewest_samples);
-    for (const Length& threshold : params.thresholds)
-        if (!(threshold.value() > 0 && std::isfinite(threshold.value())))
-            throw Error("a threshold is {}; thresholds must be above 0", threshold.text());
     const double gap = params.gap.value();
     if (!(gap > 0 && gap < 1)) throw Error("gap is {}; it must be above 0 % and below 100 %", params.gap.text());
+}
+
+/// The thresholds in the mesh's unit.
+std::vector<double> thresholds_for(const TriangleMesh& mesh, const MeasureParams& params) {
+    const LengthScale scale{mesh.frame.unit, [&] { return bounding_box(mesh.positions.span()).diagonal(); },
+                            [&] { return edge_spacing(mesh); }};
+    std::vector<double> thresholds;
+    for (const Length& threshold : params.thresholds) {
+        thresholds.push_back(threshold.resolved(scale).value());
+        if (!(thresholds.back() > 0 && std::isfinite(thresholds.back())))
+            throw Error("a threshold is {}; thresholds must be above 0", threshold.text());
+    }
+    return thresholds;
 }
 
 BoundingBox box_of(const TriangleMesh& mesh) {
@@ -146,6 +155,8 @@ NearShares shares_at(double threshold, const Side& to, const Side& from) {
 
 void measure_mesh_alone(Measurement& result, const TriangleMesh& mesh, const TriangleTree& tree,
                         const MeasureParams& params, Context& context) {
+    result.unit = mesh.frame.unit;
+    result.diagonal = box_of(mesh).diagonal();
     result.mesh = mesh_numbers(mesh, context.threads());
     context.progress(0.6);
     if (params.self_intersections) result.self_intersections = count_self_intersections(mesh, tree, context);
@@ -163,6 +174,7 @@ Measurement measure(const TriangleMesh& mesh, const TriangleMesh& given_truth, c
     require_sound(params);
     require_surface(mesh, "mesh");
     require_surface(given_truth, "truth");
+    const std::vector<double> thresholds = thresholds_for(mesh, params);
     TriangleMesh truth = given_truth;
     truth.positions = in_frame_of(mesh.frame, given_truth.frame, given_truth.positions);
     truth.frame = mesh.frame;
@@ -184,7 +196,7 @@ Measurement measure(const TriangleMesh& mesh, const TriangleMesh& given_truth, c
     result.both = numbers_of_both(to.numbers, to.nearest.distances, from.numbers, from.nearest.distances);
     result.hausdorff = result.both.max;
     result.chamfer = (to.numbers.mean + from.numbers.mean) / 2;
-    for (const Length& threshold : params.thresholds) result.near.push_back(shares_at(threshold.value(), to, from));
+    for (const double threshold : thresholds) result.near.push_back(shares_at(threshold, to, from));
     compare_normals(result, mesh, to, truth, from);
     result.truth = mesh_numbers(truth, context.threads());
     measure_mesh_alone(result, mesh, mesh_tree, params, context);
@@ -199,6 +211,7 @@ Measurement measure(const TriangleMesh& mesh, const TriangleMesh& given_truth, c
 Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const MeasureParams& params, Context& context) {
     require_sound(params);
     require_surface(mesh, "mesh");
+    const std::vector<double> thresholds = thresholds_for(mesh, params);
     if (truth.size() == 0) throw Error("the truth has no points; there is nothing to measure the mesh against");
     require_finite(truth.positions.span(), "points of the truth");
     if (params.certify)
@@ -220,8 +233,8 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
     result.to_points = to.numbers;
     result.from_truth = numbers_of(from.distances, {});
     result.both = result.from_truth;
-    for (const Length& threshold : params.thresholds)
-        result.near.push_back({threshold.value(), {}, share_within(from.distances, threshold.value()), {}});
+    for (const double threshold : thresholds)
+        result.near.push_back({threshold, {}, share_within(from.distances, threshold), {}});
     measure_mesh_alone(result, mesh, mesh_tree, params, context);
     context.progress(1);
     return result;

@@ -20,11 +20,13 @@
 
 namespace scanmill {
 
+constexpr u32 fewest_samples = 32;
+
 struct MeasureParams {
-    /// Points on each mesh, at least 32.
+    /// Points on each mesh, at least fewest_samples.
     u32 samples = 100'000;
-    /// Distances that count as near for precision and recall; each above 0 (when given: resolved lengths).
-    std::vector<Length> thresholds;
+    /// Distances that count as near for precision and recall; each above 0. Relative ones refer to the mesh.
+    std::vector<Length> thresholds{Length::percent_of_diagonal(0.5)};
     /// Whether pairs of triangles that intersect are counted; takes about as long as everything else.
     bool self_intersections = true;
     /// Whether the Hausdorff distance is bounded from both sides; needs a mesh as truth.
@@ -68,6 +70,8 @@ struct Measurement {
     std::optional<double> normal_consistency_unsigned;
     /// Samples whose nearest triangle is degenerate and has no normal; they are left out of the two numbers above.
     std::size_t without_normal = 0;
+    LengthUnit unit = LengthUnit::unknown;  ///< the mesh's, which all lengths here are in
+    double diagonal = 0;  ///< of the mesh's bounding box
     MeshNumbers mesh;
     std::optional<MeshNumbers> truth;
     /// Pairs of the mesh's triangles, see self_intersections.hpp; absent when not asked for.

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cassert>
-
 namespace scanmill {
 
 namespace {
@@ -28,6 +26,7 @@ void add_shares(Metrics& metrics, const NearShares& shares, std::string_view suf
     const auto add = [&](std::string_view name, double value) {
         metrics.set(fmt::format("{}{}", name, suffix), value, Unit::ratio);
     };
+    metrics.set(fmt::format("threshold{}", suffix), shares.threshold, Unit::length);
     if (shares.f_score) add("f-score", *shares.f_score);
     if (shares.precision) add("precision", *shares.precision);
     add("recall", shares.recall);
@@ -70,8 +69,7 @@ void add_mesh(Metrics& metrics, const MeshNumbers& numbers, std::string_view pre
 
 }  // namespace
 
-Metrics metrics_of(const Measurement& measured, std::span<const std::string> threshold_names) {
-    assert(threshold_names.empty() || threshold_names.size() == measured.near.size());
+Metrics metrics_of(const Measurement& measured) {
     Metrics metrics;
     add_distances(metrics, measured.both, "");
     if (measured.to_truth) add_distances(metrics, *measured.to_truth, "-to-truth");
@@ -79,15 +77,11 @@ Metrics metrics_of(const Measurement& measured, std::span<const std::string> thr
     add_distances(metrics, measured.from_truth, "-from-truth");
     if (measured.hausdorff) metrics.set("hausdorff", *measured.hausdorff, Unit::length);
     if (measured.chamfer) metrics.set("chamfer", *measured.chamfer, Unit::length);
-    if (!measured.near.empty()) add_shares(metrics, measured.near.front(), "");
-    for (std::size_t i = 0; i < measured.near.size(); ++i) {
-        const NearShares& shares = measured.near[i];
-        add_shares(metrics, shares,
-                   "@" + (threshold_names.empty() ? number_text(shares.threshold) : threshold_names[i]));
-    }
+    for (std::size_t i = 0; i < measured.near.size(); ++i)
+        add_shares(metrics, measured.near[i], i == 0 ? "" : fmt::format("@{}", i + 1));
     if (measured.normal_consistency) {
-        metrics.set("normal-consistency", *measured.normal_consistency, Unit::ratio);
-        metrics.set("normal-consistency-unsigned", *measured.normal_consistency_unsigned, Unit::ratio);
+        metrics.set("normal-consistency", *measured.normal_consistency, Unit::number);
+        metrics.set("normal-consistency-unsigned", *measured.normal_consistency_unsigned, Unit::number);
         metrics.set("without-normal", static_cast<double>(measured.without_normal), Unit::count);
     }
     if (measured.certified) {
@@ -96,6 +90,8 @@ Metrics metrics_of(const Measurement& measured, std::span<const std::string> thr
         metrics.set("certified", measured.certified->reached, Unit::boolean);
         metrics.set("cuts", static_cast<double>(measured.certified->cuts), Unit::count);
     }
+    metrics.unit = measured.unit;
+    metrics.set("diagonal", measured.diagonal, Unit::length);
     add_mesh(metrics, measured.mesh, "");
     if (measured.self_intersections)
         metrics.set("self-intersections", static_cast<double>(*measured.self_intersections), Unit::count);

@@ -15,14 +15,13 @@ namespace scanmill {
 ///   mean, mean-spread, rms, p50, p90, p95, p99, max     over both sides (for a cloud as truth: from the truth)
 ///   the same with -to-truth, -from-truth, -to-points    one side
 ///   hausdorff, chamfer
-///   f-score, precision, recall                          at the first threshold
-///   f-score@NAME, precision@NAME, recall@NAME           at each threshold; NAME is its entry of `threshold_names`
+///   threshold, f-score, precision, recall               at the first threshold
+///   the same with @2, @3, …                             at the others, in their order
 ///   normal-consistency, normal-consistency-unsigned, without-normal
 ///   hausdorff-lower, hausdorff-upper, certified, cuts
+///   diagonal                                            of the mesh's bounding box
 ///   triangles, area, volume, components, genus, boundary-loops, …, self-intersections      the mesh
 ///   the same with truth- in front, but no self-intersections                              the truth, if a mesh
-///
-/// `threshold_names`: one per threshold, "0.5pctdiag"; none: the threshold's number in the scan's unit.
-Metrics metrics_of(const Measurement& measured, std::span<const std::string> threshold_names = {});
+Metrics metrics_of(const Measurement& measured);
 
 }  // namespace scanmill

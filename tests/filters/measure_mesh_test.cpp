@@ -213,9 +213,9 @@ TEST(MeasuredMetrics, AgainstAMesh_HaveBothSides) {
                              "hausdorff",
                              "chamfer",
                              "f-score",
-                             "f-score@0.25",
-                             "precision@0.5",
-                             "recall@0.5",
+                             "f-score@2",
+                             "precision@2",
+                             "recall@2",
                              "normal-consistency",
                              "normal-consistency-unsigned",
                              "volume",
@@ -236,14 +236,26 @@ TEST(MeasuredMetrics, AgainstAMesh_HaveBothSides) {
     EXPECT_EQ(metrics.find("mean-to-points"), nullptr);
     EXPECT_EQ(metrics.find("hausdorff")->unit, Unit::length);
     EXPECT_EQ(metrics.find("volume")->unit, Unit::volume);
-    EXPECT_EQ(metrics.find("f-score")->value, metrics.find("f-score@0.25")->value);
 }
 
-TEST(MeasuredMetrics, ThresholdNames_AreTheCallers) {
+TEST(MeasuredMetrics, Thresholds_AreNumberedInTheirOrder) {
     MeasureParams params = few_samples();
-    params.thresholds = {0.25};
-    const std::string name = "1pctdiag";
-    EXPECT_NE(metrics_of(measured(cube(), cube(), params), std::span(&name, 1)).find("f-score@1pctdiag"), nullptr);
+    params.thresholds = {0.5, Length::percent_of_diagonal(10), 0.05};
+    const Metrics metrics = metrics_of(measured(shifted(cube(), {0.1, 0, 0}), cube(), params));
+    EXPECT_EQ(metrics.find("threshold")->value, 0.5);
+    EXPECT_NEAR(metrics.find("threshold@2")->value, 0.1 * std::sqrt(3.0), 1e-15);
+    EXPECT_EQ(metrics.find("threshold@3")->value, 0.05);
+    EXPECT_EQ(metrics.find("f-score")->value, 1);
+    EXPECT_LT(metrics.find("f-score@3")->value, 1);
+    EXPECT_EQ(metrics.find("threshold@1"), nullptr);
+}
+
+TEST(MeasuredMetrics, UnitAndDiagonal_AreTheMeshs) {
+    TriangleMesh mesh = cube();
+    mesh.frame.unit = LengthUnit::millimetre;
+    const Metrics metrics = metrics_of(measured(mesh, cube(), few_samples()));
+    EXPECT_EQ(metrics.unit, LengthUnit::millimetre);
+    EXPECT_NEAR(metrics.find("diagonal")->value, std::sqrt(3.0), 1e-15);
 }
 
 }  // namespace

@@ -19,14 +19,14 @@ std::optional<Unit> unit_named(std::string_view name) {
     return static_cast<Unit>(found - unit_names.begin());
 }
 
-void Metrics::set(std::string_view name, double value, Unit unit) {
+void Metrics::set(std::string_view name, double value, Unit kind) {
     for (Metric& metric : values)
         if (metric.name == name) {
             metric.value = value;
-            metric.unit = unit;
+            metric.unit = kind;
             return;
         }
-    values.push_back({std::string(name), value, unit});
+    values.push_back({std::string(name), value, kind});
 }
 
 const Metric* Metrics::find(std::string_view name) const {

@@ -31,7 +31,7 @@ struct Metrics {
     LengthUnit unit = LengthUnit::unknown;  ///< that lengths are in, areas and volumes in its powers
 
     /// Replaces an earlier metric of the same name.
-    void set(std::string_view name, double value, Unit unit);
+    void set(std::string_view name, double value, Unit kind);
     const Metric* find(std::string_view name) const;
 };
 
