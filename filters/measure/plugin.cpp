@@ -11,10 +11,10 @@ using Filter = Declare<MeasureParams>;
 
 /// The numbers of one side, `suffix`: "-to-truth" …, told of as `from_where`.
 void declare_distances(Filter& filter, const std::string& suffix, const std::string& from_where) {
-    const auto metric = [&](const char* name, const char* what, MetricOption option = MetricOption::plain) {
-        filter.metric(name + suffix, Unit::length, std::string(what) + " " + from_where + ".", option);
+    const auto metric = [&](const char* name, const char* what) {
+        filter.metric(name + suffix, Unit::length, std::string(what) + " " + from_where + ".");
     };
-    metric("mean", "Mean distance", suffix.empty() ? headline : MetricOption::plain);
+    metric("mean", "Mean distance");
     metric("mean-spread", "Standard error of the mean that sampling leaves, of the distances");
     metric("rms", "Root of the mean squared distance");
     metric("p50", "Half of the distances are not larger,");
@@ -75,9 +75,10 @@ Filter declaration() {
         .metric("chamfer", Unit::length, "Half the sum of the two sides' mean distances.")
         .metric("f-score", Unit::ratio,
                 "2 P R / (P + R) of precision and recall at the first threshold; at others @2, @3, …", headline)
-        .metric("precision", Unit::ratio, "Share of the mesh's samples within the threshold of the truth.")
-        .metric("recall", Unit::ratio, "Share of the truth's samples within the threshold of the mesh.")
-        .metric("threshold", Unit::length, "The distance that f-score, precision and recall are for.");
+        .metric("precision", Unit::ratio, "Share of the mesh's samples within the threshold of the truth.", numbered)
+        .metric("recall", Unit::ratio, "Share of the truth's samples within the threshold of the mesh.", numbered)
+        .metric("threshold", Unit::length,
+                "The distance that f-score, precision and recall are for, in the order of `thresholds`.", numbered);
     declare_distances(filter, "", "over both sides with equal weight");
     declare_distances(filter, "-to-truth", "from the mesh to the truth");
     declare_distances(filter, "-from-truth", "from the truth to the mesh");

@@ -82,7 +82,7 @@ Declare<AllParams> declaration() {
         .param("log", &P::log, help)
         .param("picks", &P::picks, help)
         .param("max-error", &P::max_error, help, above(0), required)
-        .metric("kept", Unit::count, help, headline)
+        .metric("kept", Unit::count, help, headline, numbered)
         .metric("error", Unit::length, help);
 }
 
@@ -122,14 +122,16 @@ TEST(Declare, FilterAndItsPorts_AreAsDeclaredAndInOrder) {
     EXPECT_FALSE(spec.inputs.back().takes(Kind::tets));
     EXPECT_THAT(spec.outputs, ElementsAre(PortSpec{"mesh", Kind::mesh, help, false, false},
                                           PortSpec{"numbers", Kind::metrics, help, false, false}));
-    EXPECT_THAT(spec.metrics, ElementsAre(MetricSpec{"kept", Unit::count, help, true},
+    EXPECT_THAT(spec.metrics, ElementsAre(MetricSpec{"kept", Unit::count, help, true, true},
                                           MetricSpec{"error", Unit::length, help, false}));
 }
 
-TEST(Declare, MetricAtAPlace_IsTheMetricOfThatName) {
+TEST(Declare, NumberedMetric_IsKnownByItsNumber) {
     const FilterSpec spec = FilterDeclaration(declaration()).spec;
     EXPECT_EQ(spec.metric("kept@2"), spec.metric("kept"));
-    EXPECT_EQ(spec.metric("kep@2"), nullptr);
+    EXPECT_EQ(spec.metric("kept@10"), spec.metric("kept"));
+    for (const char* other : {"kep@2", "kept@", "kept@1", "kept@02", "kept@two", "error@2", "@2"})
+        EXPECT_EQ(spec.metric(other), nullptr) << other;
 }
 
 TEST(Declare, PortOfSeveralKinds_GivesWhatIsThere) {

@@ -112,6 +112,7 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[9].size.reset(); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[11].required = false; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].headline = true; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].numbered = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { std::swap(spec.outputs[0], spec.outputs[1]); }));
 }
 

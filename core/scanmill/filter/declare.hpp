@@ -37,9 +37,10 @@ enum class PortOption { optional, list };
 inline constexpr PortOption optional = PortOption::optional;
 inline constexpr PortOption list = PortOption::list;
 
-/// In place of nothing at the end of .metric(…): gives the metric a column in a run's summary.
-enum class MetricOption { plain, headline };
+/// At the end of .metric(…), none, one or both: a column in a run's summary; told for each of several things.
+enum class MetricOption { headline, numbered };
 inline constexpr MetricOption headline = MetricOption::headline;
+inline constexpr MetricOption numbered = MetricOption::numbered;
 
 /// One alternative of a choice: its written name, the enumerator, what it does.
 template <class Enum>
@@ -121,8 +122,11 @@ public:
              });
         return *this;
     }
-    Declare& metric(std::string name, Unit unit, std::string help, MetricOption option = MetricOption::plain) {
-        declaration_.spec.metrics.push_back({std::move(name), unit, std::move(help), option == MetricOption::headline});
+    template <std::same_as<MetricOption>... Options>
+    Declare& metric(std::string name, Unit unit, std::string help, Options... options) {
+        declaration_.spec.metrics.push_back({std::move(name), unit, std::move(help),
+                                             ((options == MetricOption::headline) || ...),
+                                             ((options == MetricOption::numbered) || ...)});
         return *this;
     }
     /// `body(inputs, params, context)` returns Outputs.

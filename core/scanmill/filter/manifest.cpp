@@ -40,6 +40,7 @@ Json to_json(const ParameterSpec& parameter) {
 Json to_json(const MetricSpec& metric) {
     Json json{{"name", metric.name}, {"unit", name_of(metric.unit)}, {"help", metric.help}};
     if (metric.headline) json["headline"] = true;
+    if (metric.numbered) json["numbered"] = true;
     return json;
 }
 
@@ -100,7 +101,7 @@ ParameterSpec parameter_from(const Json& json) {
 MetricSpec metric_from(const Json& json) {
     const std::string unit = json.at("unit");
     return {json.at("name"), required_name(unit_named(unit), "unit", unit), json.at("help"),
-            json.value("headline", false)};
+            json.value("headline", false), json.value("numbered", false)};
 }
 
 }  // namespace

@@ -86,7 +86,13 @@ const PortSpec* FilterSpec::input(std::string_view port) const { return find_nam
 const PortSpec* FilterSpec::output(std::string_view port) const { return find_named(outputs, port); }
 const ParameterSpec* FilterSpec::parameter(std::string_view wanted) const { return find_named(parameters, wanted); }
 const MetricSpec* FilterSpec::metric(std::string_view wanted) const {
-    return find_named(metrics, wanted.substr(0, wanted.find('@')));
+    const std::size_t at = wanted.find('@');
+    if (at == std::string_view::npos) return find_named(metrics, wanted);
+    const MetricSpec* metric = find_named(metrics, wanted.substr(0, at));
+    const std::string_view number = wanted.substr(at + 1);
+    const bool is_number = !number.empty() && number != "1" && number.front() != '0' &&
+                           number.find_first_not_of("0123456789") == std::string_view::npos;
+    return metric && metric->numbered && is_number ? metric : nullptr;
 }
 
 std::string kinds_text(const PortSpec& port) {

@@ -29,10 +29,11 @@ struct PortSpec {
 std::string kinds_text(const PortSpec& port);
 
 struct MetricSpec {
-    std::string name;  ///< a filter may report it several times, as `NAME@WHERE` for different places
+    std::string name;
     Unit unit = Unit::number;
     std::string help;
     bool headline = false;  ///< worth a column in a run's summary
+    bool numbered = false;  ///< told for each of several things: NAME of the first, NAME@2 of the second, …
 
     bool operator==(const MetricSpec&) const = default;
 };
@@ -52,7 +53,7 @@ struct FilterSpec {
     const PortSpec* input(std::string_view port) const;
     const PortSpec* output(std::string_view port) const;
     const ParameterSpec* parameter(std::string_view parameter) const;
-    /// Also of `NAME@WHERE`.
+    /// Also of the NAME@2 of a numbered one.
     const MetricSpec* metric(std::string_view metric) const;
     bool operator==(const FilterSpec&) const = default;
 };

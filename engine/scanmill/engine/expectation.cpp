@@ -81,7 +81,8 @@ std::string expectation_text(const Expectation& written) {
 std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec,
                                                    Diagnostics& diagnostics) {
     const std::vector<MetricSpec> askable = expectable(spec);
-    const auto asked = std::ranges::find(askable, written.name, &MetricSpec::name);
+    const MetricSpec* declared = spec.metric(written.name);
+    const auto asked = std::ranges::find(askable, declared ? declared->name : written.name, &MetricSpec::name);
     if (asked == askable.end()) {
         std::vector<std::string> names;
         for (const MetricSpec& metric : askable) names.push_back(metric.name);

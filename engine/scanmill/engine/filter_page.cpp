@@ -68,7 +68,8 @@ std::string metrics_table(const std::vector<MetricSpec>& metrics) {
     if (metrics.empty()) return {};
     std::string table = "\n## Metrics\n\n| metric | unit | what it says |\n|---|---|---|\n";
     for (const MetricSpec& metric : metrics)
-        table += fmt::format("| {} | {} | {} |\n", code(metric.name), name_of(metric.unit), cell(metric.help));
+        table += fmt::format("| {} | {} | {} |\n", code(metric.name) + (metric.numbered ? ", `…@2`" : ""),
+                             name_of(metric.unit), cell(metric.help));
     return table;
 }
 

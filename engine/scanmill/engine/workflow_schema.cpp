@@ -71,14 +71,19 @@ Json in_schema(const FilterSpec& spec) {
 
 Json expect_schema(const FilterSpec& spec) {
     Json properties = Json::object();
+    Json patterns = Json::object();
     for (const MetricSpec& metric : expectable(spec)) {
         const Json value = value_schema(written_as(metric.unit));
-        properties[metric.name] = {
+        const Json expected{
             {"description", metric.help},
             {"anyOf", Json::array({value, Json{{"type", "string"}, {"pattern", "^[<>] *[^<>= ]"}},
                                    Json{{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}}})}};
+        properties[metric.name] = expected;
+        if (metric.numbered) patterns[fmt::format("^{}@([2-9]|[1-9][0-9]+)$", metric.name)] = expected;
     }
-    return object_of(std::move(properties));
+    Json schema = object_of(std::move(properties));
+    if (!patterns.empty()) schema["patternProperties"] = std::move(patterns);
+    return schema;
 }
 
 /// A step has one filter; what `in` and `expect` take depends on which.

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""measure.py PROGRAM: what `scanmill measure` says beside trimesh and Open3D, on the same files.
+
+Distances go from the points of a scan, all of them, to the nearest point of a mesh's triangles: that means the same to all
+three. So do area, volume and Euler's number. trimesh is given everything ten thousand times as large and its answers are
+scaled back, because it takes triangles below an absolute size for degenerate. Open3D calculates in float.
+
+Differences are told as shares of the mesh's diagonal (areas and volumes: of its square and cube). Ends with 1 when one is
+above 1e-6, or an Euler number differs.
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy
+import open3d
+import trimesh
+
+DATA = pathlib.Path("build/data")
+PAIRS = [("meshes/bunny00.off", "meshes/bunny00.off", 0.01), ("dragon/dragon_vrip.ply", "dragon/dragon_vrip_res3.ply", 0),
+         ("meshes/fandisk_large.off", "meshes/fandisk.off", 0), ("meshes/elephant.off", "meshes/elephant.off", 0.1),
+         ("meshes/anchor_dense.off", "meshes/anchor.off", 0)]
+LARGEST = 1e-6
+SCALE = 1e4
+
+
+def load(name):
+    return trimesh.load(DATA / name, process=False)
+
+
+def ours(program, mesh, points, folder):
+    """The mesh goes through a PLY of doubles, so that all three measure the same numbers."""
+    truth = folder / "points.ply"
+    surface = folder / "mesh.ply"
+    write_ply(surface, mesh.vertices, mesh.faces)
+    write_ply(truth, points, None)
+    said = subprocess.run([program, "measure", surface, truth, "--json", "--set", "self-intersections=false"],
+                          capture_output=True, text=True, check=True)
+    return json.loads(said.stdout)["metrics"]
+
+
+def write_ply(path, vertices, faces):
+    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(vertices)}",
+              *(f"property double {axis}" for axis in "xyz")]
+    if faces is not None:
+        header += [f"element face {len(faces)}", "property list uchar int vertex_indices"]
+    with open(path, "wb") as file:
+        file.write(("\n".join([*header, "end_header"]) + "\n").encode())
+        file.write(numpy.ascontiguousarray(vertices, "<f8").tobytes())
+        if faces is not None:
+            rows = numpy.empty(len(faces), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+            rows["count"], rows["corners"] = 3, faces
+            file.write(rows.tobytes())
+
+
+def numbers(distances):
+    return {"mean": distances.mean(), "rms": numpy.sqrt((distances**2).mean()), "max": distances.max()}
+
+
+def of_trimesh(mesh, points):
+    large = trimesh.Trimesh(mesh.vertices * SCALE, mesh.faces, process=False)
+    distances = numpy.concatenate([trimesh.proximity.closest_point(large, part)[1]
+                                   for part in numpy.array_split(points * SCALE, max(1, len(points) // 5000))])
+    found = numbers(distances / SCALE)
+    found["area"] = large.area / SCALE**2
+    found["euler"] = large.euler_number
+    if large.is_watertight:
+        found["volume"] = large.volume / SCALE**3
+    return found
+
+
+def of_open3d(mesh, points):
+    scene = open3d.t.geometry.RaycastingScene()
+    scene.add_triangles(open3d.core.Tensor(numpy.asarray(mesh.vertices, numpy.float32)),
+                        open3d.core.Tensor(numpy.asarray(mesh.faces, numpy.uint32)))
+    distances = scene.compute_distance(open3d.core.Tensor(numpy.asarray(points, numpy.float32))).numpy()
+    return numbers(distances.astype(float))
+
+
+def main(program):
+    worst = 0
+    for name, other, push in PAIRS:
+        mesh, points = load(name), numpy.asarray(load(other).vertices)
+        diagonal = numpy.linalg.norm(mesh.extents)
+        if push:  # the mesh's own points, off the surface
+            points = points + push * diagonal * numpy.random.default_rng(1).normal(size=points.shape)
+        with tempfile.TemporaryDirectory() as folder:
+            said = ours(program, mesh, points, pathlib.Path(folder))
+        print(f"{name}, {len(mesh.faces):,} triangles; {len(points):,} points of {other}: "
+              f"mean {said['mean']:.9g}, max {said['max']:.9g}")
+        for program_name, found in {"trimesh": of_trimesh(mesh, points), "Open3D": of_open3d(mesh, points)}.items():
+            differences = {}
+            for key, value in found.items():
+                if key == "euler":
+                    differences[key] = 0 if value == said[key] else numpy.inf
+                elif key in said:
+                    power = {"area": 2, "volume": 3}.get(key, 1)
+                    differences[key] = abs(value - said[key]) / diagonal**power
+            worst = max(worst, *differences.values())
+            print(f"  {program_name:<8}" + "".join(f" {key} {value:.1e}" for key, value in differences.items()))
+    print(f"largest difference: {worst:.1e} of the diagonal")
+    return 0 if worst <= LARGEST else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
