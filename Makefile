@@ -5,11 +5,11 @@ demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fa
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo test deps data bench fuzz generate format lint release dev asan tsan
+.PHONY: help demo test deps data bench bench-peers fuzz generate format lint release dev asan tsan
 .DEFAULT_GOAL := help
 
 help: ## list these targets
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 14
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 14
 
 demo: release data ## turn real scans into closed meshes and print a table
 	build/release/bin/scanmill run workflows/quickstart.yaml $(addprefix build/data/,$(demo_scans)) -o build/demo
@@ -32,11 +32,17 @@ asan tsan: deps data ## (make asan, make tsan) build and run the tests under san
 	cmake --build --preset $@ -j $(jobs)
 	ctest --preset $@ -j $(jobs)
 
-bench: data ## measure speed side by side with PCL, CGAL, meshio, VTK and trimesh
+bench: data ## measure our own speed: reading, thinning, tetrahedra and solids, the engine's overhead
 	tools/deps.sh bench
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs)
 	bench/run.sh build/bench
+
+bench-peers: data ## measure beside PCL, CGAL, Open3D, PyMeshLab, VTK and others: ROWS=delaunay ROUNDS=3 LARGE=1
+	tools/deps.sh bench
+	cmake --preset bench >/dev/null
+	cmake --build --preset bench -j $(jobs) --target peers-drivers
+	bench/peers/run.sh build/bench $(if $(ROWS),--rows $(ROWS)) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(LARGE),--large)
 
 fuzz: ## feed hostile bytes to whatever reads files, FUZZ_SECONDS=60 for each kind, until the first finding
 	tools/deps.sh

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs every performance bench of a build folder, then what runs beside programs from PyPI. Each prints its own ratios;
-# the machine comes first.
+# Runs every performance bench of a build folder. Each prints its own ratios; the machine comes first. What runs beside
+# other programs in processes of their own is peers/run.sh.
 set -euo pipefail
 build=$1
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -11,8 +11,3 @@ for program in "$build"/bin/*_bench; do
     echo "== $(basename "$program")"
     (cd "$root" && "$program")
 done
-
-echo
-echo "== reading and writing files"
-python=$("$root/bench/peers/environment.sh" "$(dirname "$build")/peers")
-"$python" "$root/bench/peers/formats.py" "$build"

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "answer.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+#include <type_traits>
+
+namespace peers {
+
+namespace {
+
+Json answered(const std::map<std::string, Job>& jobs, const std::string& line) {
+    try {
+        const Json request = Json::parse(line);
+        const std::string name = request.at("do");
+        const auto job = jobs.find(name);
+        if (job == jobs.end()) throw std::runtime_error("this program cannot do '" + name + "'");
+        return job->second(request);
+    } catch (const std::exception& error) {
+        return {{"failed", error.what()}};
+    }
+}
+
+/// The stream that answers go to; what is printed to standard output from now on goes to standard error.
+std::FILE* stream_of_answers() {
+    std::FILE* answers = ::fdopen(::dup(STDOUT_FILENO), "w");
+    if (!answers || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) throw std::runtime_error("standard output is not open");
+    return answers;
+}
+
+template <class Element>
+std::vector<Element> read_array(const std::string& path) {
+    static_assert(std::is_trivially_copyable_v<Element>);
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    if (!file) throw std::runtime_error(path + " cannot be read");
+    const auto bytes = static_cast<std::size_t>(file.tellg());
+    if (bytes % sizeof(Element) != 0) throw std::runtime_error(path + " ends within an element");
+    std::vector<Element> elements(bytes / sizeof(Element));
+    file.seekg(0);
+    file.read(reinterpret_cast<char*>(elements.data()), static_cast<std::streamsize>(bytes));
+    if (!file) throw std::runtime_error(path + " cannot be read");
+    return elements;
+}
+
+template <class Element>
+void write_array(const std::string& path, const std::vector<Element>& elements) {
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(elements.data()),
+               static_cast<std::streamsize>(elements.size() * sizeof(Element)));
+    file.close();
+    if (!file) throw std::runtime_error(path + " cannot be written");
+}
+
+}  // namespace
+
+int answer(std::map<std::string, Job> jobs, Json versions) {
+    versions["compiler"] = "GCC " __VERSION__ ", " PEERS_BUILD;
+    jobs["versions"] = [versions](const Json&) { return versions; };
+    std::FILE* answers = stream_of_answers();
+    for (std::string line; std::getline(std::cin, line);) {
+        const std::string text = answered(jobs, line).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+        std::fputs(text.c_str(), answers);
+        std::fflush(answers);
+    }
+    return 0;
+}
+
+Json RawInput::counts() const {
+    Json counts{{"points", points.size()}};
+    if (!triangles.empty()) counts["triangles"] = triangles.size();
+    return counts;
+}
+
+RawInput read_raw(const std::string& path) {
+    RawInput input;
+    input.points = read_array<std::array<double, 3>>(path + ".points");
+    if (std::ifstream(path + ".triangles").good())
+        input.triangles = read_array<std::array<std::uint32_t, 3>>(path + ".triangles");
+    return input;
+}
+
+void write_raw(const std::string& path, const RawInput& input) {
+    std::remove((path + ".triangles").c_str());
+    if (!input.triangles.empty()) write_array(path + ".triangles", input.triangles);
+    write_array(path + ".points", input.points);
+}
+
+unsigned threads_of(const Json& request) { return request.value("threads", 1u); }
+
+}  // namespace peers

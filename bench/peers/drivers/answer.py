@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the Python drivers share: requests as JSON lines in, answers out, and inputs as raw arrays. See answer.hpp."""
+import json
+import os
+import pathlib
+import sys
+import time
+
+import numpy
+
+
+def answer(jobs, versions):
+    """Answers until standard input ends: {"do": JOB, …} by jobs[JOB](request). What is printed goes to standard error."""
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
+    jobs = {**jobs, "versions": lambda request: versions}
+    for line in sys.stdin:
+        request = json.loads(line)
+        try:
+            if request["do"] not in jobs:
+                raise ValueError(f"this program cannot do '{request['do']}'")
+            said = jobs[request["do"]](request)
+        except BaseException as error:  # SystemExit too, which meshio raises; a peer's failure is an answer
+            said = {"failed": f"{type(error).__name__}: {' '.join(str(error).split())}"}
+        print(json.dumps(said), file=answers, flush=True)
+
+
+def timed(work):
+    """Seconds that work() took, and what it returned."""
+    begin = time.perf_counter()
+    result = work()
+    return time.perf_counter() - begin, result
+
+
+def read_points(path):
+    """#points by 3 doubles."""
+    return numpy.fromfile(path + ".points").reshape(-1, 3)
+
+
+def read_triangles(path):
+    """#triangles by 3 indices; none for a cloud."""
+    path = pathlib.Path(path + ".triangles")
+    return numpy.fromfile(path, dtype=numpy.uint32).reshape(-1, 3) if path.exists() else numpy.zeros((0, 3), numpy.uint32)
+
+
+def of_distances(seconds, building, distances):
+    """The answer to "distances", from one distance per point."""
+    distances = numpy.asarray(distances, dtype=numpy.float64)
+    return {
+        "seconds": seconds,
+        "building_seconds": building,
+        "mean": float(distances.mean()),
+        "rms": float(numpy.sqrt((distances**2).mean())),
+        "max": float(distances.max()),
+    }

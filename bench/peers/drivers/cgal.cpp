@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// CGAL's side of the rows.
+
+#include <CGAL/version.h>
+
+#include "cgal_jobs.hpp"
+
+int main() {
+    using namespace peers;
+    RawInput input, points;
+    const auto of_input = [&input](Json (*job)(const RawInput&, const Json&)) {
+        return [&input, job](const Json& request) { return job(input, request); };
+    };
+    const auto load = [&](const Json& request) {
+        input = read_raw(request.at("path"));
+        if (request.contains("points")) points = read_raw(request["points"]);
+        return input.counts();
+    };
+    return answer({{"load", load},
+                   {"delaunay", of_input(delaunay)},
+                   {"fixed-alpha-shape", of_input(fixed_alpha_shape)},
+                   {"optimal-alpha-shape", of_input(optimal_alpha_shape)},
+                   {"distances", [&](const Json& request) { return distances(input, points, request); }}},
+                  {{"CGAL", CGAL_VERSION_STR}});
+}

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Makes the raw arrays that every program of a row loads; coordinates are rounded to float, so that programs that
+/// store floats work on the same points.
+///
+/// usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT
+///   scan    the points of a file, and the triangles where it has some
+///   torus   points in random order that keep their distance on a torus with radii 1 and 0.4: 350000 or 3500000 of them
+///   random-torus  points uniform by area on the same torus, each on its own
+///   around  points uniform on the triangles of RAW, moved by up to 1 % of its diagonal along each axis
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <stdexcept>
+
+#include "answer.hpp"
+#include "scanmill/data/value.hpp"
+#include "scanmill/filter/random.hpp"
+#include "scanmill/formats/files.hpp"
+#include "support/point_sets.hpp"
+
+namespace {
+
+using peers::RawInput;
+using scanmill::Vec3;
+
+std::array<double, 3> rounded(const Vec3& p) {
+    const auto as_float = [](double value) { return static_cast<double>(static_cast<float>(value)); };
+    return {as_float(p.x()), as_float(p.y()), as_float(p.z())};
+}
+
+RawInput scan(const std::string& file) {
+    const scanmill::Value value = scanmill::read_file(file).value;
+    RawInput raw;
+    const auto take = [&](const auto& shape) {
+        for (const Vec3& p : shape.positions) raw.points.push_back(rounded(shape.frame.origin + p));
+    };
+    if (const auto* mesh = std::get_if<std::shared_ptr<const scanmill::TriangleMesh>>(&value)) {
+        take(**mesh);
+        raw.triangles.assign((*mesh)->triangles.begin(), (*mesh)->triangles.end());
+    } else {
+        take(*std::get<std::shared_ptr<const scanmill::PointCloud>>(value));
+    }
+    return raw;
+}
+
+/// Distances at which that many points still find room, found by trying.
+double distance_for(std::size_t count) {
+    if (count == 350'000) return 0.0052;
+    if (count == 3'500'000) return 0.00164;
+    throw std::runtime_error("tori have 350000 or 3500000 points, not " + std::to_string(count));
+}
+
+RawInput torus(std::size_t count) {
+    const scanmill::PointCloud cloud =
+        scanmill::test::poisson_torus(distance_for(count), 0.4, std::size_t(1) << 20, 1, count);
+    if (cloud.size() != count)
+        throw std::runtime_error("the torus took only " + std::to_string(cloud.size()) + " points");
+    RawInput raw;
+    for (const Vec3& p : cloud.positions) raw.points.push_back(rounded(p));
+    return raw;
+}
+
+RawInput random_torus(std::size_t count) {
+    scanmill::Random random(1);
+    RawInput raw;
+    while (raw.points.size() < count) {
+        const double around = random.uniform(0, 2 * std::numbers::pi), along = random.uniform(0, 2 * std::numbers::pi);
+        const double minor = 0.4, from_axis = 1 + minor * std::cos(along);
+        // Area per angle grows with the distance from the axis.
+        if (random.uniform(0, 1 + minor) > from_axis) continue;
+        raw.points.push_back(
+            rounded({from_axis * std::cos(around), from_axis * std::sin(around), minor * std::sin(along)}));
+    }
+    return raw;
+}
+
+Vec3 corner(const RawInput& mesh, std::uint32_t index) { return Vec3(mesh.points.at(index).data()); }
+
+/// The sums of the triangles' areas up to each.
+std::vector<double> areas_up_to(const RawInput& mesh) {
+    std::vector<double> sums;
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec3 origin = corner(mesh, a);
+        sum += (corner(mesh, b) - origin).cross(corner(mesh, c) - origin).norm() / 2;
+        sums.push_back(sum);
+    }
+    return sums;
+}
+
+RawInput around(const RawInput& mesh, std::size_t count) {
+    if (mesh.triangles.empty()) throw std::runtime_error("points are made around a mesh, and this is none");
+    const std::vector<double> areas = areas_up_to(mesh);
+    Vec3 low = corner(mesh, 0), high = low;
+    for (const auto& p : mesh.points) {
+        low = low.cwiseMin(Vec3(p.data()));
+        high = high.cwiseMax(Vec3(p.data()));
+    }
+    const double amount = 0.01 * (high - low).norm();
+    scanmill::Random random(1);
+    RawInput raw;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto chosen = std::upper_bound(areas.begin(), areas.end() - 1, random.uniform(0, areas.back()));
+        const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(chosen - areas.begin())];
+        const double root = std::sqrt(random.uniform()), share = random.uniform();
+        Vec3 p = (1 - root) * corner(mesh, a) + root * (1 - share) * corner(mesh, b) + root * share * corner(mesh, c);
+        for (int axis = 0; axis < 3; ++axis) p[axis] += random.uniform(-amount, amount);
+        raw.points.push_back(rounded(p));
+    }
+    return raw;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (words.size() == 3 && words[0] == "scan")
+        write_raw(words[2], scan(words[1]));
+    else if (words.size() == 3 && words[0] == "torus")
+        write_raw(words[2], torus(std::stoul(words[1])));
+    else if (words.size() == 3 && words[0] == "random-torus")
+        write_raw(words[2], random_torus(std::stoul(words[1])));
+    else if (words.size() == 4 && words[0] == "around")
+        write_raw(words[3], around(peers::read_raw(words[1]), std::stoul(words[2])));
+    else
+        throw std::runtime_error(
+            "usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT");
+    return 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+}

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""PyMeshLab: distances as get_hausdorff_distance samples them, decimation."""
+import importlib.metadata
+
+import pymeshlab
+
+from answer import answer, read_points, read_triangles, timed
+
+held = {}
+
+
+def load(request):
+    held["mesh"] = read_points(request["path"]), read_triangles(request["path"])
+    held["set"] = pymeshlab.MeshSet(verbose=False)
+    held["set"].add_mesh(pymeshlab.Mesh(vertex_matrix=held["mesh"][0], face_matrix=held["mesh"][1]))
+    if "points" in request:
+        held["set"].add_mesh(pymeshlab.Mesh(vertex_matrix=read_points(request["points"])))
+    return {"points": len(held["mesh"][0]), "triangles": len(held["mesh"][1])}
+
+
+def distances(request):
+    """Of every vertex of the second mesh to the first; no distance is too large."""
+    points = held["set"].mesh(1).vertex_number()
+    ask = held["set"].get_hausdorff_distance
+    far = pymeshlab.PercentageValue(100)
+    seconds, found = timed(
+        lambda: ask(sampledmesh=1, targetmesh=0, samplevert=True, sampleface=False, samplenum=points, maxdist=far)
+    )
+    if found["n_samples"] != points:
+        raise RuntimeError(f"took {found['n_samples']} samples instead of all {points} points")
+    return {"seconds": seconds, "mean": found["mean"], "rms": found["RMS"], "max": found["max"]}
+
+
+def decimate(request):
+    """On a fresh copy, which is not timed: the filter changes its mesh."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=held["mesh"][0], face_matrix=held["mesh"][1]))
+    work = meshes.meshing_decimation_quadric_edge_collapse
+    seconds, _ = timed(lambda: work(targetfacenum=request["triangles"]))
+    return {"seconds": seconds, "triangles": meshes.current_mesh().face_number()}
+
+
+answer(
+    {"load": load, "distances": distances, "decimate": decimate},
+    {"PyMeshLab": importlib.metadata.version("pymeshlab")},
+)

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""trimesh: reading and writing files, distances."""
+import logging
+import os
+
+import trimesh
+
+from answer import answer, of_distances, read_points, read_triangles, timed
+
+held = {}
+logging.disable(logging.CRITICAL)
+
+
+def load(request):
+    held["arrays"] = read_points(request["path"]), read_triangles(request["path"])
+    held["queries"] = read_points(request["points"])
+    return {"points": len(held["arrays"][0]), "triangles": len(held["arrays"][1])}
+
+
+def sizes(mesh):
+    return {"points": len(mesh.vertices), "triangles": len(getattr(mesh, "faces", ()))}
+
+
+def read(request):
+    """Reading leaves an STL file's corners as they are until process=True merges them, which is asked for there."""
+    path = request["path"]
+    held["file"] = None
+
+    def work():
+        mesh = trimesh.load(path, process=path.endswith(".stl"))
+        mesh.vertices  # made when first asked for
+        return mesh
+
+    seconds, held["file"] = timed(work)
+    return {"seconds": seconds, **sizes(held["file"])}
+
+
+def write(request):
+    seconds, _ = timed(lambda: held["file"].export(request["path"]))
+    return {"seconds": seconds, "bytes": os.path.getsize(request["path"])}
+
+
+def distances(request):
+    """A mesh of its own every time: it keeps its search tree."""
+    points, triangles = held["arrays"]
+    mesh = trimesh.Trimesh(points, triangles, process=False)
+    building, _ = timed(lambda: mesh.triangles_tree)
+    asking, found = timed(lambda: trimesh.proximity.closest_point(mesh, held["queries"])[1])
+    return of_distances(building + asking, building, found)
+
+
+answer({"load": load, "read": read, "write": write, "distances": distances}, {"trimesh": trimesh.__version__})

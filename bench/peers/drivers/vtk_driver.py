@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""VTK: reading and writing files, decimation. vtkPolyData in single precision; the reader of STL files merges equal
+corners."""
+import os
+
+import numpy
+import vtkmodules.vtkIOGeometry as geometry
+import vtkmodules.vtkIOPLY as ply
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints, vtkVersion
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
+
+from answer import answer, read_points, read_triangles, timed
+
+readers = {"ply": ply.vtkPLYReader, "stl": geometry.vtkSTLReader}
+writers = {"ply": ply.vtkPLYWriter, "stl": geometry.vtkSTLWriter}
+held = {}
+
+
+def load(request):
+    points, triangles = read_points(request["path"]).astype("float32"), read_triangles(request["path"])
+    held["mesh"] = vtkPolyData()
+    vertices, cells = vtkPoints(), vtkCellArray()
+    vertices.SetData(numpy_to_vtk(points, deep=True))
+    starts = numpy.arange(0, 3 * len(triangles) + 1, 3, dtype=numpy.int64)
+    cells.SetData(
+        numpy_to_vtk(starts, deep=True), numpy_to_vtk(triangles.astype(numpy.int64).reshape(-1), deep=True)
+    )
+    held["mesh"].SetPoints(vertices)
+    held["mesh"].SetPolys(cells)
+    return {"points": len(points), "triangles": len(triangles)}
+
+
+def read(request):
+    held["file"] = None
+    reader = readers[request["path"][-3:]]()
+    reader.SetFileName(request["path"])
+    seconds, _ = timed(reader.Update)
+    held["file"] = reader.GetOutput()
+    return {"seconds": seconds, "points": held["file"].GetNumberOfPoints(), "triangles": held["file"].GetNumberOfPolys()}
+
+
+def write(request):
+    writer = writers[request["path"][-3:]]()
+    writer.SetFileTypeToBinary()
+    writer.SetFileName(request["path"])
+    writer.SetInputData(held["file"])
+    seconds, done = timed(writer.Write)
+    if not done:
+        raise RuntimeError("VTK could not write the file")
+    return {"seconds": seconds, "bytes": os.path.getsize(request["path"])}
+
+
+def decimate(request):
+    filter = vtkQuadricDecimation()
+    filter.SetInputData(held["mesh"])
+    filter.SetTargetReduction(1 - request["triangles"] / held["mesh"].GetNumberOfPolys())
+    seconds, _ = timed(filter.Update)
+    return {"seconds": seconds, "triangles": filter.GetOutput().GetNumberOfPolys()}
+
+
+answer({"load": load, "read": read, "write": write, "decimate": decimate}, {"VTK": vtkVersion.GetVTKVersion()})

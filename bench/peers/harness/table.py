@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""RESULTS.md from results.json. Everything that the page says is in the JSON or here."""
+from . import figures
+
+NOTES = """\
+How to read it: *seconds* is the median of the rounds, inside each program, around the work alone; *least to most* their
+spread. *ours / it* is our time over that program's in the same round, the median of the rounds: below 1 we are faster.
+*peak* is the most memory that the program's process held while it worked, its input and, for Python's, the interpreter
+included. *cores* is processor time over time. †: the work is not the same, the sentence below says how; ‡: it should
+have been the same and was not, so there is no ratio; *failed* never counts for anybody.
+
+PDAL has no package in Debian 12 or on PyPI, so it is in no row."""
+
+
+def seconds(value):
+    return f"{value:.3f}" if value < 10 else f"{value:.1f}"
+
+
+def number(value):
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return str(value)
+    return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
+
+
+def facts(entry):
+    return ", ".join(f"{name.replace('_', ' ')} {number(value)}" for name, value in entry["facts"].items())
+
+
+def threads(entry):
+    return str(entry["threads"]) if entry["threads"] else "–"
+
+
+def ours_column(entry):
+    return f"ours / it, {entry['threads']} thr." if entry["threads"] else "ours / it"
+
+
+def line(entry, ours):
+    """One row of the table."""
+    mark = "†" if entry["differs"] else "‡" if entry["unequal"] else ""
+    name = f"**{entry['name']}**" if entry["ours"] else entry["name"] + mark
+    if not figures.counts(entry):
+        return [name, threads(entry), "failed", "", "", *("" for _ in ours), "", "", entry["failure"] or "no round"]
+    middle, least, most = figures.spread(entry["seconds"])
+    cells = [name, threads(entry), seconds(middle), f"{seconds(least)} to {seconds(most)}", str(len(entry["seconds"]))]
+    for own in ours:
+        ratio = None if entry["ours"] else figures.ratio(own, entry)
+        cells.append(f"{ratio[0]:.2f}" if ratio else "")
+    cores, peak = figures.cores(entry), entry["peak_mebibytes"]
+    cells.append(f"{peak:.0f} MiB" if peak is not None else "")
+    cells.append(f"{cores:.1f}" if cores is not None else "")
+    return cells + [facts(entry)]
+
+
+def remarks(row):
+    """What a reader of the table must know besides."""
+    for entry in row["contenders"]:
+        who = entry["name"] + (f", {entry['threads']} threads" if (entry["threads"] or 1) > 1 else "")
+        if entry["differs"]:
+            yield f"† {who}: {entry['differs']}"
+        if entry["unequal"]:
+            yield f"‡ {who}: {entry['unequal']}"
+        if not entry["failure"] and not entry["differs"] and not entry["checked"] and len(row["contenders"]) > 1:
+            yield f"{who}: nothing of its result could be checked against another's"
+        if entry["varied"]:
+            yield f"{who}: not the same in every round: {', '.join(entry['varied'])}"
+        if entry["peak_counts_loading"] and entry["peak_mebibytes"] is not None:
+            yield f"{who}: its peak counts loading the input too"
+    load = row["load"]
+    yield (
+        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s taken by the "
+        f"hypervisor, load average {load['load_average_before']:.1f} to {load['load_average_after']:.1f}; "
+        f"the row took {load['took_seconds']:.0f} s"
+    )
+
+
+def section(row):
+    lines = [f"## {row['title']}", "", f"`ROWS={row['name']}`"]
+    for one in row["inputs"]:
+        counts = ", ".join(f"{value:,} {name}" for name, value in one.items() if name != "what")
+        lines[-1] += f" · {one['what']}" + (f": {counts}" if counts else "")
+    lines += ["", f"Equal: {row['equal']}", ""]
+    if row["failure"]:
+        return lines[:-2] + ["", f"**failed**: {row['failure']}", ""]
+    ours = [entry for entry in row["contenders"] if entry["ours"]]
+    header = ["program", "threads", "seconds", "least to most", "rounds", *map(ours_column, ours), "peak", "cores", "result"]
+    rows = [header, ["---"] * len(header)] + [line(entry, ours) for entry in row["contenders"]]
+    lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |" for cells in rows]
+    return lines + [""] + [f"- {remark}" for remark in remarks(row)] + [""]
+
+
+def page(results):
+    """The whole of RESULTS.md."""
+    machine = results["machine"]
+    lines = [
+        f"<!-- Generated from results.json by `{results['command']}` on {results['date']} on {machine['processor']}, "
+        f"{machine['cores']} cores. Do not edit. -->",
+        "# Scanmill beside other programs",
+        "",
+        f"{results['date']}, {machine['processor']}, {machine['cores']} cores, {machine['memory_gibibytes']} GiB, "
+        f"{machine['system']}, Linux {machine['kernel']}.",
+        f"Scanmill {results['revision']}. "
+        + ", ".join(f"{name} {version}" for name, version in sorted(results["versions"].items())) + ".",
+        "",
+        NOTES,
+        "",
+    ]
+    for row in results["rows"]:
+        lines += section(row)
+    return "\n".join(lines).rstrip() + "\n"

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The alpha shape with its radius chosen automatically, from points."""
+from harness.row import Contender, Row, in_threads
+
+
+def rows(inputs, large):
+    found = [
+        row("alpha-automatic-bunny", "bunny", inputs.scan("bunny", "meshes/bunny00.off")),
+        row("alpha-automatic-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply"), warm_up=False),
+    ]
+    if large:
+        found.append(row("alpha-automatic-torus", "torus", inputs.torus(350_000), warm_up=False))
+    return found
+
+
+def row(name, shape, cloud, **more):
+    load = cloud.load()
+    return Row(
+        name=name,
+        title=f"Alpha shape with an automatic radius, {shape}",
+        inputs=[cloud],
+        contenders=[
+            *in_threads([1, 2], "scanmill", {"do": "alpha-solid"}, prepare=load),
+            Contender(
+                "cgal", {"do": "optimal-alpha-shape"}, "find_optimal_alpha(1)", prepare=load,
+                differs="seeks the least radius at which one solid of tetrahedra has every point on or in it, and lets it "
+                "fill the scanned object's inside first, so its radius is larger; its boundary need be no manifold. Ours "
+                "counts what walls enclose as solid and delivers a closed manifold.",
+            ),
+        ],
+        equal="the points in memory; the tetrahedralisation and the choice count.",
+        agree={"alpha": 0, "triangles": 0},
+        **more,
+    )

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The alpha shape at a given radius, from points."""
+from harness.row import Contender, Row, in_threads
+
+
+def rows(inputs, large):
+    return [
+        row("alpha-given-bunny", "bunny", inputs.scan("bunny", "meshes/bunny00.off"), 0.0321),
+        row("alpha-given-torus", "torus", inputs.torus(350_000), 0.0074),
+        row("alpha-given-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply"), 0.00172),
+    ]
+
+
+def row(name, shape, cloud, alpha):
+    load, work = cloud.load(), {"alpha": alpha}
+    return Row(
+        name=name,
+        title=f"Alpha shape of radius {alpha:g}, {shape}",
+        inputs=[cloud],
+        contenders=[
+            *in_threads([1, 2], "scanmill", {"do": "alpha-solid", **work}, prepare=load),
+            Contender("cgal", {"do": "fixed-alpha-shape", **work}, "Fixed_alpha_shape_3", prepare=load),
+            Contender("open3d", {"do": "alpha-shape", **work}, prepare=load, agree={"regular_facets": 1e-3}),
+        ],
+        equal="the points in memory, the radius, the complex; the tetrahedralisation counts. We deliver the solid that "
+        "nothing outside can enter as a mesh; CGAL only classifies every simplex (its solid's triangles are counted after "
+        "the clock, to compare), Open3D delivers the cells' boundary, inner walls included (compared with CGAL's), on "
+        "qhull's cells, whose predicates are not exact.",
+        agree={"triangles": 0, "regular_facets": 0},
+    )

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs the rows, and writes results.json and RESULTS.md: run.py BUILD [options].
+
+Ends with 1 when one of our own contenders failed, when an input is missing, or when ours came to another result than
+everybody else; what a peer fails in or gets wrong is written down and ends nothing.
+"""
+import argparse
+import datetime
+import importlib
+import json
+import pathlib
+import subprocess
+import sys
+
+import programs
+from harness import machine, table, turns
+from harness.inputs import Inputs
+from harness.process import Failure, Process
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description="Runs Scanmill beside other programs.")
+    parser.add_argument("build", type=pathlib.Path, help="a build folder of the preset bench")
+    parser.add_argument("--rows", default="", help="parts of row names, separated by commas; all rows without")
+    parser.add_argument("--rounds", type=int, help="counted rounds, instead of each row's own number")
+    parser.add_argument("--large", action="store_true", help="also the rows that take minutes and gigabytes")
+    parser.add_argument("--limit", type=float, default=300, help="seconds for one answer (default: %(default)s)")
+    parser.add_argument("--budget", type=float, default=20, help="seconds of work per contender (default: %(default)s)")
+    parser.add_argument("--into", type=pathlib.Path, help="folder of the results; bench/ for all rows, else build/peers")
+    parser.add_argument("--list", action="store_true", help="print the rows' names and stop")
+    options = parser.parse_args()
+    if options.rounds is not None and options.rounds < 1:
+        parser.error(f"--rounds must be at least 1, not {options.rounds}")
+    return options
+
+
+def all_rows(inputs, large):
+    rows = []
+    for file in sorted((HERE / "rows").glob("[!_]*.py")):
+        rows += importlib.import_module(f"rows.{file.stem}").rows(inputs, large)
+    return rows
+
+
+def chosen(rows, wanted):
+    """The rows whose name contains one of the words. Exits when a word is in none."""
+    words = [word for word in wanted.replace(",", " ").split() if word]
+    for word in words:
+        if not any(word in row.name for row in rows):
+            sys.exit(f"error: no row is called '{word}'; there are {', '.join(row.name for row in rows)}")
+    return [row for row in rows if not words or any(word in row.name for word in words)]
+
+
+def versions(rows, build, limit):
+    """Of every program in the rows, as it says itself, and what compiled them. A program that cannot say is left out
+    here and fails in its row."""
+    found = {}
+    for name in sorted({contender.program for row in rows for contender in row.contenders}):
+        process = None
+        try:
+            process = Process(programs.command(name, build))
+            found.update(process.ask({"do": "versions"}, limit))
+        except Failure as failure:
+            print(f"{name}: {failure}", file=sys.stderr)
+        finally:
+            if process:
+                process.close()
+    return found
+
+
+def revision():
+    done = subprocess.run(
+        ["git", "-C", ROOT, "describe", "--always", "--dirty"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
+    return done.stdout.strip() if done.returncode == 0 else "of an unknown revision"
+
+
+def trouble(record):
+    """Why this row must not pass for a result, in sentences; none when it may."""
+    if record["failure"]:
+        return [record["failure"]]
+    entries = record["contenders"]
+    ours = [f"{entry['name']}: {entry['failure']}" for entry in entries if entry["ours"] and entry["failure"]]
+    ours += [f"{entry['name']}: {entry['unequal']}" for entry in entries if entry["ours"] and entry["unequal"]]
+    others = [entry for entry in entries if not entry["ours"] and entry["checked"]]
+    if others and all(entry["unequal"] for entry in others) and any(entry["ours"] for entry in entries):
+        ours.append("ours came to another result than every other program: " + others[0]["unequal"])
+    return ours
+
+
+def write(folder, results):
+    """Whole or not at all."""
+    text = json.dumps(results, indent=1, allow_nan=False) + "\n"
+    for name, content in (("results.json", text), ("RESULTS.md", table.page(results))):
+        part = folder / (name + ".part")
+        part.write_text(content)
+        part.replace(folder / name)
+
+
+def main():
+    options = arguments()
+    made = options.build.resolve().parent / "peers"
+    inputs = Inputs(ROOT / "build" / "data", made / "inputs", options.build / "bin" / "peer_inputs")
+    every = all_rows(inputs, options.large)
+    rows = chosen(every, options.rows)
+    if options.list:
+        print("\n".join(row.name for row in rows))
+        return 0
+    into = options.into or (ROOT / "bench" if len(rows) == len(every) else made)
+    results = {
+        "format": 1,
+        "command": "make bench-peers" + (" LARGE=1" if options.large else "")
+        + (f" ROWS={options.rows}" if options.rows else "") + (f" ROUNDS={options.rounds}" if options.rounds else ""),
+        "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        "revision": revision(),
+        "machine": machine.described(),
+        "limit_seconds": options.limit,
+        "budget_seconds": options.budget,
+        "versions": versions(rows, options.build, options.limit),
+        "rows": [],
+    }
+    how = turns.Options(options.rounds, options.limit, options.budget)
+    failed = []
+    for row in rows:
+        record = turns.run(row, lambda program: programs.command(program, options.build), how)
+        results["rows"].append(record)
+        print("\n".join(table.section(record)), flush=True)
+        failed += [f"{row.name}: {why}" for why in trouble(record)]
+    into.mkdir(parents=True, exist_ok=True)
+    write(into, results)
+    print(f"written: {into / 'results.json'}, {into / 'RESULTS.md'}")
+    for why in failed:
+        print(f"error: {why}", file=sys.stderr)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures by hand, and the page that a small results.json gives."""
+import unittest
+
+from harness import figures, machine, table
+from run import trouble
+
+
+def entry(name, seconds, **more):
+    values = {
+        "name": name, "program": name, "threads": None, "ours": name == "scanmill", "differs": "", "failure": "",
+        "unequal": "", "checked": 1, "warm_up_seconds": 1.0, "seconds": seconds, "cpu_seconds": sum(seconds),
+        "resident_mebibytes_before": 1.0, "peak_mebibytes": 10.0, "peak_counts_loading": False, "facts": {"kept": 1234},
+        "varied": [],
+    }
+    return {**values, **more}
+
+
+def results(entries, failure=""):
+    load = {
+        "took_seconds": 9.0, "others_cpu_seconds": 4.5, "others_cores": 0.5, "stolen_cpu_seconds": 0.0,
+        "load_average_before": 1.0, "load_average_after": 2.0,
+    }
+    row = {
+        "name": "thin", "title": "Thinning", "equal": "the points", "failure": failure, "rounds": 3, "load": load,
+        "inputs": [{"what": "a torus", "points": 1000}], "contenders": entries,
+    }
+    return {
+        "format": 1, "command": "make bench-peers", "date": "2026-01-02 03:04 UTC", "revision": "abc",
+        "machine": {"processor": "Abacus", "cores": 2, "memory_gibibytes": 4, "kernel": "6.1", "system": "Debian", "python": "3"},
+        "versions": {"PCL": "1.13"}, "rows": [row],
+    }
+
+
+def line_of(page, name):
+    return next(line for line in page.splitlines() if line.startswith(f"| {name}"))
+
+
+class FiguresTest(unittest.TestCase):
+    def test_spread_is_median_least_and_most(self):
+        self.assertEqual(figures.spread([5.0, 1.0, 2.0]), (2.0, 1.0, 5.0))
+        self.assertEqual(figures.spread([4.0, 1.0, 2.0, 3.0]), (2.5, 1.0, 4.0))
+
+    def test_ratio_is_taken_round_by_round(self):
+        # 1/2, 2/8 and 9/9: neither the ratio of the medians, 2/8, nor of the sums, 12/19.
+        ours, other = entry("scanmill", [1.0, 2.0, 9.0]), entry("pcl", [2.0, 8.0, 9.0])
+        self.assertEqual(figures.ratio(ours, other), (0.5, 0.25, 1.0))
+
+    def test_ratio_takes_the_rounds_that_both_did(self):
+        self.assertEqual(figures.ratio(entry("scanmill", [1.0, 1.0, 9.0]), entry("pcl", [2.0, 4.0])), (0.375, 0.25, 0.5))
+
+    def test_who_failed_or_did_other_work_has_no_ratio(self):
+        ours = entry("scanmill", [1.0])
+        for other in (entry("pcl", [1.0], failure="killed"), entry("pcl", []), entry("pcl", [1.0], unequal="kept is 2")):
+            self.assertIsNone(figures.ratio(ours, other))
+            self.assertIsNone(figures.ratio({**other, "ours": True}, entry("pcl", [1.0])))
+
+    def test_cores_are_processor_time_over_time(self):
+        self.assertEqual(figures.cores(entry("a", [1.0, 1.0], cpu_seconds=3.0)), 1.5)
+        self.assertIsNone(figures.cores(entry("a", [0.1])))
+
+    def test_busy_time_leaves_out_idle_waiting_and_stolen(self):
+        self.assertEqual(machine.busy_and_stolen("cpu  1 2 4 1000 1000 8 16 32 64 128"), (31, 32))
+
+
+class PageTest(unittest.TestCase):
+    def page(self, *entries, **more):
+        return table.page(results(list(entries), **more))
+
+    def test_first_line_says_what_made_it_when_and_where(self):
+        first = self.page(entry("scanmill", [1.0])).splitlines()[0]
+        for word in ("Generated", "make bench-peers", "2026-01-02 03:04 UTC", "Abacus", "2 cores"):
+            self.assertIn(word, first)
+
+    def test_line_shows_median_spread_rounds_ratio_memory_cores_and_result(self):
+        page = self.page(entry("scanmill", [1.0, 2.0, 3.0]), entry("pcl", [2.0, 4.0, 12.0]))
+        self.assertEqual(line_of(page, "pcl"), "| pcl | – | 4.000 | 2.000 to 12.0 | 3 | 0.50 | 10 MiB | 1.0 | kept 1,234 |")
+        self.assertIn("| **scanmill** | – | 2.000 | 1.000 to 3.000 | 3 |  | 10 MiB |", page)
+
+    def test_every_one_of_ours_has_its_column(self):
+        ours = [entry("scanmill", [seconds], threads=threads) for seconds, threads in ((4.0, 1), (2.0, 2))]
+        page = self.page(*ours, entry("pcl", [4.0]))
+        self.assertIn("| ours / it, 1 thr. | ours / it, 2 thr. |", page)
+        self.assertIn("| 1 | 1.00 | 0.50 |", line_of(page, "pcl"))
+
+    def test_failure_is_shown_with_why_and_counts_for_nobody(self):
+        page = self.page(entry("scanmill", [1.0]), entry("pcl", [9.0], failure="killed by SIGSEGV"))
+        self.assertEqual(line_of(page, "pcl"), "| pcl | – | failed |  |  |  |  |  | killed by SIGSEGV |")
+
+    def test_our_failure_leaves_no_ratio(self):
+        page = self.page(entry("scanmill", [], failure="no answer within 5 s"), entry("pcl", [9.0]))
+        self.assertIn("| pcl | – | 9.000 | 9.000 to 9.000 | 1 |  | 10 MiB |", page)
+
+    def test_other_work_is_marked_and_said(self):
+        page = self.page(entry("scanmill", [1.0]), entry("pcl", [2.0], differs="makes centroids"))
+        self.assertIn("| pcl† |", page)
+        self.assertIn("- † pcl: makes centroids", page)
+
+    def test_unequal_result_is_marked_said_and_has_no_ratio(self):
+        page = self.page(entry("scanmill", [1.0]), entry("pcl", [2.0], unequal="kept is 5 where scanmill has 9"))
+        self.assertIn("| pcl‡ | – | 2.000 | 2.000 to 2.000 | 1 |  |", page)
+        self.assertIn("- ‡ pcl: kept is 5", page)
+
+    def test_unchecked_and_changing_results_are_said(self):
+        page = self.page(entry("scanmill", [1.0], checked=0), entry("pcl", [2.0], varied=["cells"]))
+        self.assertIn("- scanmill: nothing of its result could be checked", page)
+        self.assertIn("- pcl: not the same in every round: cells", page)
+
+    def test_missing_input_fails_the_row(self):
+        self.assertIn("**failed**: bunny.off is not there", self.page(failure="bunny.off is not there"))
+
+    def test_bar_within_a_cell_does_not_end_it(self):
+        self.assertIn("a \\| b", self.page(entry("pcl", [], failure="a | b")))
+
+    def test_other_load_stands_below(self):
+        self.assertIn("Other load: 0.50 cores by other processes", self.page(entry("scanmill", [1.0])))
+
+
+class TroubleTest(unittest.TestCase):
+    def trouble(self, *entries, **more):
+        return trouble(results(list(entries), **more)["rows"][0])
+
+    def test_failing_ourselves_is_trouble_and_a_peer_failing_is_not(self):
+        self.assertEqual(self.trouble(entry("scanmill", [], failure="gone"), entry("pcl", [1.0])), ["scanmill: gone"])
+        self.assertEqual(self.trouble(entry("scanmill", [1.0]), entry("pcl", [], failure="gone", checked=0)), [])
+
+    def test_missing_input_is_trouble(self):
+        self.assertEqual(self.trouble(failure="no bunny"), ["no bunny"])
+
+    def test_being_alone_with_a_result_is_trouble_and_a_peer_being_alone_is_not(self):
+        wrong = entry("pcl", [1.0], unequal="kept is 5")
+        self.assertEqual(self.trouble(entry("scanmill", [1.0]), wrong, entry("cgal", [1.0])), [])
+        self.assertEqual(len(self.trouble(entry("scanmill", [1.0]), wrong)), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
