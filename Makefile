@@ -32,14 +32,16 @@ asan tsan: deps data ## (make asan, make tsan) build and run the tests under san
 	cmake --build --preset $@ -j $(jobs)
 	ctest --preset $@ -j $(jobs)
 
-bench: data ## measure our own speed: reading, thinning, tetrahedra and solids, the engine's overhead
+bench: deps ## measure our own speed: reading, thinning, tetrahedra and solids, the engine's overhead
 	tools/deps.sh bench
+	tools/data.sh
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs)
 	bench/run.sh build/bench
 
-bench-peers: data ## measure beside PCL, CGAL, Open3D, PyMeshLab, VTK and others: ROWS=delaunay ROUNDS=3 LARGE=1
+bench-peers: deps ## measure beside CGAL, PCL, Open3D, VTK and others: ROWS=delaunay ROUNDS=3 LARGE=1
 	tools/deps.sh bench
+	tools/data.sh
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs) --target peers-drivers
 	bench/peers/run.sh build/bench $(if $(ROWS),--rows $(ROWS)) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(LARGE),--large)

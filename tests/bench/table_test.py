@@ -62,6 +62,13 @@ class FiguresTest(unittest.TestCase):
     def test_busy_time_leaves_out_idle_waiting_and_stolen(self):
         self.assertEqual(machine.busy_and_stolen("cpu  1 2 4 1000 1000 8 16 32 64 128"), (31, 32))
 
+    def test_load_of_others_is_what_was_busy_less_ours(self):
+        begin = {"clock": 10.0, "busy": 100.0, "stolen": 1.0, "ours": 5.0, "average": 0.5}
+        end = {"clock": 14.0, "busy": 107.0, "stolen": 1.5, "ours": 8.0, "average": 1.5}
+        load = machine.between(begin, end)
+        self.assertEqual((load["took_seconds"], load["others_cpu_seconds"], load["others_cores"]), (4.0, 4.0, 1.0))
+        self.assertEqual(load["stolen_cpu_seconds"], 0.5)
+
 
 class PageTest(unittest.TestCase):
     def page(self, *entries, **more):

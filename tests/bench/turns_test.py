@@ -63,6 +63,11 @@ class TurnsTest(unittest.TestCase):
         contender = Contender("a", {"do": "count"}, prepare={"do": "answer", "with": {"failed": "no such file"}})
         self.assertEqual(run(row([contender]), rounds=1)["contenders"][0]["failure"], "no such file")
 
+    def test_failure_in_a_later_round_is_one(self):
+        contender = Contender("a", {"do": "answer-once", "with": {"seconds": 1.0, "kept": 1}})
+        entry = run(row([contender]), rounds=2)["contenders"][0]
+        self.assertEqual((entry["failure"], entry["warm_up_seconds"], entry["seconds"]), ("tired", 1.0, []))
+
     def test_missing_input_fails_the_row_and_nobody_works(self):
         inputs = Inputs("/nowhere", "/nowhere/made", sys.executable)
         record = run(row([answering("a", seconds=1.0)], inputs=[inputs.scan("bunny", "bunny.off")]), rounds=1)
@@ -98,9 +103,17 @@ class AgreementTest(unittest.TestCase):
         self.assertEqual(self.unequal(answering("a", seconds=1.0, kept=100), other), ["", ""])
 
     def test_contender_that_failed_is_no_reference(self):
-        gone = Contender("a", {"do": "answer", "with": {"failed": "no", "kept": 1}})
+        gone = Contender("a", {"do": "answer-once", "with": {"seconds": 1.0, "kept": 1}})
         said = self.unequal(gone, answering("b", seconds=1.0, kept=100), answering("c", seconds=1.0, kept=100))
         self.assertEqual(said, ["", "", ""])
+
+    def test_contender_may_have_a_tolerance_of_its_own(self):
+        rough = Contender("b", {"do": "answer", "with": {"seconds": 1.0, "kept": 110}}, agree={"kept": 0.2})
+        self.assertEqual(self.unequal(answering("a", seconds=1.0, kept=100), rough), ["", ""])
+
+    def test_both_that_were_compared_count_as_checked(self):
+        record = run(row([answering("a", seconds=1.0, kept=1), answering("b", seconds=1.0, kept=1)]), rounds=1)
+        self.assertEqual([entry["checked"] for entry in record["contenders"]], [1, 1])
 
     def test_something_where_there_should_be_nothing_is_unequal(self):
         self.assertIn("inf %", self.unequal(answering("a", seconds=1.0, kept=0), answering("b", seconds=1.0, kept=1))[1])

@@ -66,14 +66,18 @@ class Load:
         }
 
     def described(self):
-        begin, end = self.begin, self._now()
-        took = end["clock"] - begin["clock"]
-        others = max(0.0, end["busy"] - begin["busy"] - (end["ours"] - begin["ours"]))
-        return {
-            "took_seconds": round(took, 2),
-            "others_cpu_seconds": round(others, 2),
-            "others_cores": round(others / took, 3) if took > 0 else 0.0,
-            "stolen_cpu_seconds": round(end["stolen"] - begin["stolen"], 2),
-            "load_average_before": begin["average"],
-            "load_average_after": end["average"],
-        }
+        return between(self.begin, self._now())
+
+
+def between(begin, end):
+    """From two readings, as Load takes them: what others used is all that was busy less what was ours."""
+    took = end["clock"] - begin["clock"]
+    others = max(0.0, end["busy"] - begin["busy"] - (end["ours"] - begin["ours"]))
+    return {
+        "took_seconds": round(took, 2),
+        "others_cpu_seconds": round(others, 2),
+        "others_cores": round(others / took, 3) if took > 0 else 0.0,
+        "stolen_cpu_seconds": round(end["stolen"] - begin["stolen"], 2),
+        "load_average_before": begin["average"],
+        "load_average_after": end["average"],
+    }

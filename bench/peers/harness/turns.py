@@ -50,8 +50,6 @@ class Turn:
 
     def attempt(self, step, *arguments):
         """Nothing that a contender does may stop the others."""
-        if self.entry["failure"]:
-            return
         try:
             step(*arguments)
         except Failure as failure:
