@@ -29,7 +29,7 @@ def arguments():
     parser.add_argument("--large", action="store_true", help="also the rows that take minutes and gigabytes")
     parser.add_argument("--limit", type=float, default=300, help="seconds for one answer (default: %(default)s)")
     parser.add_argument("--budget", type=float, default=20, help="seconds of work per contender (default: %(default)s)")
-    parser.add_argument("--into", type=pathlib.Path, help="folder of the results; bench/ for all rows, else build/peers")
+    parser.add_argument("--into", type=pathlib.Path, help="folder of the results (bench, of some rows build/peers)")
     parser.add_argument("--list", action="store_true", help="print the rows' names and stop")
     options = parser.parse_args()
     if options.rounds is not None and options.rounds < 1:
@@ -71,9 +71,8 @@ def versions(rows, build, limit):
 
 
 def revision():
-    done = subprocess.run(
-        ["git", "-C", ROOT, "describe", "--always", "--dirty"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-    )
+    ask = ["git", "-C", ROOT, "describe", "--always", "--dirty"]
+    done = subprocess.run(ask, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     return done.stdout.strip() if done.returncode == 0 else "of an unknown revision"
 
 
@@ -82,8 +81,10 @@ def trouble(record):
     if record["failure"]:
         return [record["failure"]]
     entries = record["contenders"]
-    ours = [f"{entry['name']}: {entry['failure']}" for entry in entries if entry["ours"] and entry["failure"]]
-    ours += [f"{entry['name']}: {entry['unequal']}" for entry in entries if entry["ours"] and entry["unequal"]]
+    ours = []
+    for entry in entries:
+        if entry["ours"] and (entry["failure"] or entry["unequal"]):
+            ours.append(f"{entry['name']}: {entry['failure'] or entry['unequal']}")
     others = [entry for entry in entries if not entry["ours"] and entry["checked"]]
     if others and all(entry["unequal"] for entry in others) and any(entry["ours"] for entry in entries):
         ours.append("ours came to another result than every other program: " + others[0]["unequal"])

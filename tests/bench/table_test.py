@@ -11,7 +11,7 @@ def entry(name, seconds, **more):
         "name": name, "program": name, "threads": None, "ours": name == "scanmill", "differs": "", "failure": "",
         "unequal": "", "checked": 1, "warm_up_seconds": 1.0, "seconds": seconds, "cpu_seconds": sum(seconds),
         "resident_mebibytes_before": 1.0, "peak_mebibytes": 10.0, "peak_counts_loading": False, "facts": {"kept": 1234},
-        "varied": [],
+        "part_seconds": {}, "varied": [],
     }
     return {**values, **more}
 
@@ -27,7 +27,9 @@ def results(entries, failure=""):
     }
     return {
         "format": 1, "command": "make bench-peers", "date": "2026-01-02 03:04 UTC", "revision": "abc",
-        "machine": {"processor": "Abacus", "cores": 2, "memory_gibibytes": 4, "kernel": "6.1", "system": "Debian", "python": "3"},
+        "machine": {
+            "processor": "Abacus", "cores": 2, "memory_gibibytes": 4, "kernel": "6.1", "system": "Debian", "python": "3",
+        },
         "versions": {"PCL": "1.13"}, "rows": [row],
     }
 
@@ -47,11 +49,13 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(figures.ratio(ours, other), (0.5, 0.25, 1.0))
 
     def test_ratio_takes_the_rounds_that_both_did(self):
-        self.assertEqual(figures.ratio(entry("scanmill", [1.0, 1.0, 9.0]), entry("pcl", [2.0, 4.0])), (0.375, 0.25, 0.5))
+        ours, other = entry("scanmill", [1.0, 1.0, 9.0]), entry("pcl", [2.0, 4.0])
+        self.assertEqual(figures.ratio(ours, other), (0.375, 0.25, 0.5))
 
     def test_who_failed_or_did_other_work_has_no_ratio(self):
         ours = entry("scanmill", [1.0])
-        for other in (entry("pcl", [1.0], failure="killed"), entry("pcl", []), entry("pcl", [1.0], unequal="kept is 2")):
+        killed, idle = entry("pcl", [1.0], failure="killed"), entry("pcl", [])
+        for other in (killed, idle, entry("pcl", [1.0], unequal="kept is 2")):
             self.assertIsNone(figures.ratio(ours, other))
             self.assertIsNone(figures.ratio({**other, "ours": True}, entry("pcl", [1.0])))
 
@@ -81,8 +85,14 @@ class PageTest(unittest.TestCase):
 
     def test_line_shows_median_spread_rounds_ratio_memory_cores_and_result(self):
         page = self.page(entry("scanmill", [1.0, 2.0, 3.0]), entry("pcl", [2.0, 4.0, 12.0]))
-        self.assertEqual(line_of(page, "pcl"), "| pcl | – | 4.000 | 2.000 to 12.0 | 3 | 0.50 | 10 MiB | 1.0 | kept 1,234 |")
+        expected = "| pcl | – | 4.000 | 2.000 to 12.0 | 3 | 0.50 | 10 MiB | 1.0 | kept 1,234 |"
+        self.assertEqual(line_of(page, "pcl"), expected)
         self.assertIn("| **scanmill** | – | 2.000 | 1.000 to 3.000 | 3 |  | 10 MiB |", page)
+
+    def test_part_of_the_time_is_shown_by_its_median(self):
+        parts = {"building": [0.5, 0.25, 0.75]}
+        page = self.page(entry("pcl", [1.0, 2.0, 3.0], part_seconds=parts))
+        self.assertIn("| kept 1,234, building took 0.500 of the seconds |", line_of(page, "pcl"))
 
     def test_every_one_of_ours_has_its_column(self):
         ours = [entry("scanmill", [seconds], threads=threads) for seconds, threads in ((4.0, 1), (2.0, 2))]

@@ -53,6 +53,10 @@ class TurnsTest(unittest.TestCase):
         record = run(row(contenders), rounds=1)
         self.assertEqual([entry["facts"]["threads"] for entry in record["contenders"]], [1, 2])
 
+    def test_part_of_the_time_is_no_fact(self):
+        entry = run(row([answering("a", seconds=1.0, building_seconds=0.5, kept=1)]), rounds=2)["contenders"][0]
+        self.assertEqual((entry["facts"], entry["part_seconds"]), ({"kept": 1}, {"building": [0.5, 0.5]}))
+
     def test_failure_stops_nobody_else_and_keeps_its_reason(self):
         record = run(row([Contender("a", {"do": "crash"}), answering("b", seconds=1.0, kept=1)]), rounds=2)
         failed, fine = record["contenders"]
@@ -92,7 +96,8 @@ class AgreementTest(unittest.TestCase):
         return [entry["unequal"] for entry in run(row(list(contenders)), rounds=1)["contenders"]]
 
     def test_result_within_the_tolerance_is_equal(self):
-        self.assertEqual(self.unequal(answering("a", seconds=1.0, kept=100), answering("b", seconds=1.0, kept=101)), ["", ""])
+        said = self.unequal(answering("a", seconds=1.0, kept=100), answering("b", seconds=1.0, kept=101))
+        self.assertEqual(said, ["", ""])
 
     def test_result_beyond_it_is_told_with_numbers(self):
         said = self.unequal(answering("a", seconds=1.0, kept=100), answering("b", seconds=1.0, kept=102))
@@ -116,7 +121,8 @@ class AgreementTest(unittest.TestCase):
         self.assertEqual([entry["checked"] for entry in record["contenders"]], [1, 1])
 
     def test_something_where_there_should_be_nothing_is_unequal(self):
-        self.assertIn("inf %", self.unequal(answering("a", seconds=1.0, kept=0), answering("b", seconds=1.0, kept=1))[1])
+        said = self.unequal(answering("a", seconds=1.0, kept=0), answering("b", seconds=1.0, kept=1))
+        self.assertIn("inf %", said[1])
 
     def test_fact_that_nobody_else_tells_leaves_it_unchecked(self):
         record = run(row([answering("a", seconds=1.0, kept=1), answering("b", seconds=1.0, other=1)]), rounds=1)

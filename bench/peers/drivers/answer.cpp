@@ -58,7 +58,7 @@ void write_array(const std::string& path, const std::vector<Element>& elements) 
 }  // namespace
 
 int answer(std::map<std::string, Job> jobs, Json versions) {
-    versions["compiler"] = "GCC " __VERSION__ ", " PEERS_BUILD;
+    versions["compiler"] = "GCC " __VERSION__ " with " PEERS_BUILD;
     jobs["versions"] = [versions](const Json&) { return versions; };
     std::FILE* answers = stream_of_answers();
     for (std::string line; std::getline(std::cin, line);) {

@@ -10,7 +10,8 @@ import numpy
 
 
 def answer(jobs, versions):
-    """Answers until standard input ends: {"do": JOB, …} by jobs[JOB](request). What is printed goes to standard error."""
+    """Answers until standard input ends: {"do": JOB, …} by jobs[JOB](request). What is printed goes to standard
+    error."""
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     jobs = {**jobs, "versions": lambda request: versions}
@@ -40,7 +41,8 @@ def read_points(path):
 def read_triangles(path):
     """#triangles by 3 indices; none for a cloud."""
     path = pathlib.Path(path + ".triangles")
-    return numpy.fromfile(path, dtype=numpy.uint32).reshape(-1, 3) if path.exists() else numpy.zeros((0, 3), numpy.uint32)
+    indices = numpy.fromfile(path, dtype=numpy.uint32) if path.exists() else numpy.zeros(0, numpy.uint32)
+    return indices.reshape(-1, 3)
 
 
 def of_distances(seconds, building, distances):

@@ -38,7 +38,8 @@ def read(request):
     reader.SetFileName(request["path"])
     seconds, _ = timed(reader.Update)
     held["file"] = reader.GetOutput()
-    return {"seconds": seconds, "points": held["file"].GetNumberOfPoints(), "triangles": held["file"].GetNumberOfPolys()}
+    counts = {"points": held["file"].GetNumberOfPoints(), "triangles": held["file"].GetNumberOfPolys()}
+    return {"seconds": seconds, **counts}
 
 
 def write(request):

@@ -22,6 +22,6 @@ def ratio(ours, other):
 
 
 def cores(contender):
-    """Processor time over time in the counted rounds; None for less than half a second, as it comes in ticks of 10 ms."""
+    """Processor time over time in the counted rounds; None for less than half a second: it comes in ticks of 10 ms."""
     total = sum(contender["seconds"])
     return contender["cpu_seconds"] / total if total >= 0.5 else None

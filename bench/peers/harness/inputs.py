@@ -53,11 +53,12 @@ class Inputs:
     def random_torus(self, count):
         """Points uniform by area on the same torus, each on its own, seed 1: quickly made."""
         describe = f"torus (radii 1 and 0.4), {count:,} points uniform by area in random order, seed 1"
-        make = lambda path: self._run_maker(path, [], ["random-torus", str(count)])
-        return Input(describe, self.folder / f"random-torus-{count}", make)
+        name = f"random-torus-{count}"
+        return Input(describe, self.folder / name, lambda path: self._run_maker(path, [], ["random-torus", str(count)]))
 
     def around(self, mesh, count):
-        """Seeded points near a mesh: uniform on its surface, then moved by up to 1 % of its diagonal along each axis."""
+        """Seeded points near a mesh: uniform on its surface, then moved by up to 1 % of its diagonal on each axis."""
+
         def make(path):
             mesh.make()
             self._run_maker(path, [mesh.path.with_suffix(".points")], ["around", str(mesh.path), str(count)])

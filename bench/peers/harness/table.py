@@ -3,8 +3,8 @@
 from . import figures
 
 NOTES = """\
-How to read it: *seconds* is the median of the rounds, inside each program, around the work alone; *least to most* their
-spread. *ours / it* is our time over that program's in the same round, the median of the rounds: below 1 we are faster.
+How to read it: *seconds* is the median of the rounds, inside each program, around the work alone; *least to most*
+their spread. *ours / it* is our time over that program's in the same round, the median of the rounds: below 1 we are faster.
 *peak* is the most memory that the program's process held while it worked, its input and, for Python's, the interpreter
 included. *cores* is processor time over time. †: the work is not the same, the sentence below says how; ‡: it should
 have been the same and was not, so there is no ratio; *failed* never counts for anybody.
@@ -22,8 +22,12 @@ def number(value):
     return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
 
 
-def facts(entry):
-    return ", ".join(f"{name.replace('_', ' ')} {number(value)}" for name, value in entry["facts"].items())
+def result(entry):
+    """The facts, then the parts of the time that the program told."""
+    words = [f"{name.replace('_', ' ')} {number(value)}" for name, value in entry["facts"].items()]
+    for name, parts in entry["part_seconds"].items():
+        words.append(f"{name.replace('_', ' ')} took {seconds(figures.spread(parts)[0])} of the seconds")
+    return ", ".join(words)
 
 
 def threads(entry):
@@ -48,7 +52,7 @@ def line(entry, ours):
     cores, peak = figures.cores(entry), entry["peak_mebibytes"]
     cells.append(f"{peak:.0f} MiB" if peak is not None else "")
     cells.append(f"{cores:.1f}" if cores is not None else "")
-    return cells + [facts(entry)]
+    return cells + [result(entry)]
 
 
 def remarks(row):
@@ -67,8 +71,8 @@ def remarks(row):
             yield f"{who}: its peak counts loading the input too"
     load = row["load"]
     yield (
-        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s taken by the "
-        f"hypervisor, load average {load['load_average_before']:.1f} to {load['load_average_after']:.1f}; "
+        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s taken by "
+        f"the hypervisor, load average {load['load_average_before']:.1f} to {load['load_average_after']:.1f}; "
         f"the row took {load['took_seconds']:.0f} s"
     )
 
@@ -82,7 +86,8 @@ def section(row):
     if row["failure"]:
         return lines[:-2] + ["", f"**failed**: {row['failure']}", ""]
     ours = [entry for entry in row["contenders"] if entry["ours"]]
-    header = ["program", "threads", "seconds", "least to most", "rounds", *map(ours_column, ours), "peak", "cores", "result"]
+    header = ["program", "threads", "seconds", "least to most", "rounds", *map(ours_column, ours)]
+    header += ["peak", "cores", "result"]
     rows = [header, ["---"] * len(header)] + [line(entry, ours) for entry in row["contenders"]]
     lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |" for cells in rows]
     return lines + [""] + [f"- {remark}" for remark in remarks(row)] + [""]

@@ -6,14 +6,12 @@ from .inputs import Missing
 from .machine import Load
 from .process import Failure, Process
 
-#: Answers that are no facts about the result.
-NOT_FACTS = ("seconds",)
 #: Whatever its budget, a contender that ends does so many counted rounds: one has no spread.
 FEWEST_ROUNDS = 2
 
 
 class Options:
-    """limit: seconds for one answer. budget: seconds of counted work after which a contender sits out the other rounds."""
+    """limit: seconds for one answer. budget: seconds of counted work after which a contender sits out the others."""
 
     def __init__(self, rounds=None, limit=300.0, budget=20.0):
         self.rounds, self.limit, self.budget = rounds, limit, budget
@@ -40,6 +38,7 @@ class Turn:
             "resident_mebibytes_before": None,
             "peak_mebibytes": None,
             "peak_counts_loading": False,
+            "part_seconds": {},
             "facts": {},
             "varied": [],
         }
@@ -69,10 +68,13 @@ class Turn:
         cpu = self.process.cpu_seconds()
         answer = self.process.time(request, limit)
         self.entry["peak_mebibytes"] = self.process.peak_mebibytes()
-        self._keep_facts({name: value for name, value in answer.items() if name not in NOT_FACTS})
+        parts = {name: value for name, value in answer.items() if name.endswith("_seconds")}
+        self._keep_facts({name: value for name, value in answer.items() if name != "seconds" and name not in parts})
         if counted:
             self.spent += answer["seconds"]
             self.entry["seconds"].append(answer["seconds"])
+            for name, value in parts.items():
+                self.entry["part_seconds"].setdefault(name.removesuffix("_seconds"), []).append(value)
             self.entry["cpu_seconds"] += self.process.cpu_seconds() - cpu
         else:
             self.entry["warm_up_seconds"] = answer["seconds"]
@@ -82,7 +84,7 @@ class Turn:
         if not self.entry["facts"]:
             self.entry["facts"] = facts
         changed = [name for name in facts if facts[name] != self.entry["facts"].get(name)]
-        self.entry["varied"] = sorted({*self.entry["varied"], *(name for name in changed if not name.endswith("_seconds"))})
+        self.entry["varied"] = sorted({*self.entry["varied"], *changed})
 
     def close(self):
         if self.process:
@@ -91,8 +93,8 @@ class Turn:
 
 def run(row, command_of, options):
     """The row's record. command_of(program) gives the command line that starts it."""
-    record = {"name": row.name, "title": row.title, "equal": row.equal, "failure": "", "inputs": [], "contenders": []}
-    record["rounds"] = options.rounds or row.rounds
+    record = {"name": row.name, "title": row.title, "equal": row.equal, "rounds": options.rounds or row.rounds}
+    record.update(failure="", inputs=[], contenders=[])
     try:
         for one in row.inputs:
             one.make()

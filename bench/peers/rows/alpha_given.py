@@ -23,8 +23,8 @@ def row(name, shape, cloud, alpha):
             Contender("open3d", {"do": "alpha-shape", **work}, prepare=load, agree={"regular_facets": 1e-3}),
         ],
         equal="the points in memory, the radius, the complex; the tetrahedralisation counts. We deliver the solid that "
-        "nothing outside can enter as a mesh; CGAL only classifies every simplex (its solid's triangles are counted after "
-        "the clock, to compare), Open3D delivers the cells' boundary, inner walls included (compared with CGAL's), on "
+        "nothing outside can enter as a mesh; CGAL only classifies every simplex (its solid's triangles are counted "
+        "after the clock, to compare), Open3D delivers the cells' boundary, inner walls included (compared with CGAL's), on "
         "qhull's cells, whose predicates are not exact.",
         agree={"triangles": 0, "regular_facets": 0},
     )

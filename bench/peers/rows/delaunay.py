@@ -28,6 +28,6 @@ def row(name, shape, cloud):
             Contender("scipy", {"do": "delaunay"}, "(qhull)", prepare=load, agree={"cells": 1e-3}),
         ],
         equal="the points in memory, as doubles; the cells. We also deliver them as arrays in canonical order with "
-        "neighbours; CGAL leaves its own structure, whose destruction is not counted; qhull's predicates are not exact.",
+        "neighbours; CGAL leaves its own structure, whose destruction is not counted; qhull's tests are not exact.",
         agree={"cells": 0, "vertices": 0},
     )

@@ -27,7 +27,7 @@ def row(name, what, mesh, points):
             Contender("pymeshlab", work, "get_hausdorff_distance", prepare=prepare),
             Contender("trimesh", work, "closest_point", prepare=prepare),
         ],
-        equal="mesh and points in memory; building the search structure and asking for every point's distance. CGAL works "
-        "on doubles, Open3D on floats. The filter measure joins once it is there.",
+        equal="mesh and points in memory; building the search structure and asking for every point's distance. CGAL "
+        "works on doubles, Open3D on floats. The filter measure joins once it is there.",
         agree={"mean": 1e-4, "rms": 1e-4, "max": 1e-4},
     )

@@ -42,8 +42,8 @@ def both(name, what, file):
             title=f"Reading {what}",
             inputs=[file],
             contenders=[Contender(program, read) for program in ("scanmill", *OTHERS)],
-            equal="the file, what it holds, one thread. Scanmill delivers double coordinates and checks them, meshio and "
-            "VTK keep the file's float, trimesh makes doubles. Equal corners of an STL file are merged.",
+            equal="the file, what it holds, one thread. Scanmill delivers double coordinates and checks them, meshio "
+            "and VTK keep the file's float, trimesh makes doubles. Equal corners of an STL file are merged.",
             agree={"points": 0, "triangles": 0},
         ),
         Row(

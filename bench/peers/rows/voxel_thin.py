@@ -26,7 +26,7 @@ def row(cloud, count, size):
                 differs=f"{CENTROID}; its grid begins half a bin below the box of the points",
             ),
         ],
-        equal="the points in memory, the grid (bins begin at multiples of their size), of every bin the point nearest its "
-        "centre stays. We hold doubles, PCL floats, so points on a bin's border may fall otherwise.",
+        equal="the points in memory, the grid (bins begin at multiples of their size), of every bin the point nearest "
+        "its centre stays. We hold doubles, PCL floats, so points on a bin's border may fall otherwise.",
         agree={"kept": 1e-3},
     )
