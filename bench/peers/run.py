@@ -9,6 +9,7 @@ import datetime
 import importlib
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 
@@ -102,6 +103,7 @@ def write(folder, results):
 
 def main():
     options = arguments()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that nothing of ours is left in memory
     made = options.build.resolve().parent / "peers"
     inputs = Inputs(ROOT / "build" / "data", made / "inputs", options.build / "bin" / "peer_inputs")
     every = all_rows(inputs, options.large)

@@ -4,9 +4,10 @@ from harness.row import Contender, Row, in_threads
 
 
 def rows(inputs, large):
+    dragon = inputs.scan("dragon", "dragon/dragon_vrip.ply")
     found = [
         row("alpha-automatic-bunny", "bunny", inputs.scan("bunny", "meshes/bunny00.off")),
-        row("alpha-automatic-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply"), warm_up=False, rounds=2),
+        row("alpha-automatic-dragon", "dragon", dragon, warm_up=False, rounds=2),
     ]
     if large:
         found.append(row("alpha-automatic-torus", "torus", inputs.torus(350_000), warm_up=False))
@@ -24,8 +25,8 @@ def row(name, shape, cloud, **more):
             Contender(
                 "cgal", {"do": "optimal-alpha-shape"}, "find_optimal_alpha(1)", prepare=load,
                 differs="seeks the least radius at which one solid of tetrahedra has every point on or in it; what thin "
-                "walls enclose is no solid to it, so its radius is larger, and its boundary need be no manifold. Ours "
-                "counts what walls enclose as solid and delivers a closed manifold.",
+                "walls enclose is no solid to it, so its radius is larger, and its boundary need be no manifold. "
+                "Ours counts what walls enclose as solid and delivers a closed manifold.",
             ),
         ],
         equal="the points in memory; the tetrahedralisation and the choice count.",

@@ -24,7 +24,7 @@ def row(name, shape, cloud, alpha):
         ],
         equal="the points in memory, the radius, the complex; the tetrahedralisation counts. We deliver the solid that "
         "nothing outside can enter as a mesh; CGAL only classifies every simplex (its solid's triangles are counted "
-        "after the clock, to compare), Open3D delivers the cells' boundary, inner walls included (compared with CGAL's), on "
-        "qhull's cells, whose predicates are not exact.",
+        "after the clock, to compare), Open3D delivers the cells' boundary, inner walls included (compared with CGAL's), "
+        "on qhull's cells, whose predicates are not exact.",
         agree={"triangles": 0, "regular_facets": 0},
     )
