@@ -28,7 +28,8 @@ def results(entries, failure=""):
     return {
         "format": 1, "command": "make bench-peers", "date": "2026-01-02 03:04 UTC", "revision": "abc",
         "machine": {
-            "processor": "Abacus", "cores": 2, "memory_gibibytes": 4, "kernel": "6.1", "system": "Debian", "python": "3",
+            "processor": "Abacus", "cores": 2, "memory_gibibytes": 4, "kernel": "6.1", "system": "Debian",
+            "python": "3",
         },
         "versions": {"PCL": "1.13"}, "rows": [row],
     }

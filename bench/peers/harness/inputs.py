@@ -45,14 +45,14 @@ class Inputs:
         return Input(f"{file}, as read", self.folder / name, lambda path: self._convert(self.data / file, path))
 
     def torus(self, count):
-        """Points that keep their distance from each other on a torus with radii 1 and 0.4, in random order, seed 1."""
+        """Points that keep their distance from each other on a torus with radii 1 and 0.4 and bumps, seed 1."""
         name = f"torus-{count}"
-        describe = f"torus (radii 1 and 0.4), {count:,} points in random order, seed 1"
+        describe = "bumpy torus (radii 1 and 0.4), evenly spread points in random order, seed 1"
         return Input(describe, self.folder / name, lambda path: self._run_maker(path, [], ["torus", str(count)]))
 
     def random_torus(self, count):
-        """Points uniform by area on the same torus, each on its own, seed 1: quickly made."""
-        describe = f"torus (radii 1 and 0.4), {count:,} points uniform by area in random order, seed 1"
+        """Points uniform by area on a plain torus with these radii, each on its own, seed 1: quickly made."""
+        describe = "torus (radii 1 and 0.4), points uniform by area in random order, seed 1"
         name = f"random-torus-{count}"
         return Input(describe, self.folder / name, lambda path: self._run_maker(path, [], ["random-torus", str(count)]))
 
@@ -63,7 +63,7 @@ class Inputs:
             mesh.make()
             self._run_maker(path, [mesh.path.with_suffix(".points")], ["around", str(mesh.path), str(count)])
 
-        return Input(f"{count:,} points around it, seed 1", self.folder / f"around-{mesh.path.name}-{count}", make)
+        return Input("points around it, seed 1", self.folder / f"around-{mesh.path.name}-{count}", make)
 
     def _convert(self, source, path):
         if not source.exists():

@@ -5,9 +5,9 @@ from . import figures
 NOTES = """\
 How to read it: *seconds* is the median of the rounds, inside each program, around the work alone; *least to most*
 their spread. *ours / it* is our time over that program's in the same round, the median of the rounds: below 1 we are
-faster. *peak* is the most memory that the program's process held while it worked, its input and, for Python's, the interpreter
-included. *cores* is processor time over time. †: the work is not the same, the sentence below says how; ‡: it should
-have been the same and was not, so there is no ratio; *failed* never counts for anybody.
+faster. *peak* is the most memory that the program's process held while it worked, its input and, for Python's, the
+interpreter included. *cores* is processor time over time. †: the work is not the same, the sentence below says how; ‡:
+it should have been the same and was not, so there is no ratio; *failed* never counts for anybody.
 
 PDAL has no package in Debian 12 or on PyPI, so it is in no row."""
 

@@ -6,11 +6,11 @@ from harness.row import Contender, Row, in_threads
 def rows(inputs, large):
     found = [
         row("delaunay-bunny", "bunny", inputs.scan("bunny", "meshes/bunny00.off")),
-        row("delaunay-torus", "torus", inputs.torus(350_000)),
+        row("delaunay-torus", "bumpy torus", inputs.torus(350_000)),
         row("delaunay-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply")),
     ]
     if large:
-        found.append(row("delaunay-large-torus", "large torus", inputs.torus(3_500_000)))
+        found.append(row("delaunay-large-torus", "large bumpy torus", inputs.torus(3_500_000)))
     return found
 
 
