@@ -5,7 +5,7 @@ demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fa
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo test deps data bench bench-peers fuzz generate format lint release dev asan tsan
+.PHONY: help demo test deps data bench bench-peers bench-quality fuzz generate format lint release dev asan tsan
 .DEFAULT_GOAL := help
 
 help: ## list these targets
@@ -45,6 +45,13 @@ bench-peers: deps ## measure beside CGAL, PCL, Open3D, VTK and others: ROWS=dela
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs) --target peers-drivers
 	bench/peers/run.sh build/bench $(if $(ROWS),--rows $(ROWS)) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(LARGE),--large)
+
+bench-quality: deps ## compare what `scanmill measure` says with trimesh and Open3D
+	tools/deps.sh bench
+	tools/data.sh
+	cmake --preset bench >/dev/null
+	cmake --build --preset bench -j $(jobs) --target scanmill scanmill-measure
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
 
 fuzz: ## feed hostile bytes to whatever reads files, FUZZ_SECONDS=60 for each kind, until the first finding
 	tools/deps.sh

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Our side of the rows: the filters' algorithms, called as a C++ program calls them, on points in memory.
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <variant>
 
 #include "alpha_solid/alpha_solid.hpp"
 #include "answer.hpp"
 #include "delaunay/delaunay.hpp"
+#include "measure/nearest_distances.hpp"
 #include "scanmill/formats/files.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
@@ -17,6 +21,8 @@ using peers::Json;
 /// What "load" and "read" left for the jobs that follow.
 struct Held {
     PointCloud cloud;
+    Array<Triangle> triangles;
+    Array<Vec3> queries;
     Value file;
 };
 
@@ -26,11 +32,17 @@ Context context_for(const Json& request) {
     return Context(options);
 }
 
-Json load(Held& held, const Json& request) {
-    const peers::RawInput raw = peers::read_raw(request.at("path"));
+Array<Vec3> positions_of(const peers::RawInput& raw) {
     Array<Vec3> positions(raw.points.size());
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = Vec3(raw.points[i].data());
-    held.cloud.positions = std::move(positions);
+    return positions;
+}
+
+Json load(Held& held, const Json& request) {
+    const peers::RawInput raw = peers::read_raw(request.at("path"));
+    held.cloud.positions = positions_of(raw);
+    held.triangles.assign(raw.triangles.begin(), raw.triangles.end());
+    if (request.contains("points")) held.queries = positions_of(peers::read_raw(request["points"]));
     return raw.counts();
 }
 
@@ -85,6 +97,23 @@ Json solid(Held& held, const Json& request) {
     return {{"seconds", seconds}, {"alpha", result.alpha}, {"triangles", result.mesh.triangles.size()}};
 }
 
+Json distances(Held& held, const Json& request) {
+    Context context = context_for(request);
+    std::optional<TriangleTree> tree;
+    const double building = peers::seconds_of(
+        [&] { tree.emplace(held.cloud.positions.span(), std::span(held.triangles), context.threads()); });
+    measuring::NearestDistances found;
+    const double asking = peers::seconds_of([&] { found = nearest_distances(held.queries, *tree, 0, context); });
+    double sum = 0, squares = 0;
+    for (const double distance : found.distances) sum += distance, squares += distance * distance;
+    const auto count = static_cast<double>(found.distances.size());
+    return {{"seconds", building + asking},
+            {"building_seconds", building},
+            {"mean", sum / count},
+            {"rms", std::sqrt(squares / count)},
+            {"max", *std::ranges::max_element(found.distances)}};
+}
+
 }  // namespace
 
 int main() {
@@ -92,12 +121,12 @@ int main() {
     const auto with_held = [&held](Json (*job)(Held&, const Json&)) {
         return [&held, job](const Json& request) { return job(held, request); };
     };
-    // A job "distances" joins here once the filter measure has its function: see rows/distances.py.
     return peers::answer({{"load", with_held(load)},
                           {"read", with_held(read)},
                           {"write", with_held(write)},
                           {"voxel-thin", with_held(thin)},
                           {"delaunay", with_held(tetrahedralise)},
-                          {"alpha-solid", with_held(solid)}},
+                          {"alpha-solid", with_held(solid)},
+                          {"distances", with_held(distances)}},
                          {{"Scanmill", SCANMILL_VERSION}});
 }
