@@ -21,8 +21,8 @@ import trimesh
 
 DATA = pathlib.Path("build/data")
 PAIRS = [("meshes/bunny00.off", "meshes/bunny00.off", 0.01), ("dragon/dragon_vrip.ply", "dragon/dragon_vrip_res3.ply", 0),
-         ("meshes/fandisk_large.off", "meshes/fandisk.off", 0), ("meshes/elephant.off", "meshes/elephant.off", 0.1),
-         ("meshes/anchor_dense.off", "meshes/anchor.off", 0)]
+         ("meshes/elephant.off", "meshes/elephant-with-holes.off", 0.02), ("meshes/fandisk_large.off", "meshes/fandisk_large.off", 0.1),
+         ("meshes/anchor_dense.off", "meshes/anchor.off", 0.02)]
 LARGEST = 1e-6
 SCALE = 1e4
 

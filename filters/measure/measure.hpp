@@ -26,7 +26,7 @@ struct MeasureParams {
     /// Points on each mesh, at least fewest_samples.
     u32 samples = 100'000;
     /// Distances that count as near for precision and recall; each above 0. Relative ones refer to the mesh.
-    std::vector<Length> thresholds{Length::percent_of_diagonal(0.5)};
+    std::vector<Length> thresholds = std::vector(1, Length::percent_of_diagonal(0.5));
     /// Whether pairs of triangles that intersect are counted; takes about as long as everything else.
     bool self_intersections = true;
     /// Whether the Hausdorff distance is bounded from both sides; needs a mesh as truth.

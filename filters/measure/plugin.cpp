@@ -73,8 +73,8 @@ Filter declaration() {
         .param("most-cuts", &P::most_cuts, "Pieces cut before the bounds are given as they are by then.", at_least(1))
         .metric("hausdorff", Unit::length, "Largest distance at a sample or a vertex, either way.", headline)
         .metric("chamfer", Unit::length, "Half the sum of the two sides' mean distances.")
-        .metric("f-score", Unit::ratio,
-                "2 P R / (P + R) of precision and recall at the first threshold; at others @2, @3, …", headline)
+        .metric("f-score", Unit::ratio, "2 P R / (P + R) of precision P and recall R at the threshold.", headline,
+                numbered)
         .metric("precision", Unit::ratio, "Share of the mesh's samples within the threshold of the truth.", numbered)
         .metric("recall", Unit::ratio, "Share of the truth's samples within the threshold of the mesh.", numbered)
         .metric("threshold", Unit::length,

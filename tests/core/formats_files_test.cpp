@@ -89,7 +89,8 @@ TEST(CanWrite_Table, KnowsExtensionsInAnyCase_AndKinds) {
     // Formats of modules follow, when they were built.
     EXPECT_TRUE(writable_extensions(Kind::mesh).starts_with("ply, stl, off, obj"));
     EXPECT_TRUE(writable_extensions(Kind::points).starts_with("ply, xyz, txt"));
-    EXPECT_EQ(writable_extensions(Kind::metrics), "");
+    EXPECT_EQ(writable_extensions(Kind::metrics), "json");
+    EXPECT_EQ(writable_extensions(Kind::transform), "");
 }
 
 TEST(WriteFile_Refuses, WhatCannotBe_LeavesNothing) {

@@ -88,7 +88,8 @@ TEST_F(MeasureCommand, PointsAsTruth_HaveOneSide) {
     const ProgramResult ran = scanmill({"measure", "sphere.ply", "points.xyz", "--json"});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     const json metrics = json::parse(ran.out)["metrics"];
-    EXPECT_NEAR(metrics["max"].get<double>(), 0.1, 1e-9);
+    EXPECT_GE(metrics["max"].get<double>(), 0.1);
+    EXPECT_LT(metrics["max"].get<double>(), 0.102) << "the facets lie a little inside the sphere";
     EXPECT_FALSE(metrics.contains("hausdorff"));
     EXPECT_EQ(metrics["recall"], 0.75);
 }
