@@ -100,8 +100,8 @@ TEST(NearestOnTriangle, PointsOnThinTriangles_AreAtZero) {
             const Vec3 on_edge = p + along * (q - p), inside = on_edge + across * (r - p);
             const double size = (q - p).norm() + (r - p).norm();
             for (const auto& [a1, b1, c1] : {std::array{p, q, r}, std::array{q, r, p}, std::array{r, p, q}}) {
-                EXPECT_LE((nearest_on_triangle(on_edge, a1, b1, c1) - on_edge).norm(), 1e-12 * size) << height;
-                EXPECT_LE((nearest_on_triangle(inside, a1, b1, c1) - inside).norm(), 2e-8 * size) << height;
+                EXPECT_LE((nearest_on_triangle(on_edge, a1, b1, c1) - on_edge).norm(), 1e-14 * size) << height;
+                EXPECT_LE((nearest_on_triangle(inside, a1, b1, c1) - inside).norm(), 1e-14 * size) << height;
             }
         }
 }

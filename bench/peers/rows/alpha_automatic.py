@@ -5,15 +5,6 @@ from harness.row import Contender, Row, in_threads
 
 def rows(inputs, large):
     dragon = inputs.scan("dragon", "dragon/dragon_vrip.ply")
-    return [
-        row("alpha-automatic-bunny", "bunny", inputs.scan("bunny", "meshes/bunny00.off")),
-        row("alpha-automatic-torus", "bumpy torus", inputs.torus(350_000), warm_up=False, rounds=2),
-        row("alpha-automatic-dragon", "dragon", dragon, warm_up=False, rounds=2),
-    ]
-
-
-def rows(inputs, large):
-    dragon = inputs.scan("dragon", "dragon/dragon_vrip.ply")
     found = [
         row("alpha-automatic-bunny", "bunny", inputs.scan("bunny", "meshes/bunny00.off")),
         row("alpha-automatic-dragon", "dragon", dragon, warm_up=False, rounds=2),

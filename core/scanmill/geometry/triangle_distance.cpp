@@ -8,9 +8,8 @@ namespace scanmill {
 
 namespace {
 
-/// Squared height over longest edge below which rounding decides between the regions of Ericson's method: its weights
-/// lose the square of that ratio.
-constexpr double thin = 1e-4;
+/// The square of the height over the longest edge below which the weights of Ericson's method lose too many digits.
+constexpr double thin = 1.0 / 16;
 
 /// Ericson's walk through the Voronoi regions of corners, edges and face. Pre: not thin.
 Vec3 nearest_by_region(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -37,6 +36,30 @@ Vec3 nearest_by_region(const Vec3& point, const Vec3& a, const Vec3& b, const Ve
     return a + vb * scale * ab + vc * scale * ac;
 }
 
+/// Where the line through `point` across the plane of the triangle meets it, held inside. Along the longest edge and
+/// the height on it, which are perpendicular, rounding costs no more than it costs the corners, however thin the
+/// triangle is. Pre: p q is its longest edge.
+Vec3 below(const Vec3& point, const Vec3& p, const Vec3& q, const Vec3& r) {
+    const Vec3 edge = q - p, side = r - p;
+    const double squared = edge.squaredNorm();
+    const double foot = edge.dot(side) / squared;
+    Vec3 height = side - foot * edge;
+    height -= edge.dot(height) / squared * edge;  // what rounding left of the edge in it
+    if (!(height.squaredNorm() > 0)) return p;
+    const Vec3 to = point - p;
+    const double up = std::clamp(height.dot(to) / height.squaredNorm(), 0.0, 1.0);
+    const double along = std::clamp(edge.dot(to) / squared - up * foot, 0.0, 1.0 - up);
+    return p + along * edge + up * side;
+}
+
+Vec3 nearest_on_thin(const Vec3& point, const Vec3& p, const Vec3& q, const Vec3& r) {
+    Vec3 best = nearest_on_segment(point, p, q);
+    for (const Vec3& candidate :
+         {nearest_on_segment(point, q, r), nearest_on_segment(point, r, p), below(point, p, q, r)})
+        if ((candidate - point).squaredNorm() < (best - point).squaredNorm()) best = candidate;
+    return best;
+}
+
 }  // namespace
 
 Vec3 nearest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
@@ -51,24 +74,11 @@ Vec3 nearest_on_segment(const Vec3& point, const Vec3& a, const Vec3& b) {
 
 Vec3 nearest_on_triangle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a, ac = c - a;
-    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()});
-    const double doubled_area = ab.cross(ac).squaredNorm();
-    if (doubled_area > thin * longest * longest) return nearest_by_region(point, a, b, c);
-
-    Vec3 best = nearest_on_segment(point, a, b);
-    const auto offer = [&](const Vec3& candidate) {
-        if ((candidate - point).squaredNorm() < (best - point).squaredNorm()) best = candidate;
-    };
-    offer(nearest_on_segment(point, b, c));
-    offer(nearest_on_segment(point, c, a));
-    if (doubled_area > 0) {
-        // The face's own candidate, held inside by its weights, which may be noise: it is a point of the triangle.
-        const Vec3 normal = ab.cross(ac), ap = point - a;
-        const double v = std::clamp(ap.cross(ac).dot(normal) / doubled_area, 0.0, 1.0);
-        const double w = std::clamp(ab.cross(ap).dot(normal) / doubled_area, 0.0, 1.0 - v);
-        offer(a + v * ab + w * ac);
-    }
-    return best;
+    const double squared_ab = ab.squaredNorm(), squared_ac = ac.squaredNorm(), squared_bc = (c - b).squaredNorm();
+    const double longest = std::max({squared_ab, squared_ac, squared_bc});
+    if (ab.cross(ac).squaredNorm() > thin * longest * longest) return nearest_by_region(point, a, b, c);
+    if (longest == squared_ab) return nearest_on_thin(point, a, b, c);
+    return longest == squared_bc ? nearest_on_thin(point, b, c, a) : nearest_on_thin(point, c, a, b);
 }
 
 }  // namespace scanmill
