@@ -9,6 +9,7 @@
 #include "scanmill/formats/convert.hpp"
 #include "scanmill/formats/files.hpp"
 #include "stderr_text.hpp"
+#include "unit_conversion.hpp"
 
 namespace scanmill::runner {
 
@@ -18,26 +19,6 @@ struct Options {
     std::string from, to, unit, to_unit;
     bool drop_invalid = false;
 };
-
-/// With its lengths told in another unit. Throws Error for coordinates that leave double's range.
-template <class T>
-std::shared_ptr<const T> rescaled(const T& value, LengthUnit unit) {
-    const auto convert = [&](const Vec3& p) {
-        return Vec3(p.unaryExpr([&](double length) { return in_unit(length, value.frame.unit, unit); }));
-    };
-    T scaled = value;
-    Array<Vec3> positions(value.positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        positions[i] = convert(value.positions[i]);
-        if (value.positions[i].allFinite() && !positions[i].allFinite())
-            throw Error("--to-unit {}: point {} has a coordinate beyond what a number can hold in that unit",
-                        symbol(unit), i);
-    }
-    scaled.positions = std::move(positions);
-    scaled.frame.origin = convert(value.frame.origin);
-    scaled.frame.unit = unit;
-    return std::make_shared<const T>(std::move(scaled));
-}
 
 template <class T>
 Value tell_dropped(Cleaned<T> cleaned, const std::function<void(std::string)>& warn) {
@@ -53,13 +34,6 @@ Value without_invalid(const Value& value, const std::function<void(std::string)>
     return tell_dropped(without_invalid_points(*std::get<std::shared_ptr<const PointCloud>>(value)), warn);
 }
 
-Value to_unit(const Value& value, LengthUnit unit) {
-    if (frame_of(value)->unit == LengthUnit::unknown)
-        throw Error("--to-unit {}: the unit of the input is not known", symbol(unit)).hint("say it with --unit");
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value)) return rescaled(**mesh, unit);
-    return rescaled(*std::get<std::shared_ptr<const PointCloud>>(value), unit);
-}
-
 int convert(const Options& options) {
     const auto warn = [](const std::string& text) { tell("warning: {}\n", printable(text)); };
     const LengthUnit unit = parse_unit(options.to_unit);
@@ -71,7 +45,12 @@ int convert(const Options& options) {
             throw Error("'{}' is the input; the output must not replace it", options.to);
         Value value = read_file(options.from, read).value;
         if (options.drop_invalid) value = without_invalid(value, warn);
-        if (unit != LengthUnit::unknown) value = to_unit(value, unit);
+        if (unit != LengthUnit::unknown) {
+            if (frame_of(value)->unit == LengthUnit::unknown)
+                throw Error("--to-unit {}: the unit of the input is not known", symbol(unit))
+                    .hint("say it with --unit");
+            value = in_other_unit(value, unit);
+        }
         WriteOptions write;
         write.on_warning = warn;
         write_file(options.to, value, write);

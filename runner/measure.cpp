@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <new>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -16,6 +17,7 @@
 #include "scanmill/formats/metrics_json.hpp"
 #include "stderr_text.hpp"
 #include "table.hpp"
+#include "unit_conversion.hpp"
 
 namespace scanmill::runner {
 
@@ -56,40 +58,32 @@ ParameterSet parameters_of(const FilterSpec& spec, const std::vector<std::string
     return set;
 }
 
-std::vector<StepInput> read_inputs(const Options& options, const std::function<void(std::string)>& warn) {
+/// The truth in the mesh's unit, where both are known.
+std::vector<StepInput> read_inputs(const Options& options, LengthUnit unit, LengthUnit truth_unit,
+                                   const std::function<void(std::string)>& warn) {
     ReadOptions reading;
     reading.on_warning = warn;
-    reading.unit = parse_unit(options.unit);
+    reading.unit = unit;
     const Value mesh = read_mesh(options.mesh, reading);
-    if (!options.truth_unit.empty()) reading.unit = parse_unit(options.truth_unit);
-    return {{"mesh", mesh}, {"truth", read_file(options.truth, reading).value}};
-}
-
-std::string unit_text(const Metric& metric, LengthUnit unit) {
-    const std::string length(unit == LengthUnit::unknown ? "u" : symbol(unit));
-    switch (metric.unit) {
-        case Unit::length: return " " + length;
-        case Unit::area: return " " + length + "²";
-        case Unit::volume: return " " + length + "³";
-        default: return "";
-    }
+    if (truth_unit != LengthUnit::unknown) reading.unit = truth_unit;
+    Value truth = read_file(options.truth, reading).value;
+    const LengthUnit here = frame_of(mesh)->unit, there = frame_of(truth)->unit;
+    if (here != there && here != LengthUnit::unknown && there != LengthUnit::unknown)
+        truth = in_other_unit(truth, here);
+    return {{"mesh", mesh}, {"truth", truth}};
 }
 
 std::string report_text(const Metrics& metrics) {
     Table table({"metric", "value"});
-    for (const Metric& metric : metrics.values)
-        table.add({metric.name, display(metric) + unit_text(metric, metrics.unit)});
+    for (const Metric& metric : metrics.values) table.add({metric.name, display(metric, metrics.unit)});
     return table.text();
 }
 
 std::string report_json(const Options& options, const Metrics& metrics, const std::vector<std::string>& warnings) {
-    const bool is_known = metrics.unit != LengthUnit::unknown;
-    const nlohmann::ordered_json json{{"scanmill", 1},
-                                      {"mesh", options.mesh},
-                                      {"truth", options.truth},
-                                      {"unit", is_known ? nlohmann::ordered_json(symbol(metrics.unit)) : nullptr},
-                                      {"metrics", metrics_json(metrics)},
-                                      {"warnings", warnings}};
+    nlohmann::ordered_json json = metrics_document(metrics);
+    json["mesh"] = options.mesh;
+    json["truth"] = options.truth;
+    json["warnings"] = warnings;
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -102,6 +96,7 @@ int measure(Options options) {
     step.label = filter;
     step.spec = *spec;
     step.parameters = parameters_of(*spec, options.settings);
+    const LengthUnit unit = parse_unit(options.unit), truth_unit = parse_unit(options.truth_unit);
     std::vector<std::string> warnings;
     const auto warn = [&](std::string text) {
         tell("warning: {}\n", printable(text));
@@ -115,12 +110,16 @@ int measure(Options options) {
         NodeReport report;
         const Outputs outputs = run_step(
             step, [&]() -> const FilterDeclaration& { return library.load(std::string(filter)); },
-            read_inputs(options, warn), std::move(running),
+            read_inputs(options, unit, truth_unit, warn), std::move(running),
             [](const ParameterSet&, NodeReport&) { return std::nullopt; }, report);
         const auto& metrics = *std::get<std::shared_ptr<const Metrics>>(*outputs.find(spec->outputs.front().name));
         fmt::print("{}", options.json ? report_json(options, metrics, warnings) : report_text(metrics));
     } catch (const Error& error) {
         print(error, options.json);
+        return some_failed;
+    } catch (const std::bad_alloc&) {
+        print(Error("memory ran out").hint("measure with fewer samples (--set samples=100000), or smaller meshes"),
+              options.json);
         return some_failed;
     }
     return done;
@@ -135,8 +134,9 @@ void add_measure(CLI::App& app, Action& chosen) {
     command->add_option("MESH", options->mesh, "The mesh to measure")->required();
     command->add_option("TRUTH", options->truth, "What it should be: a mesh, or points")->required();
     command->add_option("--unit", options->unit,
-                        "The unit of length of files that declare none: um, mm, cm, m, in, ft");
-    command->add_option("--truth-unit", options->truth_unit, "The same for TRUTH, where it differs");
+                        "The files' unit of length, whatever they declare: um, mm, cm, m, in, ft");
+    command->add_option("--truth-unit", options->truth_unit,
+                        "The same of TRUTH, where it differs: it is converted to that of MESH");
     command->add_flag("--certify", options->certify, "Bound the Hausdorff distance from below and above; takes longer");
     command->add_option("--set", options->settings,
                         "NAME=VALUE: a parameter of the filter, as `scanmill show measure` lists them");

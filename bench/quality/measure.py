@@ -96,9 +96,11 @@ def main(program):
             for key, value in found.items():
                 if key == "euler":
                     differences[key] = 0 if value == said[key] else numpy.inf
-                elif key in said:
+                else:
                     power = {"area": 2, "volume": 3}.get(key, 1)
                     differences[key] = abs(value - said[key]) / diagonal**power
+            if not all(numpy.isfinite(difference) for difference in differences.values()):
+                worst = numpy.inf
             worst = max(worst, *differences.values())
             print(f"  {program_name:<8}" + "".join(f" {key} {value:.1e}" for key, value in differences.items()))
     print(f"largest difference: {worst:.1e} of the diagonal")

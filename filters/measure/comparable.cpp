@@ -20,7 +20,7 @@ constexpr double widest_gap = 0.1;
 
 constexpr const char* way_out =
     "declare each file's unit (--unit mm, or `unit:` at the input or the scan) and bring both into one frame (`pose:` "
-    "at the scan, or the filters align and apply-transform)";
+    "at the scan, or the filters align and apply-transform); where both are right, say same-frame: true";
 
 /// Two units of which the first is larger.
 struct UnitPair {
@@ -114,7 +114,8 @@ Buffer<Vec3> in_frame_of(const Frame& mesh, const Frame& truth, const Buffer<Vec
     return moved;
 }
 
-std::vector<std::string> require_comparable(const BoundingBox& mesh, const BoundingBox& truth, LengthUnit unit) {
+std::vector<std::string> require_comparable(const BoundingBox& mesh, const BoundingBox& truth, bool truth_may_be_part,
+                                            LengthUnit unit) {
     const bool truth_is_larger = truth.diagonal() > mesh.diagonal();
     const BoundingBox& large = truth_is_larger ? truth : mesh;
     const BoundingBox& small = truth_is_larger ? mesh : truth;
@@ -129,7 +130,8 @@ std::vector<std::string> require_comparable(const BoundingBox& mesh, const Bound
                         large.diagonal() / small.diagonal(), larger_name, symbol(units->smaller), smaller_name,
                         symbol(units->larger))
                 .hint(way_out);
-    if (large.diagonal() > most_times_larger * small.diagonal())
+    const bool is_part = truth_may_be_part && !truth_is_larger;
+    if (!is_part && large.diagonal() > most_times_larger * small.diagonal())
         throw Error("{}: the {} is more than {} times as large, too different to be measured", sizes, larger_name,
                     most_times_larger)
             .hint(way_out);
@@ -137,7 +139,7 @@ std::vector<std::string> require_comparable(const BoundingBox& mesh, const Bound
         throw Error("the mesh lies from {}, the truth from {}: {:.4g} {} apart, so they are not in one frame",
                     place_text(mesh), place_text(truth), gap, symbol(unit))
             .hint(way_out);
-    if (large.diagonal() > remarkable_times_larger * small.diagonal())
+    if (!is_part && large.diagonal() > remarkable_times_larger * small.diagonal())
         return {fmt::format("{}: the diagonals differ by a factor of {:.3g}; they are compared as they are", sizes,
                             large.diagonal() / small.diagonal())};
     return {};

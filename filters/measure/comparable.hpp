@@ -18,10 +18,11 @@ Buffer<Vec3> in_frame_of(const Frame& mesh, const Frame& truth, const Buffer<Vec
 ///  - every side of one is k times that of the other, within 5 %, where k is the ratio of two units (10 for mm and cm,
 ///    25.4 for in and mm, 1000 for mm and m …). Sides count in ascending order, so that turned boxes compare, and those
 ///    below a tenth of the diagonal on both not at all;
-///  - one diagonal is more than 30 times the other;
+///  - one diagonal is more than 30 times the other, unless the truth is the smaller one and may be a part: some points;
 ///  - the boxes are more than a tenth of the longer diagonal apart.
 /// Smaller differences are what is to be measured. Returns what a user should still know: a sentence when one diagonal
 /// is more than twice the other, none otherwise.
-std::vector<std::string> require_comparable(const BoundingBox& mesh, const BoundingBox& truth, LengthUnit unit);
+std::vector<std::string> require_comparable(const BoundingBox& mesh, const BoundingBox& truth, bool truth_may_be_part,
+                                            LengthUnit unit);
 
 }  // namespace scanmill::measuring

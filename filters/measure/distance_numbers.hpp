@@ -2,6 +2,7 @@
 #pragma once
 /// What is said of many distances.
 
+#include <optional>
 #include <span>
 
 #include "scanmill/data/array.hpp"
@@ -14,7 +15,8 @@ struct DistanceNumbers {
     double mean = 0;
     /// Standard error of the mean. The samples are dealt in turn to 32 batches, with means m_i around their mean m:
     /// sqrt(Σ (m_i - m)² / (32 · 31)). Evenly spread samples vary less than that, seldom more.
-    double mean_spread = 0;
+    /// Absent where nothing was sampled: a cloud's points are all taken.
+    std::optional<double> mean_spread;
     double rms = 0;
     double p50 = 0, p90 = 0, p95 = 0, p99 = 0;
     /// Over the samples and all vertices of their side.

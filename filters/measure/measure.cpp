@@ -11,6 +11,7 @@
 #include "measure/surface_samples.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/length_scale.hpp"
+#include "scanmill/geometry/surface_box.hpp"
 
 namespace scanmill {
 
@@ -27,25 +28,16 @@ void require_sound(const MeasureParams& params) {
 
 /// The thresholds in the mesh's unit.
 std::vector<double> thresholds_for(const TriangleMesh& mesh, const MeasureParams& params) {
-    const LengthScale scale{mesh.frame.unit, [&] { return bounding_box(mesh.positions.span()).diagonal(); },
+    const LengthScale scale{mesh.frame.unit, [&] { return surface_box(mesh).diagonal(); },
                             [&] { return edge_spacing(mesh); }};
     std::vector<double> thresholds;
     for (const Length& threshold : params.thresholds) {
         thresholds.push_back(threshold.resolved(scale).value());
         if (!(thresholds.back() > 0 && std::isfinite(thresholds.back())))
-            throw Error("a threshold is {}; thresholds must be above 0", threshold.text());
+            throw Error("the threshold {} comes to {} in the unit of the mesh; thresholds must be above 0 and finite",
+                        threshold.text(), number_text(thresholds.back()));
     }
     return thresholds;
-}
-
-BoundingBox box_of(const TriangleMesh& mesh) {
-    BoundingBox box;
-    for (const Triangle& triangle : mesh.triangles)
-        for (u32 vertex : triangle) {
-            box.low = box.low.cwiseMin(mesh.positions[vertex]);
-            box.high = box.high.cwiseMax(mesh.positions[vertex]);
-        }
-    return box;
 }
 
 void require_squares(const BoundingBox& box, std::string_view name) {
@@ -62,7 +54,7 @@ void require_surface(const TriangleMesh& mesh, std::string_view name) {
                     mesh.positions.size());
     require_consistent(mesh);
     require_finite(mesh.positions.span(), fmt::format("vertices of the {}", name));
-    require_squares(box_of(mesh), name);
+    require_squares(surface_box(mesh), name);
     for (const auto& [a, b, c] : mesh.triangles) {
         const Vec3& origin = mesh.positions[a];
         if ((mesh.positions[b] - origin).cross(mesh.positions[c] - origin).squaredNorm() > 0) return;
@@ -156,15 +148,24 @@ NearShares shares_at(double threshold, const Side& to, const Side& from) {
 void measure_mesh_alone(Measurement& result, const TriangleMesh& mesh, const TriangleTree& tree,
                         const MeasureParams& params, Context& context) {
     result.unit = mesh.frame.unit;
-    result.diagonal = box_of(mesh).diagonal();
+    result.diagonal = surface_box(mesh).diagonal();
     result.mesh = mesh_numbers(mesh, context.threads());
     context.progress(0.6);
     if (params.self_intersections) result.self_intersections = count_self_intersections(mesh, tree, context);
     context.progress(0.8);
 }
 
-void warn_all(const std::vector<std::string>& warnings, Context& context) {
-    for (const std::string& warning : warnings) context.warn(warning);
+/// Warns of, or refuses, what sizes and places say of the two frames.
+void compare_extents(const TriangleMesh& mesh, const BoundingBox& truth, bool truth_may_be_part,
+                     const MeasureParams& params, Context& context) {
+    try {
+        for (const std::string& warning :
+             require_comparable(surface_box(mesh), truth, truth_may_be_part, mesh.frame.unit))
+            context.warn(warning);
+    } catch (const Error& error) {
+        if (!params.same_frame) throw;
+        context.warn(fmt::format("{}; measured all the same, as same-frame asks", error.sentence()));
+    }
 }
 
 }  // namespace
@@ -178,10 +179,10 @@ Measurement measure(const TriangleMesh& mesh, const TriangleMesh& given_truth, c
     TriangleMesh truth = given_truth;
     truth.positions = in_frame_of(mesh.frame, given_truth.frame, given_truth.positions);
     truth.frame = mesh.frame;
-    require_squares(box_of(truth), "truth");
-    warn_all(require_comparable(box_of(mesh), box_of(truth), mesh.frame.unit), context);
+    require_squares(surface_box(truth), "truth");
+    compare_extents(mesh, surface_box(truth), false, params, context);
 
-    const double rounding = rounding_within(box_of(mesh), box_of(truth));
+    const double rounding = rounding_within(surface_box(mesh), surface_box(truth));
     const TriangleTree mesh_tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
     const TriangleTree truth_tree(truth.positions.span(), truth.triangles.span(), context.threads());
     context.progress(0.1);
@@ -219,9 +220,9 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
             .hint("leave certify out, or give a mesh as truth");
     const Buffer<Vec3> points = in_frame_of(mesh.frame, truth.frame, truth.positions);
     const BoundingBox box = bounding_box(points.span());
-    warn_all(require_comparable(box_of(mesh), box, mesh.frame.unit), context);
+    compare_extents(mesh, box, true, params, context);
 
-    const double rounding = rounding_within(box_of(mesh), box);
+    const double rounding = rounding_within(surface_box(mesh), box);
     const TriangleTree mesh_tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
     context.progress(0.1);
     const NearestDistances from = nearest_distances(points.span(), mesh_tree, rounding, context);
@@ -232,6 +233,7 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
     Measurement result;
     result.to_points = to.numbers;
     result.from_truth = numbers_of(from.distances, {});
+    result.from_truth.mean_spread.reset();
     result.both = result.from_truth;
     for (const double threshold : thresholds)
         result.near.push_back({threshold, {}, share_within(from.distances, threshold), {}});

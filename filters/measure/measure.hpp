@@ -29,6 +29,8 @@ struct MeasureParams {
     std::vector<Length> thresholds = std::vector(1, Length::percent_of_diagonal(0.5));
     /// Whether pairs of triangles that intersect are counted; takes about as long as everything else.
     bool self_intersections = true;
+    /// Whether unit and frame are known to be equal, whatever sizes and places say: they only warn then.
+    bool same_frame = false;
     /// Whether the Hausdorff distance is bounded from both sides; needs a mesh as truth.
     bool certify = false;
     /// The bounds are refined until upper - lower is at most this share of upper; in (0, 1).

@@ -13,7 +13,7 @@ void add_distances(Metrics& metrics, const DistanceNumbers& numbers, std::string
         metrics.set(fmt::format("{}{}", name, side), value, Unit::length);
     };
     add("mean", numbers.mean);
-    add("mean-spread", numbers.mean_spread);
+    if (numbers.mean_spread) add("mean-spread", *numbers.mean_spread);
     add("rms", numbers.rms);
     add("p50", numbers.p50);
     add("p90", numbers.p90);

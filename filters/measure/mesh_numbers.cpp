@@ -14,6 +14,7 @@
 #include "measure/distance_numbers.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/filter/parallel.hpp"
+#include "scanmill/geometry/surface_box.hpp"
 
 namespace scanmill {
 
@@ -73,7 +74,7 @@ TriangleShape shape_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
 }
 
 Array<TriangleShape> shapes_of(const TriangleMesh& mesh, unsigned threads) {
-    const BoundingBox box = bounding_box(mesh.positions.span());
+    const BoundingBox box = surface_box(mesh);
     const Vec3 origin = box.low + (box.high - box.low) / 2;
     Array<TriangleShape> shapes(mesh.triangles.size());
     for_each_chunk(threads, shapes.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {

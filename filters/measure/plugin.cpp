@@ -66,6 +66,8 @@ Filter declaration() {
                at_least(fewest_samples))
         .param("thresholds", &P::thresholds, "Distances that count as near, for precision and recall.", above(0))
         .param("self-intersections", &P::self_intersections, "Whether pairs of intersecting triangles are counted.")
+        .param("same-frame", &P::same_frame,
+               "Whether unit and frame are known to be equal: sizes and places that say otherwise only warn then.")
         .param("certify", &P::certify,
                "Whether the Hausdorff distance is bounded from both sides; truth is a mesh then.")
         .param("gap", &P::gap, "The bounds are brought this close: their difference over the upper one.", above(0),

@@ -109,11 +109,12 @@ void write_glb_points(const Value& value, OutputBuffer& out, const WriteOptions&
 }
 
 void write_glb_mesh(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
-    if (mesh.triangles.empty())
+    const TriangleMesh& whole = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    if (whole.triangles.empty())
         throw Error("nothing to write: the mesh has {} and no triangles, and GLB would show nothing",
-                    counted(mesh.positions.size(), "vertex", "vertices"))
+                    counted(whole.positions.size(), "vertex", "vertices"))
             .hint("PLY and VTP hold vertices without triangles");
+    const TriangleMesh mesh = with_used_vertices(whole, "GLB", options);
     GlbModel model =
         model_of(mesh.frame, mesh.positions.span(), mesh.vertex_columns, "mesh", mesh.triangles.size(), options);
     std::vector<std::string_view> told_already;

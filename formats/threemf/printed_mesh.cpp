@@ -8,6 +8,7 @@
 #include "scanmill/filter/quantity.hpp"
 #include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/writing.hpp"
+#include "scanmill/geometry/surface_box.hpp"
 #include "scanmill/geometry/topology.hpp"
 
 namespace scanmill::threemf {
@@ -33,21 +34,56 @@ double as_written(float number) {
     return std::trunc(static_cast<double>(number * static_cast<float>(decimals))) / decimals;
 }
 
-/// The float for which lib3mf writes the number rounded.
-float for_writing(double number) { return static_cast<float>(number + std::copysign(0.5 / decimals, number)); }
+/// The float for which lib3mf writes the text nearest to the number.
+float for_writing(double number) {
+    const float nearest = static_cast<float>(number);
+    float best = nearest;
+    for (const double above : {0.5 / decimals, 1 / decimals}) {
+        const float candidate = static_cast<float>(number + std::copysign(above, number));
+        if (std::abs(as_written(candidate) - number) < std::abs(as_written(best) - number)) best = candidate;
+    }
+    return best;
+}
 
-/// The number with as many digits as lib3mf writes for a place.
-float six_digits(double number) {
-    double read = 0;
-    parse_number(fmt::format("{:.6g}", number), read);
-    return static_cast<float>(read);
+/// A number near this one whose six digits, as lib3mf writes a place, are the number itself, to readers in single
+/// precision as to those in double.
+float short_number(double number) {
+    constexpr double six_digits = 999999.5, whole_floats = 1 << 24;
+    double step = 1, digits = std::abs(number), odd = digits;
+    for (; digits >= six_digits; digits /= 10) step *= 10;
+    // The step is 2^k 5^k; its powers of 2 are no digits of a float.
+    for (double ten = 1; ten < step; ten *= 10) odd /= 2;
+    for (; odd >= whole_floats; odd /= 2) step *= 2;
+    return static_cast<float>(std::round(number / step) * step);
 }
 
 Eigen::Vector3f place_of(const TriangleMesh& mesh) {
     BoundingBox box = bounding_box(mesh.positions.span());
     box.low += mesh.frame.origin;
     box.high += mesh.frame.origin;
-    return distant_origin(box).unaryExpr(&six_digits);
+    return distant_origin(box).unaryExpr(&short_number);
+}
+
+/// Triangles of which nothing is left, because corners that differ are written alike. Throws Error when all are.
+void tell_collapsed(const TriangleMesh& mesh, const std::vector<NMR::MODELMESHVERTEX>& vertices,
+                    const WriteOptions& options) {
+    const auto alike = [&](u32 a, u32 b) {
+        if (mesh.positions[a] == mesh.positions[b]) return false;
+        for (int axis = 0; axis < 3; ++axis)
+            if (as_written(vertices[a].m_fPosition[axis]) != as_written(vertices[b].m_fPosition[axis])) return false;
+        return true;
+    };
+    std::size_t collapsed = 0;
+    for (const auto& [a, b, c] : mesh.triangles) collapsed += alike(a, b) || alike(b, c) || alike(c, a) ? 1 : 0;
+    if (collapsed == 0) return;
+    if (collapsed == mesh.triangles.size())
+        throw Error("nothing is left of the object: its diagonal is {:.3g} {}, and 3MF is written with six decimals",
+                    surface_box(mesh).diagonal(), symbol(mesh.frame.unit))
+            .hint("convert it to a smaller unit first: scanmill convert --to-unit um IN OUT");
+    warn(options.on_warning,
+         "{} of {} collapsed: corners that differ are equal in 3MF's six decimals; a smaller unit "
+         "keeps them apart",
+         counted(collapsed, "triangle", "triangles"), mesh.triangles.size());
 }
 
 }  // namespace
@@ -67,6 +103,12 @@ void require_solid(const TriangleMesh& mesh) {
             found.nonmanifold_vertices, found.degenerate_triangles)
             .hint("STL, GLB and VTP hold open meshes; alpha-solid makes closed ones from points");
     const double volume = six_volumes(mesh) / 6;
+    if (!std::isfinite(volume) || volume == 0)
+        throw Error(
+            "3MF holds solids only; the volume of the mesh comes to {:.3g} {}³, so nothing tells inside from "
+            "outside",
+            volume, symbol(mesh.frame.unit))
+            .hint("choose a unit in which the object is neither tiny nor huge: scanmill convert --to-unit mm IN OUT");
     if (!(volume > 0))
         throw Error("3MF holds solids only; the mesh encloses the volume {:.6g}: its triangles do not face outwards",
                     volume)
@@ -99,6 +141,7 @@ PrintedMesh printed(const TriangleMesh& mesh, const WriteOptions& options) {
              "coordinates moved by up to {:.2g}, {:.2g} of the diagonal: 3MF is written in single precision with six "
              "decimals; a smaller unit keeps more of them",
              moved, moved / diagonal);
+    tell_collapsed(mesh, result.vertices, options);
     result.triangles.reserve(mesh.triangles.size());
     for (const Triangle& triangle : mesh.triangles)
         result.triangles.push_back({{triangle[0], triangle[1], triangle[2]}});

@@ -16,7 +16,8 @@ namespace scanmill::threemf {
 void require_solid(const TriangleMesh& mesh);
 
 struct PrintedMesh {
-    /// Where the object stands; its three numbers have six digits. A vertex plus this is the world position.
+    /// Where the object stands; its three numbers are what six digits of them say. A vertex plus this is the world
+/// position.
     Eigen::Vector3f place = Eigen::Vector3f::Zero();
     std::vector<NMR::MODELMESHVERTEX> vertices;
     std::vector<NMR::MODELMESHTRIANGLE> triangles;

@@ -165,7 +165,7 @@ void add_frame(const Frame& frame, Text form, vtkFieldData& field) {
         field.AddArray(bytes);
     };
     if (frame.unit != LengthUnit::unknown) add_one("unit", std::string(symbol(frame.unit)));
-    if (!frame.name.empty()) add_one("frame", frame.name);
+    if (!frame.name.empty()) add_one("frame", valid_text(frame.name));
     if (frame.origin == Vec3::Zero()) return;
     const auto origin = vtkSmartPointer<vtkDoubleArray>::New();
     origin->SetName("origin");

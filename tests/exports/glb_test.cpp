@@ -62,6 +62,21 @@ PointCloud two_points() {
     return cloud;
 }
 
+TEST(GlbWriter, VertexOfNoTriangle_IsLeftOutAndMovesNothing) {
+    TriangleMesh mesh = cube_in(LengthUnit::metre, 0.125);
+    Array<Vec3> positions;
+    for (const Vec3& p : mesh.positions) positions.push_back(p + Vec3(432100, 5421000, 0));
+    positions.push_back({0, 0, 0});
+    mesh.positions = std::move(positions);
+    Told told;
+    const Container written(mesh, &told);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("GLB left out 1 vertex that no triangle uses")));
+    const Json& accessor = *written.attribute("POSITION");
+    EXPECT_EQ(accessor["count"], 8);
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(accessor["max"][axis].get<double>() - accessor["min"][axis].get<double>(), 0.125);
+}
+
 TEST(GlbWriter, MillimetresWithZUp_BecomeMetresWithYUp) {
     PointCloud cloud = two_points();
     cloud.frame.unit = LengthUnit::millimetre;

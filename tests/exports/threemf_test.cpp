@@ -3,7 +3,10 @@
 
 #include <Model/COM/NMR_DLLInterfaces.h>
 
+#include <fmt/format.h>
+
 #include "exports/assimp_support.hpp"
+#include "scanmill/filter/quantity.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"
@@ -83,6 +86,56 @@ TEST(ThreemfWriter, Cube_IsACubeForOthers) {
     EXPECT_EQ(seen.faces, 12u);
     EXPECT_EQ(seen.box.low, Vec3(0, 0, 0));
     EXPECT_EQ(seen.box.high, Vec3(2.5, 2.5, 2.5));
+}
+
+TEST(ThreemfWriter, NumbersOfFewDecimals_AreWrittenAsTheyAre) {
+    for (const double edge : {10.0, 12.0, 15.5, 0.001, 8.123, 1234.5}) {
+        const SeenByAssimp seen = through_assimp(cube_in(LengthUnit::millimetre, edge), "a.3mf");
+        EXPECT_EQ(seen.box.high.cast<float>(), Vec3(edge, edge, edge).cast<float>()) << edge;
+        EXPECT_EQ(seen.box.low, Vec3(0, 0, 0));
+    }
+}
+
+/// A solid far from zero, and a vertex of no triangle that is not.
+TriangleMesh far_cube(const Vec3& place, bool has_stray) {
+    TriangleMesh mesh = cube_in(LengthUnit::millimetre, 2000);
+    Array<Vec3> positions;
+    for (const Vec3& p : mesh.positions) positions.push_back(p + place);
+    if (has_stray) positions.push_back({0, 0, 0});
+    mesh.positions = std::move(positions);
+    return mesh;
+}
+
+TEST(ThreemfWriter, FarPlace_IsTheSameInSingleAndDouble) {
+    for (const double far : {123456.75, 432099123.0, 5.421e9, 9.99e11}) {
+        const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(far_cube({far, -far / 3, 0}, false)));
+        for (int axis = 0; axis < 2; ++axis) {
+            double text = 0;
+            parse_number(fmt::format("{:.6g}", seen.place[axis]), text);
+            EXPECT_EQ(text, seen.place[axis]) << far;
+        }
+    }
+}
+
+TEST(ThreemfWriter, VertexOfNoTriangle_IsLeftOutAndMovesNothing) {
+    Told told;
+    const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(far_cube({4.321e8, 5.421e8, 0}, true), &told));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3MF left out 1 vertex that no triangle uses")));
+    ASSERT_EQ(seen.vertices.size(), 8u);
+    BoundingBox box;
+    for (const Vec3& v : seen.vertices) {
+        box.low = box.low.cwiseMin(seen.place + v);
+        box.high = box.high.cwiseMax(seen.place + v);
+    }
+    EXPECT_LT((box.low - Vec3(4.321e8, 5.421e8, 0)).cwiseAbs().maxCoeff(), 2e-3);
+    EXPECT_LT((box.high - Vec3(4.321e8 + 2000, 5.421e8 + 2000, 2000)).cwiseAbs().maxCoeff(), 2e-3);
+}
+
+TEST(ThreemfWriter, SolidBelowSixDecimals_IsRefused) {
+    EXPECT_THAT(sentence_of([] { bytes_of_3mf(cube_in(LengthUnit::millimetre, 3e-7)); }),
+                HasSubstr("nothing is left of the object: its diagonal is 5.2e-07 mm"));
+    EXPECT_THAT(sentence_of([] { bytes_of_3mf(cube_in(LengthUnit::millimetre, 1e-160)); }),
+                HasSubstr("comes to 0 mm³"));
 }
 
 TEST(ThreemfWriter, EveryUnit_IsDeclared) {

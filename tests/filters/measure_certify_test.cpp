@@ -184,6 +184,23 @@ TEST(CertifiedHausdorff, TwoWays_AreOne) {
     EXPECT_LE(back.lower, there.upper);
 }
 
+/// A slanted triangle three long whose third corner is so far from the longest edge, as a share of it; alone, and split
+/// at a point inside it.
+std::pair<TriangleMesh, TriangleMesh> needle(double height) {
+    const Vec3 a(0.1, 0.2, 0.3), b(2.1, 2.2, 1.3), c = a + 0.3 * (b - a) + 3 * height * Vec3(1, -1, 0).normalized();
+    const Vec3 inside = (a + b + 2 * c) / 4;
+    return {soup({a, b, c}, {{0, 1, 2}}), soup({a, b, c, inside}, {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}})};
+}
+
+TEST(CertifiedHausdorff, NeedlesAgainstTheirParts_HoldTheTrueZero) {
+    for (double height = 0.3; height > 1e-9; height /= 3) {
+        const auto& [whole, parts] = needle(height);
+        const CertifiedHausdorff found = bounds(whole, parts, {0.01, 100'000});
+        EXPECT_EQ(found.lower, 0) << height;
+        EXPECT_LT(found.upper, 1e-6) << height;
+    }
+}
+
 TEST(CertifiedHausdorff, AnyNumberOfThreads_GivesTheSameBounds) {
     const TriangleMesh one = turned(torus(2, 0.5, 40, 20), 0.1, {1, 2, 3}), other = torus(2, 0.5, 33, 21);
     const CertifiedHausdorff serial = bounds(one, other, {0.001, 20'000}, 1);

@@ -250,6 +250,23 @@ TEST(MeasuredMetrics, Thresholds_AreNumberedInTheirOrder) {
     EXPECT_EQ(metrics.find("threshold@1"), nullptr);
 }
 
+TEST(MeasuredMetrics, VertexInNoTriangle_ChangesNoNumber) {
+    for (const double far : {1e3, 1e10, 1e300}) {
+        TriangleMesh mesh = geodesic_sphere(1, 5);
+        Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+        positions.push_back({far, far, far});
+        mesh.positions = std::move(positions);
+        const Metrics with = metrics_of(measured(mesh, shifted(geodesic_sphere(1, 5), {0.1, 0, 0}), few_samples()));
+        const Metrics without =
+            metrics_of(measured(geodesic_sphere(1, 5), shifted(geodesic_sphere(1, 5), {0.1, 0, 0}), few_samples()));
+        for (const Metric& metric : without.values) {
+            if (metric.name == "unused-vertices") continue;
+            EXPECT_EQ(with.find(metric.name)->value, metric.value) << metric.name << " " << far;
+        }
+        EXPECT_EQ(with.find("unused-vertices")->value, 1);
+    }
+}
+
 TEST(MeasuredMetrics, UnitAndDiagonal_AreTheMeshs) {
     TriangleMesh mesh = cube();
     mesh.frame.unit = LengthUnit::millimetre;

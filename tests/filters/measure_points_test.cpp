@@ -49,8 +49,16 @@ TEST(MeasureAgainstPoints, AnyNumberOfThreads_GivesTheSameNumbers) {
 }
 
 TEST(MeasureAgainstPoints, OnePoint_IsMeasured) {
-    const Measurement result = measured(scaled(cube(), 1), cloud_of({{0.5, 0.5, 0.5}, {0.5, 0.5, 0.9}}), few_samples());
-    EXPECT_DOUBLE_EQ(result.from_truth.max, 0.5);
+    const Measurement result = measured(cube(), cloud_of({{0.5, 0.5, 0.75}}), few_samples());
+    EXPECT_DOUBLE_EQ(result.from_truth.mean, 0.25);
+    EXPECT_DOUBLE_EQ(result.from_truth.max, 0.25);
+    EXPECT_FALSE(result.from_truth.mean_spread) << "nothing was sampled";
+    EXPECT_TRUE(result.to_points->mean_spread);
+}
+
+TEST(MeasureAgainstPoints, FewPointsOnALargePart_AreNoOtherUnit) {
+    const Measurement result = measured(scaled(cube(), 100), cloud_of({{50, 50, 99}, {50, 51, 99}}), few_samples());
+    EXPECT_DOUBLE_EQ(result.from_truth.max, 1);
 }
 
 }  // namespace

@@ -144,7 +144,16 @@ TEST(MeasureFrames, AnotherSize_IsMeasuredWithAWarning) {
         with_positions(cube(), [](const Vec3& p) -> Vec3 { return p.cwiseProduct(Vec3(1, 1, 10)); });
     EXPECT_THAT(warnings_of(cube(), bar), ElementsAre(HasSubstr("compared as they are")));
     EXPECT_THAT(refusal(brick(), brick(35)), HasSubstr("the truth is more than 30 times as large"));
-    EXPECT_THAT(refusal(brick(29), vertices_of(soup({{1, 1, 1}}, {}))), HasSubstr("the mesh is more than 30 times"));
+    EXPECT_THAT(refusal(brick(), vertices_of(brick(35))), HasSubstr("the truth is more than 30 times as large"));
+}
+
+TEST(MeasureFrames, KnownToBeTheSame_AreMeasuredWithAWarning) {
+    MeasureParams params = few_samples();
+    params.same_frame = true;
+    Context context;
+    const Measurement tenth = measure(brick(), brick(10), params, context);
+    EXPECT_GT(*tenth.hausdorff, 1);
+    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("measured all the same, as same-frame asks")));
 }
 
 TEST(MeasureFrames, AnotherPlace_IsRefused) {

@@ -80,7 +80,7 @@ TEST(DistanceNumbers, MeanSpread_IsThatOf32Batches) {
     // 64 values: batch i holds i and i + 32 twice the same, so batch means are 0 … 31: variance of these over 32.
     std::vector<double> values;
     for (int i = 0; i < 64; ++i) values.push_back(i % 32);
-    EXPECT_NEAR(numbers_of(values, {}).mean_spread, std::sqrt((32.0 * 32 - 1) / 12 * 32 / (32.0 * 31)), 1e-12);
+    EXPECT_NEAR(*numbers_of(values, {}).mean_spread, std::sqrt((32.0 * 32 - 1) / 12 * 32 / (32.0 * 31)), 1e-12);
     // 33 values: one batch holds two.
     values.assign(33, 1.0);
     EXPECT_EQ(numbers_of(values, {}).mean_spread, 0);

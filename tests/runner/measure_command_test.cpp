@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "scanmill/formats/files.hpp"
 #include "support/program.hpp"
@@ -124,12 +125,50 @@ TEST_F(MeasureCommand, WhatCannotBeMeasured_IsRefusedWithAnExitCodeOfOne) {
     }
 }
 
+std::set<std::string> names_of(const json& metrics) {
+    std::set<std::string> names;
+    for (const auto& [name, value] : metrics.items()) names.insert(name.substr(0, name.find('@')));
+    return names;
+}
+
+TEST_F(MeasureCommand, EveryMetricIsDeclared_AndEveryDeclaredOneIsGiven) {
+    folder_.write("points.xyz", "1 0 0\n-1 0 0\n0 1 0\n0 0 -1\n");
+    std::set<std::string> given =
+        names_of(json::parse(scanmill({"measure", "moved.ply", "sphere.ply", "--certify", "--json"}).out)["metrics"]);
+    given.merge(names_of(json::parse(scanmill({"measure", "moved.ply", "points.xyz", "--json"}).out)["metrics"]));
+    const json shown = json::parse(scanmill({"show", "measure", "--json"}).out);
+    std::set<std::string> declared;
+    for (const json& metric : shown["filter"]["metrics"]) declared.insert(metric["name"]);
+    EXPECT_EQ(given, declared);
+}
+
+TEST_F(MeasureCommand, TruthOfAnotherKnownUnit_IsConverted) {
+    scanmill({"convert", "sphere.ply", "metres.ply", "--unit", "mm", "--to-unit", "m"});
+    scanmill({"convert", "sphere.ply", "millimetres.ply", "--unit", "mm"});
+    for (const std::vector<std::string>& files : {std::vector<std::string>{"millimetres.ply", "metres.ply"},
+                                                  {"sphere.ply", "metres.ply", "--unit", "mm", "--truth-unit", "m"}}) {
+        std::vector<std::string> arguments{"measure", "--json"};
+        arguments.insert(arguments.end(), files.begin(), files.end());
+        const ProgramResult ran = scanmill(arguments);
+        ASSERT_EQ(ran.exit_code, 0) << ran.err;
+        const json said = json::parse(ran.out);
+        EXPECT_EQ(said["unit"], "mm");
+        EXPECT_LT(said["metrics"]["hausdorff"].get<double>(), 1e-12);
+        EXPECT_EQ(said["units"]["hausdorff"], "length");
+    }
+    EXPECT_EQ(scanmill({"measure", "sphere.ply", "sphere.ply", "--unit", "banana"}).exit_code, 2);
+    EXPECT_EQ(scanmill({"measure", "sphere.ply", "sphere.ply", "--truth-unit", "banana"}).exit_code, 2);
+}
+
 TEST_F(MeasureCommand, TruthInAnotherUnit_IsNotScored) {
     scanmill({"convert", "sphere.ply", "metres.ply", "--unit", "mm", "--to-unit", "m"});
     const ProgramResult told = scanmill({"measure", "sphere.ply", "metres.ply"});
     EXPECT_EQ(told.exit_code, 1);
     EXPECT_EQ(told.out, "");
     EXPECT_THAT(told.err, HasSubstr("1000"));
+    const ProgramResult trusted = scanmill({"measure", "sphere.ply", "metres.ply", "--set", "same-frame=true"});
+    EXPECT_EQ(trusted.exit_code, 0);
+    EXPECT_THAT(trusted.err, HasSubstr("measured all the same"));
 }
 
 TEST_F(MeasureCommand, Step_ExpectsAndWritesItsNumbers) {

@@ -103,7 +103,8 @@ Json distances(Held& held, const Json& request) {
     const double building = peers::seconds_of(
         [&] { tree.emplace(held.cloud.positions.span(), std::span(held.triangles), context.threads()); });
     measuring::NearestDistances found;
-    const double asking = peers::seconds_of([&] { found = measuring::nearest_distances(held.queries, *tree, 0, context); });
+    const double asking =
+        peers::seconds_of([&] { found = measuring::nearest_distances(held.queries, *tree, 0, context); });
     double sum = 0, squares = 0;
     for (const double distance : found.distances) sum += distance, squares += distance * distance;
     const auto count = static_cast<double>(found.distances.size());

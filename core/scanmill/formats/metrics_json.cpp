@@ -23,15 +23,18 @@ Json metrics_json(const Metrics& metrics) {
     return json;
 }
 
-void write_metrics_json(const Value& value, OutputBuffer& out, const WriteOptions&) {
-    const Metrics& metrics = *std::get<std::shared_ptr<const Metrics>>(value);
+Json metrics_document(const Metrics& metrics) {
     const bool is_known = metrics.unit != LengthUnit::unknown;
     Json json{{"scanmill", 1},
               {"unit", is_known ? Json(symbol(metrics.unit)) : Json(nullptr)},
               {"metrics", metrics_json(metrics)},
               {"units", Json::object()}};
     for (const Metric& metric : metrics.values) json["units"][metric.name] = name_of(metric.unit);
-    out.text(json.dump(2));
+    return json;
+}
+
+void write_metrics_json(const Value& value, OutputBuffer& out, const WriteOptions&) {
+    out.text(metrics_document(*std::get<std::shared_ptr<const Metrics>>(value)).dump(2));
     out.text("\n");
 }
 

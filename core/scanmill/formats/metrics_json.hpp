@@ -20,6 +20,9 @@ class OutputBuffer;
 /// The numbers alone, by name.
 nlohmann::ordered_json metrics_json(const Metrics& metrics);
 
+/// All of it, as above.
+nlohmann::ordered_json metrics_document(const Metrics& metrics);
+
 /// Pre: the value is of the kind metrics.
 void write_metrics_json(const Value& value, OutputBuffer& out, const WriteOptions& options);
 

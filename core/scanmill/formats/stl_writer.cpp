@@ -47,24 +47,13 @@ std::size_t collapsed_triangles(const TriangleMesh& mesh) {
     return count;
 }
 
-std::size_t unused_vertices(const TriangleMesh& mesh) {
-    std::vector<bool> used(mesh.positions.size());
-    std::size_t count = 0;
-    for (const Triangle& triangle : mesh.triangles)
-        for (u32 vertex : triangle)
-            if (!used[vertex]) {
-                used[vertex] = true;
-                ++count;
-            }
-    return mesh.positions.size() - count;
-}
-
 }  // namespace
 
 void write_stl(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
-    if (mesh.triangles.empty()) throw Error("nothing to write: the mesh has no triangles, and STL holds nothing else");
-    require_countable(mesh.triangles.size(), "triangles");
+    const TriangleMesh& whole = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    if (whole.triangles.empty()) throw Error("nothing to write: the mesh has no triangles, and STL holds nothing else");
+    require_countable(whole.triangles.size(), "triangles");
+    const TriangleMesh mesh = with_used_vertices(whole, "STL", options);
     tell_lost_precision(mesh.frame, mesh.positions.span(), true, "STL", options);
     tell_bare_triangles(mesh, "STL", options);
     if (const std::size_t collapsed = collapsed_triangles(mesh); collapsed > 0)
@@ -72,9 +61,6 @@ void write_stl(const Value& value, OutputBuffer& out, const WriteOptions& option
              "{} collapsed: corners that differ are equal in STL's single precision; PLY "
              "keeps them apart",
              counted(collapsed, "triangle", "triangles"));
-    if (const std::size_t unused = unused_vertices(mesh); unused > 0)
-        warn(options.on_warning, "STL left out {} that no triangle uses; PLY keeps them",
-             counted(unused, "vertex", "vertices"));
 
     Frame frame = mesh.frame;
     frame.name = one_line(frame.name);

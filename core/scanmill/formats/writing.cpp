@@ -66,6 +66,17 @@ void tell_left_out(const ColumnTable& columns, std::string_view element, std::st
              counted(count, "column", "columns"), element, names);
 }
 
+TriangleMesh with_used_vertices(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options) {
+    std::vector<bool> is_used(mesh.positions.size(), false);
+    for (const Triangle& triangle : mesh.triangles)
+        for (const u32 vertex : triangle) is_used[vertex] = true;
+    const auto unused = static_cast<std::size_t>(std::ranges::count(is_used, false));
+    if (unused == 0) return mesh;  // shares its arrays
+    warn(options.on_warning, "{} left out {} that no triangle uses; PLY keeps them", format,
+         counted(unused, "vertex", "vertices"));
+    return without_unused_vertices(mesh);
+}
+
 void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options,
                          std::span<const std::string_view> kept_of_vertices,
                          std::span<const std::string_view> kept_of_faces) {

@@ -31,6 +31,10 @@ void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, cons
                          std::span<const std::string_view> kept_of_vertices = {},
                          std::span<const std::string_view> kept_of_faces = {});
 
+/// The mesh over the vertices that triangles use, after telling how many the format leaves out: where they lie is
+/// nothing to a surface.
+TriangleMesh with_used_vertices(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options);
+
 /// A frame's name fit for a comment, and as a reader finds it there: control characters, line ends above all, become
 /// blanks, and those around it go.
 std::string one_line(std::string_view name);

@@ -10,6 +10,7 @@
 #include <flann/flann.hpp>
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/geometry/surface_box.hpp"
 
 namespace scanmill {
 
@@ -73,8 +74,16 @@ bool has_duplicate(const std::vector<Vec3>& scattered, std::size_t index) {
            (index + 1 < scattered.size() && scattered[index + 1] == scattered[index]);
 }
 
-double diagonal_of(std::span<const Vec3> positions) {
-    const double diagonal = bounding_box(positions).diagonal();
+BoundingBox box_of(const Value& value) {
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value);
+        mesh && !(*mesh)->triangles.empty())
+        return surface_box(**mesh);
+    return bounding_box(positions_of(value));
+}
+
+double diagonal_of(const Value& value) {
+    const std::span<const Vec3> positions = positions_of(value);
+    const double diagonal = box_of(value).diagonal();
     if (diagonal > 0 || positions.empty()) return diagonal;
     require_finite(positions);
     throw Error("the scan has no size: {} at one place; at least two places are needed",
@@ -153,7 +162,7 @@ double edge_spacing(const TriangleMesh& mesh) {
 LengthScale length_scale(const Value& value) {
     if (const auto* metrics = std::get_if<std::shared_ptr<const Metrics>>(&value)) return scale_beside(*metrics);
     const Frame* frame = frame_of(value);
-    return {frame ? frame->unit : LengthUnit::unknown, memoised([value] { return diagonal_of(positions_of(value)); }),
+    return {frame ? frame->unit : LengthUnit::unknown, memoised([value] { return diagonal_of(value); }),
             memoised([value] { return spacing_of(value); })};
 }
 

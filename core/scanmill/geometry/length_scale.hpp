@@ -17,8 +17,9 @@ double point_spacing(std::span<const Vec3> positions);
 /// Edges of non-finite vertices are passed over.
 double edge_spacing(const TriangleMesh& mesh);
 
-/// What `%diag` and `spacing` mean for this value: points by point_spacing, meshes by edge_spacing, everything else by
-/// its positions. Both are computed at most once, on demand. Metrics know the diagonal that they report, no spacing.
+/// What `%diag` and `spacing` mean for this value. The diagonal is that of all its positions, of a mesh those that its
+/// triangles use; the spacing of points is by point_spacing, of meshes by edge_spacing, of everything else by its
+/// positions. Both are computed at most once, on demand. Metrics know the diagonal that they report, no spacing.
 LengthScale length_scale(const Value& value);
 
 }  // namespace scanmill

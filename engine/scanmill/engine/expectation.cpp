@@ -111,7 +111,7 @@ void require_met(const std::vector<PlannedExpectation>& expectations, const Metr
         const Metric* metric = found.find(expectation.name);
         if (metric && is_met(expectation, metric->value, scale)) continue;
         unmet += fmt::format("{}expected {}, found {}", unmet.empty() ? "" : "; ", expectation.text,
-                             metric ? display(*metric) : "that it is not defined");
+                             metric ? display(*metric, scale.unit) : "that it is not defined");
     }
     if (!unmet.empty()) throw Error(unmet);
 }

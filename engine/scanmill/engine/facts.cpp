@@ -65,4 +65,13 @@ std::string display(const Metric& metric) {
     return fmt::format("{:.6g}", metric.value);
 }
 
+std::string display(const Metric& metric, LengthUnit unit) {
+    switch (metric.unit) {
+        case Unit::length: return fmt::format("{} {}", display(metric), symbol(unit));
+        case Unit::area: return fmt::format("{} {}²", display(metric), symbol(unit));
+        case Unit::volume: return fmt::format("{} {}³", display(metric), symbol(unit));
+        default: return display(metric);
+    }
+}
+
 }  // namespace scanmill

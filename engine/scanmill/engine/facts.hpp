@@ -20,5 +20,7 @@ Metrics facts_of(const Value& value);
 
 /// "3000", "0.0125", "true": a metric's number for people, angles in degrees.
 std::string display(const Metric& metric);
+/// The same with the unit that its lengths are in: "0.0125 mm", "3.2 u²".
+std::string display(const Metric& metric, LengthUnit unit);
 
 }  // namespace scanmill

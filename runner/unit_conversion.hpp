@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The same points or mesh with its lengths told in another unit.
+
+#include "scanmill/data/value.hpp"
+
+namespace scanmill::runner {
+
+/// Pre: points or a mesh, of a known unit. Throws Error for coordinates that leave double's range.
+Value in_other_unit(const Value& value, LengthUnit unit);
+
+}  // namespace scanmill::runner
