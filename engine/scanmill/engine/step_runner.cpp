@@ -125,10 +125,11 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
     const Value* first = first_geometric(inputs);
     const auto keep_findings = [&] {
         report.warnings = context.warnings();
-        for (const MetricSpec& declared : step.spec.metrics)
-            for (const Metric& metric : context.metrics().values)
-                if (step.spec.metric(metric.name) == &declared)
-                    report.metrics.set(metric.name, metric.value, declared.unit);
+        std::vector<std::pair<const MetricSpec*, const Metric*>> told;
+        for (const Metric& metric : context.metrics().values)
+            if (const MetricSpec* declared = step.spec.metric(metric.name)) told.emplace_back(declared, &metric);
+        std::ranges::stable_sort(told, {}, [](const auto& pair) { return pair.first; });  // as they are declared
+        for (const auto& [declared, metric] : told) report.metrics.set(metric->name, metric->value, declared->unit);
     };
     try {
         const Inputs ports = rebased(inputs, first, context);
