@@ -12,3 +12,8 @@ set(SCANMILL_INSTALL_PLUGIN_DIR ${CMAKE_INSTALL_LIBDIR}/${SCANMILL_PLUGIN_SUBDIR
 set(SCANMILL_FORMAT_SUBDIR scanmill/formats)
 set(SCANMILL_FORMAT_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/${SCANMILL_FORMAT_SUBDIR})
 set(SCANMILL_INSTALL_FORMAT_DIR ${CMAKE_INSTALL_LIBDIR}/${SCANMILL_FORMAT_SUBDIR})
+
+# Programs look for their libraries in both trees' folder beside their own, and nowhere else: the build tree's run path
+# as CMake fills it up would make the working folder count.
+set(SCANMILL_PROGRAM_RPATH "\$ORIGIN/../${CMAKE_INSTALL_LIBDIR}" "\$ORIGIN/../lib")
+list(REMOVE_DUPLICATES SCANMILL_PROGRAM_RPATH)

@@ -162,6 +162,17 @@ TEST(ContentHash, MissingFileOrFolder_IsRefused) {
     EXPECT_THAT(sentence_of([&] { content_hash(folder.path()); }), HasSubstr("cannot be read"));
 }
 
+TEST(CoreBuild, IsTheBuildIdInTheLibrarysFile) {
+    const std::string build = core_build();
+    ASSERT_THAT(build, testing::MatchesRegex("[0-9a-f]{40}")) << "a SHA-1, not the hash of the file";
+    std::string note{"\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0", 16};
+    for (std::size_t i = 0; i < build.size(); i += 2)
+        note += static_cast<char>(std::stoi(build.substr(i, 2), nullptr, 16));
+    std::ifstream file(core_library_file(), std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(file), {});
+    EXPECT_THAT(bytes, HasSubstr(note));
+}
+
 TEST(InstalledPluginFolder, LiesBesideTheCoreLibrary) {
     EXPECT_TRUE(std::filesystem::exists(core_library_file()));
     EXPECT_THAT(core_library_file().filename().string(), testing::StartsWith("libscanmill-core.so"));

@@ -74,6 +74,15 @@ protected:
     TemporaryFolder folder_;
 };
 
+TEST_F(Hostile, LibrariesInTheWorkingFolder_AreNeverLoaded) {
+    for (const char* name : {"libfmt.so.9", "libstdc++.so.6", "libtbb.so.12", "libscanmill-core.so.0", "libxxhash.so.0"})
+        folder_.write(name, "whoever loads this cannot start");
+    folder_.write("w.yaml", workflow("{scan}.ply"));
+    folder_.write("a.xyz", four_points);
+    const ProgramResult ran = run_scan("a.xyz");
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+}
+
 TEST_F(Hostile, FullDisk_FailsTheScanThatDoesNotFit_AndLeavesNothingOfIt) {
     folder_.write("w.yaml", workflow("{scan}.ply"));
     folder_.write("large.xyz", many_points());

@@ -43,6 +43,10 @@ std::string abi_text();
 /// 128-bit content hash of a file as 32 hexadecimal digits: what tells one build of a module from another.
 std::string content_hash(const std::filesystem::path& file);
 
+/// What tells this build of the library from another: the linker's build id, a hash of all that it linked, of the code
+/// that runs and not of what a newer installation may have put into its file; without one, content_hash() of the file.
+std::string core_build();
+
 /// The file that holds this library's code, and the folders of modules that belong to it.
 std::filesystem::path core_library_file();
 std::filesystem::path installed_plugin_folder();

@@ -45,7 +45,7 @@ public:
         : hash_(hash),
           library_(library),
           parts_(parts),
-          core_build_(content_hash(core_library_file())),
+          core_build_(core_build()),
           reader_builds_(builds_of_readers(core_build_)),
           output_files_(parts.front().request.output_folder) {
         graph_.seed = parts.front().request.seed;

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/work/file_description.hpp"
 
-#include <openssl/crypto.h>
-#include <openssl/evp.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -58,24 +52,6 @@ std::set<std::size_t> ancestry(const RunGraph& graph, std::size_t node) {
     return found;
 }
 
-std::string sha256(const fs::path& file) {
-    ::OPENSSL_init_crypto(OPENSSL_INIT_NO_LOAD_CONFIG, nullptr);  // nobody's settings change what a SHA-256 is
-    std::ifstream stream(file, std::ios::binary);
-    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
-    if (!stream || !context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1)
-        throw Error("'{}' cannot be read again", file.string());
-    std::array<char, 1 << 16> block;
-    while (stream.read(block.data(), block.size()), stream.gcount() > 0)
-        EVP_DigestUpdate(context.get(), block.data(), static_cast<std::size_t>(stream.gcount()));
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-    unsigned length = 0;
-    if (stream.bad() || EVP_DigestFinal_ex(context.get(), digest.data(), &length) != 1)
-        throw Error("'{}' cannot be read again", file.string());
-    std::string text;
-    for (unsigned i = 0; i < length; ++i) text += fmt::format("{:02x}", digest[i]);
-    return text;
-}
-
 }  // namespace
 
 std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, std::size_t node,
@@ -115,12 +91,13 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
 
 fs::path description_of(const fs::path& file) { return file.string() + ".json"; }
 
-void write_description(const fs::path& file, const std::string& how, const Value& value, const Metrics& facts) {
+void write_description(const fs::path& file, const std::string& sha256, const std::string& how, const Value& value,
+                       const Metrics& facts) {
     Json json = Json::parse(how);
     const Frame* frame = frame_of(value);
     json["file"] = {{"name", file.filename().string()},
                     {"bytes", fs::file_size(file)},
-                    {"sha256", sha256(file)},
+                    {"sha256", sha256},
                     {"kind", name_of(kind_of(value))},
                     {"unit", frame && frame->unit != LengthUnit::unknown ? Json(symbol(frame->unit)) : Json()},
                     {"frame", frame && !frame->name.empty() ? Json(frame->name) : Json()},

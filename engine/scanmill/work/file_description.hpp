@@ -22,7 +22,7 @@ std::filesystem::path description_of(const std::filesystem::path& file);
 
 /// Writes the description of a file that was written: `how` (of made_how()), with the file's name, bytes and SHA-256,
 /// and the value's unit, frame and facts. Throws Error as AtomicFile.
-void write_description(const std::filesystem::path& file, const std::string& how, const Value& value,
-                       const Metrics& facts);
+void write_description(const std::filesystem::path& file, const std::string& sha256, const std::string& how,
+                       const Value& value, const Metrics& facts);
 
 }  // namespace scanmill

@@ -85,7 +85,7 @@ int serve(MessageReader& reader) {
                                         [&](std::string text) { speaker.say({.note = std::move(text)}); });
     FilterLibrary library(plugin_folders(), FirstLoad::at_once);  // nobody misses this process
     Workbench bench(library, cache.get(), static_cast<KeepRule::Policy>(start.keep_policy), start.scratch);
-    if (content_hash(core_library_file()) != start.core_build)
+    if (core_build() != start.core_build)
         throw Error("Scanmill was installed anew while the run was going on; run it again");
     const u64 memory_before = anonymous_memory();
     const JobListener listener{[&](double fraction) { speaker.say_progress(fraction); },

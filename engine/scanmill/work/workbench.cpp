@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 #include <new>
 
 #include "scanmill/engine/byte_size.hpp"
@@ -16,6 +17,7 @@
 #include "scanmill/work/file_description.hpp"
 #include "scanmill/work/memory_limit.hpp"
 #include "scanmill/work/resource_use.hpp"
+#include "scanmill/work/sha256.hpp"
 
 namespace scanmill {
 
@@ -39,6 +41,12 @@ struct Unmet {
 void require_unchanged(const fs::path& file, const std::string& content) {
     if (content_hash(file) != content)
         throw Error("'{}' changed while the run was going on", file.string()).hint("run it again");
+}
+
+/// The same beside other work, if the job may use a second thread and the system gives one.
+std::future<void> unchanged_beside(const Job& job, const LeafSource& leaf) {
+    const auto policy = job.threads > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred;
+    return std::async(policy, require_unchanged, leaf.file, leaf.content);
 }
 
 fs::path emptied(const fs::path& folder) {
@@ -105,8 +113,9 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
         report.node.warnings.push_back(std::move(text));
     };
     const auto start = std::chrono::steady_clock::now();
+    std::future<void> unchanged = uses_cache(work.memory) ? unchanged_beside(job, work.leaf) : std::future<void>();
     Value value = read_leaf(work.leaf, on_warning);
-    if (uses_cache(work.memory)) require_unchanged(work.leaf.file, work.leaf.content);
+    if (unchanged.valid()) unchanged.get();
     if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&value))
         report.node.facts.set("points", static_cast<double>((*points)->size()), Unit::count);
     else if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
@@ -185,12 +194,14 @@ void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
     if (trouble) throw Error("the folder '{}' cannot be made: {}", work.file.parent_path().string(), trouble.message());
     WriteOptions options;
     options.on_warning = [&](std::string text) { written.warnings.push_back(std::move(text)); };
+    Sha256 hash;
+    options.on_bytes = [&](std::string_view bytes) { hash.add(bytes); };
     write_file(work.file, *value, options);
     const auto known = facts_.find({work.value.node, work.value.from});
     written.facts = known != facts_.end() ? known->second : facts_of(*value);
     constexpr std::size_t longest_name = NAME_MAX;
     if (description_of(work.file).filename().native().size() <= longest_name)
-        write_description(work.file, work.made_how, *value, written.facts);
+        write_description(work.file, hash.text(), work.made_how, *value, written.facts);
     else
         options.on_warning(fmt::format("'{}' has no description: its name would be too long", work.file.string()));
     written.outcome = Outcome::done;

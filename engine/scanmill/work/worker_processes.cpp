@@ -51,7 +51,7 @@ Error error_of(const ProcessEnd& end, u64 peak_memory, const std::vector<std::st
 
 WorkerProcesses::WorkerProcesses(WorkerProcessSettings settings) : settings_(std::move(settings)) {
     resize(settings_.count);
-    start_ = {settings_.cache_folder, settings_.keep_policy, ::getpid(), content_hash(core_library_file()), {}};
+    start_ = {settings_.cache_folder, settings_.keep_policy, ::getpid(), core_build(), {}};
 }
 
 void WorkerProcesses::resize(std::size_t count) {
