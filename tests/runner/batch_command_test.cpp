@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "runner/batch_fixture.hpp"
+#include "scanmill/work/sha256.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -234,6 +235,9 @@ TEST_F(Batch, EqualScansOfOneName_NeedTwoFiles_WhichTheFolderGives) {
     EXPECT_EQ(described["steps"][0]["file"], "scans/two/a.xyz") << "though it was read as the other one";
     EXPECT_EQ(described["steps"][0]["frame"], "lab");
     EXPECT_EQ(described["steps"][0]["unit"], "mm");
+    Sha256 hash;
+    hash.add(content_of(folder_ / "out/two/a.ply"));
+    EXPECT_EQ(described["file"]["sha256"], hash.text());
 }
 
 TEST_F(Batch, NobodyListening_IsNoReasonToStop) {

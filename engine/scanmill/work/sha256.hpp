@@ -6,21 +6,21 @@
 #include <string>
 #include <string_view>
 
-struct evp_md_ctx_st;
+struct sha256_ctx;
 
 namespace scanmill {
 
 class Sha256 {
 public:
-    /// Throws Error when the system's OpenSSL has no SHA-256.
     Sha256();
+    ~Sha256();
 
     void add(std::string_view bytes);
     /// 64 hexadecimal digits. Once, after everything was added.
     std::string text();
 
 private:
-    std::unique_ptr<evp_md_ctx_st, void (*)(evp_md_ctx_st*)> context_;
+    std::unique_ptr<sha256_ctx> context_;
 };
 
 }  // namespace scanmill
