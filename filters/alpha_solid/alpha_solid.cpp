@@ -37,15 +37,6 @@ double radius(double squared) {
     return root * root < squared ? std::nextafter(root, std::numeric_limits<double>::infinity()) : root;
 }
 
-TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles) {
-    TriangleMesh mesh;
-    mesh.frame = tets.frame;
-    mesh.positions = tets.positions;
-    mesh.vertex_columns = tets.vertex_columns;
-    mesh.triangles = std::move(triangles);
-    return without_unused_vertices(mesh);
-}
-
 /// Fills what follows from the labels: inside, counts, interior and uncovered points.
 void describe_cells(AlphaSolidResult& result, Selection& selection, unsigned threads) {
     const TetMesh& tets = result.tets;

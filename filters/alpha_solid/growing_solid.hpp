@@ -5,7 +5,10 @@
 /// A new cell changes the boundary only at its four vertices, so only those are suspect afterwards. They are judged
 /// lazily: one non-manifold vertex is enough to reject a solid, and as long as it stays so no other need be looked at.
 
-#include "alpha_solid/boundary.hpp"
+#include <span>
+
+#include "alpha_solid/labels.hpp"
+#include "scanmill/data/tets.hpp"
 
 namespace scanmill::alpha {
 

@@ -4,7 +4,8 @@
 
 #include <span>
 
-#include "alpha_solid/boundary.hpp"
+#include "alpha_solid/labels.hpp"
+#include "scanmill/data/tets.hpp"
 
 namespace scanmill::alpha {
 

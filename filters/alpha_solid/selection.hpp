@@ -3,8 +3,9 @@
 /// Which alpha-solid: the search through the order in which cells enter as alpha grows.
 
 #include "alpha_solid/alpha_solid.hpp"
-#include "alpha_solid/boundary.hpp"
 #include "alpha_solid/flood.hpp"
+#include "alpha_solid/labels.hpp"
+#include "scanmill/geometry/solid_boundary.hpp"
 
 namespace scanmill::alpha {
 

@@ -10,6 +10,7 @@
 #include "alpha_solid/growing_solid.hpp"
 #include "alpha_solid/pieces.hpp"
 #include "filters/alpha_solid_cases.hpp"
+#include "scanmill/geometry/solid_boundary.hpp"
 #include "scanmill/geometry/topology.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"

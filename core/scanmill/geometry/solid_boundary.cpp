@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "alpha_solid/boundary.hpp"
+#include "scanmill/geometry/solid_boundary.hpp"
 
 #include <algorithm>
 #include <atomic>
 
 #include "scanmill/filter/parallel.hpp"
 
-namespace scanmill::alpha {
+namespace scanmill {
 
 namespace {
 
 constexpr std::size_t chunk = 1 << 14;
+constexpr u8 solid = 1;
 
 /// A triangle seen from one of its corners: the opposite edge, in the triangle's direction.
 struct LinkEdge {
@@ -81,6 +82,15 @@ Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labe
     return triangles;
 }
 
+TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles) {
+    TriangleMesh mesh;
+    mesh.frame = tets.frame;
+    mesh.positions = tets.positions;
+    mesh.vertex_columns = tets.vertex_columns;
+    mesh.triangles = std::move(triangles);
+    return without_unused_vertices(mesh);
+}
+
 BoundaryDefects boundary_defects(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads) {
     Array<u32> next(vertices + 1);
     std::fill(next.begin(), next.end(), 0);
@@ -137,4 +147,4 @@ std::size_t join_vertices(std::span<const Triangle> triangles, DisjointSets& ver
     return std::ranges::unique(roots).begin() - roots.begin();
 }
 
-}  // namespace scanmill::alpha
+}  // namespace scanmill

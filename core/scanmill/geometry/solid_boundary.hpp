@@ -4,21 +4,16 @@
 
 #include <span>
 
-#include "alpha_solid/disjoint_sets.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/tets.hpp"
+#include "scanmill/geometry/disjoint_sets.hpp"
 
-namespace scanmill::alpha {
+namespace scanmill {
 
-/// What a cell counts as. Only `solid` cells are in the solid that is being chosen.
-enum Label : u8 {
-    outside = 0,
-    solid = 1,
-    left_out = 2  ///< in the alpha-solid, but in a piece of it that is not kept
-};
-
-/// The facets between solid and other cells, outward, in vertices of `tets`; ascending by cell, then by corner.
+/// The facets between cells labelled 1 and others, outward, in vertices of `tets`; ascending by cell, then by corner.
 Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labels, unsigned threads);
+/// These triangles as a mesh over only the vertices that they use, in vertex order, columns carried.
+TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles);
 
 struct BoundaryDefects {
     /// Vertices whose triangles are not exactly one closed fan, ascending.
@@ -34,4 +29,4 @@ BoundaryDefects boundary_defects(std::span<const Triangle> triangles, std::size_
 /// The triangles' vertices joined along them; the return value is the number of sets that have a triangle.
 std::size_t join_vertices(std::span<const Triangle> triangles, DisjointSets& vertices);
 
-}  // namespace scanmill::alpha
+}  // namespace scanmill

@@ -7,7 +7,7 @@
 
 #include "scanmill/data/array.hpp"
 
-namespace scanmill::alpha {
+namespace scanmill {
 
 class DisjointSets {
 public:
@@ -31,4 +31,4 @@ private:
     Array<u32> parent_;
 };
 
-}  // namespace scanmill::alpha
+}  // namespace scanmill
