@@ -13,11 +13,6 @@ namespace {
 constexpr std::size_t chunk = 1 << 14;
 constexpr u8 solid = 1;
 
-/// A triangle seen from one of its corners: the opposite edge, in the triangle's direction.
-struct LinkEdge {
-    u32 from, to;
-};
-
 /// The edge that starts at `vertex`, or nullptr. Pre: when there are more than a few, they ascend by `from`.
 constexpr std::size_t few = 32;
 const LinkEdge* starting_at(std::span<const LinkEdge> link, u32 vertex) {
@@ -91,35 +86,41 @@ TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles) {
     return without_unused_vertices(mesh);
 }
 
-BoundaryDefects boundary_defects(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads) {
-    Array<u32> next(vertices + 1);
-    std::fill(next.begin(), next.end(), 0);
+BoundaryLinks::BoundaryLinks(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads)
+    : ends_(vertices),
+      edges_(3 * triangles.size()) {
+    std::ranges::fill(ends_, 0);
     const auto claim = [&](u32 vertex) {
-        return std::atomic_ref(next[vertex]).fetch_add(1, std::memory_order_relaxed);
+        return std::atomic_ref(ends_[vertex]).fetch_add(1, std::memory_order_relaxed);
     };
     for_each_chunk(threads, triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t)
             for (u32 corner : triangles[t]) claim(corner);
     });
     u32 start = 0;
-    for (u32& entry : next) start += std::exchange(entry, start);
-    Array<LinkEdge> links(3 * triangles.size());
+    for (u32& entry : ends_) start += std::exchange(entry, start);
+    // Filling moves every start to the next vertex's.
     for_each_chunk(threads, triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const auto& [a, b, c] = triangles[t];
-            links[claim(a)] = {b, c};
-            links[claim(b)] = {c, a};
-            links[claim(c)] = {a, b};
+            edges_[claim(a)] = {b, c};
+            edges_[claim(b)] = {c, a};
+            edges_[claim(c)] = {a, b};
         }
     });
+}
 
-    // Filling moved every start to the next vertex's.
-    std::vector<BoundaryDefects> per_chunk((vertices + chunk - 1) / chunk);
-    for_each_chunk(threads, vertices, chunk, [&](std::size_t begin, std::size_t end) {
+BoundaryDefects boundary_defects(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads) {
+    BoundaryLinks links(triangles, vertices, threads);
+    return boundary_defects(links, threads);
+}
+
+BoundaryDefects boundary_defects(BoundaryLinks& links, unsigned threads) {
+    std::vector<BoundaryDefects> per_chunk((links.vertices() + chunk - 1) / chunk);
+    for_each_chunk(threads, links.vertices(), chunk, [&](std::size_t begin, std::size_t end) {
         BoundaryDefects& defects = per_chunk[begin / chunk];
         for (std::size_t vertex = begin; vertex < end; ++vertex) {
-            const u32 first = vertex == 0 ? 0 : next[vertex - 1];
-            const std::span<LinkEdge> link(links.data() + first, next[vertex] - first);
+            const std::span<LinkEdge> link = links.of(vertex);
             if (link.empty()) continue;
             if (link.size() > few) std::ranges::sort(link, {}, &LinkEdge::from);
             if (is_one_cycle(link)) continue;
