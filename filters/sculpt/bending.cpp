@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sculpt/bending.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/parallel.hpp"
+
+namespace scanmill::sculpting {
+
+namespace {
+
+const double cosine_of_sharp = std::cos(std::numbers::pi / 4);
+const double sine_of_thin = std::sin(0.1 * std::numbers::pi / 180);
+
+double power_of_two_scale(std::span<const Vec3> positions) {
+    return std::ldexp(1.0, -std::ilogb(bounding_box(positions).diagonal()));
+}
+
+std::array<int, 4> by_place(const TetMesh& tets, u32 cell) {
+    const Tetrahedron& corners = tets.cells[cell];
+    std::array<int, 4> order{0, 1, 2, 3};
+    const auto put_in_order = [&](int i, int j) {
+        if (is_lower(tets.positions[corners[order[j]]], tets.positions[corners[order[i]]]))
+            std::swap(order[i], order[j]);
+    };
+    put_in_order(0, 1);
+    put_in_order(2, 3);
+    put_in_order(0, 2);
+    put_in_order(1, 3);
+    put_in_order(1, 2);
+    return order;
+}
+
+/// Twice the area long; the same bits, but for the sign, in whatever order the corners come.
+Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+    if (is_lower(b, a) && is_lower(b, c)) return (c - b).cross(a - b);
+    if (is_lower(c, a) && is_lower(c, b)) return (a - c).cross(b - c);
+    return (b - a).cross(c - a);
+}
+
+}  // namespace
+
+double total_bending(BoundaryLinks& links, std::span<const Vec3> positions, unsigned threads) {
+    constexpr std::size_t chunk = 1 << 13;
+    const double scale = power_of_two_scale(positions);
+    Array<double> sums((links.vertices() + chunk - 1) / chunk);
+    for_each_chunk(threads, links.vertices(), chunk, [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        std::vector<Vec3> normals;
+        for (std::size_t vertex = begin; vertex < end; ++vertex) {
+            const std::span<LinkEdge> link = links.of(vertex);
+            std::ranges::sort(link, {}, &LinkEdge::from);
+            const auto normal = [&](const LinkEdge& edge) {
+                return normal_of(scale * positions[vertex], scale * positions[edge.from], scale * positions[edge.to]);
+            };
+            normals.resize(link.size());
+            std::ranges::transform(link, normals.begin(), normal);
+            // Triangle (vertex, from, to) lies beyond the edge to `to` from the one whose `from` that is.
+            for (std::size_t i = 0; i < link.size(); ++i) {
+                if (link[i].to < vertex) continue;
+                const auto beyond = std::ranges::lower_bound(link, link[i].to, {}, &LinkEdge::from) - link.begin();
+                sum += bend(normals[i], normals[static_cast<std::size_t>(beyond)]);
+            }
+        }
+        sums[begin / chunk] = sum;
+    });
+    double total = 0;
+    for (double sum : sums) total += sum;
+    return total;
+}
+
+Gains::Gains(const CarvedSolid& solid, SculptWeight weight)
+    : solid_(solid),
+      tets_(solid.tets()),
+      weight_(weight),
+      scale_(power_of_two_scale(tets_.positions.span())) {}
+
+Vec3 Gains::normal(u32 cell, int facet) const {
+    const Tetrahedron& corners = tets_.cells[cell];
+    const auto& [a, b, c] = outward_facet[static_cast<std::size_t>(facet)];
+    return normal_of(place(corners[a]), place(corners[b]), place(corners[c]));
+}
+
+Vec3 Gains::outer_normal(u32 cell, int across, int kept, u32 without) const {
+    EdgeWalk walk(tets_, cell, across, kept);
+    while (solid_.has(walk.next(), without)) walk.step();
+    return normal(walk.cell(), walk.across());
+}
+
+double Gains::of(u32 cell, unsigned open, u32 without) const {
+    const std::array<int, 4> sorted = by_place(tets_, cell);
+    std::array<Vec3, 4> normals;
+    for (int facet = 0; facet < 4; ++facet) normals[facet] = normal(cell, facet);
+    const auto is_open = [&](int facet) { return (open >> facet & 1u) != 0; };
+
+    double gain = 0;
+    for (const CellEdge& edge : cell_edges) {
+        const int c = sorted[edge.c], d = sorted[edge.d];
+        double change;
+        if (is_open(c) && is_open(d)) {
+            change = bend(normals[c], normals[d]);
+        } else if (is_open(c) || is_open(d)) {
+            const int before = is_open(c) ? c : d, after = is_open(c) ? d : c;
+            const Vec3 outer = outer_normal(cell, after, before, without);
+            change = bend(normals[before], outer) - bend(-normals[after], outer);
+        } else {
+            change = -bend(normals[c], normals[d]);
+        }
+        if (weight_ == SculptWeight::length) {
+            const Tetrahedron& corners = tets_.cells[cell];
+            change *= (tets_.positions[corners[sorted[edge.a]]] - tets_.positions[corners[sorted[edge.b]]]).norm();
+        }
+        gain += change;
+    }
+    return gain;
+}
+
+bool Gains::is_sharp(u32 cell, unsigned open) const {
+    const auto [a, b] = both_corners(open);
+    const Vec3 m = normal(cell, a), n = normal(cell, b);
+    return m.dot(n) < cosine_of_sharp * std::sqrt(m.squaredNorm() * n.squaredNorm());
+}
+
+double Gains::weight_of_flip(u32 cell, unsigned open) const {
+    if (weight_ == SculptWeight::none) return 1;
+    const auto [c, d] = both_corners(~open & 15u);
+    return (tets_.positions[tets_.cells[cell][c]] - tets_.positions[tets_.cells[cell][d]]).norm();
+}
+
+bool Gains::bares_thin_facet(u32 cell, unsigned open) const {
+    for (int facet : both_corners(~open & 15u)) {
+        const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];
+        const Tetrahedron& corners = tets_.cells[cell];
+        const Vec3 a = place(corners[i]), b = place(corners[j]), c = place(corners[k]);
+        std::array<double, 3> sides{(b - a).norm(), (c - b).norm(), (a - c).norm()};
+        std::ranges::sort(sides);
+        // The smallest angle is between the two longest sides.
+        if (normal(cell, facet).norm() < sine_of_thin * sides[1] * sides[2]) return true;
+    }
+    return false;
+}
+
+double Gains::squared_radius(u32 cell, int facet) const {
+    const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];
+    const Tetrahedron& corners = tets_.cells[cell];
+    const Vec3 a = place(corners[i]), b = place(corners[j]), c = place(corners[k]);
+    std::array<double, 3> sides{(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()};
+    std::ranges::sort(sides);
+    return sides[0] * sides[1] * sides[2] / (4 * normal(cell, facet).squaredNorm());
+}
+
+double Gains::volume(u32 cell) const {
+    const Tetrahedron& corners = tets_.cells[cell];
+    const Vec3& a = tets_.positions[corners[0]];
+    const Vec3 u = tets_.positions[corners[1]] - a, v = tets_.positions[corners[2]] - a;
+    return u.cross(v).dot(tets_.positions[corners[3]] - a) / 6;
+}
+
+bool is_lower_cell(const TetMesh& tets, u32 a, u32 b) {
+    const std::array<int, 4> first = by_place(tets, a), second = by_place(tets, b);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const u32 u = tets.cells[a][first[i]], v = tets.cells[b][second[i]];
+        if (u != v) return is_lower(tets.positions[u], tets.positions[v]);
+    }
+    return false;
+}
+
+}  // namespace scanmill::sculpting

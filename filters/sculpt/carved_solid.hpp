@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A solid of cells that loses one cell at a time while its boundary stays a closed 2-manifold (Boissonnat 1984).
+///
+/// A cell with one facet on the boundary may go when the opposite corner is not on the boundary: a triangle becomes
+/// three. A cell with two such facets may go when the edge opposite to their common edge is not on the boundary: the
+/// common edge is flipped into it. Cells with three would leave a point outside, cells with four are a solid of their
+/// own, and any other removal makes the boundary touch itself.
+///
+/// Questions take a cell `without` that is looked on as removed already, or `none`.
+
+#include <span>
+#include <vector>
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/tets.hpp"
+
+namespace scanmill::sculpting {
+
+inline constexpr u32 none = TetMesh::outside_hull;
+
+/// Going round an edge of a cell from facet to facet.
+class EdgeWalk {
+public:
+    /// From `cell`, first across the facet opposite to its corner `across`; the edge is that of the two corners which
+    /// are neither `across` nor `kept`.
+    EdgeWalk(const TetMesh& tets, u32 cell, int across, int kept)
+        : tets_(tets),
+          cell_(cell),
+          across_(across),
+          kept_(tets.cells[cell][kept]),
+          others_(tets.cells[cell][across] ^ kept_ ^ sum(cell)) {}
+
+    u32 cell() const { return cell_; }
+    /// The corner opposite to the facet that comes next.
+    int across() const { return across_; }
+    u32 next() const { return tets_.neighbours[cell_][across_]; }
+    /// Pre: next() is a cell.
+    void step() {
+        cell_ = next();
+        const Tetrahedron& corners = tets_.cells[cell_];
+        across_ = corners[0] == kept_ ? 0 : corners[1] == kept_ ? 1 : corners[2] == kept_ ? 2 : 3;
+        // The fourth corner is what the exclusive or of the other three leaves of that of all.
+        kept_ = sum(cell_) ^ others_ ^ kept_;
+    }
+
+private:
+    u32 sum(u32 cell) const {
+        const Tetrahedron& corners = tets_.cells[cell];
+        return corners[0] ^ corners[1] ^ corners[2] ^ corners[3];
+    }
+
+    const TetMesh& tets_;
+    u32 cell_;
+    int across_;
+    /// The vertex of the next facet beside the edge; the exclusive or of the edge's two vertices.
+    u32 kept_, others_;
+};
+
+class CarvedSolid {
+public:
+    /// `boundary` are the triangles that bound the cells labelled 1.
+    CarvedSolid(const TetMesh& tets, Array<u8> labels, std::span<const Triangle> boundary);
+
+    const TetMesh& tets() const { return tets_; }
+    const Array<u8>& labels() const { return labels_; }
+    bool has(u32 cell, u32 without = none) const { return cell != none && labels_[cell] == 1 && cell != without; }
+    bool is_on_boundary(u32 vertex) const { return on_boundary_[vertex] == 1; }
+    /// Bit i: the facet opposite to corner i is on the boundary. Pre: has(cell).
+    unsigned open_facets(u32 cell, u32 without = none) const {
+        unsigned mask = 0;
+        for (int corner = 0; corner < 4; ++corner)
+            if (!has(tets_.neighbours[cell][corner], without)) mask |= 1u << corner;
+        return mask;
+    }
+
+    /// Whether the cell may be removed and a point comes to the surface. Pre: `open` are its open facets.
+    bool exposes(u32 cell, unsigned open) const;
+    /// Whether the cell may be removed and an edge is flipped. Pre: `open` are its open facets.
+    bool flips(u32 cell, unsigned open, u32 without = none) const;
+
+    /// Pre: it exposes or flips.
+    void remove(u32 cell);
+    /// Takes a cell away or puts it back, for a question: points on the boundary stay what they were.
+    void pretend(u32 cell, bool is_there) { labels_[cell] = is_there; }
+
+    Array<u8> take_labels() { return std::move(labels_); }
+
+private:
+    const TetMesh& tets_;
+    Array<u8> labels_, on_boundary_;
+};
+
+/// The corners of the cells' facets, edges and so on by their numbers in the cell.
+struct CellEdge {
+    int a, b;  ///< its ends
+    int c, d;  ///< the other corners
+};
+inline constexpr std::array<CellEdge, 6> cell_edges{
+    {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}}};
+
+/// The only corner that the mask names, and the two that it names.
+int only_corner(unsigned mask);
+std::array<int, 2> both_corners(unsigned mask);
+
+}  // namespace scanmill::sculpting

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Which steps are worth taking, and what each would gain.
+
+#include <bit>
+#include <optional>
+#include <utility>
+
+#include "sculpt/bending.hpp"
+
+namespace scanmill::sculpting {
+
+class Judge {
+public:
+    Judge(const CarvedSolid& solid, const SculptParams& params);
+
+    /// The gain of removing the cell to smooth the boundary: nothing unless the cell flips an edge, gains enough, bares
+    /// no thin triangle, and is where that is allowed. Pre: `open` are its open facets.
+    std::optional<double> smoothing(u32 cell, unsigned open) const {
+        return is_near(cell) || (std::popcount(open) == 2 && gains_.is_sharp(cell, open)) ? flip(cell, open)
+                                                                                          : std::nullopt;
+    }
+    /// The gain of an exposing step, with look-ahead together with the best smoothing step that it makes possible. Pre:
+    /// the cell exposes.
+    double exposing(u32 cell, unsigned open) const;
+
+    /// Smoothing is allowed at cells near an exposing step, whatever the bend.
+    bool is_near(u32 cell) const { return is_near_[cell] == 1; }
+    /// False when it was near already.
+    bool set_near(u32 cell) { return std::exchange(is_near_[cell], u8(1)) == 0; }
+
+    const Gains& gains() const { return gains_; }
+
+private:
+    std::optional<double> flip(u32 cell, unsigned open, u32 without = none) const;
+
+    const CarvedSolid& solid_;
+    Gains gains_;
+    double min_gain_;
+    bool lookahead_;
+    Array<u8> is_near_;
+};
+
+}  // namespace scanmill::sculpting

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sculpt/openings.hpp"
+
+#include <algorithm>
+
+namespace scanmill::sculpting {
+
+namespace {
+
+int corner_of(const Tetrahedron& cell, u32 vertex) {
+    return static_cast<int>(std::ranges::find(cell, vertex) - cell.begin());
+}
+
+}  // namespace
+
+Openings::Openings(CarvedSolid& solid, const Judge& judge) : solid_(solid), tets_(solid.tets()), judge_(judge) {}
+
+void Openings::find_anchors() {
+    if (!anchor_.empty()) return;
+    anchor_.resize(tets_.positions.size());
+    std::ranges::fill(anchor_, none);
+    visited_.resize(tets_.cells.size());
+    std::ranges::fill(visited_, 0);
+    // All cells round a vertex inside are solid, and stay so as long as it is inside.
+    for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
+        if (solid_.has(cell))
+            for (u32 vertex : tets_.cells[cell]) anchor_[vertex] = cell;
+}
+
+const std::vector<u32>& Openings::star(u32 vertex) {
+    ++visit_;
+    star_.assign(1, anchor_[vertex]);
+    visited_[anchor_[vertex]] = visit_;
+    for (std::size_t i = 0; i < star_.size(); ++i) {
+        const u32 cell = star_[i];
+        for (int corner = 0; corner < 4; ++corner) {
+            const u32 across = tets_.neighbours[cell][corner];
+            if (tets_.cells[cell][corner] == vertex || visited_[across] == visit_) continue;
+            visited_[across] = visit_;
+            star_.push_back(across);
+        }
+    }
+    return star_;
+}
+
+void Openings::consider_after(Opening& best, u32 first, u32 second, u32 below, double gain_of_first) {
+    const unsigned open = solid_.open_facets(second);
+    if (!solid_.flips(second, open)) return;
+    double gain = gain_of_first + judge_.gains().of(second, open);
+    solid_.pretend(second, false);
+    gain += judge_.exposing(below, solid_.open_facets(below));
+    solid_.pretend(second, true);
+
+    const bool is_better = best.second == none || gain > best.gain ||
+                           (gain == best.gain && (second != best.second ? is_lower_cell(tets_, second, best.second)
+                                                                        : is_lower_cell(tets_, first, best.first)));
+    if (is_better) best = {gain, first, second};
+}
+
+void Openings::consider(Opening& best, u32 vertex, u32 below) {
+    const u32 over = tets_.neighbours[below][corner_of(tets_.cells[below], vertex)];
+    const unsigned open = solid_.open_facets(over);
+    if (std::popcount(open) == 2) consider_after(best, none, over, below, 0);
+    if (std::popcount(open) != 1) return;
+    for (u32 beside : tets_.neighbours[over]) {
+        if (beside == below || !solid_.has(beside)) continue;
+        const unsigned open_beside = solid_.open_facets(beside);
+        if (!solid_.flips(beside, open_beside)) continue;
+        const double gain = judge_.gains().of(beside, open_beside);
+        solid_.pretend(beside, false);
+        consider_after(best, beside, over, below, gain);
+        solid_.pretend(beside, true);
+    }
+}
+
+Opening Openings::best_for(u32 vertex) {
+    Opening best;
+    for (u32 below : star(vertex)) consider(best, vertex, below);
+    return best;
+}
+
+void Openings::start_round() {
+    find_anchors();
+    round_.clear();
+    next_in_round_ = 0;
+    reached_ = false;
+    for (u32 vertex = 0; vertex < anchor_.size(); ++vertex) {
+        if (!is_interior(vertex)) continue;
+        const Opening opening = best_for(vertex);
+        if (opening.second != none) round_.push_back({opening.gain, vertex});
+    }
+    std::ranges::sort(round_, [&](const Candidate& a, const Candidate& b) {
+        return a.gain != b.gain ? a.gain > b.gain : is_lower(tets_.positions[a.vertex], tets_.positions[b.vertex]);
+    });
+}
+
+Opening Openings::next() {
+    while (true) {
+        if (next_in_round_ == round_.size()) {
+            if (!reached_) return {};
+            start_round();
+            if (round_.empty()) return {};
+        }
+        const u32 vertex = round_[next_in_round_++].vertex;
+        if (!is_interior(vertex)) continue;
+        const Opening opening = best_for(vertex);
+        if (opening.second == none) continue;
+        reached_ = true;
+        return opening;
+    }
+}
+
+Openings::Reason Openings::reason(u32 vertex) {
+    for (u32 below : star(vertex)) {
+        const u32 over = tets_.neighbours[below][corner_of(tets_.cells[below], vertex)];
+        if (solid_.open_facets(over) != 0) return Reason::blocked;
+    }
+    return Reason::deep;
+}
+
+Array<u32> Openings::interior_points() {
+    find_anchors();
+    Array<u32> points;
+    for (u32 vertex = 0; vertex < anchor_.size(); ++vertex)
+        if (is_interior(vertex)) points.push_back(vertex);
+    return points;
+}
+
+}  // namespace scanmill::sculpting

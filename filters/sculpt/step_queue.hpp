@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Steps waiting to be taken, the best first. Entries are never changed: a newer one of the same cell makes the older
+/// ones stale, and those are skipped when they come up.
+
+#include <algorithm>
+#include <vector>
+
+#include "sculpt/bending.hpp"
+
+namespace scanmill::sculpting {
+
+struct WaitingStep {
+    double gain = 0;
+    /// Of equal gains the larger comes first: squared circumradius for exposing steps, else 0.
+    double radius = 0;
+    u32 cell = none;
+    /// When the cell was looked at.
+    u32 time = 0;
+};
+
+class StepQueue {
+public:
+    explicit StepQueue(const TetMesh& tets) : tets_(&tets) {}
+
+    void push(const WaitingStep& step) {
+        heap_.push_back(step);
+        std::ranges::push_heap(heap_, Later{*tets_});
+    }
+    /// Adds many at once. Linear.
+    void append(const std::vector<WaitingStep>& steps) {
+        heap_.insert(heap_.end(), steps.begin(), steps.end());
+        std::ranges::make_heap(heap_, Later{*tets_});
+    }
+    /// The best for which is_current(step); drops the others on the way. False when there is none.
+    template <class IsCurrent>
+    bool pop(WaitingStep& step, const IsCurrent& is_current) {
+        while (!heap_.empty()) {
+            std::ranges::pop_heap(heap_, Later{*tets_});
+            step = heap_.back();
+            heap_.pop_back();
+            if (is_current(step)) return true;
+        }
+        return false;
+    }
+
+private:
+    struct Later {
+        const TetMesh& tets;
+        bool operator()(const WaitingStep& a, const WaitingStep& b) const {
+            if (a.gain != b.gain) return a.gain < b.gain;
+            if (a.radius != b.radius) return a.radius < b.radius;
+            return a.cell != b.cell && is_lower_cell(tets, b.cell, a.cell);
+        }
+    };
+
+    const TetMesh* tets_;
+    std::vector<WaitingStep> heap_;
+};
+
+}  // namespace scanmill::sculpting
