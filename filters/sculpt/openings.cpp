@@ -51,9 +51,10 @@ void Openings::consider_after(Opening& best, u32 first, u32 second, u32 below, d
     gain += judge_.exposing(below, solid_.open_facets(below));
     solid_.pretend(second, true);
 
-    const bool is_better = best.second == none || gain > best.gain ||
-                           (gain == best.gain && (second != best.second ? is_lower_cell(tets_, second, best.second)
-                                                                        : is_lower_cell(tets_, first, best.first)));
+    const auto is_lower = [&](u32 a, u32 b) { return b != none && (a == none || is_lower_cell(tets_, a, b)); };
+    const bool is_better =
+        best.second == none || gain > best.gain ||
+        (gain == best.gain && (second != best.second ? is_lower(second, best.second) : is_lower(first, best.first)));
     if (is_better) best = {gain, first, second};
 }
 
