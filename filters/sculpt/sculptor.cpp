@@ -53,17 +53,27 @@ bool Sculptor::step() {
     const auto is_current = [&](const WaitingStep& step) {
         return solid_.has(step.cell) && looked_at_[step.cell] == step.time;
     };
+    // Another step may have brought the edge or the point to the surface without changing a gain.
+    const auto still_flips = [&](const WaitingStep& step) {
+        return is_current(step) && solid_.flips(step.cell, solid_.open_facets(step.cell));
+    };
     WaitingStep best;
-    if (smoothing_.pop(best, is_current)) {
+    if (smoothing_.pop(best, still_flips)) {
         remove(best.cell, SculptStep::smoothing);
         return true;
     }
     if (interior_points_ == 0) return false;
-    // Another step may have brought the point to the surface without touching an edge of this cell.
     const auto still_exposes = [&](const WaitingStep& step) {
         return is_current(step) && solid_.exposes(step.cell, solid_.open_facets(step.cell));
     };
-    if (exposing_.pop(best, still_exposes)) {
+    while (exposing_.pop(best, still_exposes)) {
+        // The smoothing step that look-ahead counted on may have become impossible.
+        const double gain = judge_.exposing(best.cell, solid_.open_facets(best.cell));
+        if (gain < best.gain) {
+            best.gain = gain;
+            exposing_.push(best);
+            continue;
+        }
         remove(best.cell, SculptStep::exposing);
         return true;
     }
@@ -98,19 +108,22 @@ void Sculptor::refresh(u32 cell) {
 }
 
 void Sculptor::refresh_round(u32 removed) {
-    // Gains depend on the boundary at the cell's edges, and so on the cells round these edges...
     round_.clear();
+    for (u32 across : tets_.neighbours[removed])
+        if (solid_.has(across)) round_.push_back(across);
+    // Gains depend on the boundary triangles at the cell's edges. Of the cells round an edge only the first and the
+    // last have such a triangle, and see another one now at its other end.
     for (const CellEdge& edge : cell_edges)
-        for (const auto& [across, kept] : {std::pair(edge.c, edge.d), std::pair(edge.d, edge.c)})
-            for (EdgeWalk walk(tets_, removed, across, kept); solid_.has(walk.next());) {
-                walk.step();
-                round_.push_back(walk.cell());
-            }
-    // ... with look-ahead also round those of their neighbours.
-    for (std::size_t i = 0, count = round_.size(); i < count; ++i)
-        for (u32 across : tets_.neighbours[round_[i]])
-            if (solid_.has(across)) round_.push_back(across);
+        for (const auto& [across, kept] : {std::pair(edge.c, edge.d), std::pair(edge.d, edge.c)}) {
+            EdgeWalk walk(tets_, removed, across, kept);
+            while (solid_.has(walk.next())) walk.step();
+            if (walk.cell() != removed) round_.push_back(walk.cell());
+        }
     for (u32 cell : round_) refresh(cell);
+    // With look-ahead an exposing step's gain depends on those of its neighbours.
+    for (u32 cell : round_)
+        for (u32 across : tets_.neighbours[cell])
+            if (solid_.has(across) && solid_.exposes(across, solid_.open_facets(across))) refresh(across);
 }
 
 void Sculptor::allow_smoothing_near(u32 removed) {
