@@ -167,6 +167,32 @@ def alpha_solid():
     return picture
 
 
+def sculpt():
+    picture = Picture(9.4, 3.4)
+    profile = [(0.4, 2.8), (0.8, 2.6), (1.2, 2.3), (1.5, 1.9), (1.7, 1.45), (2.0, 1.2), (2.35, 1.15), (2.7, 1.4)]
+    profile += [(2.9, 1.85), (3.2, 2.3), (3.6, 2.6), (4.0, 2.8)]
+    ground = [(0.4 + 0.6 * i, 0.5) for i in range(7)]
+    # Solid under the profile; before, a lid closes the valley at the height where the ball does not enter.
+    lid = (2, 9)
+    for shift, carved in ((0, False), (5, True)):
+        moved = lambda p: (p[0] + shift, p[1])
+        points = profile + ground
+        middle = lambda corners: tuple(sum(p[i] for p in corners) / 3 for i in (0, 1))
+        for corners, _ in delaunay(points):
+            x, y = middle(corners)
+            left = max(i for i, p in enumerate(profile) if p[0] <= x)
+            a, b = profile[left], profile[left + 1]
+            under = y < a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0])
+            in_valley = not under and all(p in profile[lid[0] : lid[1] + 2] for p in corners) and y < 2.3
+            fill = SOLID if under or (in_valley and not carved) else "none"
+            picture.polygon([moved(p) for p in corners], fill, BRIGHT if in_valley and not carved else PALE, 1)
+        for p in points:
+            hidden = p in profile[lid[0] + 1 : lid[1]] and not carved
+            picture.dot(moved(p), BRIGHT if hidden else INK, 4)
+    picture.arrow((4.35, 1.6), (5.05, 1.6))
+    return picture
+
+
 def merge():
     picture = Picture(9, 4)
     source = random.Random(6)
@@ -259,6 +285,7 @@ def main():
         ("delaunay", delaunay_filter),
         ("measure", measure),
         ("merge", merge),
+        ("sculpt", sculpt),
         ("virtual_scan", virtual_scan),
         ("voxel_thin", voxel_thin),
     ):

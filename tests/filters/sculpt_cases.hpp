@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How the tests call sculpt, and what they ask of every result.
+/// How the tests call sculpt, and a slow second opinion on everything it says of a boundary.
+
+#include <cmath>
+#include <map>
 
 #include "filters/alpha_solid_cases.hpp"
+#include "scanmill/geometry/solid_boundary.hpp"
 #include "sculpt/sculpt.hpp"
+#include "support/shapes.hpp"
 
 namespace scanmill::test {
 
@@ -13,5 +18,57 @@ inline SculptResult sculpted(const TetMesh& labelled, const SculptParams& params
     Context context(options);
     return sculpt(labelled, params, context);
 }
+
+/// All cells of the points' tetrahedralisation, inside.
+inline TetMesh hull_of(const PointCloud& cloud) {
+    TetMesh tets = tets_of(cloud);
+    Array<u8> inside(tets.cells.size());
+    std::ranges::fill(inside, u8(1));
+    tets.inside = std::move(inside);
+    return tets;
+}
+
+inline TriangleMesh mesh_of(const TetMesh& tets, std::span<const u8> labels) {
+    TriangleMesh mesh;
+    mesh.positions = tets.positions;
+    mesh.triangles = boundary_triangles(tets, labels, 1);
+    return mesh;
+}
+
+/// The sum over the edges of the angle between their triangles' normals, each times the edge's length if asked.
+inline double bending_of(const TriangleMesh& mesh, SculptWeight weight = SculptWeight::none) {
+    std::map<Edge, std::vector<Vec3>> normals;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Vec3 u = mesh.positions[b] - mesh.positions[a], v = mesh.positions[c] - mesh.positions[a];
+        for (const Edge& edge : {make_edge(a, b), make_edge(b, c), make_edge(c, a)})
+            normals[edge].push_back(u.cross(v).normalized());
+    }
+    double sum = 0;
+    for (const auto& [edge, sides] : normals) {
+        EXPECT_EQ(sides.size(), 2u);
+        const double angle = std::acos(std::clamp(sides[0].dot(sides[1]), -1.0, 1.0));
+        sum +=
+            weight == SculptWeight::none ? angle : angle * (mesh.positions[edge[0]] - mesh.positions[edge[1]]).norm();
+    }
+    return sum;
+}
+
+inline double volume_of(const TetMesh& tets, u32 cell) {
+    const auto& [i, j, k, l] = tets.cells[cell];
+    const Vec3& a = tets.positions[i];
+    return (tets.positions[j] - a).cross(tets.positions[k] - a).dot(tets.positions[l] - a) / 6;
+}
+
+inline std::string sculpt_refusal(const TetMesh& tets, const SculptParams& params = {}) {
+    try {
+        sculpted(tets, params);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+/// The unit cube's corners and a point a tenth below the middle of its top.
+inline PointCloud dented_cube() { return joined(lattice_cube(1), cloud_of({Vec3(0.5, 0.5, 0.9)})); }
 
 }  // namespace scanmill::test
