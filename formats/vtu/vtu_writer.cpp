@@ -16,6 +16,13 @@ namespace {
 
 constexpr std::string_view format = "VTU";
 
+/// `weights`, or what no column is called.
+std::string name_for_weights(const ColumnTable& columns) {
+    std::string name = "weights";
+    while (columns.find(name)) name += "-of-tets";
+    return name;
+}
+
 }  // namespace
 
 void write_vtu(const Value& value, OutputBuffer& out, const WriteOptions& options) {
@@ -27,6 +34,8 @@ void write_vtu(const Value& value, OutputBuffer& out, const WriteOptions& option
     // Their corners are ordered as ours: the fourth lies where the normal of the first three points to.
     data->SetCells(VTK_TETRA, cells_of(vertices, 4, tets.positions.size()));
     add_columns(tets.vertex_columns, format, options, *data->GetPointData());
+    if (!tets.weights.empty())
+        data->GetPointData()->AddArray(array_of(tets.weights.span(), 1, name_for_weights(tets.vertex_columns)));
     if (!tets.inside.empty()) data->GetCellData()->AddArray(array_of(tets.inside.span(), 1, "inside"));
     add_frame(tets.frame, Text::as_numbers, *data->GetFieldData());
     write(*vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New(), *data, out);

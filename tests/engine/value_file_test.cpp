@@ -61,6 +61,7 @@ TetMesh tets() {
     tets.cells = {Tetrahedron{0, 1, 2, 3}};
     tets.neighbours = {std::array<u32, 4>{~0u, ~0u, ~0u, ~0u}};
     tets.inside = {1};
+    tets.weights = {0, -0.0, 0.1 + 0.2, 1e-310};
     return tets;
 }
 
@@ -165,6 +166,7 @@ TEST_F(ValueFile, TetsAndFeatures_ComeBackBitByBit) {
     EXPECT_EQ(as<TetMesh>(tets_back).cells[0], (Tetrahedron{0, 1, 2, 3}));
     EXPECT_EQ(as<TetMesh>(tets_back).neighbours[0][3], TetMesh::outside_hull);
     EXPECT_EQ(as<TetMesh>(tets_back).inside[0], 1);
+    EXPECT_TRUE(same_bits(as<TetMesh>(tets_back).weights, tets().weights));
     const Value graph_back = through_a_file(value(features()));
     const auto& graph = as<FeatureGraph>(graph_back);
     ASSERT_EQ(graph.polylines.size(), 2u);
@@ -210,6 +212,8 @@ TEST(ValueContent, AnyChange_IsAnotherContent) {
     EXPECT_TRUE(changed(cloud(), [](PointCloud& c) { c.columns = {}; }));
     EXPECT_TRUE(changed(tets(), [](TetMesh& t) { t.inside = {0}; }));
     EXPECT_TRUE(changed(tets(), [](TetMesh& t) { t.inside = {}; }));
+    EXPECT_TRUE(changed(tets(), [](TetMesh& t) { t.weights = {}; }));
+    EXPECT_TRUE(changed(tets(), [](TetMesh& t) { t.weights = {0, 0, 0.1 + 0.2, 1e-310}; }));
     // The same numbers in another shape.
     EXPECT_TRUE(changed(mesh(), [](TriangleMesh& m) { std::swap(m.edges, m.sharp_edges); }));
     EXPECT_TRUE(changed(metrics(), [](Metrics& m) { m.values[0].unit = Unit::number; }));

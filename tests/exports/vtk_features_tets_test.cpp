@@ -102,6 +102,17 @@ TEST(VtuWriter, CellsWithoutLabel_HaveNone) {
     EXPECT_EQ(through_vtu(tets)->GetCellData()->GetNumberOfArrays(), 0);
 }
 
+TEST(VtuWriter, Weights_StandAtThePoints_BesideAColumnOfThatName) {
+    TetMesh tets = two_cells();
+    EXPECT_EQ(through_vtu(tets)->GetPointData()->GetNumberOfArrays(), 1);
+    tets.weights = {0, 0.25, 1, 4, 9};
+    EXPECT_THAT(numbers_in(through_vtu(tets)->GetPointData()->GetArray("weights")), ElementsAre(0, 0.25, 1, 4, 9));
+    tets.vertex_columns.add(Column("weights", 1, Buffer<u8>{5, 4, 3, 2, 1}));
+    const auto grid = through_vtu(tets);
+    EXPECT_THAT(numbers_in(grid->GetPointData()->GetArray("weights")), ElementsAre(5, 4, 3, 2, 1));
+    EXPECT_THAT(numbers_in(grid->GetPointData()->GetArray("weights-of-tets")), ElementsAre(0, 0.25, 1, 4, 9));
+}
+
 TEST(VtuReader_Refuses, ToRead_AndSaysSo) {
     const std::string bytes = write_bytes("a.vtu", std::make_shared<const TetMesh>(two_cells()));
     EXPECT_EQ(bytes, write_bytes("b.vtu", std::make_shared<const TetMesh>(two_cells())));

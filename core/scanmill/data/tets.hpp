@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// `tets`: a Delaunay tetrahedralisation as index arrays, with an optional inside/outside label per cell.
+/// `tets`: a Delaunay tetrahedralisation as index arrays, with an optional inside/outside label per cell and an
+/// optional weight per vertex.
 
 #include <array>
 
@@ -20,6 +21,11 @@ struct TetMesh {
     /// #vertices, relative to frame.origin: the distinct input points, in input order.
     Buffer<Vec3> positions;
     ColumnTable vertex_columns;
+    /// #vertices, squared lengths in frame.unit, finite and not negative; empty when the points have no weights, which
+    /// is the same as all equal. Cells are then those of the regular triangulation: no vertex p has a negative power
+    /// |c - p|² - w_p - r² with regard to the sphere (c, r²) orthogonal to a cell's corners. Some vertices may be
+    /// hidden, that is in no cell.
+    Buffer<double> weights;
     /// #cells finite cells in canonical order: each cell begins with its smallest index and is the lexicographically
     /// smallest even permutation of itself; cells ascend lexicographically.
     Buffer<Tetrahedron> cells;

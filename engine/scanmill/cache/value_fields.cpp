@@ -176,6 +176,7 @@ void describe(Archive& archive, Tets& tets)
     archive.field("frame", tets.frame);
     archive.field("positions", tets.positions);
     archive.field("vertex-columns", tets.vertex_columns);
+    archive.field("weights", tets.weights);
     archive.field("cells", tets.cells);
     archive.field("neighbours", tets.neighbours);
     archive.field("inside", tets.inside);
