@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "delaunay/delaunay.hpp"
 
+#include <fmt/format.h>
+
 #include "delaunay/canonical_cells.hpp"
 #include "delaunay/flatness.hpp"
+#include "delaunay/point_weights.hpp"
 #include "delaunay/triangulate.hpp"
+#include "scanmill/geometry/hidden_vertices.hpp"
 
 namespace scanmill {
 
@@ -28,14 +32,34 @@ DistinctRows distinct_rows(std::size_t count, std::span<const u32> duplicates) {
     return rows;
 }
 
+/// Marks the vertices in no cell by a column, and tells how many there are.
+std::size_t mark_hidden(TetMesh& tets, Context& context) {
+    const Array<u32> hidden = hidden_vertices(tets);
+    tets.vertex_columns = with_hidden(tets.vertex_columns, tets.positions.size(), hidden, context);
+    if (!hidden.empty())
+        context.warn(
+            fmt::format("{} of {} points are hidden by the weights of others and in no cell; the column "
+                        "'hidden' marks them; smaller weights hide fewer",
+                        hidden.size(), tets.positions.size()));
+    return hidden.size();
+}
+
 }  // namespace
 
-DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams&, Context& context) {
+DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams& params, Context& context) {
     const std::span<const Vec3> positions = cloud.positions.span();
     require_finite(positions);
     require_spatial(positions, cloud.frame, context.threads());
 
-    RawTriangulation raw = triangulate(positions, context);
+    PointWeights weighted;
+    RawTriangulation raw;
+    if (params.weights) {
+        weighted = point_weights(cloud, params, context);
+        raw = triangulate_weighted(positions, weighted.weights, std::move(weighted.duplicates), context);
+    } else {
+        if (params.factor != DelaunayParams().factor) context.warn("factor changes nothing while `weights` is none");
+        raw = triangulate(positions, context);
+    }
     if (raw.dimension < 3) refuse_flat(positions, raw.dimension, 0, cloud.frame);
     context.progress(0.85);
     context.check_cancelled();
@@ -46,10 +70,12 @@ DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams&, Context&
     if (raw.duplicates.empty()) {
         result.tets.positions = cloud.positions;
         result.tets.vertex_columns = cloud.columns;
+        result.tets.weights = std::move(weighted.weights);
     } else {
         const DistinctRows rows = distinct_rows(positions.size(), raw.duplicates);
         result.tets.positions = gather(cloud.positions, rows.kept);
         result.tets.vertex_columns = cloud.columns.gather(rows.kept);
+        if (params.weights) result.tets.weights = gather(Buffer<double>(std::move(weighted.weights)), rows.kept);
         // Vertices keep the order of their rows, so the cells' corners stay in canonical order.
         for (Tetrahedron& cell : raw.cells)
             for (u32& corner : cell) corner = rows.vertex_of_row[corner];
@@ -59,6 +85,7 @@ DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams&, Context&
                                                result.tets.positions.size(), context.threads());
     result.tets.cells = std::move(canonical.cells);
     result.tets.neighbours = std::move(canonical.neighbours);
+    if (params.weights) result.hidden = mark_hidden(result.tets, context);
 
     context.metric("cells", static_cast<double>(result.tets.cells.size()));
     context.metric("duplicates", static_cast<double>(result.duplicates));

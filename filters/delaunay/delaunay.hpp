@@ -3,19 +3,28 @@
 /// The Delaunay tetrahedralisation of a scan's points: the frame that alpha-solid, sculpt and cocone carve surfaces
 /// from.
 
+#include <optional>
+#include <string>
+
 #include "scanmill/data/points.hpp"
 #include "scanmill/data/tets.hpp"
 #include "scanmill/filter/context.hpp"
 
 namespace scanmill {
 
-struct DelaunayParams {};
+struct DelaunayParams {
+    /// Nothing; `spacing`; or the name of a column of squared lengths in the scan's unit.
+    std::optional<std::string> weights;
+    /// The weights are this times the squared local spacing, or times the column; 0 or more, with `spacing` at most 4.
+    double factor = 1;
+};
 
 struct DelaunayResult {
     TetMesh tets;
     /// Input points that lie exactly on an earlier one and were merged into it.
     std::size_t duplicates = 0;
-    /// Points that are no vertex of the tetrahedralisation though distinct; none without weights.
+    /// Distinct points that are in no cell, because weights hide them: their power distance is nowhere the least. They
+    /// stay vertices. None without weights.
     std::size_t hidden = 0;
 };
 
@@ -32,6 +41,15 @@ struct DelaunayResult {
 ///       cells; memory is proportional to the cells (`make bench` prints both).
 /// Metrics: cells, duplicates, hidden.
 /// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; the triangulation is CGAL's.
+///
+/// With weights the cells are those of the regular triangulation (see TetMesh::weights): distances to a point p count
+/// as |x - p|² - w_p. `spacing` weighs every point with factor · s², s being the mean distance to its six nearest
+/// neighbours, lowered where a neighbour would be hidden (see spacing_weights.hpp), so that alpha-solid's ball is small
+/// where the sampling is dense. All of the above holds, but for: of points at one place the first stays, with the
+/// largest of their weights (a warning counts the places where they differed); insertion is on one thread; a warning
+/// counts hidden points, and a column `hidden` (uint8, at the vertices) marks them. An input column of that name
+/// becomes `hidden-of-points`. Throws Error for a missing or unfit column, weights that are no numbers from 0 to 1e200,
+/// and a factor out of range. A factor other than 1 without weights changes nothing and is told.
 DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams& params, Context& context);
 
 }  // namespace scanmill

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "delaunay/insertion.hpp"
 
-#include <CGAL/Spatial_sort_traits_adapter_3.h>
-#include <CGAL/property_map.h>
-#include <CGAL/spatial_sort.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
@@ -19,32 +16,10 @@ namespace scanmill {
 
 namespace {
 
-using PointRow = std::pair<Kernel::Point_3, u32>;
-
 /// Fewer points are not worth a second thread. Of more, the first are inserted by one: as long as there are few cells,
 /// every insertion touches most of them.
 constexpr std::size_t least_for_threads = 10'000, alone = 1000;
 constexpr int lock_boxes_per_axis = 64;
-
-/// The points in a biased randomised order along Hilbert curves: what makes incremental insertion fast.
-std::vector<PointRow> insertion_order(std::span<const Vec3> positions, unsigned threads) {
-    std::vector<PointRow> points(positions.size());
-    for_each_chunk(threads, positions.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-            const Vec3& p = positions[row];
-            points[row] = {Kernel::Point_3(p.x(), p.y(), p.z()), static_cast<u32>(row)};
-        }
-    });
-    using Traits = CGAL::Spatial_sort_traits_adapter_3<Kernel, CGAL::First_of_pair_property_map<PointRow>>;
-    const auto sort = [&]<class Concurrency>(Concurrency) {
-        CGAL::spatial_sort<Concurrency>(points.begin(), points.end(), Traits());
-    };
-    if (threads > 1)
-        within_thread_budget(threads, [&] { sort(CGAL::Parallel_tag()); });
-    else
-        sort(CGAL::Sequential_tag());
-    return points;
-}
 
 /// Waits before the next of several tries at what another thread is busy with.
 void wait_after(int failures) {

@@ -4,13 +4,13 @@
 
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Delaunay_triangulation_cell_base_3.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Spatial_lock_grid_3.h>
 #include <CGAL/Triangulation_cell_base_with_info_3.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include <span>
 
+#include "delaunay/insertion_order.hpp"
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/filter/context.hpp"
@@ -23,7 +23,6 @@ struct FirstRow {
     u32 row = none;
 };
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<FirstRow, Kernel>;
 using CellBase =
     CGAL::Triangulation_cell_base_with_info_3<u32, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;

@@ -18,9 +18,15 @@ SCANMILL_FILTER() {
             "points",
             "Finite coordinates, at least 4 distinct points that are not coplanar; every column is carried along.")
         .out<TetMesh>("tets", "The cells over the distinct points, in canonical order.")
+        .param("weights", &P::weights,
+               "Lets space between points shrink and grow with the sampling: `spacing` gives every point the square of "
+               "its distance to its neighbours, the name of a column what that says, in squared lengths of the scan's "
+               "unit.",
+               word("none"))
+        .param("factor", &P::factor, "The weights are multiplied with this; with `spacing` at most 4.", at_least(0))
         .metric("cells", Unit::count, "Finite tetrahedra.")
         .metric("duplicates", Unit::count, "Points that lie exactly on an earlier one and were merged into it.")
-        .metric("hidden", Unit::count, "Distinct points that are no vertex; 0 without weights.")
+        .metric("hidden", Unit::count, "Distinct points in no cell, because weights hide them; they are kept.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("tets", delaunay(inputs.get<PointCloud>("points"), params, context).tets);
         });
