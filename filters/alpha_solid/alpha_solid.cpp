@@ -8,6 +8,7 @@
 #include "alpha_solid/selection.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/filter/error.hpp"
+#include "scanmill/geometry/hidden_vertices.hpp"
 
 namespace scanmill {
 
@@ -41,14 +42,17 @@ double radius(double squared) {
 void describe_cells(AlphaSolidResult& result, Selection& selection, unsigned threads) {
     const TetMesh& tets = result.tets;
     Array<u8> state = coverage(tets, selection.labels, threads);
-    constexpr u8 on_boundary = 2;
+    constexpr u8 on_boundary = 2, hidden = 3;
+    Array<u32> hidden_by_weights = hidden_vertices(tets);
+    for (u32 vertex : hidden_by_weights) state[vertex] = hidden;
     for (const Triangle& triangle : selection.triangles)
         for (u32 vertex : triangle) state[vertex] = on_boundary;
     Array<u32> interior, uncovered;
     for (u32 vertex = 0; vertex < state.size(); ++vertex)
-        if (state[vertex] != on_boundary) (state[vertex] ? interior : uncovered).push_back(vertex);
+        if (state[vertex] < on_boundary) (state[vertex] ? interior : uncovered).push_back(vertex);
     result.interior_points = std::move(interior);
     result.uncovered_points = std::move(uncovered);
+    result.hidden_points = std::move(hidden_by_weights);
 
     result.cells_left_out = static_cast<std::size_t>(std::ranges::count(selection.labels, u8(left_out)));
     for (u8& label : selection.labels) label = label == solid;
@@ -97,6 +101,7 @@ void report(const AlphaSolidResult& result, Context& context) {
     context.metric("cells", static_cast<double>(result.cells_inside));
     context.metric("interior-points", static_cast<double>(result.interior_points.size()));
     context.metric("uncovered-points", static_cast<double>(result.uncovered_points.size()));
+    context.metric("hidden-points", static_cast<double>(result.hidden_points.size()));
     context.metric("triangles", static_cast<double>(result.mesh.triangles.size()));
 }
 

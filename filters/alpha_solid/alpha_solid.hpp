@@ -59,6 +59,9 @@ struct AlphaSolidResult {
     std::size_t candidates = 0;
     /// Vertex indices of the input, ascending: inside the solid but not on its boundary; in no cell of the solid.
     Buffer<u32> interior_points, uncovered_points;
+    /// Vertex indices of the input, ascending, that are in no cell at all because weights hide them. Every other point
+    /// is interior, uncovered or on the boundary. They count for no coverage.
+    Buffer<u32> hidden_points;
     /// Pieces of the boundary that share no vertex; for a manifold boundary, the number of separate solids.
     std::size_t components = 0;
     /// Cells and points in them alone that `single` left out.
@@ -82,9 +85,14 @@ struct AlphaSolidResult {
 ///       A point exactly on a facet's smallest circumsphere does not attach the facet.
 /// Cost: O(n log n) in the worst case, about linear in the cells outside the solid for surface scans; about 30 bytes
 ///       per cell beside the result.
-/// Metrics: alpha, alpha-cover, cells, interior-points, uncovered-points, triangles. Warns about points left out, about
-/// a repaired or hull solid, and about non-manifold places at a given alpha. Source: Bernardini, Bajaj, Chen, Schikore
-/// 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
+/// With weights (TetMesh::weights) the radii are those of spheres orthogonal to weighted points, all weights lowered by
+/// the largest: alpha is the ball's radius where the weight is largest, and at a point of weight w the ball acts with
+/// the radius sqrt(alpha² - (largest - w)), or not at all when that is no number. Equal weights change no byte. Weights
+/// make the facet values about ten times as costly.
+///
+/// Metrics: alpha, alpha-cover, cells, interior-points, uncovered-points, hidden-points, triangles. Warns about points
+/// left out, about a repaired or hull solid, and about non-manifold places at a given alpha. Source: Bernardini, Bajaj,
+/// Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
 
 }  // namespace scanmill

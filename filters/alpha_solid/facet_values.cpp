@@ -3,21 +3,24 @@
 
 #include <algorithm>
 
+#include "alpha_solid/weighted_spheres.hpp"
+#include "scanmill/filter/error.hpp"
 #include "scanmill/filter/parallel.hpp"
 
 namespace scanmill::alpha {
 
-Array<SweepCell> sweep_cells(const TetMesh& tets, Context& context) {
+namespace {
+
+/// `spheres(cell)` gives a cell's CellSpheres.
+template <class Spheres>
+Array<SweepCell> sweep_cells_with(const TetMesh& tets, const Spheres& spheres, Context& context) {
     constexpr std::size_t chunk = 1 << 14;
     const std::size_t count = tets.cells.size();
     Array<SweepCell> cells(count);
     for_each_chunk(context.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
-        for (std::size_t c = begin; c < end; ++c) {
-            const auto& [i, j, k, l] = tets.cells[c];
-            cells[c] = {cell_spheres(tets.positions[i], tets.positions[j], tets.positions[k], tets.positions[l]).values,
-                        tets.cells[c], tets.neighbours[c]};
-        }
+        for (std::size_t c = begin; c < end; ++c)
+            cells[c] = {spheres(tets.cells[c]).values, tets.cells[c], tets.neighbours[c]};
     });
 
     // Where one of its two cells attaches a facet, that cell's part is the larger.
@@ -34,6 +37,27 @@ Array<SweepCell> sweep_cells(const TetMesh& tets, Context& context) {
             }
     });
     return cells;
+}
+
+}  // namespace
+
+Array<SweepCell> sweep_cells(const TetMesh& tets, Context& context) {
+    const auto unweighted = [&](const Tetrahedron& cell) {
+        const auto& [i, j, k, l] = cell;
+        return cell_spheres(tets.positions[i], tets.positions[j], tets.positions[k], tets.positions[l]);
+    };
+    if (tets.weights.empty()) return sweep_cells_with(tets, unweighted, context);
+    if (tets.weights.size() != tets.positions.size())
+        throw Error("needs a weight for each of {} vertices or none; there are {}", tets.positions.size(),
+                    tets.weights.size());
+    const auto [least, largest] = std::ranges::minmax(tets.weights);
+    if (!(least < largest)) return sweep_cells_with(tets, unweighted, context);
+    const auto weighted = [&tets, largest = largest](const Tetrahedron& cell) {
+        std::array<WeightedPoint, 4> corners;
+        for (int i = 0; i < 4; ++i) corners[i] = {&tets.positions[cell[i]], tets.weights[cell[i]]};
+        return weighted_cell_spheres(corners, largest);
+    };
+    return sweep_cells_with(tets, weighted, context);
 }
 
 }  // namespace scanmill::alpha

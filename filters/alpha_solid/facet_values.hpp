@@ -25,6 +25,7 @@ struct alignas(64) SweepCell {
     std::array<u32, 4> neighbours;
 };
 
+/// With weights, the values of weighted_spheres.hpp. Throws Error when there are weights, but not one per vertex.
 /// Cost: two parallel passes over the cells.
 Array<SweepCell> sweep_cells(const TetMesh& tets, Context& context);
 

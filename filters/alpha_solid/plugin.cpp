@@ -34,6 +34,7 @@ SCANMILL_FILTER() {
         .metric("cells", Unit::count, "Cells inside.")
         .metric("interior-points", Unit::count, "Points inside the solid but not on its boundary.")
         .metric("uncovered-points", Unit::count, "Points in no cell of the solid.", headline)
+        .metric("hidden-points", Unit::count, "Points in no cell at all, because weights hide them.")
         .metric("triangles", Unit::count, "Triangles of the boundary.", headline)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             AlphaSolidResult result = alpha_solid(inputs.get<TetMesh>("tets"), params, context);
