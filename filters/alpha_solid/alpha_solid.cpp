@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "alpha_solid/pieces.hpp"
+#include "alpha_solid/remarks.hpp"
 #include "alpha_solid/selection.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/filter/error.hpp"
@@ -38,6 +39,13 @@ double radius(double squared) {
     return root * root < squared ? std::nextafter(root, std::numeric_limits<double>::infinity()) : root;
 }
 
+/// The largest radius whose square is below `squared`.
+double radius_below(double squared) {
+    double root = std::sqrt(squared);
+    while (root * root >= squared) root = std::nextafter(root, 0.0);
+    return root;
+}
+
 /// Fills what follows from the labels: inside, counts, interior and uncovered points.
 void describe_cells(AlphaSolidResult& result, Selection& selection, unsigned threads) {
     const TetMesh& tets = result.tets;
@@ -61,43 +69,17 @@ void describe_cells(AlphaSolidResult& result, Selection& selection, unsigned thr
 }
 
 /// Different values among the flood's above `value`, and the solid at it.
-std::size_t candidates_from(const Flood& flood, double value) {
+std::size_t spectrum_from(const Flood& flood, double value) {
     std::size_t count = 1;
     for (std::size_t i = 0; i < flood.values.size() && flood.values[i] > value; ++i)
         count += i == 0 || flood.values[i] != flood.values[i - 1];
     return count;
 }
 
-void warn_about(const AlphaSolidResult& result, const AlphaSolidParams& params, Context& context) {
-    const std::string_view unit = symbol(result.tets.frame.unit);
-    const std::size_t points = result.tets.positions.size();
-    if (const std::size_t uncovered = result.uncovered_points.size(); uncovered > 0)
-        context.warn(fmt::format("{} of {} points are not in or on the solid{}", uncovered, points,
-                                 result.cells_left_out > 0
-                                     ? fmt::format("; {} cells of other solids were left out", result.cells_left_out)
-                                     : ""));
-    if (result.choice == AlphaChoice::repaired)
-        context.warn(
-            fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary; the one at {:.4g} {} "
-                        "was closed round its non-manifold vertices",
-                        4 * result.alpha_cover, unit, result.alpha, unit));
-    if (result.choice == AlphaChoice::hull)
-        context.warn("no alpha gives a solid with a manifold boundary; the solid is the convex hull");
-    if (params.alpha && params.components == AlphaComponents::single && result.components > 1)
-        context.warn(
-            fmt::format("at alpha {} the solid has {} pieces; alpha: auto finds one that holds all points, coverage "
-                        "below 100 % keeps the largest",
-                        params.alpha->text(), result.components));
-    if (result.nonmanifold_vertices > 0)
-        context.warn(
-            fmt::format("the boundary has {} non-manifold vertices and {} edges with more than two triangles; "
-                        "alpha: auto avoids them",
-                        result.nonmanifold_vertices, result.nonmanifold_edges));
-}
-
 void report(const AlphaSolidResult& result, Context& context) {
     context.metric("alpha", result.alpha, Unit::length);
     context.metric("alpha-cover", result.alpha_cover, Unit::length);
+    context.metric("spectrum", static_cast<double>(result.spectrum));
     context.metric("cells", static_cast<double>(result.cells_inside));
     context.metric("interior-points", static_cast<double>(result.interior_points.size()));
     context.metric("uncovered-points", static_cast<double>(result.uncovered_points.size()));
@@ -135,15 +117,19 @@ AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params
     AlphaSolidResult result;
     result.alpha_cover = radius(flood.cover);
     result.alpha = params.alpha ? params.alpha->value() : radius(flood.values[selection.outside]);
-    result.candidates = candidates_from(flood, std::min(flood.cover, limits.value));
+    result.spectrum = spectrum_from(flood, std::min(flood.cover, limits.value));
     result.choice = selection.choice;
     result.components = selection.components;
     result.nonmanifold_vertices = selection.defects.vertices.size();
     result.nonmanifold_edges = selection.defects.edges;
+    if (params.alpha && !selector.is_valid(selection)) {
+        const AlphaRange nearest = selector.nearest_valid(limits.value);
+        result.nearest_valid = {radius(nearest.from), radius_below(nearest.to)};
+    }
     result.tets = tets;
     describe_cells(result, selection, context.threads());
     result.mesh = boundary_mesh(tets, std::move(selection.triangles));
-    warn_about(result, params, context);
+    remark(result, params, context);
     report(result, context);
     context.progress(1);
     return result;

@@ -43,6 +43,11 @@ enum class AlphaChoice {
     given      ///< alpha was given; nothing is promised about the boundary
 };
 
+/// Radii that all give the same alpha-solid, both ends included.
+struct AlphaInterval {
+    double least = 0, largest = 0;
+};
+
 struct AlphaSolidResult {
     /// The solid's boundary over only its own vertices (in input order, columns carried), outward, closed. Triangles
     /// ascend by cell, then by facet.
@@ -54,9 +59,10 @@ struct AlphaSolidResult {
     /// The least alpha at which the asked share of the points is in or on the alpha-solid.
     double alpha_cover = 0;
     std::size_t cells_inside = 0;
-    /// Different alpha-solids from alpha_cover upwards (or from the given alpha, when that is smaller): what the choice
-    /// was among.
-    std::size_t candidates = 0;
+    /// How many different alpha-solids there are from alpha_cover (or a given alpha that is smaller) up to the whole
+    /// tetrahedralisation, both included: the different values at which cells enter. What the choice was among; those
+    /// below alpha_cover leave points out and are not counted.
+    std::size_t spectrum = 0;
     /// Vertex indices of the input, ascending: inside the solid but not on its boundary; in no cell of the solid.
     Buffer<u32> interior_points, uncovered_points;
     /// Vertex indices of the input, ascending, that are in no cell at all because weights hide them. Every other point
@@ -70,6 +76,8 @@ struct AlphaSolidResult {
     /// Only a given alpha can leave any: edges with more than two boundary triangles, and vertices whose boundary
     /// triangles are not exactly one closed fan.
     std::size_t nonmanifold_edges = 0, nonmanifold_vertices = 0;
+    /// Present when alpha was given and its solid is not valid: the radii nearest to it whose solid is.
+    std::optional<AlphaInterval> nearest_valid;
 };
 
 /// Finds the smallest alpha whose solid is valid: the asked share of the points is in or on it, its boundary is a
@@ -90,9 +98,13 @@ struct AlphaSolidResult {
 /// the radius sqrt(alpha² - (largest - w)), or not at all when that is no number. Equal weights change no byte. Weights
 /// make the facet values about ten times as costly.
 ///
-/// Metrics: alpha, alpha-cover, cells, interior-points, uncovered-points, hidden-points, triangles. Warns about points
-/// left out, about a repaired or hull solid, and about non-manifold places at a given alpha. Source: Bernardini, Bajaj,
-/// Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
+/// A given alpha is taken as it is. Only when its solid is not valid is the nearest one sought that is, by the same
+/// scan from alpha_cover past the given alpha.
+///
+/// Metrics: alpha, alpha-cover, spectrum, cells, interior-points, uncovered-points, hidden-points, triangles. Warns, in
+/// a sentence each, about a given alpha whose solid is not valid (and names the nearest that works), points left out, a
+/// repaired or hull solid, and an ambiguous choice: interior points, or an alpha of 1.1 alpha_cover and more.
+/// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
 
 }  // namespace scanmill

@@ -31,6 +31,10 @@ SCANMILL_FILTER() {
         .param("coverage", &P::coverage, "Share of the points that must be in or on the solid.", above(0), at_most(1))
         .metric("alpha", Unit::length, "The radius used.", headline)
         .metric("alpha-cover", Unit::length, "The least radius that covers the asked share of the points.")
+        .metric(
+            "spectrum", Unit::count,
+            "Different alpha-solids from alpha-cover (or a smaller given alpha) up to the hull: what the choice was "
+            "among.")
         .metric("cells", Unit::count, "Cells inside.")
         .metric("interior-points", Unit::count, "Points inside the solid but not on its boundary.")
         .metric("uncovered-points", Unit::count, "Points in no cell of the solid.", headline)

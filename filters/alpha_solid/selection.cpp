@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
+#include <optional>
 
+#include "alpha_solid/growing_pieces.hpp"
 #include "alpha_solid/growing_solid.hpp"
 #include "alpha_solid/pieces.hpp"
 
@@ -16,6 +20,11 @@ constexpr double max_scan = 4;
 
 AlphaChoice choice_of(AlphaSearch search) {
     return search == AlphaSearch::binary ? AlphaChoice::binary : AlphaChoice::scan;
+}
+
+/// From `alpha` to the nearest radius in the range; to its end where that lies below, though it is not in the range.
+double distance(const AlphaRange& range, double alpha) {
+    return std::max(std::sqrt(range.from) - alpha, alpha - std::sqrt(range.to));
 }
 
 }  // namespace
@@ -53,8 +62,10 @@ Selection Selector::solid_without(std::size_t outside_cells) const {
 
 bool Selector::is_valid(const Selection& selection) const {
     if (!selection.defects.vertices.empty()) return false;
-    if (one_piece_) return selection.components == 1;
-    return !keeps_largest_ || covered_points(tets_, selection.labels) >= flood_.needed;
+    if (one_piece_ && selection.components != 1) return false;
+    // From alpha_cover on, only what was left out can be missing.
+    const bool is_covered = !keeps_largest_ && selection.outside <= flood_.outside_above(flood_.cover);
+    return is_covered || covered_points(tets_, selection.labels) >= flood_.needed;
 }
 
 Selection Selector::given(double value) const {
@@ -68,10 +79,14 @@ class Selector::Growth {
 public:
     Growth(const Selector& selector, const Selection& start)
         : selector_(selector),
-          growing_(selector.tets_, start.labels, start.defects.vertices),
           outside_(start.outside),
           vertices_(selector.one_piece_ ? selector.tets_.positions.size() : 0) {
+        growing_.emplace(selector.tets_, start.labels, start.defects.vertices);
         if (selector.one_piece_) pieces_ = join_vertices(start.triangles, vertices_);
+        if (selector.keeps_largest_) {
+            held_.emplace(selector.tets_, start.labels);
+            note_judged();
+        }
     }
 
     bool at_hull() const { return outside_ == 0; }
@@ -82,11 +97,12 @@ public:
         const std::size_t begin = selector_.flood_.group_begin(outside_ - 1);
         const std::span<const u32> cells(selector_.flood_.cells.data() + begin, outside_ - begin);
         outside_ = begin;
-        if (selector_.keeps_largest_) {
-            growing_.add_joined(cells);
+        if (held_) {
+            growing_->add_joined(cells);
+            held_->add(cells);
             return;
         }
-        growing_.add(cells);
+        growing_->add(cells);
         // Every point is covered, so pieces only merge.
         if (pieces_ > 1)
             for (u32 cell : cells)
@@ -94,18 +110,58 @@ public:
                     pieces_ -= vertices_.unite(selector_.tets_.cells[cell][0], vertex);
     }
 
-    bool holds_enough() const {
-        return pieces_ == 1 && (!selector_.keeps_largest_ || growing_.covered() >= selector_.flood_.needed);
+    bool holds_enough() {
+        if (!held_) return pieces_ == 1;
+        if (held_->most() < selector_.flood_.needed) return false;
+        follow_largest();
+        return true;
     }
 
-    GrowingSolid& solid() { return growing_; }
+    GrowingSolid& solid() { return *growing_; }
+
+    AlphaRange range() const {
+        const Array<double>& values = selector_.flood_.values;
+        return {values[outside_], at_hull() ? std::numeric_limits<double>::infinity() : values[outside_ - 1]};
+    }
+
+    /// Judges the solid as it stands.
+    bool is_valid() {
+        if (!holds_enough()) return false;
+        const GrowingSolid::Verdict verdict = growing_->verdict();
+        if (verdict != GrowingSolid::Verdict::many_suspects) return verdict == GrowingSolid::Verdict::manifold;
+        const unsigned threads = selector_.context_.threads();
+        const Array<Triangle> triangles = boundary_triangles(selector_.tets_, growing_->labels(), threads);
+        const BoundaryDefects defects = boundary_defects(triangles, selector_.tets_.positions.size(), threads);
+        growing_->suspect_only(defects.vertices);
+        return defects.vertices.empty();
+    }
 
 private:
+    /// Another piece than the one that grew may hold the most points by now, or as many. Pieces only gain points, so as
+    /// long as neither number changes the choice between equals stays.
+    void follow_largest() {
+        const bool is_judged = most_ == held_->most() && with_most_ == held_->pieces_with_most();
+        const bool is_alone = held_->pieces_with_most() == 1 && growing_->covered() == held_->most();
+        note_judged();
+        if (is_judged || is_alone) return;
+        const Selection largest = selector_.solid_without(outside_);
+        growing_.emplace(selector_.tets_, largest.labels, largest.defects.vertices);
+    }
+
+    void note_judged() {
+        most_ = held_->most();
+        with_most_ = held_->pieces_with_most();
+    }
+
     const Selector& selector_;
-    GrowingSolid growing_;
+    std::optional<GrowingSolid> growing_;
     std::size_t outside_;
+    /// When one piece is asked for: points joined by it, and the number of pieces left.
     DisjointSets vertices_;
     std::size_t pieces_ = 1;
+    /// When the largest piece is kept: what the pieces hold, and what they held when the largest was last chosen.
+    std::optional<GrowingPieces> held_;
+    std::size_t most_ = 0, with_most_ = 0;
 };
 
 Selection Selector::scan() const {
@@ -117,15 +173,33 @@ Selection Selector::scan() const {
     for (std::size_t steps = 0; !growth.at_hull() && growth.next_value() <= last; ++steps) {
         if (steps % 4096 == 0) context_.check_cancelled();
         growth.step();
-        if (!growth.holds_enough()) continue;
-        const GrowingSolid::Verdict verdict = growth.solid().verdict();
-        if (verdict == GrowingSolid::Verdict::not_manifold) continue;
+        if (!growth.is_valid()) continue;
         Selection selection = described(growth.solid().labels(), growth.outside(), AlphaChoice::scan);
-        if (is_valid(selection)) return selection;
-        assert(verdict == GrowingSolid::Verdict::many_suspects);
-        growth.solid().suspect_only(selection.defects.vertices);
+        assert(is_valid(selection));
+        return selection;
     }
     return repaired(start);
+}
+
+AlphaRange Selector::nearest_valid(double value) const {
+    // Below alpha_cover points are left out.
+    Growth growth(*this, solid_without(flood_.outside_above(flood_.cover)));
+    const double alpha = std::sqrt(value);
+    std::optional<AlphaRange> nearest;
+    for (std::size_t steps = 0;; ++steps) {
+        if (steps % 4096 == 0) context_.check_cancelled();
+        // While alpha grows, ranges below `value` come nearer, those above go farther away.
+        const AlphaRange range = growth.range();
+        if (nearest && range.from > value && distance(range, alpha) > distance(*nearest, alpha)) return *nearest;
+        if (growth.is_valid()) {
+            if (range.from > value) return range;
+            nearest = range;
+        }
+        if (growth.at_hull()) break;
+        growth.step();
+    }
+    assert(nearest);  // the hull is valid
+    return *nearest;
 }
 
 Selection Selector::repaired(const Selection& start) const {

@@ -21,6 +21,11 @@ struct Selection {
     std::size_t components = 0;
 };
 
+/// The alpha-solid is the same for every squared radius from `from` up to, but not at, `to`.
+struct AlphaRange {
+    double from = 0, to = 0;
+};
+
 class Selector {
 public:
     Selector(const TetMesh& tets, const Flood& flood, const AlphaSolidParams& params, Context& context);
@@ -32,12 +37,19 @@ public:
     /// A valid alpha-solid by bisection between alpha_cover and the hull.
     Selection bisect() const;
 
+    /// As defined by alpha_solid(): does the solid hold enough points, with a manifold boundary and in one piece where
+    /// that was asked for?
+    bool is_valid(const Selection& selection) const;
+    /// Of all valid alpha-solids the one whose radii come nearest to the root of `value`; of two equally near the
+    /// larger. Pre: the one at `value` is not valid. Cost: as scan(), over all radii from alpha_cover to that distance
+    /// above `value`.
+    AlphaRange nearest_valid(double value) const;
+
 private:
     class Growth;
 
     Selection solid_without(std::size_t outside) const;
     Selection described(Array<u8> labels, std::size_t outside, AlphaChoice choice) const;
-    bool is_valid(const Selection& selection) const;
     Selection repaired(const Selection& start) const;
 
     const TetMesh& tets_;

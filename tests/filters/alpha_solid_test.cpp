@@ -32,7 +32,7 @@ TEST(AlphaSolid, RegularTetrahedron_AppearsAtItsFacetsCircumradius) {
     const TetMesh tets = tets_of(vertices_of(regular_tetrahedron(1)));
     const AlphaSolidResult result = solid_of(tets);
     EXPECT_NEAR(result.alpha, 1 / std::sqrt(3.0), 1e-12);
-    EXPECT_EQ(result.candidates, 1u);
+    EXPECT_EQ(result.spectrum, 1u);
     expect_closed(result, 4, 2);
     EXPECT_EQ(refusal(tets, at_alpha(0.57)),
               "alpha 0.57 u leaves no cell inside; the least that gives one is 0.57735, and 0.57735 covers 4 of 4 "
@@ -48,21 +48,25 @@ TEST(AlphaSolid, FibonacciSphere_IsClosedThroughAllItsPoints) {
 
 TEST(AlphaSolid, SphereSampling_CoversAtMostAtItsCoveringRadius) {
     // Every point of the sphere has a sample within `covering_radius`: no ball of that radius passes between samples.
-    const PointCloud cloud = fibonacci_sphere(800);
-    double covering_radius = 0;
-    Random random(3);
-    for (int i = 0; i < 20000; ++i) {
-        const double x = random.normal(), y = random.normal();
-        const Vec3 p = Vec3(x, y, random.normal()).normalized();
-        double nearest = 2;
-        for (const Vec3& sample : cloud.positions) nearest = std::min(nearest, (sample - p).norm());
-        covering_radius = std::max(covering_radius, nearest);
+    // The point that is farthest from all samples lies above a facet of their hull, at its pole.
+    for (std::size_t count : {60, 200, 800, 3000}) {
+        const TetMesh tets = tets_of(fibonacci_sphere(count));
+        double covering_radius = 0;
+        for (std::size_t c = 0; c < tets.cells.size(); ++c)
+            for (int i = 0; i < 4; ++i) {
+                if (tets.neighbours[c][i] != TetMesh::outside_hull) continue;
+                const auto& [j, k, l] = outward_facet[i];
+                const Vec3 a = tets.positions[tets.cells[c][j]], b = tets.positions[tets.cells[c][k]],
+                           d = tets.positions[tets.cells[c][l]];
+                covering_radius = std::max(covering_radius, (a - (b - a).cross(d - a).normalized()).norm());
+            }
+        EXPECT_LT(covering_radius, 1);
+        const AlphaSolidResult result = solid_of(tets);
+        EXPECT_LE(result.alpha_cover, covering_radius);
+        EXPECT_GT(result.alpha_cover, 0.9 * covering_radius);
+        EXPECT_EQ(result.alpha, result.alpha_cover);
+        expect_closed(result, count, 2);
     }
-    EXPECT_LT(covering_radius, 0.15);
-    const AlphaSolidResult result = solid_of(cloud);
-    // The sampled maximum may miss the true one by as much as the random points are apart.
-    EXPECT_LT(result.alpha_cover, covering_radius + 0.02);
-    expect_closed(result, 800, 2);
 }
 
 TEST(AlphaSolid, PoissonTorus_HasItsGenusAndAllPoints) {
@@ -151,7 +155,7 @@ TEST(AlphaSolid, TheReportedAlpha_GivesTheSameSolidWhenGiven) {
         if (automatic.choice != AlphaChoice::scan) continue;
         const AlphaSolidResult given = solid_of(tets, at_alpha(automatic.alpha));
         EXPECT_TRUE(std::ranges::equal(given.tets.inside, automatic.tets.inside));
-        EXPECT_EQ(given.candidates, automatic.candidates);
+        EXPECT_EQ(given.spectrum, automatic.spectrum);
     }
 }
 

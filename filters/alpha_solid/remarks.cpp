@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "alpha_solid/remarks.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace scanmill::alpha {
+
+namespace {
+
+/// Clean scans have a valid solid at alpha_cover itself; the first valid one this far above it has often closed a hole.
+constexpr double ambiguous_factor = 1.1;
+
+double number(std::string_view text) {
+    double value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
+std::string counted(std::size_t count, std::string_view one, std::string_view many) {
+    return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+    std::string text;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    return text;
+}
+
+/// What is wrong at a given alpha, and the nearest that works.
+std::string wrong_alpha(const AlphaSolidResult& result, const AlphaSolidParams& params) {
+    const std::string_view unit = symbol(result.tets.frame.unit);
+    std::vector<std::string> faults;
+    if (!result.uncovered_points.empty())
+        faults.push_back(fmt::format("{} of {} points are outside of it", result.uncovered_points.size(),
+                                     result.tets.positions.size()));
+    if (result.nonmanifold_vertices > 0)
+        faults.push_back(
+            fmt::format("its boundary has {} and {} with more than two triangles",
+                        counted(result.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices"),
+                        counted(result.nonmanifold_edges, "edge", "edges")));
+    if (params.components == AlphaComponents::single && result.components > 1)
+        faults.push_back(fmt::format("it is in {} pieces", result.components));
+    const double alpha = result.alpha, least = result.nearest_valid->least;
+    return fmt::format("at alpha {} the solid is not valid: {}; the nearest alpha that gives a valid one is {} {}{}",
+                       params.alpha->text(), joined(faults), text_within(*result.nearest_valid, alpha), unit,
+                       least > 4 * result.alpha_cover && least > alpha
+                           ? ", far above what covers the points: 'alpha: auto' repairs a smaller solid instead"
+                           : "");
+}
+
+/// An alpha that the points do not make clear, or nothing.
+std::string ambiguity(const AlphaSolidResult& result) {
+    const std::string_view unit = symbol(result.tets.frame.unit);
+    std::vector<std::string> signs;
+    if (result.choice != AlphaChoice::given && result.alpha >= ambiguous_factor * result.alpha_cover)
+        signs.push_back(
+            fmt::format("alpha {:.4g} {} is {:.3g} times the {:.4g} {} that would cover the points, because the "
+                        "smaller solids are not valid",
+                        result.alpha, unit, result.alpha / result.alpha_cover, result.alpha_cover, unit));
+    if (!result.interior_points.empty())
+        signs.push_back(fmt::format("{} of {} points lie inside the solid instead of on its boundary",
+                                    result.interior_points.size(), result.tets.positions.size()));
+    if (signs.empty()) return {};
+    return joined(signs) +
+           ": grooves, holes or thin parts narrower than 2 alpha may be filled; sculpt opens what it can, more points "
+           "there let alpha be smaller";
+}
+
+}  // namespace
+
+std::string text_within(const AlphaInterval& interval, double alpha) {
+    const bool is_above = interval.least > alpha;
+    const double end = is_above ? interval.least : interval.largest;
+    std::string text;
+    for (int digits = 4; digits <= 17; ++digits) {
+        const double last_place = std::pow(10.0, std::floor(std::log10(end)) + 1 - digits);
+        for (double candidate : {end, is_above ? end + last_place : end - last_place}) {
+            text = fmt::format("{:.{}g}", candidate, digits);
+            if (const double value = number(text); value >= interval.least && value <= interval.largest) return text;
+        }
+    }
+    return text;
+}
+
+void remark(const AlphaSolidResult& result, const AlphaSolidParams& params, Context& context) {
+    if (result.nearest_valid) {
+        context.warn(wrong_alpha(result, params));
+        return;
+    }
+    const std::string_view unit = symbol(result.tets.frame.unit);
+    if (const std::size_t uncovered = result.uncovered_points.size(); uncovered > 0)
+        context.warn(fmt::format(
+            "{} of {} points are not in or on the solid{}", uncovered, result.tets.positions.size(),
+            result.cells_left_out > 0 ? fmt::format("; {} cells of other solids were left out", result.cells_left_out)
+                                      : ""));
+    if (result.choice == AlphaChoice::repaired)
+        context.warn(
+            fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary; the one at {:.4g} {} "
+                        "was closed round its non-manifold vertices",
+                        4 * result.alpha_cover, unit, result.alpha, unit));
+    if (result.choice == AlphaChoice::hull)
+        context.warn("no alpha gives a solid with a manifold boundary; the solid is the convex hull");
+    if (const std::string text = ambiguity(result); !text.empty()) context.warn(text);
+}
+
+}  // namespace scanmill::alpha
