@@ -103,8 +103,9 @@ struct AlphaSolidResult {
 ///
 /// Metrics: alpha, alpha-cover, spectrum, cells, interior-points, uncovered-points, hidden-points, triangles. Warns, in
 /// a sentence each, about a given alpha whose solid is not valid (and names the nearest that works), points left out, a
-/// repaired or hull solid, and an ambiguous choice: interior points, or an alpha of 1.1 alpha_cover and more.
-/// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
+/// repaired or hull solid, and an ambiguous choice: points inside, or a chosen alpha far above alpha_cover or the
+/// boundary's edges. Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for
+/// alpha-shapes.
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
 
 }  // namespace scanmill

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -12,6 +13,8 @@ namespace {
 
 /// Clean scans have a valid solid at alpha_cover itself; the first valid one this far above it has often closed a hole.
 constexpr double ambiguous_factor = 1.1;
+/// And their alpha is near the length of the boundary's edges; this much more spans a gap, or reaches for outliers.
+constexpr double ambiguous_edges = 3;
 
 double number(std::string_view text) {
     double value = 0;
@@ -52,22 +55,48 @@ std::string wrong_alpha(const AlphaSolidResult& result, const AlphaSolidParams& 
                            : "");
 }
 
-/// An alpha that the points do not make clear, or nothing.
-std::string ambiguity(const AlphaSolidResult& result) {
+/// Of the edges of evenly spread triangles, some ten thousands at most. Pre: there are triangles.
+double median_edge(const TriangleMesh& mesh) {
+    constexpr std::size_t most = 1 << 16;
+    const std::size_t step = 1 + (mesh.triangles.size() - 1) / most;
+    std::vector<double> lengths;
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += step)
+        for (int i = 0; i < 3; ++i)
+            lengths.push_back(
+                (mesh.positions[mesh.triangles[t][i]] - mesh.positions[mesh.triangles[t][(i + 1) % 3]]).norm());
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::ranges::nth_element(lengths, middle);
+    return *middle;
+}
+
+/// What speaks against an alpha that was chosen.
+std::vector<std::string> doubts(const AlphaSolidResult& result) {
     const std::string_view unit = symbol(result.tets.frame.unit);
     std::vector<std::string> signs;
-    if (result.choice != AlphaChoice::given && result.alpha >= ambiguous_factor * result.alpha_cover)
+    if (result.alpha >= ambiguous_factor * result.alpha_cover)
         signs.push_back(
             fmt::format("alpha {:.4g} {} is {:.3g} times the {:.4g} {} that would cover the points, because the "
                         "smaller solids are not valid",
                         result.alpha, unit, result.alpha / result.alpha_cover, result.alpha_cover, unit));
+    if (const double edge = median_edge(result.mesh); result.alpha >= ambiguous_edges * edge)
+        signs.push_back(
+            fmt::format("alpha {:.4g} {} is {:.3g} times the boundary's median edge, to span gaps or to "
+                        "reach far points",
+                        result.alpha, unit, result.alpha / edge));
+    return signs;
+}
+
+/// That the points do not make the solid clear, or nothing.
+std::string ambiguity(const AlphaSolidResult& result) {
+    std::vector<std::string> signs;
+    if (result.choice != AlphaChoice::given) signs = doubts(result);
     if (!result.interior_points.empty())
         signs.push_back(fmt::format("{} of {} points lie inside the solid instead of on its boundary",
                                     result.interior_points.size(), result.tets.positions.size()));
     if (signs.empty()) return {};
     return joined(signs) +
-           ": grooves, holes or thin parts narrower than 2 alpha may be filled; sculpt opens what it can, more points "
-           "there let alpha be smaller";
+           ": what is narrower than 2 alpha may be filled; sculpt opens what it can, more points in gaps and thin "
+           "parts, or for outliers a lower coverage, let alpha be smaller";
 }
 
 }  // namespace

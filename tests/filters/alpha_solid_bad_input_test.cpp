@@ -118,7 +118,7 @@ TEST(AlphaSolidOfBadInput, OneOutlierAThousandDiagonalsAway_IsCoveredAndSaidOrLe
     EXPECT_TRUE(topology(all.solid.mesh).closed);
     EXPECT_GT(all.solid.alpha, 1000);
     EXPECT_EQ(all.solid.uncovered_points.size(), 0u);
-    EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("points lie inside the solid")));
+    EXPECT_THAT(all.warnings, ElementsAre(HasSubstr("times the boundary's median edge")));
 
     const Outcome most = through_both(cloud, covering(99.9));
     expect_closed(most.solid, 999, 2);

@@ -131,7 +131,8 @@ TEST(AlphaSolidGiven, TextWithin_HasTheFewestDigitsThatWork) {
 
 TEST(AlphaSolidAmbiguity, FilledLatticeCube_IsSaidToHoldPoints) {
     EXPECT_THAT(warnings_of(tets_of(lattice_cube(6)), {}),
-                ElementsAre(HasSubstr("125 of 343 points lie inside the solid instead of on its boundary: grooves")));
+                ElementsAre(HasSubstr(
+                    "125 of 343 points lie inside the solid instead of on its boundary: what is narrower than")));
 }
 
 TEST(AlphaSolidAmbiguity, AlphaFarAboveTheCover_IsSaidWithBothNumbers) {

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The vertices of well-known closed models, as if they had been scanned: which come back as what they were, and what
+/// is said about the others. Skipped where the collections are absent.
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "alpha_solid/alpha_solid.hpp"
+#include "delaunay/delaunay.hpp"
+#include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/topology.hpp"
+#include "support/real_data.hpp"
+#include "support/shapes.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace test;
+
+struct Model {
+    const char* file;  ///< under build/data, or ../shared/data when it begins with a number
+    long genus;        ///< of the model: closed and in one piece
+};
+
+void PrintTo(const Model& model, std::ostream* stream) { *stream << model.file; }
+
+std::optional<std::filesystem::path> found(const Model& model) {
+    return std::isdigit(model.file[0]) ? shared_data(model.file) : fetched_data(model.file);
+}
+
+struct Reconstruction {
+    AlphaSolidResult solid;
+    std::vector<std::string> warnings;
+};
+
+Reconstruction reconstructed(const std::filesystem::path& path) {
+    ContextOptions options;
+    options.threads = 2;
+    Context context(options);
+    const TetMesh tets = delaunay(*read_points(path), {}, context).tets;
+    return {alpha_solid(tets, {}, context), context.warnings()};
+}
+
+bool intersects_itself(const TriangleMesh& mesh) {
+    CGAL::Surface_mesh<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3> surface;
+    using Vertex = decltype(surface)::Vertex_index;
+    for (const Vec3& p : mesh.positions) surface.add_vertex({p.x(), p.y(), p.z()});
+    for (const auto& [a, b, c] : mesh.triangles)
+        if (surface.add_face(Vertex(a), Vertex(b), Vertex(c)) == decltype(surface)::null_face()) return true;
+    return CGAL::Polygon_mesh_processing::does_self_intersect(surface);
+}
+
+/// One closed, outward manifold through every point but those inside.
+void expect_promised(const AlphaSolidResult& solid, const MeshTopology& facts) {
+    EXPECT_TRUE(facts.closed);
+    EXPECT_EQ(facts.components, 1u);
+    EXPECT_EQ(facts.unused_vertices, 0u);
+    EXPECT_EQ(solid.uncovered_points.size(), 0u);
+    EXPECT_EQ(facts.vertices + solid.interior_points.size(), solid.tets.positions.size());
+    EXPECT_GT(signed_volume(solid.mesh), 0);
+    EXPECT_FALSE(intersects_itself(solid.mesh));
+}
+
+class AlphaSolidOfModel : public testing::TestWithParam<Model> {
+protected:
+    void SetUp() override {
+        const auto path = found(GetParam());
+        if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().file;
+        const MeshTopology model = topology(*read_mesh(*path));
+        ASSERT_TRUE(model.closed);
+        ASSERT_EQ(model.components, 1u);
+        ASSERT_EQ(model.genus, GetParam().genus);
+        result = reconstructed(*path);
+        facts = topology(result.solid.mesh);
+    }
+    Reconstruction result;
+    MeshTopology facts;
+};
+
+class AlphaSolidOfDenseModel : public AlphaSolidOfModel {};
+TEST_P(AlphaSolidOfDenseModel, HasTheModelsGenusAndAllItsPointsWithoutAWord) {
+    expect_promised(result.solid, facts);
+    const long points = static_cast<long>(result.solid.tets.positions.size());
+    EXPECT_EQ(static_cast<long>(facts.triangles), 2 * points - 4 + 4 * GetParam().genus);
+    EXPECT_EQ(facts.genus, GetParam().genus);
+    EXPECT_THAT(result.warnings, testing::IsEmpty());
+}
+INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfDenseModel,
+                         testing::Values(Model{"meshes/bear.off", 0}, Model{"meshes/bear_bis.off", 0},
+                                         Model{"meshes/blobby.off", 0}, Model{"meshes/cube-meshed.off", 0},
+                                         Model{"meshes/ellipe0.003.off", 0}, Model{"meshes/larger_sphere.off", 0},
+                                         Model{"meshes/retinal.off", 0}, Model{"meshes/sphere966.off", 0},
+                                         Model{"6-formats/obj/ok/trimesh_ico4.obj", 0},
+                                         Model{"6-formats/ply/ok/trimesh_sphere.ply", 0}, Model{"meshes/eight.off", 2},
+                                         Model{"meshes/knot.off", 1}, Model{"meshes/knot1.off", 1},
+                                         Model{"6-formats/stl/ok/trimesh_torus.STL", 1}));
+
+/// Dense enough for their genus, but points lie in creases and grooves narrower than 2 alpha.
+class AlphaSolidOfGroovedModel : public AlphaSolidOfModel {};
+TEST_P(AlphaSolidOfGroovedModel, HasTheModelsGenusAndSaysWhichPointsAreInside) {
+    expect_promised(result.solid, facts);
+    const long points = static_cast<long>(result.solid.tets.positions.size());
+    const long inside = static_cast<long>(result.solid.interior_points.size());
+    EXPECT_GT(inside, 0);
+    EXPECT_EQ(static_cast<long>(facts.triangles), 2 * points - 4 - 2 * inside + 4 * GetParam().genus);
+    EXPECT_EQ(facts.genus, GetParam().genus);
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_THAT(result.warnings[0], testing::HasSubstr(fmt::format("{} of {} points lie inside", inside, points)));
+}
+INSTANTIATE_TEST_SUITE_P(
+    Models, AlphaSolidOfGroovedModel,
+    testing::Values(Model{"meshes/armadillo.off", 0}, Model{"meshes/bull.off", 0}, Model{"meshes/bunny00.off", 0},
+                    Model{"meshes/cactus.off", 0}, Model{"meshes/camel.off", 0}, Model{"meshes/cow.off", 0},
+                    Model{"meshes/dino.off", 0}, Model{"meshes/diplodocus.off", 0}, Model{"meshes/fandisk.off", 0},
+                    Model{"meshes/fandisk_large.off", 0}, Model{"meshes/hand.off", 0}, Model{"meshes/handle.off", 0},
+                    Model{"meshes/homer.off", 0}, Model{"meshes/oblong.off", 0}, Model{"meshes/spool.off", 0},
+                    Model{"meshes/triceratops.off", 0}, Model{"7-seed-like/femur_gfxmorph.stl", 0},
+                    Model{"meshes/anchor_dense.off", 4}, Model{"meshes/refined_elephant.off", 3},
+                    Model{"meshes/turbine.off", 11}));
+
+/// Too thin or too sparsely sampled: another genus comes out. That cannot be seen from the points, but that alpha is
+/// doubtful can.
+class AlphaSolidOfSparseModel : public AlphaSolidOfModel {};
+TEST_P(AlphaSolidOfSparseModel, HasAnotherGenusButNotInSilence) {
+    expect_promised(result.solid, facts);
+    EXPECT_NE(facts.genus, GetParam().genus);
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_THAT(result.warnings[0], testing::HasSubstr("what is narrower than 2 alpha may be filled"));
+}
+INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfSparseModel,
+                         testing::Values(Model{"meshes/anchor.off", 4}, Model{"meshes/cheese.off", 133},
+                                         Model{"meshes/couplingdown.off", 9}, Model{"meshes/elephant.off", 3},
+                                         Model{"meshes/elk.off", 1}, Model{"meshes/femur.off", 2},
+                                         Model{"meshes/helmet.off", 3}, Model{"meshes/joint.off", 2},
+                                         Model{"meshes/man.off", 0}, Model{"meshes/pinion.off", 1},
+                                         Model{"meshes/rotor_small.off", 1}));
+
+/// Open surfaces and posts with a few far points: a solid comes out, whose alpha spans what no scan has seen.
+class AlphaSolidOfOpenModel : public testing::TestWithParam<Model> {};
+TEST_P(AlphaSolidOfOpenModel, IsASolidWithADoubtfulAlpha) {
+    const auto path = found(GetParam());
+    if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().file;
+    const Reconstruction result = reconstructed(*path);
+    expect_promised(result.solid, topology(result.solid.mesh));
+    ASSERT_EQ(result.warnings.size(), 1u);
+    EXPECT_THAT(result.warnings[0], testing::HasSubstr("times the boundary's median edge"));
+}
+INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfOpenModel,
+                         testing::Values(Model{"meshes/patch-20.off", 0}, Model{"points_3/half.xyz", 0},
+                                         Model{"points_3/radar.xyz", 0}, Model{"points_3/poste_france.xyz", 0},
+                                         Model{"4-open/holes.off", 0}));
+
+}  // namespace
+}  // namespace scanmill
