@@ -186,6 +186,9 @@ def sculpt():
             in_valley = not under and all(p in profile[lid[0] : lid[1] + 2] for p in corners) and y < 2.3
             fill = SOLID if under or (in_valley and not carved) else "none"
             picture.polygon([moved(p) for p in corners], fill, BRIGHT if in_valley and not carved else PALE, 1)
+        surface = profile if carved else profile[: lid[0] + 1] + profile[lid[1] :]
+        for a, b in itertools.pairwise(surface):
+            picture.line(moved(a), moved(b), INK, 2)
         for p in points:
             hidden = p in profile[lid[0] + 1 : lid[1]] and not carved
             picture.dot(moved(p), BRIGHT if hidden else INK, 4)
