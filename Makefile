@@ -5,7 +5,7 @@ demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fa
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo test deps data bench bench-peers bench-quality fuzz generate format lint release dev asan tsan
+.PHONY: help demo test deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
 .DEFAULT_GOAL := help
 
 help: ## list these targets
@@ -46,12 +46,23 @@ bench-peers: deps ## measure beside CGAL, PCL, Open3D, VTK and others: ROWS=dela
 	cmake --build --preset bench -j $(jobs) --target peers-drivers
 	bench/peers/run.sh build/bench $(if $(ROWS),--rows $(ROWS)) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(LARGE),--large)
 
-bench-quality: deps ## compare what `scanmill measure` says with trimesh and Open3D
+# What makes a mesh of points, and measures it.
+reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculpt scanmill-measure
+
+bench-quality: deps ## compare `scanmill measure` with trimesh and Open3D; a paper's table beside ours
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
-	cmake --build --preset bench -j $(jobs) --target scanmill scanmill-measure
+	cmake --build --preset bench -j $(jobs) --target $(reconstruction)
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
+	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
+
+bench-robustness: deps ## how much noise, and how few points, the way from points to a mesh bears
+	tools/deps.sh bench
+	tools/data.sh
+	cmake --preset bench >/dev/null
+	cmake --build --preset bench -j $(jobs) --target $(reconstruction)
+	$$(bench/peers/environment.sh build/peers/python) bench/robustness/robustness.py build/bench/bin/scanmill
 
 fuzz: ## feed hostile bytes to whatever reads files, FUZZ_SECONDS=60 for each kind, until the first finding
 	tools/deps.sh

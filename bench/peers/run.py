@@ -10,7 +10,6 @@ import importlib
 import json
 import pathlib
 import signal
-import subprocess
 import sys
 
 import programs
@@ -72,12 +71,6 @@ def versions(rows, build, limit):
     return found
 
 
-def revision():
-    ask = ["git", "-C", ROOT, "describe", "--always", "--dirty"]
-    done = subprocess.run(ask, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-    return done.stdout.strip() if done.returncode == 0 else "of an unknown revision"
-
-
 def trouble(record):
     """Why this row must not pass for a result, in sentences; none when it may."""
     if record["failure"]:
@@ -121,7 +114,7 @@ def main():
         "command": "make bench-peers" + (" LARGE=1" if options.large else "")
         + (f" ROWS={options.rows}" if options.rows else "") + (f" ROUNDS={options.rounds}" if options.rounds else ""),
         "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
-        "revision": revision(),
+        "revision": machine.revision(ROOT),
         "machine": machine.described(),
         "limit_seconds": options.limit,
         "budget_seconds": options.budget,

@@ -19,6 +19,9 @@ import numpy
 import open3d
 import trimesh
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from tables.ply import write_ply  # noqa: E402
+
 DATA = pathlib.Path("build/data")
 PAIRS = [("meshes/bunny00.off", "meshes/bunny00.off", 0.01), ("dragon/dragon_vrip.ply", "dragon/dragon_vrip_res3.ply", 0),
          ("meshes/elephant.off", "meshes/elephant-with-holes.off", 0.02), ("meshes/fandisk_large.off", "meshes/fandisk_large.off", 0.1),
@@ -36,24 +39,10 @@ def ours(program, mesh, points, folder):
     truth = folder / "points.ply"
     surface = folder / "mesh.ply"
     write_ply(surface, mesh.vertices, mesh.faces)
-    write_ply(truth, points, None)
+    write_ply(truth, points)
     said = subprocess.run([program, "measure", surface, truth, "--json", "--set", "self-intersections=false"],
                           capture_output=True, text=True, check=True)
     return json.loads(said.stdout)["metrics"]
-
-
-def write_ply(path, vertices, faces):
-    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(vertices)}",
-              *(f"property double {axis}" for axis in "xyz")]
-    if faces is not None:
-        header += [f"element face {len(faces)}", "property list uchar int vertex_indices"]
-    with open(path, "wb") as file:
-        file.write(("\n".join([*header, "end_header"]) + "\n").encode())
-        file.write(numpy.ascontiguousarray(vertices, "<f8").tobytes())
-        if faces is not None:
-            rows = numpy.empty(len(faces), dtype=[("count", "u1"), ("corners", "<i4", 3)])
-            rows["count"], rows["corners"] = 3, faces
-            file.write(rows.tobytes())
 
 
 def numbers(distances):

@@ -3,6 +3,7 @@
 import os
 import platform
 import resource
+import subprocess
 import time
 
 
@@ -32,6 +33,13 @@ def system():
         return values.get("PRETTY_NAME", "").strip('"')
     except OSError:
         return platform.system()
+
+
+def revision(root):
+    """Of the sources below `root`, "dirty" when they are not as committed."""
+    ask = ["git", "-C", str(root), "describe", "--always", "--dirty"]
+    done = subprocess.run(ask, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    return done.stdout.strip() if done.returncode == 0 else "of an unknown revision"
 
 
 def busy_and_stolen(line):

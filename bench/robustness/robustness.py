@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""robustness.py PROGRAM: how much noise and how few points the way from points to a mesh bears.
+
+Seeded points on known surfaces, one run of the program for each surface, and a verdict for every scan from what the
+program's report tells (see verdict.py). Writes results.json and results.md. Ends with 1 when the program crashed
+anywhere, or an input is missing; wrong results and refusals are what the page is about and end nothing.
+"""
+import argparse
+import os
+import pathlib
+import sys
+import tempfile
+
+BENCH = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(BENCH), str(BENCH / "peers")]
+
+import sampling  # noqa: E402
+import shapes  # noqa: E402
+import summary  # noqa: E402
+import verdict  # noqa: E402
+from harness import machine  # noqa: E402
+from tables import page, scanmill  # noqa: E402
+from tables.ply import write_ply  # noqa: E402
+
+NOISE = (0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1, 1.5, 2)
+POINTS = (100, 200, 500, 1000, 2000, 5000, 10000)
+POINTS_WITH_NOISE = 3000
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description="Success of points to mesh against noise and density.")
+    parser.add_argument("program", type=pathlib.Path, help="scanmill, with its filters")
+    parser.add_argument("--workflow", type=pathlib.Path, default=BENCH / "robustness" / "reconstruction.yaml")
+    parser.add_argument("--data", type=pathlib.Path, default=BENCH.parent / "build" / "data", help="what `make data` fetched")
+    parser.add_argument("--seeds", type=int, default=5, help="trials for each cell (default: %(default)s)")
+    parser.add_argument("--limit", type=float, default=1800, help="seconds for one run (default: %(default)s)")
+    parser.add_argument("--into", type=pathlib.Path, default=BENCH / "robustness", help="folder of the results")
+    options = parser.parse_args()
+    if options.seeds < 1:
+        parser.error(f"--seeds must be at least 1, not {options.seeds}")
+    return options
+
+
+def surfaces(data):
+    bunny = data / "meshes" / "bunny00.off"
+    if not bunny.exists():
+        sys.exit(f"error: {bunny} is not there; `make data` fetches it")
+    return [shapes.sphere(), shapes.torus(), shapes.block(), shapes.from_off("bunny", "a closed mesh of the scan", 0, bunny)]
+
+
+def write_scan(folder, trial, points):
+    path = folder / f"{trial['axis']}-{trial['level']:g}-{trial['seed']}.ply"
+    write_ply(path, points)
+    trial["points"] = len(points)
+    return str(path)
+
+
+def scans(shape, seeds, folder):
+    """Writes all clouds of a shape; their paths, each with the trial as far as it is known."""
+    found = {}
+    for seed in range(1, seeds + 1):
+        points, spacing = sampling.spread(shape, POINTS_WITH_NOISE, seed)
+        for level in NOISE:
+            moved, largest = sampling.with_noise(points, level * spacing, seed)
+            trial = {"shape": shape.name, "axis": "noise", "level": level, "seed": seed, "spacing": float(spacing),
+                     "bound": verdict.bound(float(spacing), largest)}
+            found[write_scan(folder, trial, moved)] = trial
+        for count in POINTS:
+            points_of_count, spacing_of_count = sampling.spread(shape, count, seed)
+            trial = {"shape": shape.name, "axis": "density", "level": count, "seed": seed,
+                     "spacing": float(spacing_of_count), "bound": verdict.bound(float(spacing_of_count), 0.0)}
+            found[write_scan(folder, trial, points_of_count)] = trial
+    return found
+
+
+def fill_in(trial, report, cell, genus):
+    """What the program told of one scan."""
+    steps = scanmill.steps(report, cell)
+    metrics = steps.get("measure", {}).get("metrics", {})
+    solid, sculpted = (steps.get(name, {}).get("metrics", {}) for name in ("alpha-solid", "sculpt"))
+    told = sculpted.get("interior-points"), solid.get("uncovered-points")
+    trial.update(
+        verdict=verdict.judge(cell["outcome"], cell.get("cause"), metrics, genus, trial["bound"]),
+        error=cell.get("error", ""),
+        inside=None if None in told else int(sum(told)),
+        hausdorff=metrics.get("hausdorff"),
+        mean=metrics.get("mean"),
+        closed=metrics.get("closed"),
+        components=metrics.get("components"),
+        genus=metrics.get("genus"),
+    )
+
+
+def run(shape, options, folder):
+    """All trials of a shape. A scan that the report does not tell of crashed."""
+    truth = folder / "truth.mesh.ply"
+    write_ply(truth, shape.vertices, shape.triangles)
+    trials = scans(shape, options.seeds, folder)
+    cores = len(os.sched_getaffinity(0))
+    report = scanmill.run(options.program, options.workflow, trials, folder / "out", options.limit, threads=1,
+                          jobs=cores, inputs={"truth": truth})
+    for cell in report["cells"]:
+        fill_in(trials[cell["scan"]], report, cell, shape.genus)
+    for trial in trials.values():
+        if "verdict" not in trial:
+            trial.update(verdict="crashed", error="the report does not tell of this scan", inside=None,
+                         mean=None)
+    return list(trials.values())
+
+
+def main():
+    options = arguments()
+    load = machine.Load()
+    described, trials = [], []
+    try:
+        for shape in surfaces(options.data):
+            with tempfile.TemporaryDirectory() as folder:
+                trials += run(shape, options, pathlib.Path(folder))
+            described.append({"name": shape.name, "what": shape.what, "genus": shape.genus,
+                              "triangles": len(shape.triangles)})
+    except scanmill.Broken as broken:
+        sys.exit(f"error: {broken}")
+    results = {**page.described("make bench-robustness"), "seeds": options.seeds, "points": POINTS_WITH_NOISE,
+               "load": load.described(), "shapes": described, "trials": trials}
+    lines = summary.lines(results)
+    print("\n".join(lines))
+    page.write(options.into, "results", results, lines)
+    crashed = [trial for trial in trials if trial["verdict"] == "crashed"]
+    for trial in crashed:
+        print(f"error: {trial['shape']}, {trial['axis']} {trial['level']}, seed {trial['seed']}: {trial['error']}",
+              file=sys.stderr)
+    return 1 if crashed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

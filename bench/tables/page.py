@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Generated Markdown, and the JSON behind it."""
+import datetime
+import json
+import pathlib
+
+from harness import machine
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def described(command):
+    """What made the results, when and where."""
+    return {
+        "format": 1,
+        "command": command,
+        "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        "revision": machine.revision(ROOT),
+        "machine": machine.described(),
+    }
+
+
+def heading(title, results, source):
+    """The first lines of a page: generated from what, by which command, when, on which machine."""
+    on = results["machine"]
+    return [
+        f"<!-- Generated from {source} by `{results['command']}` on {results['date']} on {on['processor']}, "
+        f"{on['cores']} cores. Do not edit. -->",
+        f"# {title}",
+        "",
+        f"{results['date']}, {on['processor']}, {on['cores']} cores, {on['memory_gibibytes']} GiB, {on['system']}, "
+        f"Linux {on['kernel']}. Scanmill {results['revision']}.",
+        "",
+    ]
+
+
+def table(header, rows):
+    """Lines of a Markdown table; cells are words."""
+    lines = [header, ["---"] * len(header), *rows]
+    return ["| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |" for cells in lines]
+
+
+def other_load(load):
+    """A line that says how quiet the machine was; see harness/machine.py."""
+    return (
+        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s taken by "
+        f"the hypervisor; all of it took {load['took_seconds']:.0f} s."
+    )
+
+
+def write(folder, name, results, lines):
+    """NAME.json and NAME.md, each whole or not at all."""
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    json_text = json.dumps(results, indent=1, allow_nan=False) + "\n"
+    for suffix, content in ((".json", json_text), (".md", "\n".join(lines).rstrip() + "\n")):
+        part = folder / (name + suffix + ".part")
+        part.write_text(content)
+        part.replace(folder / (name + suffix))
