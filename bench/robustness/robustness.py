@@ -32,7 +32,8 @@ def arguments():
     parser = argparse.ArgumentParser(description="Success of points to mesh against noise and density.")
     parser.add_argument("program", type=pathlib.Path, help="scanmill, with its filters")
     parser.add_argument("--workflow", type=pathlib.Path, default=BENCH / "robustness" / "reconstruction.yaml")
-    parser.add_argument("--data", type=pathlib.Path, default=BENCH.parent / "build" / "data", help="what `make data` fetched")
+    parser.add_argument("--data", type=pathlib.Path, default=BENCH.parent / "build" / "data",
+                        help="what `make data` fetched")
     parser.add_argument("--seeds", type=int, default=5, help="trials for each cell (default: %(default)s)")
     parser.add_argument("--limit", type=float, default=1800, help="seconds for one run (default: %(default)s)")
     parser.add_argument("--into", type=pathlib.Path, default=BENCH / "robustness", help="folder of the results")
@@ -46,7 +47,8 @@ def surfaces(data):
     bunny = data / "meshes" / "bunny00.off"
     if not bunny.exists():
         sys.exit(f"error: {bunny} is not there; `make data` fetches it")
-    return [shapes.sphere(), shapes.torus(), shapes.block(), shapes.from_off("bunny", "a closed mesh of the scan", 0, bunny)]
+    return [shapes.sphere(), shapes.torus(), shapes.block(),
+            shapes.from_off("bunny", "a closed mesh of the scan", 0, bunny)]
 
 
 def write_scan(folder, trial, points):

@@ -64,6 +64,17 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(figures.cores(entry("a", [1.0, 1.0], cpu_seconds=3.0)), 1.5)
         self.assertIsNone(figures.cores(entry("a", [0.1])))
 
+    def test_bytes_are_counted_beyond_the_loaded_input(self):
+        one = entry("scanmill", [1.0], resident_mebibytes_before=10.0, peak_mebibytes=14.0, facts={"cells": 2**20})
+        self.assertEqual(figures.bytes_per(one, "cells"), 4.0)
+        for unknown in ({"peak_mebibytes": None}, {"peak_counts_loading": True}, {"failure": "gone"}, {"facts": {}}):
+            self.assertIsNone(figures.bytes_per({**one, **unknown}, "cells"))
+
+    def test_growth_is_the_ratio_of_the_medians(self):
+        large, small = entry("scanmill", [30.0, 10.0, 20.0]), entry("scanmill", [2.0])
+        self.assertEqual(figures.growth(large, small), 10.0)
+        self.assertIsNone(figures.growth(large, entry("scanmill", [2.0], failure="gone")))
+
     def test_busy_time_leaves_out_idle_waiting_and_stolen(self):
         self.assertEqual(machine.busy_and_stolen("cpu  1 2 4 1000 1000 8 16 32 64 128"), (31, 32))
 
@@ -123,6 +134,22 @@ class PageTest(unittest.TestCase):
         page = self.page(entry("scanmill", [1.0], checked=0), entry("pcl", [2.0], varied=["cells"]))
         self.assertIn("- scanmill: nothing of its result could be checked", page)
         self.assertIn("- pcl: not the same in every round: cells", page)
+
+    def test_memory_per_element_stands_below_when_the_row_asks_for_it(self):
+        cloud = results([entry("scanmill", [1.0], facts={"cells": 9 * 2**20})])
+        cloud["rows"][0]["peak_per"] = "cells"
+        self.assertIn("- Bytes of the peak beyond the loaded input, for each of the cells: scanmill 1", table.page(cloud))
+        self.assertNotIn("Bytes of the peak", self.page(entry("scanmill", [1.0], facts={"cells": 9 * 2**20})))
+
+    def test_growth_stands_below_the_larger_row_when_both_ran(self):
+        both = results([entry("scanmill", [1.0], threads=2), entry("pcl", [2.0])])
+        large = results([entry("scanmill", [15.0], threads=2), entry("pcl", [20.0])])["rows"][0]
+        large.update(name="large", grows_from="thin", inputs=[{"what": "a torus", "points": 10_000}])
+        both["rows"].append(large)
+        grown = "- Beside `thin`, with 10.0 times the points: scanmill, 2 threads 15.0 times, pcl 10.0 times the seconds"
+        self.assertIn(grown, table.page(both))
+        both["rows"] = [large]
+        self.assertNotIn("Beside `thin`", table.page(both))
 
     def test_missing_input_fails_the_row(self):
         self.assertIn("**failed**: bunny.off is not there", self.page(failure="bunny.off is not there"))

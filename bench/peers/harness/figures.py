@@ -21,6 +21,22 @@ def ratio(ours, other):
     return spread([a / b for a, b in zip(ours["seconds"], other["seconds"])])
 
 
+def bytes_per(contender, fact):
+    """What the peak adds to what was resident before, for each of a fact's elements; None when one is not known."""
+    peak, before = contender["peak_mebibytes"], contender["resident_mebibytes_before"]
+    count = contender["facts"].get(fact)
+    if not counts(contender) or not peak or not before or not count or contender["peak_counts_loading"]:
+        return None
+    return (peak - before) * 2**20 / count
+
+
+def growth(contender, smaller):
+    """Median seconds over those of the same contender on a smaller input; None when one of them failed."""
+    if not counts(contender) or not counts(smaller):
+        return None
+    return spread(contender["seconds"])[0] / spread(smaller["seconds"])[0]
+
+
 def cores(contender):
     """Processor time over time in the counted rounds; None for less than half a second: it comes in ticks of 10 ms."""
     total = sum(contender["seconds"])

@@ -39,6 +39,10 @@ class Row:
     rounds: int = 5
     #: One round before the counted ones. Without it the first time a program does its work counts.
     warm_up: bool = True
+    #: A fact that counts elements: what the peak adds to the loaded input is told per element as well.
+    peak_per: str = ""
+    #: The name of a row with the same contenders on a smaller input: how much longer this one takes is told.
+    grows_from: str = ""
 
 
 def in_threads(counts, program, work, **more):

@@ -55,10 +55,38 @@ def line(entry, ours):
     return cells + [result(entry)]
 
 
-def remarks(row):
+def called(entry):
+    return entry["name"] + (f", {entry['threads']} threads" if (entry["threads"] or 1) > 1 else "")
+
+
+def points(row):
+    return row["inputs"][0].get("points", 0) if row["inputs"] else 0
+
+
+def growths(row, smaller):
+    """How much longer each contender took than on the smaller input of another row."""
+    before = {called(entry): entry for entry in smaller["contenders"]}
+    told = [(called(entry), figures.growth(entry, before[called(entry)]))
+            for entry in row["contenders"] if called(entry) in before]
+    words = [f"{who} {times:.1f} times" for who, times in told if times]
+    if words and points(smaller):
+        yield (f"Beside `{smaller['name']}`, with {points(row) / points(smaller):.1f} times the points: "
+               f"{', '.join(words)} the seconds")
+
+
+def memory(row):
+    """Peaks per element, in a line."""
+    fact = row.get("peak_per", "")
+    told = [(called(entry), figures.bytes_per(entry, fact)) for entry in row["contenders"]]
+    words = [f"{who} {per:.0f}" for who, per in told if per is not None]
+    if words:
+        yield f"Bytes of the peak beyond the loaded input, for each of the {fact}: {', '.join(words)}"
+
+
+def remarks(row, smaller=None):
     """What a reader of the table must know besides."""
     for entry in row["contenders"]:
-        who = entry["name"] + (f", {entry['threads']} threads" if (entry["threads"] or 1) > 1 else "")
+        who = called(entry)
         if entry["differs"]:
             yield f"† {who}: {entry['differs']}"
         if entry["unequal"]:
@@ -69,6 +97,9 @@ def remarks(row):
             yield f"{who}: not the same in every round: {', '.join(entry['varied'])}"
         if entry["peak_counts_loading"] and entry["peak_mebibytes"] is not None:
             yield f"{who}: its peak counts loading the input too"
+    yield from memory(row)
+    if smaller:
+        yield from growths(row, smaller)
     load = row["load"]
     yield (
         f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s taken by "
@@ -77,7 +108,8 @@ def remarks(row):
     )
 
 
-def section(row):
+def section(row, smaller=None):
+    """`smaller` is the record of the row that it grows from, when that ran too."""
     lines = [f"## {row['title']}", "", f"`ROWS={row['name']}`"]
     for one in row["inputs"]:
         counts = ", ".join(f"{value:,} {name}" for name, value in one.items() if name != "what")
@@ -90,7 +122,7 @@ def section(row):
     header += ["peak", "cores", "result"]
     rows = [header, ["---"] * len(header)] + [line(entry, ours) for entry in row["contenders"]]
     lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |" for cells in rows]
-    return lines + [""] + [f"- {remark}" for remark in remarks(row)] + [""]
+    return lines + [""] + [f"- {remark}" for remark in remarks(row, smaller)] + [""]
 
 
 def page(results):
@@ -109,6 +141,7 @@ def page(results):
         NOTES,
         "",
     ]
+    ran = {row["name"]: row for row in results["rows"] if not row["failure"]}
     for row in results["rows"]:
-        lines += section(row)
+        lines += section(row, ran.get(row.get("grows_from")))
     return "\n".join(lines).rstrip() + "\n"

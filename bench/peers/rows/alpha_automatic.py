@@ -5,13 +5,11 @@ from harness.row import Contender, Row, in_threads
 
 def rows(inputs, large):
     dragon = inputs.scan("dragon", "dragon/dragon_vrip.ply")
-    found = [
+    return [
         row("alpha-automatic-bunny", "bunny", inputs.scan("bunny", "meshes/bunny00.off")),
         row("alpha-automatic-dragon", "dragon", dragon, warm_up=False, rounds=2),
+        row("alpha-automatic-torus", "bumpy torus", inputs.torus(350_000), warm_up=False, rounds=2),
     ]
-    if large:
-        found.append(row("alpha-automatic-torus", "bumpy torus", inputs.torus(350_000), warm_up=False))
-    return found
 
 
 def row(name, shape, cloud, **more):

@@ -10,11 +10,12 @@ def rows(inputs, large):
         row("delaunay-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply")),
     ]
     if large:
-        found.append(row("delaunay-large-torus", "large bumpy torus", inputs.torus(3_500_000)))
+        torus = inputs.torus(3_500_000)
+        found.append(row("delaunay-large-torus", "large bumpy torus", torus, grows_from="delaunay-torus"))
     return found
 
 
-def row(name, shape, cloud):
+def row(name, shape, cloud, **more):
     load = cloud.load()
     return Row(
         name=name,
@@ -30,4 +31,6 @@ def row(name, shape, cloud):
         equal="the points in memory, as doubles; the cells. We also deliver them as arrays in canonical order with "
         "neighbours; CGAL leaves its own structure, whose destruction is not counted; qhull's tests are not exact.",
         agree={"cells": 0, "vertices": 0},
+        peak_per="cells",
+        **more,
     )

@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""bernardini_table_1.py PROGRAM: Table 1 of Bernardini et al. 1997 beside what we make of like objects.
+
+Runs the workflow over all objects, ROUNDS times with one thread and with all, without a cache. Every number is from the
+program's own JSON: the metrics and seconds of the steps, and the facts of the mesh that was written. Writes
+bernardini-table-1.md and .json. Ends with 1 when a run failed, or a fetched file is missing.
+"""
+import argparse
+import pathlib
+import sys
+import tempfile
+
+BENCH = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(BENCH), str(BENCH / "peers")]
+
+import table_1_page  # noqa: E402
+from harness import machine  # noqa: E402
+from paper_table_1 import STAND_INS  # noqa: E402
+from tables import page, scanmill  # noqa: E402
+
+ROOT = BENCH.parent
+FILTERS = ("delaunay", "alpha-solid", "sculpt")
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description="The paper's Table 1 beside ours.")
+    parser.add_argument("program", type=pathlib.Path, help="scanmill, with its filters")
+    parser.add_argument("--workflow", type=pathlib.Path, default=ROOT / "workflows" / "bernardini-1997.yaml")
+    parser.add_argument("--data", type=pathlib.Path, default=ROOT / "build" / "data", help="what `make data` fetched")
+    parser.add_argument("--more-data", type=pathlib.Path, default=ROOT.parent / "shared" / "data",
+                        help="files that may be there or not (default: %(default)s)")
+    parser.add_argument("--rounds", type=int, default=5, help="runs for each number of threads (default: %(default)s)")
+    parser.add_argument("--limit", type=float, default=600, help="seconds for one run (default: %(default)s)")
+    parser.add_argument("--into", type=pathlib.Path, default=BENCH / "quality", help="folder of the results")
+    options = parser.parse_args()
+    if options.rounds < 1:
+        parser.error(f"--rounds must be at least 1, not {options.rounds}")
+    return options
+
+
+def begun(one, options):
+    """The entry of an object as far as it is known before the run."""
+    path = (options.data if one.fetched else options.more_data) / one.file
+    entry = {"paper": one.paper, "file": one.file, "what": one.what, "failure": "", "skipped": ""}
+    if not path.exists() and one.fetched:
+        entry["failure"] = f"{one.file} is not there; `make data` fetches it"
+    elif not path.exists():
+        entry["skipped"] = f"{one.file} is not there, and `make data` does not fetch it"
+    return entry, path
+
+
+def judged(report, cell):
+    """What the report says of one object: counts and topology, and the seconds of the three filters together."""
+    if cell["outcome"] != "done":
+        return {"failure": cell.get("error", cell["outcome"])}
+    steps = scanmill.steps(report, cell)
+    missing = [name for name in FILTERS if name not in steps]
+    if missing:
+        raise scanmill.Broken(f"the workflow has no step {' and no '.join(missing)}")
+    tets, solid, sculpted = (steps[name]["metrics"] for name in FILTERS)
+    facts = scanmill.mesh(cell)["facts"]
+    return {
+        "points": int(steps["read"]["facts"]["points"]),
+        "duplicates": int(tets["duplicates"]),
+        "alpha": solid["alpha"],
+        "tetrahedra": int(solid["cells"]),
+        "inside_before": int(solid["interior-points"]),
+        "uncovered": int(solid["uncovered-points"]),
+        "removed": int(sculpted["removed"]),
+        "exposing": int(sculpted["removed-exposing"]),
+        "inside": int(sculpted["interior-points"]),
+        "triangles": int(facts["triangles"]),
+        "closed": facts["closed"],
+        "components": int(facts["components"]),
+        "genus": int(facts["genus"]) if "genus" in facts else None,
+        "seconds": sum(steps[name]["seconds"] for name in FILTERS),
+    }
+
+
+def beside_its_model(options, path, mesh):
+    """The scan's own spacing and topology; for a scan that is a mesh also how far the result is from it."""
+    said = scanmill.info(options.program, path)
+    found = {"spacing": said["spacing"], "model": None}
+    if said["kind"] == "mesh":
+        distances = scanmill.measure(options.program, mesh, path, options.limit,
+                                     ["self-intersections=false", "same-frame=true"])
+        found["model"] = {"closed": said["closed"], "genus": said.get("genus"), "components": said["components"],
+                          "largest_distance": distances["hausdorff"] / said["diagonal"],
+                          "mean_distance": distances["mean"] / said["diagonal"]}
+    return found
+
+
+def take(entry, judgement, threads):
+    """Adds one run. Only seconds may differ between runs."""
+    if judgement.get("failure"):
+        entry["failure"] = judgement["failure"]
+        return
+    seconds = judgement.pop("seconds")
+    different = [name for name, value in judgement.items() if "seconds" in entry and entry[name] != value]
+    if different:
+        raise scanmill.Broken(f"{entry['file']}: two runs came to different {', '.join(different)}")
+    entry.update(judgement)
+    entry.setdefault("seconds", {}).setdefault(threads, []).append(seconds)
+
+
+def run(options, folder):
+    """Entries in the order of STAND_INS."""
+    pairs = [begun(one, options) for one in STAND_INS]
+    there = {str(path): (entry, path) for entry, path in pairs if not entry["failure"] and not entry["skipped"]}
+    for number in range(options.rounds):
+        for threads in ("1", "all"):
+            into = folder / f"{threads}-{number}"
+            report = scanmill.run(options.program, options.workflow, there, into, options.limit,
+                                  threads=1 if threads == "1" else 0)
+            for cell in report["cells"]:
+                entry, path = there[cell["scan"]]
+                take(entry, judged(report, cell), threads)
+                if not entry["failure"] and "spacing" not in entry:
+                    entry.update(beside_its_model(options, path, scanmill.mesh(cell)["file"]))
+    return [entry for entry, _ in pairs]
+
+
+def main():
+    options = arguments()
+    load = machine.Load()
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            entries = run(options, pathlib.Path(folder))
+    except scanmill.Broken as broken:
+        sys.exit(f"error: {broken}")
+    results = {**page.described("make bench-quality"), "rounds": options.rounds, "load": load.described(),
+               "objects": entries}
+    lines = table_1_page.lines(results)
+    print("\n".join(lines))
+    page.write(options.into, "bernardini-table-1", results, lines)
+    failed = [entry for entry in entries if entry["failure"]]
+    for entry in failed:
+        print(f"error: {entry['file']}: {entry['failure']}", file=sys.stderr)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
