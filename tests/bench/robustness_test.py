@@ -33,6 +33,8 @@ class VerdictTest(unittest.TestCase):
         for name, expected in (("closed", "open"), ("components", "pieces"), ("genus", "genus"), ("hausdorff", "far")):
             for value in (None, float("nan")):
                 self.assertEqual(judged(**{name: value}), expected)
+            without = {other: value for other, value in GOOD.items() if other != name}
+            self.assertEqual(verdict.judge("done", None, without, 1, 0.3), expected)
 
     def test_bound_grows_with_spacing_and_with_the_farthest_move(self):
         self.assertEqual(verdict.bound(0.1, 0.0), verdict.GAP * 0.1)

@@ -81,6 +81,7 @@ class PageTest(unittest.TestCase):
 
     def test_counts_that_contradict_each_other_are_told(self):
         self.assertEqual(page.expected_triangles(entry()), 1994)
+        self.assertEqual(page.expected_triangles(entry(components=2)), 1990)
         self.assertNotIn("contradict", page.remark(entry()))
         self.assertIn("1,990 triangles, where points, pieces and handles ask for 1,994", page.remark(entry(triangles=1990)))
 

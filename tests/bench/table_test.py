@@ -148,6 +148,7 @@ class PageTest(unittest.TestCase):
         both["rows"].append(large)
         grown = "- Beside `thin`, with 10.0 times the points: scanmill, 2 threads 15.0 times, pcl 10.0 times the seconds"
         self.assertIn(grown, table.page(both))
+        self.assertEqual(table.page(both).count("- Beside"), 1)
         both["rows"] = [large]
         self.assertNotIn("Beside `thin`", table.page(both))
 

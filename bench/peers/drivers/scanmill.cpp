@@ -11,6 +11,7 @@
 #include "delaunay/delaunay.hpp"
 #include "measure/nearest_distances.hpp"
 #include "scanmill/formats/files.hpp"
+#include "sculpt/sculpt.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace {
@@ -97,6 +98,31 @@ Json solid(Held& held, const Json& request) {
     return {{"seconds", seconds}, {"alpha", result.alpha}, {"triangles", result.mesh.triangles.size()}};
 }
 
+/// From points to the sculpted mesh. What a step does not need any more is given back before the next, as between the
+/// steps of a workflow.
+Json sculpted(Held& held, const Json& request) {
+    Context context = context_for(request);
+    std::optional<DelaunayResult> tets;
+    const double tetrahedralising = peers::seconds_of([&] { tets = delaunay(held.cloud, {}, context); });
+    const std::size_t cells = tets->tets.cells.size();
+    std::optional<AlphaSolidResult> solid;
+    const double choosing = peers::seconds_of([&] {
+        solid = alpha_solid(tets->tets, {}, context);
+        tets.reset();
+    });
+    SculptResult result;
+    const double sculpting = peers::seconds_of([&] { result = sculpt(solid->tets, {}, context); });
+    return {{"seconds", tetrahedralising + choosing + sculpting},
+            {"delaunay_seconds", tetrahedralising},
+            {"alpha_solid_seconds", choosing},
+            {"sculpt_seconds", sculpting},
+            {"cells", cells},
+            {"alpha", solid->alpha},
+            {"removed", result.removals.size()},
+            {"interior_points", result.blocked_points.size() + result.deep_points.size()},
+            {"triangles", result.mesh.triangles.size()}};
+}
+
 Json distances(Held& held, const Json& request) {
     Context context = context_for(request);
     std::optional<TriangleTree> tree;
@@ -128,6 +154,7 @@ int main() {
                           {"voxel-thin", with_held(thin)},
                           {"delaunay", with_held(tetrahedralise)},
                           {"alpha-solid", with_held(solid)},
+                          {"sculpt", with_held(sculpted)},
                           {"distances", with_held(distances)}},
                          {{"Scanmill", SCANMILL_VERSION}});
 }
