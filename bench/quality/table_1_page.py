@@ -9,13 +9,15 @@ HEADER = ["object", "points n", "time", "tetrahedra of the alpha-solid", "per po
           "triangles − (2n − 4)", "points left inside", "genus", "alpha / spacing"]
 
 NOTES = """\
-Lines in bold are printed in the paper ({machine}; the times are minutes, for all of it: tetrahedralisation, alpha-shapes,
-choice of alpha, sculpting). Below each stand our objects of its kind, and **none of them is the paper's data**, which is
-not published: so shares and counts per point can be compared, totals cannot. Ours are delaunay, alpha-solid and sculpt
-in seconds, with one thread, and with all after the slash; medians of {rounds}. Reading and writing files is in neither.
+Lines in bold are printed in the paper ({machine}; the times are minutes, for all of it:
+tetrahedralisation, alpha-shapes, choice of alpha, sculpting). Below each stand our objects of its kind, and **none of
+them is the paper's data**, which is not published: so shares and counts per point can be compared, totals cannot. Ours
+are delaunay, alpha-solid and sculpt in seconds, with one thread, and with all after the slash; rounds: {rounds}, the
+median counts. Reading and writing files is not in ours.
 
-A closed surface of genus 0 through all n points has 2n − 4 triangles; every point left inside takes 2 away, every handle
-adds 4, and each piece beyond the first takes 4 away. The paper tells neither what it left inside nor the genus."""
+A closed surface of genus 0 through all n points has 2n − 4 triangles; every point left inside takes 2 away, every
+handle adds 4, and each piece beyond the first takes 4 away. The paper tells neither what it left inside nor the
+genus."""
 
 
 def distinct(entry):
@@ -112,8 +114,8 @@ def conclusion(entries):
     left = sorted((entry for entry in done if entry not in whole), key=lambda entry: -entry["alpha"] / entry["spacing"])
     if left:
         text += "; points are left inside " + ", ".join(
-            f"{entry['file']} ({entry['inside'] + entry['uncovered']:,}, alpha of {entry['alpha'] / entry['spacing']:.0f} "
-            "spacings)" for entry in left)
+            f"{entry['file']} ({entry['inside'] + entry['uncovered']:,}, alpha of "
+            f"{entry['alpha'] / entry['spacing']:.0f} spacings)" for entry in left)
     return (f"{text}. The slowest per point is {worst['file']}, with "
             f"{10_000 * seconds(worst, '1') / distinct(worst):.2f} s for 10,000 points on one core.")
 

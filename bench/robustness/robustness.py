@@ -107,7 +107,7 @@ def run(shape, options, folder):
     for trial in trials.values():
         if "verdict" not in trial:
             trial.update(verdict="crashed", error="the report does not tell of this scan", inside=None,
-                         mean=None)
+                         mean=None, hausdorff=None)
     return list(trials.values())
 
 

@@ -27,7 +27,8 @@ def torus(rows=400, columns=160):
     around, along = numpy.meshgrid(2 * numpy.pi * numpy.arange(rows) / rows,
                                    2 * numpy.pi * numpy.arange(columns) / columns, indexing="ij")
     from_axis = 1 + 0.4 * numpy.cos(along)
-    vertices = numpy.stack([from_axis * numpy.cos(around), from_axis * numpy.sin(around), 0.4 * numpy.sin(along)], axis=2)
+    height = 0.4 * numpy.sin(along)
+    vertices = numpy.stack([from_axis * numpy.cos(around), from_axis * numpy.sin(around), height], axis=2)
     return Shape("torus", "radii 1 and 0.4", 1, vertices.reshape(-1, 3), grid_triangles(rows, columns))
 
 
@@ -69,8 +70,8 @@ def block():
         for (dx, dy), (begin, end) in sides.items():
             if (x + dx, y + dy) not in solid:
                 quad((*begin, 0), (*end, 0), (*end, 1), (*begin, 1))
-    return Shape("block", "5 × 3 × 1 with two square holes of edge 1 through it", 2, numpy.array(list(corners), float),
-                 numpy.array(triangles))
+    what = "5 × 3 × 1 with two square holes of edge 1 through it"
+    return Shape("block", what, 2, numpy.array(list(corners), float), numpy.array(triangles))
 
 
 def from_off(name, what, genus, path):

@@ -6,14 +6,15 @@ import verdict
 from tables import page
 
 NOTES = """\
-`delaunay`, `alpha-solid` and `sculpt` as they are, without any parameter and without any clean-up before them. A success is
-a closed manifold of one piece, with as many handles as the truth, whose Hausdorff distance from the truth (as `measure`
-samples it, both ways) is at most {gap:g} spacings and as much again as the farthest point was moved: a mesh through the points cannot be nearer.
-With much noise that bound is wide, so the mean distance and the points that the mesh leaves out are to be read beside it.
-Everything else is a failure, and what the program would not or could not do is counted apart from what it did wrong.
+`delaunay`, `alpha-solid` and `sculpt` as they are, without any parameter and without any clean-up before them. A
+success is a closed manifold of one piece, with as many handles as the truth, whose Hausdorff distance from the truth
+(as `measure` samples it, both ways) is at most {gap:g} spacings, for the gaps between points, plus what the farthest point
+was moved, for a mesh through the points is as far away as they are. With much noise that bound is wide: a success then
+means that the mesh is no worse than its points, and the distances below tell how bad those are. Everything else is a
+failure, and what the program would not or could not do is counted apart from what it did wrong.
 
-Points keep their distance, the *spacing*, from each other and leave no gap on the surface; every coordinate is then moved
-by a normally distributed error whose deviation is given as a share of the spacing. {seeds} seeds for each cell."""
+Points keep their distance, the *spacing*, from each other and leave no gap on the surface; every coordinate is then
+moved by a normally distributed error whose deviation is given as a share of the spacing. Seeds for each cell: {seeds}."""
 
 
 def cells_of(trials, shape, axis):
@@ -42,10 +43,18 @@ def inside(trials):
     return f"{100 * statistics.median(shares):.1f} %" if shares else "–"
 
 
-def mean_distance(trials):
-    """Median of the mean distances between mesh and truth, in spacings, of the trials that tell one."""
-    told = [trial["mean"] / trial["spacing"] for trial in trials if trial["mean"] is not None]
+def distance(trials, name):
+    """Median of a distance between mesh and truth, in spacings, of the trials that tell it."""
+    told = [trial[name] / trial["spacing"] for trial in trials if trial[name] is not None]
     return f"{statistics.median(told):.2f}" if told else "–"
+
+
+def mean_distance(trials):
+    return distance(trials, "mean")
+
+
+def largest_distance(trials):
+    return distance(trials, "hausdorff")
 
 
 def table(trials, shapes, axis, show):
@@ -55,32 +64,38 @@ def table(trials, shapes, axis, show):
     return page.table([title, *(f"{level:g}" if axis == "noise" else f"{level:,}" for level in levels)], rows)
 
 
-def noise_border(shape, last, first):
-    if last is None:
-        text = f"the {shape} fails sometimes even without noise"
-    else:
-        text = f"the {shape} always succeeds up to {last:g}"
-    return text + (f" and never from {first:g} on" if first is not None else " and sometimes still at the most tried")
+def noise_border(shape, cells):
+    last, never = verdict.reliable_until(cells)
+    text = f"the {shape} " + ("fails sometimes even without noise" if last is None else
+                              f"always succeeds up to {last:g}")
+    if last == cells[-1][0]:
+        return text + ", the most tried"
+    return text + (f" and never from {never:g} on" if never is not None else
+                   f" and at {cells[-1][0]:g} still sometimes")
 
 
-def density_border(shape, last, first):
-    text = f"the {shape} " + (f"always succeeds from {last:,} points on" if last is not None
-                              else "fails sometimes even with the most points")
-    return text + (f" and never with {first:,} or fewer" if first is not None else " and sometimes with the fewest tried")
+def density_border(shape, cells):
+    last, never = verdict.reliable_until(cells)
+    text = f"the {shape} " + ("fails sometimes even with the most points" if last is None else
+                              f"always succeeds from {last:,} points on")
+    if last == cells[-1][0]:
+        return text + ", the fewest tried"
+    return text + (f" and never with {never:,} or fewer" if never is not None else
+                   f" and with {cells[-1][0]:,} still sometimes")
 
 
 def border(trials, shapes):
     """The paragraph that says where the method ends, from the table alone."""
-    noise = [(shape["name"], *verdict.reliable_until(verdicts_of(trials, shape["name"], "noise"))) for shape in shapes]
-    density = [(shape["name"], *verdict.reliable_until(verdicts_of(trials, shape["name"], "density")))
-               for shape in shapes]
-    lasts = [last for _, last, _ in noise]
+    names = [shape["name"] for shape in shapes]
+    noise, density = ({name: verdicts_of(trials, name, axis) for name in names} for axis in ("noise", "density"))
+    lasts = [verdict.reliable_until(cells)[0] for cells in noise.values()]
     if None in lasts:
         text = "There is no noise, not even none at all, at which every shape always succeeds"
     else:
         text = f"Noise of up to {min(lasts):g} spacings is borne by every shape and seed"
-    text += ": " + "; ".join(noise_border(*line) for line in noise) + ". "
-    text += "Without noise " + "; ".join(density_border(*line) for line in density) + ". "
+    text += ": " + "; ".join(noise_border(name, cells) for name, cells in noise.items()) + ". "
+    borders = (density_border(name, cells) for name, cells in density.items())
+    text += f"Without noise {'; '.join(borders)}. "
     text += interpolation(trials, shapes) + " "
     wrong = [trial["verdict"] for trial in trials if trial["verdict"] != verdict.SUCCESS]
     if not wrong:
@@ -108,12 +123,19 @@ def interpolation(trials, shapes):
     return f"With every point on the surface as well: {', '.join(words)}."
 
 
+SHOWN = {
+    "Of the points, not on the surface (median):": inside,
+    "Mean distance between mesh and truth, in spacings (median):": mean_distance,
+    "Hausdorff distance between mesh and truth, in spacings (median):": largest_distance,
+}
+
+
 def section(trials, shapes, axis):
-    """The three tables of one axis."""
+    """The tables of one axis."""
     text = table(trials, shapes, axis, cell)
-    text += ["", "Of the points, not on the surface (median):", "", *table(trials, shapes, axis, inside)]
-    return text + ["", "Mean distance between mesh and truth, in spacings (median):", "",
-                   *table(trials, shapes, axis, mean_distance), ""]
+    for title, show in SHOWN.items():
+        text += ["", title, "", *table(trials, shapes, axis, show)]
+    return text + [""]
 
 
 def lines(results):

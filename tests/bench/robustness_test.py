@@ -64,7 +64,7 @@ class BorderTest(unittest.TestCase):
 
 def trial(level, judgement, axis="noise", inside=0, mean=0.01, error="", shape="ball"):
     return {"shape": shape, "axis": axis, "level": level, "seed": 1, "points": 200, "spacing": 0.1, "bound": 0.15,
-            "verdict": judgement, "inside": inside, "mean": mean, "error": error}
+            "verdict": judgement, "inside": inside, "mean": mean, "hausdorff": mean and 2 * mean, "error": error}
 
 
 TRIALS = [
@@ -89,6 +89,7 @@ class SummaryTest(unittest.TestCase):
         levels = dict(summary.cells_of(TRIALS, "ball", "noise"))
         self.assertEqual([summary.inside(levels[level]) for level in (0, 1, 2)], ["1.0 %", "7.5 %", "50.0 %"])
         self.assertEqual([summary.mean_distance(levels[level]) for level in (0, 2)], ["0.10", "2.00"])
+        self.assertEqual(summary.largest_distance(levels[2]), "4.00")
         self.assertEqual(summary.inside([trial(3, "crashed", inside=None)]), "–")
 
     def test_density_goes_from_many_points_to_few(self):
@@ -102,6 +103,17 @@ class SummaryTest(unittest.TestCase):
         self.assertIn("ball not even without noise", text)  # 4 points were left inside
         self.assertIn("Of 8 trials 4 failed, most often because it has another number of handles (2)", text)
         self.assertIn("refused 1 and crashed in 0; in the other 3", text)
+
+    def test_border_at_the_end_of_what_was_tried_is_told_as_such(self):
+        good, mixed = ("success", "success"), ("success", "far")
+        self.assertEqual(summary.noise_border("ball", [(0, good), (2, good)]),
+                         "the ball always succeeds up to 2, the most tried")
+        self.assertEqual(summary.noise_border("ball", [(0, mixed), (2, mixed)]),
+                         "the ball fails sometimes even without noise and at 2 still sometimes")
+        self.assertEqual(summary.density_border("ball", [(900, good), (100, good)]),
+                         "the ball always succeeds from 100 points on, the fewest tried")
+        self.assertEqual(summary.density_border("ball", [(900, good), (100, mixed)]),
+                         "the ball always succeeds from 900 points on and with 100 still sometimes")
 
     def test_page_shows_every_cell_and_what_the_program_said(self):
         load = {"took_seconds": 9.0, "others_cores": 0.5, "stolen_cpu_seconds": 0.0}
