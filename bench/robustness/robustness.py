@@ -78,14 +78,19 @@ def scans(shape, seeds, folder):
 
 def fill_in(trial, report, cell, genus):
     """What the program told of one scan."""
-    steps = scanmill.steps(report, cell)
-    metrics = steps.get("measure", {}).get("metrics", {})
-    solid, sculpted = (steps.get(name, {}).get("metrics", {}) for name in ("alpha-solid", "sculpt"))
-    told = sculpted.get("interior-points"), solid.get("uncovered-points")
+    steps = scanmill.named(report, cell)
+    names = ("alpha-solid", "sculpt", "before-sculpting", "sculpted")
+    solid, carved, before, metrics = (steps.get(name, {}).get("metrics", {}) for name in names)
+    told = carved.get("interior-points"), solid.get("uncovered-points")
+    outcome, cause = cell["outcome"], cell.get("cause")
     trial.update(
-        verdict=verdict.judge(cell["outcome"], cell.get("cause"), metrics, genus, trial["bound"]),
-        error=cell.get("error", ""),
+        verdict=verdict.judge(outcome, cause, metrics, genus, trial["bound"]),
+        # What came later may have failed; the alpha-solid was measured all the same.
+        before=verdict.judge("done" if before else outcome, cause, before, genus, trial["bound"]),
+        inside_before=int(solid["interior-points"]) if "interior-points" in solid else None,
+        error=cell.get("error", "").partition("\n")[0],  # the rest tells where, in this run's folder
         inside=None if None in told else int(sum(told)),
+        warned=any(steps.get(name, {}).get("warnings") for name in ("delaunay", "alpha-solid", "sculpt")),
         hausdorff=metrics.get("hausdorff"),
         mean=metrics.get("mean"),
         closed=metrics.get("closed"),
@@ -106,8 +111,8 @@ def run(shape, options, folder):
         fill_in(trials[cell["scan"]], report, cell, shape.genus)
     for trial in trials.values():
         if "verdict" not in trial:
-            trial.update(verdict="crashed", error="the report does not tell of this scan", inside=None,
-                         mean=None, hausdorff=None)
+            trial.update(verdict="crashed", before="crashed", error="the report does not tell of this scan",
+                         warned=False, inside=None, inside_before=None, mean=None, hausdorff=None)
     return list(trials.values())
 
 

@@ -24,23 +24,32 @@ def cells_of(trials, shape, axis):
     return [(level, [trial for trial in mine if trial["level"] == level]) for level in levels]
 
 
-def verdicts_of(trials, shape, axis):
-    return [(level, [trial["verdict"] for trial in some]) for level, some in cells_of(trials, shape, axis)]
+def verdicts_of(trials, shape, axis, key="verdict"):
+    return [(level, [trial[key] for trial in some]) for level, some in cells_of(trials, shape, axis)]
 
 
-def cell(trials):
+def before_sculpting(trials):
+    """As cell(), of the alpha-solid."""
+    return cell(trials, "before")
+
+
+def cell(trials, key="verdict"):
     """Successes of trials, and why the others failed: "3/5: 2 genus"."""
-    verdicts = [trial["verdict"] for trial in trials]
+    verdicts = [trial[key] for trial in trials]
     succeeded, count = verdict.rate(verdicts)
     reasons = [f"{verdicts.count(name)} {name}" for name in verdict.FAILURES if name in verdicts]
     text = f"{succeeded}/{count}"
     return f"**{text}**" if succeeded == count else text + (": " + ", ".join(reasons) if reasons else "")
 
 
-def inside(trials):
+def inside(trials, key="inside"):
     """Median share of the points that are not on the surface, of the trials that tell it."""
-    shares = [trial["inside"] / trial["points"] for trial in trials if trial["inside"] is not None]
+    shares = [trial[key] / trial["points"] for trial in trials if trial[key] is not None]
     return f"{100 * statistics.median(shares):.1f} %" if shares else "–"
+
+
+def inside_before(trials):
+    return inside(trials, "inside_before")
 
 
 def distance(trials, name):
@@ -96,17 +105,19 @@ def border(trials, shapes):
     text += ": " + "; ".join(noise_border(name, cells) for name, cells in noise.items()) + ". "
     borders = (density_border(name, cells) for name, cells in density.items())
     text += f"Without noise {'; '.join(borders)}. "
-    text += interpolation(trials, shapes) + " "
+    text += f"{interpolation(trials, shapes)} {before(trials, shapes)} "
     wrong = [trial["verdict"] for trial in trials if trial["verdict"] != verdict.SUCCESS]
     if not wrong:
         return text + "Nothing failed."
     often = max(verdict.FAILURES, key=wrong.count)
     refused, crashed = wrong.count("refused"), wrong.count("crashed")
+    delivered = [trial for trial in trials if trial["verdict"] not in (verdict.SUCCESS, *verdict.OF_THE_PROGRAM)]
+    warned = sum(trial["warned"] for trial in delivered)
     return text + (
         f"Of {len(trials):,} trials {len(wrong):,} failed, most often because {verdict.FAILURES[often]} "
         f"({wrong.count(often):,}). The program itself refused {refused:,} and crashed in {crashed:,}; in the other "
-        f"{len(wrong) - refused - crashed:,} it delivered a mesh that is wrong, and no error tells so: noisy scans are "
-        "to be smoothed or thinned first, or given to a method that does not interpolate."
+        f"{len(delivered):,} it delivered a mesh that is wrong, with a warning in {warned:,} of them: noisy scans are to "
+        "be smoothed or thinned first, or given to a method that does not interpolate."
     )
 
 
@@ -123,8 +134,19 @@ def interpolation(trials, shapes):
     return f"With every point on the surface as well: {', '.join(words)}."
 
 
+def before(trials, shapes):
+    """Up to which noise the alpha-solid alone would have done."""
+    borders = []
+    for shape in shapes:
+        last, _ = verdict.reliable_until(verdicts_of(trials, shape["name"], "noise", "before"))
+        borders.append(f"{shape['name']} {'not even without noise' if last is None else f'up to {last:g}'}")
+    return f"The alpha-solid before sculpting, which leaves points inside, always succeeds: {', '.join(borders)}."
+
+
 SHOWN = {
     "Of the points, not on the surface (median):": inside,
+    "Before sculpting, successes of the alpha-solid:": before_sculpting,
+    "Before sculpting, of the points, inside the solid (median):": inside_before,
     "Mean distance between mesh and truth, in spacings (median):": mean_distance,
     "Hausdorff distance between mesh and truth, in spacings (median):": largest_distance,
 }

@@ -58,6 +58,11 @@ def steps(report, cell):
     return found
 
 
+def named(report, cell):
+    """A cell's steps by their names in the workflow."""
+    return {report["steps"][number]["step"]: report["steps"][number] for number in cell["steps"]}
+
+
 def mesh(cell):
     """The one mesh that the cell wrote, as told in its outputs. Raises Broken when there is none or several."""
     meshes = [output for output in cell["outputs"] if output["kind"] == "mesh" and output["outcome"] == "done"]

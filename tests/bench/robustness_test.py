@@ -24,7 +24,7 @@ class VerdictTest(unittest.TestCase):
 
     def test_what_failed_to_run_is_no_success_whatever_was_measured(self):
         self.assertEqual(judged(outcome="failed", cause="refused"), "refused")
-        for cause in ("crashed", "timeout", "memory", None):
+        for cause in ("signal", "time", "memory", "exit", "exception", None):
             self.assertEqual(judged(outcome="failed", cause=cause), "crashed")
         self.assertEqual(judged(outcome="skipped"), "crashed")
         self.assertEqual(verdict.judge("done", None, {}, 1, 9.0), "crashed")
@@ -64,7 +64,8 @@ class BorderTest(unittest.TestCase):
 
 def trial(level, judgement, axis="noise", inside=0, mean=0.01, error="", shape="ball"):
     return {"shape": shape, "axis": axis, "level": level, "seed": 1, "points": 200, "spacing": 0.1, "bound": 0.15,
-            "verdict": judgement, "inside": inside, "mean": mean, "hausdorff": mean and 2 * mean, "error": error}
+            "verdict": judgement, "inside": inside, "mean": mean, "hausdorff": mean and 2 * mean, "error": error, "warned": judgement == "far",
+            "before": "success" if level < 2 else "pieces", "inside_before": inside and 10 * inside}
 
 
 TRIALS = [
@@ -90,6 +91,8 @@ class SummaryTest(unittest.TestCase):
         self.assertEqual([summary.inside(levels[level]) for level in (0, 1, 2)], ["1.0 %", "7.5 %", "50.0 %"])
         self.assertEqual([summary.mean_distance(levels[level]) for level in (0, 2)], ["0.10", "2.00"])
         self.assertEqual(summary.largest_distance(levels[2]), "4.00")
+        self.assertEqual(summary.inside_before(levels[2]), "500.0 %")
+        self.assertEqual(summary.before_sculpting(levels[2]), "0/2: 2 pieces")
         self.assertEqual(summary.inside([trial(3, "crashed", inside=None)]), "–")
 
     def test_density_goes_from_many_points_to_few(self):
@@ -101,8 +104,9 @@ class SummaryTest(unittest.TestCase):
         self.assertIn("always succeeds up to 0 and never from 2 on", text)
         self.assertIn("always succeeds from 1,000 points on and never with 100 or fewer", text)
         self.assertIn("ball not even without noise", text)  # 4 points were left inside
+        self.assertIn("before sculpting, which leaves points inside, always succeeds: ball up to 1.", text)
         self.assertIn("Of 8 trials 4 failed, most often because it has another number of handles (2)", text)
-        self.assertIn("refused 1 and crashed in 0; in the other 3", text)
+        self.assertIn("refused 1 and crashed in 0; in the other 3 it delivered a mesh that is wrong, with a warning in 1 ", text)
 
     def test_border_at_the_end_of_what_was_tried_is_told_as_such(self):
         good, mixed = ("success", "success"), ("success", "far")
