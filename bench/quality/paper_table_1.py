@@ -43,7 +43,7 @@ class StandIn:
 
 STAND_INS = [
     StandIn("Femur", "meshes/femur.off", True,
-            "another femur, fewer points, the corners of a mesh with two handles; the paper's came from slices of a CT"),
+            "another femur, fewer points, the corners of a mesh with two handles; the paper's came from CT slices"),
     StandIn("Femur", "7-seed-like/femur_gfxmorph.stl", False,
             "a third femur, the corners of a closed mesh"),
     StandIn("CSG Solid", "meshes/anchor_dense.off", True,

@@ -8,13 +8,14 @@ from tables import page
 NOTES = """\
 `delaunay`, `alpha-solid` and `sculpt` as they are, without any parameter and without any clean-up before them. A
 success is a closed manifold of one piece, with as many handles as the truth, whose Hausdorff distance from the truth
-(as `measure` samples it, both ways) is at most {gap:g} spacings, for the gaps between points, plus what the farthest point
-was moved, for a mesh through the points is as far away as they are. With much noise that bound is wide: a success then
-means that the mesh is no worse than its points, and the distances below tell how bad those are. Everything else is a
-failure, and what the program would not or could not do is counted apart from what it did wrong.
+(as `measure` samples it, both ways) is at most {gap:g} spacings, for the gaps between points, plus what the farthest
+point was moved, for a mesh through the points is as far away as they are. With much noise that bound is wide: a success
+then means that the mesh is no worse than its points, and the distances below tell how bad those are. Everything else is
+a failure, and what the program would not or could not do is counted apart from what it did wrong.
 
 Points keep their distance, the *spacing*, from each other and leave no gap on the surface; every coordinate is then
-moved by a normally distributed error whose deviation is given as a share of the spacing. Seeds for each cell: {seeds}."""
+moved by a normally distributed error whose deviation is given as a share of the spacing. Seeds in each cell: {seeds}.
+"""
 
 
 def cells_of(trials, shape, axis):
@@ -116,8 +117,8 @@ def border(trials, shapes):
     return text + (
         f"Of {len(trials):,} trials {len(wrong):,} failed, most often because {verdict.FAILURES[often]} "
         f"({wrong.count(often):,}). The program itself refused {refused:,} and crashed in {crashed:,}; in the other "
-        f"{len(delivered):,} it delivered a mesh that is wrong, with a warning in {warned:,} of them: noisy scans are to "
-        "be smoothed or thinned first, or given to a method that does not interpolate."
+        f"{len(delivered):,} it delivered a mesh that is wrong, with a warning in {warned:,} of them: noisy scans are "
+        "to be smoothed or thinned first, or given to a method that does not interpolate."
     )
 
 

@@ -83,7 +83,8 @@ class PageTest(unittest.TestCase):
         self.assertEqual(page.expected_triangles(entry()), 1994)
         self.assertEqual(page.expected_triangles(entry(components=2)), 1990)
         self.assertNotIn("contradict", page.remark(entry()))
-        self.assertIn("1,990 triangles, where points, pieces and handles ask for 1,994", page.remark(entry(triangles=1990)))
+        told = page.remark(entry(triangles=1990))
+        self.assertIn("1,990 triangles, where points, pieces and handles ask for 1,994", told)
 
     def test_points_left_inside_and_a_genus_that_is_not_the_models_are_told(self):
         model = {"closed": True, "genus": 0, "components": 1, "largest_distance": 0.01, "mean_distance": 0.001}

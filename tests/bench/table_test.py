@@ -138,7 +138,8 @@ class PageTest(unittest.TestCase):
     def test_memory_per_element_stands_below_when_the_row_asks_for_it(self):
         cloud = results([entry("scanmill", [1.0], facts={"cells": 9 * 2**20})])
         cloud["rows"][0]["peak_per"] = "cells"
-        self.assertIn("- Bytes of the peak beyond the loaded input, for each of the cells: scanmill 1", table.page(cloud))
+        told = "- Bytes of the peak beyond the loaded input, for each of the cells: scanmill 1"
+        self.assertIn(told, table.page(cloud))
         self.assertNotIn("Bytes of the peak", self.page(entry("scanmill", [1.0], facts={"cells": 9 * 2**20})))
 
     def test_growth_stands_below_the_larger_row_when_both_ran(self):
@@ -146,7 +147,8 @@ class PageTest(unittest.TestCase):
         large = results([entry("scanmill", [15.0], threads=2), entry("pcl", [20.0])])["rows"][0]
         large.update(name="large", grows_from="thin", inputs=[{"what": "a torus", "points": 10_000}])
         both["rows"].append(large)
-        grown = "- Beside `thin`, with 10.0 times the points: scanmill, 2 threads 15.0 times, pcl 10.0 times the seconds"
+        grown = "- Beside `thin`, with 10.0 times the points: "
+        grown += "scanmill, 2 threads 15.0 times, pcl 10.0 times the seconds"
         self.assertIn(grown, table.page(both))
         self.assertEqual(table.page(both).count("- Beside"), 1)
         both["rows"] = [large]

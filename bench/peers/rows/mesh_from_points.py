@@ -2,7 +2,7 @@
 """From points to a mesh: what tetrahedralisation, alpha-solid and sculpting take beside the bare tetrahedralisation."""
 from harness.row import Contender, Row, in_threads
 
-BARE = "stops at the tetrahedralisation, the first of the three steps; the ratio tells how many times that all three take."
+BARE = "stops at the tetrahedralisation, the first of the three steps; the ratio tells how many times that ours takes."
 
 
 def rows(inputs, large):
@@ -29,8 +29,8 @@ def row(name, shape, cloud, **more):
             *in_threads([1, 2], "scanmill", {"do": "sculpt"}, prepare=load),
             Contender("cgal", {"do": "delaunay"}, "Delaunay_triangulation_3", prepare=load, differs=BARE),
         ],
-        equal="the points in memory, as doubles. Ours runs delaunay, alpha-solid with an automatic radius and sculpt in "
-        "one process and delivers a mesh; CGAL makes no surface.",
+        equal="the points in memory, as doubles. Ours runs delaunay, alpha-solid with an automatic radius and sculpt "
+        "in one process and delivers a mesh; CGAL makes no surface.",
         agree={"cells": 0, "alpha": 0, "triangles": 0, "removed": 0, "interior_points": 0},
         peak_per="cells",
         **more,
