@@ -74,7 +74,7 @@ struct SculptResult {
 /// Ties: of equal gains that of the larger boundary triangle (by circumradius) for exposing steps, then the cell whose
 ///       corners are lower by x, y, z. Gains are computed from corners sorted by place, so the solid depends neither on
 ///       the order of the points nor on the number of threads.
-/// Cost: linear in the cells to find what bounds the solid; O(r log r) for r removals. About 15 bytes per cell and 30
+/// Cost: linear in the cells to find what bounds the solid; O(r log r) for r removals. About 12 bytes per cell and 40
 ///       per boundary triangle beside the result.
 /// Metrics: see plugin.cpp. Warns about points that stay inside, and when so much was removed that the sampling cannot
 /// have been dense enough.
