@@ -32,6 +32,7 @@ std::vector<Case> cases() {
             {"others without look-ahead", filled(2), weighted(SculptWeight::none, false)},
             {"a lattice, full of ties", hull_of(lattice_cube(4)), {}},
             {"the hull of a torus", hull_of(poisson_torus(0.35)), {}},
+            {"a block whose points are nearly in rows", hull_of(l_block_surface(2, 2, 4, 1e-5)), {}},
             {"a webbed block", solid_of(tets_of(l_block_surface(2, 2, 4, 2e-3))).tets, {}},
             {"two spheres",
              solid_of(tets_of(joined(fibonacci_sphere(80, 0.05), moved(fibonacci_sphere(80, 0.05), 1, Vec3(4, 0, 0)))),
@@ -67,6 +68,17 @@ Vec3 unit_normal(const TetMesh& tets, u32 cell, int facet) {
     return (b - a).cross(c - a).normalized();
 }
 
+double smallest_angle(const TetMesh& tets, u32 cell, int facet) {
+    double least = std::numbers::pi;
+    std::array<Vec3, 3> p;
+    for (int i = 0; i < 3; ++i) p[i] = tets.positions[tets.cells[cell][outward_facet[facet][i]]];
+    for (int i = 0; i < 3; ++i) {
+        const Vec3 u = p[(i + 1) % 3] - p[i], v = p[(i + 2) % 3] - p[i];
+        least = std::min(least, std::atan2(u.cross(v).norm(), u.dot(v)));
+    }
+    return least;
+}
+
 bool is_admissible(const TetMesh& tets, Array<u8>& inside, u32 cell, long euler) {
     inside[cell] = 0;
     const MeshTopology facts = topology(mesh_of(tets, inside));
@@ -93,7 +105,8 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
     for (const SculptRemoval& removal : result.removals) {
         ASSERT_EQ(inside[removal.cell], 1);
         const bool exposes = removal.step == SculptStep::exposing;
-        ASSERT_EQ(open_facets(tets, inside, removal.cell).size(), exposes ? 1u : 2u);
+        const std::vector<int> open = open_facets(tets, inside, removal.cell);
+        ASSERT_EQ(open.size(), exposes ? 1u : 2u);
         inside[removal.cell] = 0;
         if (exposes) mark_near(tets, inside, removal.cell, near);
         exposed += exposes;
@@ -110,6 +123,10 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
         ASSERT_NEAR(bending - now, removal.gain, 1e-6);
         if (removal.step == SculptStep::smoothing) {
             ASSERT_GT(removal.gain, 0);
+            for (int facet = 0; facet < 4; ++facet)
+                if (std::ranges::find(open, facet) == open.end()) {
+                    ASSERT_GT(smallest_angle(tets, removal.cell, facet), 0.1 * std::numbers::pi / 180 - 1e-9);
+                }
         }
         bending = now;
     }
@@ -144,7 +161,50 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Solids, SculptLaws, testing::Range(std::size_t(0), std::size_t(7)));
+INSTANTIATE_TEST_SUITE_P(Solids, SculptLaws, testing::Range(std::size_t(0), std::size_t(8)));
+
+/// What removing `cell` gains, with the best admissible flip of a neighbour after it if asked. Brute force.
+double exposing_gain(const TetMesh& tets, Array<u8>& inside, u32 cell, bool lookahead) {
+    const TriangleMesh before = mesh_of(tets, inside);
+    const long euler = topology(before).euler;
+    inside[cell] = 0;
+    const double between = bending_of(mesh_of(tets, inside));
+    double best = 0;
+    for (u32 across : tets.neighbours[cell]) {
+        if (!lookahead || across == TetMesh::outside_hull || inside[across] == 0) continue;
+        if (open_facets(tets, inside, across).size() != 2 || !is_admissible(tets, inside, across, euler)) continue;
+        inside[across] = 0;
+        best = std::max(best, between - bending_of(mesh_of(tets, inside)));
+        inside[across] = 1;
+    }
+    inside[cell] = 1;
+    return bending_of(before) - between + best;
+}
+
+TEST(Sculpt, FirstExposingStep_IsTheBestOfAllByItselfOrWithTheFlipAfterIt) {
+    int differ = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        // A ball, so that nothing is sharp and the first step exposes one of the points within.
+        const PointCloud within = moved(random_cube(40, seed, 1.2), 1, Vec3(-.6, -.6, -.6));
+        const TetMesh tets = hull_of(joined(fibonacci_sphere(150), within));
+        std::array<u32, 2> first;
+        for (bool lookahead : {false, true}) {
+            const SculptResult result = sculpted(tets, weighted(SculptWeight::none, lookahead));
+            ASSERT_EQ(result.removals[0].step, SculptStep::exposing);
+            first[lookahead] = result.removals[0].cell;
+            Array<u8> inside(tets.inside.begin(), tets.inside.end());
+            const long euler = topology(mesh_of(tets, inside)).euler;
+            const double chosen = exposing_gain(tets, inside, first[lookahead], lookahead);
+            for (u32 cell = 0; cell < inside.size(); ++cell) {
+                if (open_facets(tets, inside, cell).size() == 1 && is_admissible(tets, inside, cell, euler)) {
+                    EXPECT_LE(exposing_gain(tets, inside, cell, lookahead), chosen + 1e-6);
+                }
+            }
+        }
+        differ += first[0] != first[1];
+    }
+    EXPECT_GT(differ, 0);
+}
 
 TEST(Sculpt, OnAnyNumberOfThreads_GivesTheSameBytes) {
     for (const Case& given : cases()) {
@@ -188,6 +248,22 @@ TEST(Sculpt, OfALargerScan_IsTheSameSculpture) {
         EXPECT_TRUE(std::ranges::equal(plain.tets.inside, scaled.tets.inside));
         EXPECT_NEAR(scaled.volume_removed / plain.volume_removed, factor * factor * factor, 1e-9);
     }
+}
+
+TEST(Sculpt, PointsNoSingleCellUncovers_AreReachedByOneFlipOrByTwo) {
+    int by_one = 0, by_two = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const SculptResult result = sculpted(hull_of(random_cube(2000, seed)));
+        const auto opens = [&](std::size_t k) {
+            return k < result.removals.size() && result.removals[k].step == SculptStep::opening;
+        };
+        for (std::size_t i = 1; i < result.removals.size(); ++i) {
+            if (!opens(i) || opens(i - 1)) continue;
+            ++(opens(i + 1) ? by_two : by_one);
+        }
+    }
+    EXPECT_GT(by_one, 0);
+    EXPECT_GT(by_two, 0);
 }
 
 TEST(Sculpt, PointsThatStayInside_AreToldWithTheirPlaces) {
