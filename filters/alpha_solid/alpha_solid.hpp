@@ -95,8 +95,7 @@ struct AlphaSolidResult {
 ///       per cell beside the result.
 /// With weights (TetMesh::weights) the radii are those of spheres orthogonal to weighted points, all weights lowered by
 /// the largest: alpha is the ball's radius where the weight is largest, and at a point of weight w the ball acts with
-/// the radius sqrt(alpha² - (largest - w)), or not at all when that is no number. Equal weights change no byte. Weights
-/// make the facet values about ten times as costly.
+/// the radius sqrt(alpha² - (largest - w)), or not at all when that is no number. Equal weights change no byte.
 ///
 /// A given alpha is taken as it is. Only when its solid is not valid is the nearest one sought that is, by the same
 /// scan from alpha_cover past the given alpha.

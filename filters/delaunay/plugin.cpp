@@ -11,8 +11,7 @@ SCANMILL_FILTER() {
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
         .ties(
             "Points on one empty sphere are parted by a symbolic perturbation of their coordinates, whatever their "
-            "order; "
-            "of duplicates the first stays.")
+            "order; of duplicates the first stays, with the largest of their weights.")
         .not_finite("Refused, with their number and the first of them.")
         .in<PointCloud>(
             "points",

@@ -14,6 +14,9 @@
 #include "alpha_solid/sphere_polynomials.hpp"
 #include "alpha_solid/weighted_spheres.hpp"
 #include "filters/weighted_cases.hpp"
+#include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/hidden_vertices.hpp"
+#include "support/real_data.hpp"
 
 namespace scanmill::alpha {
 namespace {
@@ -346,6 +349,17 @@ TEST(AlphaSolidWeights, AHoleNarrowerThanTheCoarseSpacing_StaysOpenWhereTheSampl
     EXPECT_EQ(topology(result.mesh).genus, 1u);
     EXPECT_NEAR(cell_volumes(result), 200 - 0.8 * 0.8 * 2, 0.01);
     EXPECT_EQ(result.choice, AlphaChoice::scan);
+}
+
+TEST(AlphaSolidWeights, ARealScan_HidesNothing_AndLosesFewerPointsInside) {
+    SCANMILL_REAL_SCAN(path, fetched_data, "meshes/bunny00.off");
+    const auto cloud = read_points(path);
+    const TetMesh tets = weighted(*cloud).tets;
+    EXPECT_EQ(hidden_vertices(tets).size(), 0u);
+    const AlphaSolidResult plain = solid_of(*cloud), result = solid_of(tets, {}, 2);
+    EXPECT_TRUE(topology(result.mesh).closed);
+    EXPECT_EQ(result.uncovered_points.size(), 0u);
+    EXPECT_LT(result.interior_points.size(), plain.interior_points.size());
 }
 
 }  // namespace
