@@ -48,12 +48,22 @@ def other_load(load):
     )
 
 
+def json_text(results):
+    """One line for each value, and one for each element of a list, so that changes can be read."""
+
+    def value_text(value):
+        if not isinstance(value, list):
+            return json.dumps(value, allow_nan=False)
+        return "[\n  " + ",\n  ".join(json.dumps(element, allow_nan=False) for element in value) + "\n ]"
+
+    return "{\n " + ",\n ".join(f"{json.dumps(name)}: {value_text(value)}" for name, value in results.items()) + "\n}\n"
+
+
 def write(folder, name, results, lines):
     """NAME.json and NAME.md, each whole or not at all."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    json_text = json.dumps(results, indent=1, allow_nan=False) + "\n"
-    for suffix, content in ((".json", json_text), (".md", "\n".join(lines).rstrip() + "\n")):
+    for suffix, content in ((".json", json_text(results)), (".md", "\n".join(lines).rstrip() + "\n")):
         part = folder / (name + suffix + ".part")
         part.write_text(content)
         part.replace(folder / (name + suffix))

@@ -102,6 +102,9 @@ class PageTest(unittest.TestCase):
         # 90 s / 9807 points over 0.875 s / 999 points.
         self.assertIn("per point 10 times as fast", page.remark(entry()).lower())
 
+    def test_notes_tell_what_the_paper_printed(self):
+        self.assertIn("4 of its 8 lines have exactly 2n − 4", page.notes({"rounds": 5}))
+
     def test_skipped_and_failed_have_no_numbers(self):
         for name in ("skipped", "failure"):
             made = {"paper": "Club", "file": "club.ply", "what": "a club", "failure": "", "skipped": "", name: "gone"}

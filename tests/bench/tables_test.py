@@ -75,9 +75,14 @@ class PageTest(unittest.TestCase):
         self.assertEqual(made.keys(), {"results.json", "results.md"})
         self.assertEqual((json.loads(made["results.json"]), made["results.md"]), ({"a": 1}, "# A\n"))
 
+    def test_every_element_of_a_list_has_a_line(self):
+        results = {"a": 1, "b": [{"c": [1, 2]}, "d"], "e": []}
+        self.assertEqual(json.loads(page.json_text(results)), results)
+        self.assertIn('\n  {"c": [1, 2]},\n  "d"\n', page.json_text(results))
+
     def test_results_without_a_number_are_not_written(self):
         with tempfile.TemporaryDirectory() as folder, self.assertRaises(ValueError):
-            page.write(folder, "results", {"a": float("nan")}, [])
+            page.write(folder, "results", {"a": [float("nan")]}, [])
 
 
 if __name__ == "__main__":
