@@ -66,12 +66,13 @@ def scans(shape, seeds, folder):
         for level in NOISE:
             moved, largest = sampling.with_noise(points, level * spacing, seed)
             trial = {"shape": shape.name, "axis": "noise", "level": level, "seed": seed, "spacing": float(spacing),
-                     "bound": verdict.bound(float(spacing), largest)}
+                     "bound": verdict.bound(float(spacing)), "farthest_move": largest}
             found[write_scan(folder, trial, moved)] = trial
         for count in POINTS:
             points_of_count, spacing_of_count = sampling.spread(shape, count, seed)
             trial = {"shape": shape.name, "axis": "density", "level": count, "seed": seed,
-                     "spacing": float(spacing_of_count), "bound": verdict.bound(float(spacing_of_count), 0.0)}
+                     "spacing": float(spacing_of_count), "bound": verdict.bound(float(spacing_of_count)),
+                     "farthest_move": 0.0}
             found[write_scan(folder, trial, points_of_count)] = trial
     return found
 

@@ -8,14 +8,12 @@ from tables import page
 NOTES = """\
 `delaunay`, `alpha-solid` and `sculpt` as they are, without any parameter and without any clean-up before them. A
 success is a closed manifold of one piece, with as many handles as the truth, whose Hausdorff distance from the truth
-(as `measure` samples it, both ways) is at most {gap:g} spacings, for the gaps between points, plus what the farthest
-point was moved, for a mesh through the points is as far away as they are. With much noise that bound is wide: a success
-then means that the mesh is no worse than its points, and the distances below tell how bad those are. Everything else is
-a failure, and what the program would not or could not do is counted apart from what it did wrong.
+(as `measure` samples it, both ways) is at most {largest:g} spacings, however much noise there is. Everything else is a
+failure, and what the program would not or could not do is counted apart from what it did wrong.
 
 Points keep their distance, the *spacing*, from each other and leave no gap on the surface; every coordinate is then
-moved by a normally distributed error whose deviation is given as a share of the spacing. Seeds in each cell: {seeds}.
-"""
+moved by a normally distributed error whose deviation is given as a share of the spacing. Seeds in each
+cell: {seeds}."""
 
 
 def cells_of(trials, shape, axis):
@@ -106,7 +104,7 @@ def border(trials, shapes):
     text += ": " + "; ".join(noise_border(name, cells) for name, cells in noise.items()) + ". "
     borders = (density_border(name, cells) for name, cells in density.items())
     text += f"Without noise {'; '.join(borders)}. "
-    text += f"{interpolation(trials, shapes)} {before(trials, shapes)} "
+    text += f"{interpolation(trials, shapes)} {before(trials, shapes)} {hopeless(trials)}"
     wrong = [trial["verdict"] for trial in trials if trial["verdict"] != verdict.SUCCESS]
     if not wrong:
         return text + "Nothing failed."
@@ -133,6 +131,16 @@ def interpolation(trials, shapes):
             last = level
         words.append(f"{shape['name']} {'not even without noise' if last is None else f'up to {last:g}'}")
     return f"With every point on the surface as well: {', '.join(words)}."
+
+
+def hopeless(trials):
+    """From which noise on a point is always moved farther than a mesh may be away; a sentence, or nothing."""
+    levels = sorted({trial["level"] for trial in trials if trial["axis"] == "noise"})
+    for level in levels:
+        some = [trial for trial in trials if trial["axis"] == "noise" and trial["level"] == level]
+        if all(trial["farthest_move"] > trial["bound"] for trial in some):
+            return f"From {level:g} on the farthest point itself is moved farther than the mesh may be away. "
+    return ""
 
 
 def before(trials, shapes):
@@ -164,7 +172,8 @@ def section(trials, shapes, axis):
 def lines(results):
     trials, shapes = results["trials"], results["shapes"]
     text = page.heading("How much noise, and how few points", results, "results.json")
-    text += [NOTES.format(gap=verdict.GAP, seeds=results["seeds"]), "", "## The border", "", border(trials, shapes), ""]
+    text += [NOTES.format(largest=verdict.LARGEST, seeds=results["seeds"]), ""]
+    text += ["## The border", "", border(trials, shapes), ""]
     text += [f"## Noise, {results['points']:,} points asked for", ""]
     text += section(trials, shapes, "noise") + ["## Density, without noise", ""]
     text += section(trials, shapes, "density")

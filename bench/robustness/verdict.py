@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """When a reconstruction counts as one, and where along noise or density it stops to be one."""
 
-#: A mesh through the points can be as far from the truth as the points were moved, and where there are none it can miss
-#: a corner by a gap between them; sampling leaves gaps of up to about 1.25 spacings.
-GAP = 1.5
+#: In spacings. Gaps between points allow for up to about 1.25, at a corner say. The bound does not grow with the
+#: noise: it would soon be as large as the shape, and then anything passes.
+LARGEST = 3
 
 SUCCESS = "success"
 #: What went wrong, in the order in which it is looked for, each with its sentence for the page.
@@ -19,8 +19,8 @@ FAILURES = {
 OF_THE_PROGRAM = ("crashed", "refused")
 
 
-def bound(spacing, largest_move):
-    return GAP * spacing + largest_move
+def bound(spacing):
+    return LARGEST * spacing
 
 
 def judge(outcome, cause, metrics, genus, largest_distance):

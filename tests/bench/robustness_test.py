@@ -36,9 +36,8 @@ class VerdictTest(unittest.TestCase):
             without = {other: value for other, value in GOOD.items() if other != name}
             self.assertEqual(verdict.judge("done", None, without, 1, 0.3), expected)
 
-    def test_bound_grows_with_spacing_and_with_the_farthest_move(self):
-        self.assertEqual(verdict.bound(0.1, 0.0), verdict.GAP * 0.1)
-        self.assertEqual(verdict.bound(0.0, 0.25), 0.25)
+    def test_bound_is_a_number_of_spacings_whatever_the_noise(self):
+        self.assertEqual(verdict.bound(0.5), verdict.LARGEST * 0.5)
 
 
 class BorderTest(unittest.TestCase):
@@ -65,7 +64,7 @@ class BorderTest(unittest.TestCase):
 def trial(level, judgement, axis="noise", inside=0, mean=0.01, error="", shape="ball"):
     return {"shape": shape, "axis": axis, "level": level, "seed": 1, "points": 200, "spacing": 0.1, "bound": 0.15,
             "verdict": judgement, "inside": inside, "mean": mean, "hausdorff": mean and 2 * mean, "error": error,
-            "warned": judgement == "far",
+            "warned": judgement == "far", "farthest_move": 0.1 * level,
             "before": "success" if level < 2 else "pieces", "inside_before": inside and 10 * inside}
 
 
@@ -106,6 +105,7 @@ class SummaryTest(unittest.TestCase):
         self.assertIn("always succeeds from 1,000 points on and never with 100 or fewer", text)
         self.assertIn("ball not even without noise", text)  # 4 points were left inside
         self.assertIn("before sculpting, which leaves points inside, always succeeds: ball up to 1.", text)
+        self.assertIn("From 2 on the farthest point itself is moved farther", text)
         self.assertIn("Of 8 trials 4 failed, most often because it has another number of handles (2)", text)
         self.assertIn("refused 1 and crashed in 0; in the other 3 it delivered a mesh that is wrong", text)
         self.assertIn("with a warning in 1 of them", text)
