@@ -12,7 +12,7 @@ def rows(inputs, large):
         row("mesh-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply")),
     ]
     if large:
-        # One round of ours takes half a minute and 7 gigabytes.
+        # One round of ours takes half a minute and more than 3 gigabytes.
         torus = inputs.torus(3_500_000)
         more = {"warm_up": False, "rounds": 2, "grows_from": "mesh-torus"}
         found.append(row("mesh-large-torus", "large bumpy torus", torus, **more))
