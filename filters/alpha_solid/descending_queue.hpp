@@ -28,8 +28,9 @@ public:
 
     /// Puts the next item that `wanted(item)` accepts into `item`; items of equal value come last in, first out. An
     /// item is offered to `wanted` when its value becomes the level, once per push.
-    template <class Wanted>
-    bool pop(u32& item, const Wanted& wanted) {
+    /// `soon(item)` is called for some items a little before they come out, to fetch what they need.
+    template <class Wanted, class Soon>
+    bool pop(u32& item, const Wanted& wanted, const Soon& soon) {
         std::vector<Entry>& current = buckets_[0];
         while (true) {
             while (!current.empty()) {
@@ -37,8 +38,13 @@ public:
                 current.pop_back();
                 if (wanted(item)) return true;
             }
-            if (!descend()) return false;
+            if (!descend(soon)) return false;
         }
+    }
+
+    template <class Wanted>
+    bool pop(u32& item, const Wanted& wanted) {
+        return pop(item, wanted, [](u32) {});
     }
 
 private:
@@ -53,12 +59,15 @@ private:
     std::size_t bucket(u64 key) const { return static_cast<std::size_t>(std::bit_width(key ^ level_)); }
 
     /// Moves the level to the largest value left and deals out its bucket anew.
-    bool descend() {
+    template <class Soon>
+    bool descend(const Soon& soon) {
         std::size_t first = 1;
         while (first < buckets_.size() && buckets_[first].empty()) ++first;
         if (first == buckets_.size()) return false;
         std::vector<Entry> entries;
         entries.swap(buckets_[first]);
+        if (entries.size() <= few)
+            for (const Entry& entry : entries) soon(entry.item);
         u64 least = entries.front().key;
         for (const Entry& entry : entries) least = std::min(least, entry.key);
         level_ = least;
@@ -67,6 +76,9 @@ private:
         if (entries.capacity() > buckets_[first].capacity()) entries.swap(buckets_[first]);
         return true;
     }
+
+    /// So many items' memory stays in the cache until they come out.
+    static constexpr std::size_t few = 64;
 
     u64 level_ = key_of(std::numeric_limits<double>::infinity());
     std::array<std::vector<Entry>, 65> buckets_;

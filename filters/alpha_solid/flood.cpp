@@ -42,18 +42,18 @@ public:
         // A share like 99.9 % of 1000 points is 999, whatever its last bit.
         const double share = limits.coverage * static_cast<double>(flood.points);
         flood.needed = static_cast<std::size_t>(std::max(1.0, std::ceil(share * (1 - 1e-12))));
-        std::size_t covered = flood.points;
+        covered_ = flood.points;
         const auto unseen = [&](u32 cell) { return std::exchange(seen_[cell], u8(1)) == 0; };
+        const auto soon = [&](u32 cell) { __builtin_prefetch(&cells_[cell]); };
         u32 cell = 0;
-        while (queue_.pop(cell, unseen)) {
+        while (queue_.pop(cell, unseen, soon)) {
             const double level = queue_.level();
-            if (covered < flood.needed && level < limits.value && level < flood.values.back()) break;
+            if (is_enough(flood, level, limits)) break;
             if (flood.cells.size() % 65536 == 0) context.check_cancelled();
             flood.cells.push_back(cell);
             flood.values.push_back(level);
+            if (flood.cells.size() - counted_ == batch) count_covered(flood);
             const SweepCell& swept = cells_[cell];
-            for (u32 corner : swept.corners)
-                if (--cells_left_[corner] == 0 && covered-- == flood.needed) flood.cover = level;
             for (int i = 0; i < 4; ++i) {
                 const u32 across = swept.neighbours[i];
                 if (across == TetMesh::outside_hull || seen_[across]) continue;
@@ -61,14 +61,41 @@ public:
                 queue_.push(std::min(level, swept.values[i]), across);
             }
         }
+        count_covered(flood);
+        // Cells that came after alpha_cover was reached and before it was noticed.
+        while (is_enough(flood, flood.values.back(), limits)) {
+            flood.values.pop_back();
+            flood.cells.pop_back();
+        }
         return flood;
     }
 
 private:
+    /// A cell that enters at `level` need not be known.
+    bool is_enough(const Flood& flood, double level, const FloodLimits& limits) const {
+        return covered_ < flood.needed && level < limits.value && level < flood.cover;
+    }
+
+    /// Takes the swept cells from their points, a batch at a time so that the points' counters are fetched together.
+    void count_covered(Flood& flood) {
+        const std::span<const u32> cells = std::span(flood.cells).subspan(counted_);
+        for (u32 cell : cells)
+            for (u32 corner : cells_[cell].corners) __builtin_prefetch(&cells_left_[corner], 1);
+        for (u32 cell : cells) {
+            for (u32 corner : cells_[cell].corners)
+                if (--cells_left_[corner] == 0 && covered_-- == flood.needed) flood.cover = flood.values[counted_];
+            ++counted_;
+        }
+    }
+
+    static constexpr std::size_t batch = 32;
+
     std::span<const SweepCell> cells_;
     Array<u8> seen_;
     /// Per point: cells round it that the sweep has not reached.
     Array<u32> cells_left_;
+    /// Points that still have cells left, once the first `counted_` cells of the flood are taken from them.
+    std::size_t covered_ = 0, counted_ = 0;
     DescendingQueue queue_;
 };
 

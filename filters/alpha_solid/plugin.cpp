@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = AlphaSolidParams;
-    return Declare<P>("alpha-solid", 1)
+    return Declare<P>("alpha-solid", 2)
         .summary(
             "Finds the solid that the points enclose: every cell that a ball of radius alpha cannot enter from "
             "outside.")

@@ -26,8 +26,8 @@ CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, 
     // buckets are sorted afterwards.
     Array<u32> next(vertices + 1);
     std::fill(next.begin(), next.end(), 0);
-    const auto claim = [&](u32 vertex) {
-        return std::atomic_ref(next[vertex]).fetch_add(1, std::memory_order_relaxed);
+    const auto claim = [&, alone = threads == 1](u32 vertex) {
+        return alone ? next[vertex]++ : std::atomic_ref(next[vertex]).fetch_add(1, std::memory_order_relaxed);
     };
     for_each_chunk(threads, cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) claim(cells[c][0]);
@@ -55,13 +55,15 @@ CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, 
         }
     });
 
-    result.neighbours.resize(sorted.size());
-    for_each_chunk(threads, sorted.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    // In the order they came in: there neighbours are mostly near each other, so that only the write jumps.
+    sorted = {};
+    result.neighbours.resize(neighbours.size());
+    for_each_chunk(threads, neighbours.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
-            Row across = neighbours[sorted[c].number];
+            Row across = neighbours[c];
             for (u32& neighbour : across)
                 if (neighbour != TetMesh::outside_hull) neighbour = place[neighbour];
-            result.neighbours[c] = across;
+            result.neighbours[place[c]] = across;
         }
     });
     return result;

@@ -30,7 +30,11 @@ void wait_after(int failures) {
         std::this_thread::sleep_for(std::chrono::microseconds(50));
 }
 
+template <class Triangulation>
 class Insertion {
+    static constexpr bool is_shared = std::is_same_v<Triangulation, SharedTriangulation>;
+    using Vertex = typename Triangulation::Vertex_handle;
+
 public:
     Insertion(Triangulation& triangulation, std::span<const PointRow> points, Context& context)
         : triangulation_(triangulation),
@@ -38,7 +42,7 @@ public:
           context_(context) {}
 
     Array<u32> run() {
-        if (context_.threads() > 1 && points_.size() >= least_for_threads) {
+        if constexpr (is_shared) {
             // Locking needs cells: a scan may begin with points of one plane.
             std::size_t begin = 0;
             do {
@@ -64,12 +68,14 @@ private:
     }
 
     /// All points from `begin` on.
-    void insert_together(std::size_t begin) {
+    void insert_together(std::size_t begin)
+        requires is_shared
+    {
         CGAL::Bbox_3 box;
         for (const auto& [point, row] : points_) box += point.bbox();
         Locks locks(box, lock_boxes_per_axis);
         triangulation_.set_lock_data_structure(&locks);
-        tbb::enumerable_thread_specific<Triangulation::Vertex_handle> last_of_thread(last_);
+        tbb::enumerable_thread_specific<Vertex> last_of_thread(last_);
         for_each_chunk(context_.threads(), points_.size() - begin, chunk, [&](std::size_t first, std::size_t last) {
             insert(points_.subspan(begin + first, last - first), last_of_thread.local());
         });
@@ -77,7 +83,7 @@ private:
     }
 
     /// `last` is the vertex of the last point that this thread inserted: the next one is likely to be near it.
-    void insert(std::span<const PointRow> points, Triangulation::Vertex_handle& last) try {
+    void insert(std::span<const PointRow> points, Vertex& last) try {
         std::vector<u32> duplicates;
         for (const auto& [point, row] : points) {
             for (int failures = 0; !try_insert(point, last); ++failures) {
@@ -95,14 +101,20 @@ private:
     }
 
     /// False, and nothing has changed, when another thread is at work there.
-    bool try_insert(const Kernel::Point_3& point, Triangulation::Vertex_handle& last) {
-        if (!triangulation_.is_parallel()) {
-            last = triangulation_.insert(point, last);
-            return true;
+    bool try_insert(const Kernel::Point_3& point, Vertex& last) {
+        if constexpr (is_shared) {
+            if (triangulation_.is_parallel()) return try_insert_locked(point, last);
         }
+        last = triangulation_.insert(point, last);
+        return true;
+    }
+
+    bool try_insert_locked(const Kernel::Point_3& point, Vertex& last)
+        requires is_shared
+    {
         bool locked = triangulation_.try_lock_vertex(last) && triangulation_.try_lock_point(point);
         if (locked) {
-            const Triangulation::Vertex_handle vertex = triangulation_.insert(point, last, &locked);
+            const Vertex vertex = triangulation_.insert(point, last, &locked);
             if (locked) last = vertex;
         }
         triangulation_.unlock_all_elements();
@@ -129,7 +141,7 @@ private:
     Triangulation& triangulation_;
     std::span<const PointRow> points_;
     Context& context_;
-    Triangulation::Vertex_handle last_;
+    Vertex last_;
     /// An insertion ended with an exception; its cells are half changed, and stay locked so that nobody enters them.
     std::atomic<bool> broken_ = false;
     std::mutex mutex_;
@@ -139,7 +151,14 @@ private:
 
 }  // namespace
 
-Array<u32> insert_all(Triangulation& triangulation, std::span<const Vec3> positions, Context& context) {
+bool is_worth_sharing(std::size_t points, unsigned threads) { return threads > 1 && points >= least_for_threads; }
+
+Array<u32> insert_all(SharedTriangulation& triangulation, std::span<const Vec3> positions, Context& context) {
+    const std::vector<PointRow> points = insertion_order(positions, context.threads());
+    return Insertion(triangulation, points, context).run();
+}
+
+Array<u32> insert_all(LoneTriangulation& triangulation, std::span<const Vec3> positions, Context& context) {
     const std::vector<PointRow> points = insertion_order(positions, context.threads());
     return Insertion(triangulation, points, context).run();
 }
