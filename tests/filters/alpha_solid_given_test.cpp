@@ -71,7 +71,7 @@ TEST(AlphaSolidGiven, TwoSpheres_AreSaidToBePiecesAndPointsOutside) {
 }
 
 TEST(AlphaSolidGiven, AboveAValidSolidThatIsNearer_ThatOneIsNamed) {
-    // Valid at 0.7071…, pinched above by nothing nearer: of a torus the hole closes at first in a bad way.
+    // Random clouds: valid at some radii, pinched at others just above.
     int named_below = 0;
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
         const TetMesh tets = tets_of(random_cube(80, seed));
@@ -169,7 +169,8 @@ PointCloud bar_biting_its_corner() {
 
 TEST(AlphaSolidSkull, EdgeManifoldButPinchedInOneVertex_IsNotTakenForManifold) {
     const TetMesh tets = tets_of(bar_biting_its_corner());
-    // 4³ cubes: three blocks of one, two of two; the lattice's squares are walls from half their diagonal on.
+    // Four blocks of 4³ unit cubes and two of twice as many; the lattice's squares are walls from half their diagonal
+    // on.
     const AlphaSolidResult pinched = solid_of(tets, at_alpha(0.7072));
     EXPECT_EQ(pinched.nonmanifold_edges, 0u);
     EXPECT_EQ(pinched.nonmanifold_vertices, 1u);
