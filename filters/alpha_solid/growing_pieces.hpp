@@ -5,7 +5,11 @@
 /// Pieces are cells joined across facets; they may share points where they touch. When two meet, the cells of the
 /// smaller are gone through once, so a cell is looked at as often as its piece has doubled.
 
-#include "alpha_solid/boundary.hpp"
+#include <span>
+
+#include "alpha_solid/labels.hpp"
+#include "scanmill/data/tets.hpp"
+#include "scanmill/geometry/disjoint_sets.hpp"
 
 namespace scanmill::alpha {
 

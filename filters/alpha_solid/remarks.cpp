@@ -55,17 +55,37 @@ std::string wrong_alpha(const AlphaSolidResult& result, const AlphaSolidParams& 
                            : "");
 }
 
-/// Of the edges of evenly spread triangles, some ten thousands at most. Pre: there are triangles.
-double median_edge(const TriangleMesh& mesh) {
+/// What the ball's radius at each vertex of the boundary is less than alpha, squared: 0 without weights.
+std::vector<double> weights_missing(const AlphaSolidResult& result) {
+    const Buffer<double>& weights = result.tets.weights;
+    std::vector<double> missing(result.mesh.positions.size(), 0.0);
+    if (weights.empty()) return missing;
+    std::vector<bool> is_elsewhere(weights.size(), false);
+    for (const Buffer<u32>* points : {&result.interior_points, &result.uncovered_points, &result.hidden_points})
+        for (u32 vertex : *points) is_elsewhere[vertex] = true;
+    const double largest = *std::ranges::max_element(weights);
+    std::size_t at_boundary = 0;
+    for (std::size_t vertex = 0; vertex < weights.size(); ++vertex)
+        if (!is_elsewhere[vertex]) missing[at_boundary++] = largest - weights[vertex];
+    return missing;
+}
+
+/// How often the boundary's edges go into the ball's radius there: the median over those of evenly spread triangles,
+/// some ten thousands at most. Pre: there are triangles.
+double radius_in_edges(const AlphaSolidResult& result) {
+    const TriangleMesh& mesh = result.mesh;
+    const std::vector<double> missing = weights_missing(result);
     constexpr std::size_t most = 1 << 16;
     const std::size_t step = 1 + (mesh.triangles.size() - 1) / most;
-    std::vector<double> lengths;
+    std::vector<double> ratios;
     for (std::size_t t = 0; t < mesh.triangles.size(); t += step)
-        for (int i = 0; i < 3; ++i)
-            lengths.push_back(
-                (mesh.positions[mesh.triangles[t][i]] - mesh.positions[mesh.triangles[t][(i + 1) % 3]]).norm());
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::ranges::nth_element(lengths, middle);
+        for (int i = 0; i < 3; ++i) {
+            const u32 a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
+            const double squared = result.alpha * result.alpha - (missing[a] + missing[b]) / 2;
+            ratios.push_back(std::sqrt(std::max(0.0, squared)) / (mesh.positions[a] - mesh.positions[b]).norm());
+        }
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::ranges::nth_element(ratios, middle);
     return *middle;
 }
 
@@ -78,11 +98,11 @@ std::vector<std::string> doubts(const AlphaSolidResult& result) {
             fmt::format("alpha {:.4g} {} is {:.3g} times the {:.4g} {} that would cover the points, because the "
                         "smaller solids are not valid",
                         result.alpha, unit, result.alpha / result.alpha_cover, result.alpha_cover, unit));
-    if (const double edge = median_edge(result.mesh); result.alpha >= ambiguous_edges * edge)
+    if (const double edges = radius_in_edges(result); edges >= ambiguous_edges)
         signs.push_back(
-            fmt::format("alpha {:.4g} {} is {:.3g} times the boundary's median edge, to span gaps or to "
-                        "reach far points",
-                        result.alpha, unit, result.alpha / edge));
+            fmt::format("alpha {:.4g} {} is {:.3g} times the boundary's median edge{}, to span gaps or to reach far "
+                        "points",
+                        result.alpha, unit, edges, result.tets.weights.empty() ? "" : ", with the weights there"));
     return signs;
 }
 
@@ -95,8 +115,8 @@ std::string ambiguity(const AlphaSolidResult& result) {
                                     result.interior_points.size(), result.tets.positions.size()));
     if (signs.empty()) return {};
     return joined(signs) +
-           ": what is narrower than 2 alpha may be filled; sculpt opens what it can, more points in gaps and thin "
-           "parts, or for outliers a lower coverage, let alpha be smaller";
+           ": what is narrower than 2 alpha may be filled; sculpt opens what it can, and more points in gaps and thin "
+           "parts, or a lower coverage against outliers, allow a smaller alpha";
 }
 
 }  // namespace

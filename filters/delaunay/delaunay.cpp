@@ -32,15 +32,15 @@ DistinctRows distinct_rows(std::size_t count, std::span<const u32> duplicates) {
     return rows;
 }
 
-/// Marks the vertices in no cell by a column, and tells how many there are.
+/// Marks the vertices in no cell, if any, by a column, and tells how many there are.
 std::size_t mark_hidden(TetMesh& tets, Context& context) {
     const Array<u32> hidden = hidden_vertices(tets);
+    if (hidden.empty()) return 0;
     tets.vertex_columns = with_hidden(tets.vertex_columns, tets.positions.size(), hidden, context);
-    if (!hidden.empty())
-        context.warn(
-            fmt::format("{} of {} points are hidden by the weights of others and in no cell; the column "
-                        "'hidden' marks them; smaller weights hide fewer",
-                        hidden.size(), tets.positions.size()));
+    context.warn(
+        fmt::format("{} of {} points are hidden by the weights of others and in no cell; the column "
+                    "'hidden' marks them; smaller weights hide fewer",
+                    hidden.size(), tets.positions.size()));
     return hidden.size();
 }
 

@@ -47,9 +47,10 @@ struct DelaunayResult {
 /// neighbours, lowered where a neighbour would be hidden (see spacing_weights.hpp), so that alpha-solid's ball is small
 /// where the sampling is dense. All of the above holds, but for: of points at one place the first stays, with the
 /// largest of their weights (a warning counts the places where they differed); insertion is on one thread; a warning
-/// counts hidden points, and a column `hidden` (uint8, at the vertices) marks them. An input column of that name
-/// becomes `hidden-of-points`. Throws Error for a missing or unfit column, weights that are no numbers from 0 to 1e200,
-/// and a factor out of range. A factor other than 1 without weights changes nothing and is told.
+/// counts hidden points, and a column `hidden` (uint8, at the vertices) marks them; without any there is no such
+/// column. An input column of that name then becomes `hidden-of-points`. Throws Error for a missing or unfit column,
+/// weights that are no numbers from 0 to 1e200, and a factor out of range. A factor other than 1 without weights
+/// changes nothing and is told.
 DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams& params, Context& context);
 
 }  // namespace scanmill

@@ -6,6 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "scanmill/filter/manifest.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"

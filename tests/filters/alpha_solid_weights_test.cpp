@@ -9,13 +9,13 @@
 #include <cstring>
 #include <deque>
 
-#include "alpha_solid/boundary.hpp"
 #include "alpha_solid/flood.hpp"
 #include "alpha_solid/sphere_polynomials.hpp"
 #include "alpha_solid/weighted_spheres.hpp"
 #include "filters/weighted_cases.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/hidden_vertices.hpp"
+#include "scanmill/geometry/solid_boundary.hpp"
 #include "support/real_data.hpp"
 
 namespace scanmill::alpha {

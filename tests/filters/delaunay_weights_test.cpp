@@ -243,17 +243,20 @@ TEST(DelaunayWeights, Duplicates_AreMergedIntoTheFirst_WithTheLargestWeight) {
     expect_same_cells(weighted(joined(base, base)).tets, weighted(base).tets);
 }
 
-TEST(DelaunayWeights, AColumnHidden_IsKeptUnderAnotherName) {
-    PointCloud cloud = random_cube(20, 1);
-    cloud.columns.add(Column("hidden", 1, Buffer<float>(Array<float>(20, 7.0f))));
-    cloud.columns.add(Column("hidden-of-points", 1, Buffer<u8>(Array<u8>(20, u8(9)))));
+TEST(DelaunayWeights, AColumnHidden_IsKeptUnderAnotherNameWhenOneIsNeeded) {
+    PointCloud cloud = cloud_of({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}, {0, 0, 0}});
+    cloud.columns.add(Column("hidden", 1, Buffer<float>(Array<float>(5, 7.0f))));
+    cloud.columns.add(Column("hidden-of-points", 1, Buffer<u8>(Array<u8>(5, u8(9)))));
     Context context;
-    const ColumnTable columns = delaunay(cloud, weighted_by("spacing"), context).tets.vertex_columns;
+    const ColumnTable columns =
+        delaunay(with_weights(cloud, {3.5, 3.5, 3.5, 3.5, 0.25}), weighted_by("w"), context).tets.vertex_columns;
     EXPECT_EQ(columns.find("hidden")->type(), ScalarType::uint8);
     EXPECT_EQ(columns.find("hidden-of-points")->number(0), 9);
     EXPECT_EQ(columns.find("hidden-of-points-of-points")->number(0), 7);
     EXPECT_THAT(context.warnings()[0], HasSubstr("it is called 'hidden-of-points-of-points' now"));
-    EXPECT_EQ(weighted(cloud, {}).tets.vertex_columns.find("hidden")->number(0), 7) << "untouched without weights";
+
+    const DelaunayResult seen = weighted(with_weights(cloud, {3.5, 3.5, 3.5, 3.5, 0.75}), weighted_by("w"));
+    EXPECT_EQ(seen.tets.vertex_columns.find("hidden")->number(0), 7) << "untouched when nothing is hidden";
 }
 
 TEST(DelaunayWeights, AFactorWithoutWeights_IsTold) {

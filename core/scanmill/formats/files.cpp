@@ -106,7 +106,7 @@ void write_file(const std::filesystem::path& path, const Value& value, const Wri
             file.write(bytes);
             if (options.on_bytes) options.on_bytes(bytes);
         });
-        write(value, out, {naming(path, options.on_warning), {}});
+        write(value, out, {naming(path, options.on_warning)});
         out.flush();
         file.commit();
     });
@@ -116,7 +116,7 @@ std::string write_bytes(const std::filesystem::path& name, const Value& value, c
     return naming(name, [&] {
         std::string bytes;
         OutputBuffer out([&bytes](std::string_view piece) { bytes += piece; });
-        writer_for(name, value)(value, out, {naming(name, options.on_warning), {}});
+        writer_for(name, value)(value, out, {naming(name, options.on_warning)});
         out.flush();
         return bytes;
     });

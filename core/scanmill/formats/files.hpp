@@ -55,7 +55,7 @@ struct WriteOptions {
     /// Called with one sentence for everything that the format cannot carry. May be empty.
     std::function<void(std::string)> on_warning;
     /// Called with all that goes into the file, piece by piece, in order. May be empty.
-    std::function<void(std::string_view)> on_bytes;
+    std::function<void(std::string_view)> on_bytes = {};
 };
 
 /// Writes in the format that the extension names. The file appears whole or not at all, and on an exception nothing is
