@@ -48,6 +48,7 @@ function(scanmill_add_filter folder)
                VISIBILITY_INLINES_HIDDEN ON
                INSTALL_RPATH "\$ORIGIN/../.."
                BUILD_WITH_INSTALL_RPATH ON
+               INSTALL_RPATH_USE_LINK_PATH ON
                LIBRARY_OUTPUT_DIRECTORY ${SCANMILL_PLUGIN_OUTPUT_DIRECTORY})
   target_compile_definitions(scanmill-${name} PRIVATE SCANMILL_FILTER_NAME="${name}")
   target_link_libraries(scanmill-${name} PRIVATE scanmill-${name}-algorithm)

@@ -19,6 +19,7 @@ function(scanmill_add_format folder)
                VISIBILITY_INLINES_HIDDEN ON
                INSTALL_RPATH "\$ORIGIN/../.."
                BUILD_WITH_INSTALL_RPATH ON
+               INSTALL_RPATH_USE_LINK_PATH ON
                LIBRARY_OUTPUT_DIRECTORY ${SCANMILL_FORMAT_OUTPUT_DIRECTORY})
   target_compile_definitions(${module} PRIVATE SCANMILL_FORMAT_NAME="${folder}")
   target_include_directories(${module} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

@@ -68,7 +68,6 @@ int run_batch(const Options& options) {
         return cache ? cache->file_hash(file) : content_hash(file);
     };
     Task task{checked.batch.name, options.file, make_graph(parts, library, hash), checked.batch.limits};
-    task.jobs = static_cast<unsigned>(std::clamp<std::size_t>(task.graph.cells.size(), 1, cores()));
     task.streams_events = true;
     return execute(task, library, cache.get(), workforce, warn, options.execute);
 }
@@ -80,7 +79,7 @@ void add_batch(CLI::App& app, Action& chosen, std::vector<std::string> command_l
     auto options = std::make_shared<Options>();
     options->execute.command_line = std::move(command_line);
     command->add_option("FILE", options->file, "The batch file")->required();
-    add_execute_options(*command, options->execute, "Without it as many as the machine has cores");
+    add_execute_options(*command, options->execute);
     command->add_flag("--json", options->execute.json, "Print what happens as JSON, a line each");
     command->callback([&chosen, options] { chosen = [options] { return run_batch(*options); }; });
 }

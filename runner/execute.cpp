@@ -23,6 +23,7 @@
 #include "scanmill/formats/atomic_file.hpp"
 #include "scanmill/records/reasons.hpp"
 #include "scanmill/records/recorder.hpp"
+#include "scanmill/work/available_memory.hpp"
 #include "scanmill/work/in_process_worker.hpp"
 #include "scanmill/work/worker_processes.hpp"
 #include "stderr_text.hpp"
@@ -91,6 +92,20 @@ std::string what_bars_folder(const std::string& folder) {
 
 constexpr unsigned most_jobs = 1024;
 
+/// As many as there is work for and cores, and as memory allows when each takes the largest scan: a file of binary
+/// coordinates becomes up to about a hundred times its size on the way to a mesh, other files less.
+unsigned default_jobs(const RunGraph& graph) {
+    constexpr u64 times_the_file = 100;
+    u64 largest = 1;
+    for (const RunNode& node : graph.nodes) {
+        std::error_code gone;
+        const auto bytes = node.is_scan ? std::filesystem::file_size(node.leaf.file, gone) : 0;
+        if (!gone) largest = std::max<u64>(largest, bytes);
+    }
+    const u64 held = available_memory() / times_the_file / largest;
+    return static_cast<unsigned>(std::clamp<u64>(std::min<u64>(graph.cells.size(), held), 1, cores()));
+}
+
 }  // namespace
 
 Workforce::Workforce(const ExecuteOptions& options, const Cache* cache) {
@@ -118,15 +133,14 @@ unsigned cores() {
     return 1;
 }
 
-void add_execute_options(CLI::App& command, ExecuteOptions& options, const std::string& jobs_help) {
+void add_execute_options(CLI::App& command, ExecuteOptions& options) {
     command.add_option("-o,--output", options.output_folder, "The output folder")
         ->capture_default_str()
         ->check(CLI::Validator(what_bars_folder, ""));
     command
         .add_option("-j,--jobs", options.jobs,
                     "Worker processes: what crashes in one harms no other; 0: everything in this process, without "
-                    "limits of time. " +
-                        jobs_help)
+                    "limits of time. Without it as many as the machine has cores, or fewer for large scans")
         ->check(whole_number<unsigned>())
         ->check(CLI::Range(0u, most_jobs));
     command
@@ -161,7 +175,7 @@ int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& w
         for (const RunOutput& output : cell.outputs) folders.insert(output.file.parent_path());
     for (const std::filesystem::path& folder : folders) remove_abandoned_parts(folder);
 
-    const unsigned jobs = options.jobs.value_or(task.jobs);
+    const unsigned jobs = options.jobs ? *options.jobs : default_jobs(graph);
     if (jobs == 0 && (task.limits.cell_seconds > 0 || task.limits.step_seconds > 0))
         warn("with -j 0 no limit of time is kept");
     RunSettings settings;

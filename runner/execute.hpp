@@ -18,7 +18,7 @@ namespace scanmill::runner {
 
 struct ExecuteOptions {
     std::string output_folder = "scanmill-out";
-    std::optional<unsigned> jobs;  ///< nothing: the command's own default
+    std::optional<unsigned> jobs;  ///< nothing: as the work and the machine allow
     unsigned threads = 0;
     std::uint64_t seed = 0;
     bool dry_run = false, json = false, quiet = false, fail_fast = false;
@@ -26,15 +26,13 @@ struct ExecuteOptions {
     std::vector<std::string> command_line;
 };
 
-/// `jobs_help` ends the help of `-j`.
-void add_execute_options(CLI::App& command, ExecuteOptions& options, const std::string& jobs_help);
+void add_execute_options(CLI::App& command, ExecuteOptions& options);
 
 /// A graph, and how it is called in the records.
 struct Task {
     std::string name, file;  ///< of the workflow or the batch
     RunGraph graph;
     Limits limits;
-    unsigned jobs = 1;  ///< where the options do not say
     bool streams_events = false;  ///< --json prints what happens as it happens, a line each; else a report at the end
 };
 

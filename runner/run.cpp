@@ -97,7 +97,7 @@ void add_run(CLI::App& app, Action& chosen, std::vector<std::string> command_lin
     command->add_option("--save", options->save, "Also write this step's result, STEP or STEP.PORT (may be repeated)")
         ->take_all()
         ->allow_extra_args(false);
-    add_execute_options(*command, options->execute, "Without it one");
+    add_execute_options(*command, options->execute);
     command->add_flag("--json", options->execute.json, "Print the report as JSON");
     command->callback([&chosen, options] { chosen = [options] { return run_workflow(*options); }; });
 }

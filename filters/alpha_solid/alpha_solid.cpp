@@ -42,6 +42,7 @@ double radius(double squared) {
 /// The largest radius whose square is below `squared`.
 double radius_below(double squared) {
     double root = std::sqrt(squared);
+    if (std::isinf(root)) return root;
     while (root * root >= squared) root = std::nextafter(root, 0.0);
     return root;
 }

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "alpha_solid/selection.hpp"
+
 namespace scanmill::alpha {
 
 namespace {
@@ -50,7 +52,7 @@ std::string wrong_alpha(const AlphaSolidResult& result, const AlphaSolidParams& 
     const double alpha = result.alpha, least = result.nearest_valid->least;
     return fmt::format("at alpha {} the solid is not valid: {}; the nearest alpha that gives a valid one is {} {}{}",
                        params.alpha->text(), joined(faults), text_within(*result.nearest_valid, alpha), unit,
-                       least > 4 * result.alpha_cover && least > alpha
+                       least > max_scan * result.alpha_cover && least > alpha
                            ? ", far above what covers the points: 'alpha: auto' repairs a smaller solid instead"
                            : "");
 }
@@ -150,9 +152,13 @@ void remark(const AlphaSolidResult& result, const AlphaSolidParams& params, Cont
         context.warn(
             fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary; the one at {:.4g} {} "
                         "was closed round its non-manifold vertices",
-                        4 * result.alpha_cover, unit, result.alpha, unit));
+                        max_scan * result.alpha_cover, unit, result.alpha, unit));
     if (result.choice == AlphaChoice::hull)
-        context.warn("no alpha gives a solid with a manifold boundary; the solid is the convex hull");
+        context.warn(
+            fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary, and closing the one at "
+                        "{:.4g} {} round its non-manifold vertices filled the convex hull; more points, or a coverage "
+                        "below 100 % against outliers, allow a smaller alpha",
+                        max_scan * result.alpha_cover, unit, result.alpha, unit));
     if (const std::string text = ambiguity(result); !text.empty()) context.warn(text);
 }
 

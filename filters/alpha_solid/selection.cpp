@@ -15,9 +15,6 @@ namespace scanmill::alpha {
 
 namespace {
 
-/// How far beyond alpha_cover the scan goes on looking for a valid alpha-solid before it settles for a repaired one.
-constexpr double max_scan = 4;
-
 AlphaChoice choice_of(AlphaSearch search) {
     return search == AlphaSearch::binary ? AlphaChoice::binary : AlphaChoice::scan;
 }
@@ -25,6 +22,13 @@ AlphaChoice choice_of(AlphaSearch search) {
 /// From `alpha` to the nearest radius in the range; to its end where that lies below, though it is not in the range.
 double distance(const AlphaRange& range, double alpha) {
     return std::max(std::sqrt(range.from) - alpha, alpha - std::sqrt(range.to));
+}
+
+/// No number may lie between two squares that differ in their last bits.
+bool has_a_radius(const AlphaRange& range) {
+    const double root = std::sqrt(range.from);
+    const double least = root * root < range.from ? std::nextafter(root, range.to) : root;
+    return least * least < range.to;
 }
 
 }  // namespace
@@ -191,7 +195,7 @@ AlphaRange Selector::nearest_valid(double value) const {
         // While alpha grows, ranges below `value` come nearer, those above go farther away.
         const AlphaRange range = growth.range();
         if (nearest && range.from > value && distance(range, alpha) > distance(*nearest, alpha)) return *nearest;
-        if (growth.is_valid()) {
+        if (has_a_radius(range) && growth.is_valid()) {
             if (range.from > value) return range;
             nearest = range;
         }

@@ -9,6 +9,9 @@
 
 namespace scanmill::alpha {
 
+/// How far beyond alpha_cover the scan goes on looking for a valid alpha-solid before it settles for a repaired one.
+inline constexpr double max_scan = 4;
+
 struct Selection {
     /// The alpha-solid is every cell but the flood's first `outside`; `labels` may differ from it by cells left out or
     /// added.
@@ -21,7 +24,8 @@ struct Selection {
     std::size_t components = 0;
 };
 
-/// The alpha-solid is the same for every squared radius from `from` up to, but not at, `to`.
+/// The alpha-solid is the same for every squared radius from `from` up to, but not at, `to`; infinite for the whole
+/// tetrahedralisation.
 struct AlphaRange {
     double from = 0, to = 0;
 };

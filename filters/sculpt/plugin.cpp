@@ -14,6 +14,7 @@ SCANMILL_FILTER() {
             "corners.")
         .in<TetMesh>("tets",
                      "Cells of a Delaunay tetrahedralisation, labelled by alpha-solid; its boundary a manifold.")
+        .made_by("alpha-solid")
         .out<TriangleMesh>("mesh", "The boundary that is left, closed and outward.")
         .out<TetMesh>("tets", "The cells, those that were removed labelled outside.")
         .choice("weight", &P::weight,
@@ -32,8 +33,9 @@ SCANMILL_FILTER() {
         .metric("bending-before", Unit::angle, "Sum over the boundary's edges of the angle between normals, before.")
         .metric("bending-after", Unit::angle, "The same sum afterwards.", headline)
         .metric("interior-points", Unit::count, "Points left inside the solid.", headline)
-        .metric("interior-blocked", Unit::count,
-                "Of these, such as no cell over them can go without the boundary touching itself.")
+        .metric(
+            "interior-blocked", Unit::count,
+            "Of these, such as no cell over them can go without the boundary touching itself or a point falling out.")
         .metric("interior-deep", Unit::count, "Of these, such as lie more than two cells below the boundary.")
         .metric("outside-points", Unit::count, "Points in no cell of the solid, as in the input.")
         .metric("triangles", Unit::count, "Triangles of the boundary.")

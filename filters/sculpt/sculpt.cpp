@@ -98,7 +98,7 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
     if (!result.blocked_points.empty())
         context.warn(fmt::format(
             "{} of {} points stay inside the solid, because removing any cell over them would make its boundary touch "
-            "itself: at {}; the sampling is too sparse or too noisy there",
+            "itself or leave a point outside: at {}; the sampling is too sparse or too noisy there",
             result.blocked_points.size(), tets.positions.size(), places_of_first(tets, result.blocked_points)));
     if (!result.deep_points.empty())
         context.warn(fmt::format(

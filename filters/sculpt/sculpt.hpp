@@ -55,8 +55,8 @@ struct SculptResult {
     /// Unweighted, in radians.
     double bending_before = 0, bending_after = 0;
     /// Vertex indices, ascending, of points that stay inside the solid. Blocked: a cell that bounds the solid lies over
-    /// the cells round the point, but removing it would make the boundary touch itself. Deep: all cells over them are
-    /// inside themselves.
+    /// the cells round the point, but removing it would make the boundary touch itself or leave a point outside. Deep:
+    /// all cells over them are inside themselves.
     Array<u32> blocked_points, deep_points;
     /// Vertices in no cell of the solid, as in the input.
     std::size_t outside_points = 0;

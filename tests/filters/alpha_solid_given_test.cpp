@@ -103,6 +103,19 @@ TEST(AlphaSolidGiven, AValidAlpha_IsTakenWithoutAWord) {
     }
 }
 
+TEST(AlphaSolidGiven, WhereOnlyTheHullIsValid_TheSentenceNamesItsRadius) {
+    // Nothing joins two unit cubes ten apart before the ball spans from one to the other.
+    PointCloud cubes = joined(lattice_cube(1), moved(lattice_cube(1), 1, Vec3(10, 0, 0)));
+    const TetMesh tets = tets_of(cubes);
+    Context context;
+    const AlphaSolidResult result = alpha_solid(tets, at_alpha(1), context);
+    ASSERT_TRUE(result.nearest_valid);
+    // A facet of two corners on one edge and one across the gap of 9: its circumradius is half of its longest side.
+    EXPECT_NEAR(result.nearest_valid->least, std::sqrt(82.0) / 2, 1e-12);
+    EXPECT_TRUE(std::isinf(result.nearest_valid->largest));
+    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("the nearest alpha that gives a valid one is 4.528 ")));
+}
+
 TEST(AlphaSolidGiven, PointsOutsideThatTheShareAllows_AreOnlyCounted) {
     Array<Vec3> far;
     for (int i = 0; i < 5; ++i) far.push_back(Vec3(3 + i, 2 * i, 1 - i));

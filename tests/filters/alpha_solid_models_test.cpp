@@ -2,34 +2,20 @@
 /// The vertices of well-known closed models, as if they had been scanned: which come back as what they were, and what
 /// is said about the others. Skipped where the collections are absent.
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Surface_mesh.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "alpha_solid/alpha_solid.hpp"
 #include "delaunay/delaunay.hpp"
+#include "filters/known_models.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/topology.hpp"
-#include "support/real_data.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill {
 namespace {
 
 using namespace test;
-
-struct Model {
-    const char* file;  ///< under build/data, or ../shared/data when it begins with a number
-    long genus;        ///< of the model: closed and in one piece
-};
-
-void PrintTo(const Model& model, std::ostream* stream) { *stream << model.file; }
-
-std::optional<std::filesystem::path> found(const Model& model) {
-    return std::isdigit(model.file[0]) ? shared_data(model.file) : fetched_data(model.file);
-}
 
 struct Reconstruction {
     AlphaSolidResult solid;
@@ -42,15 +28,6 @@ Reconstruction reconstructed(const std::filesystem::path& path) {
     Context context(options);
     const TetMesh tets = delaunay(*read_points(path), {}, context).tets;
     return {alpha_solid(tets, {}, context), context.warnings()};
-}
-
-bool intersects_itself(const TriangleMesh& mesh) {
-    CGAL::Surface_mesh<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3> surface;
-    using Vertex = decltype(surface)::Vertex_index;
-    for (const Vec3& p : mesh.positions) surface.add_vertex({p.x(), p.y(), p.z()});
-    for (const auto& [a, b, c] : mesh.triangles)
-        if (surface.add_face(Vertex(a), Vertex(b), Vertex(c)) == decltype(surface)::null_face()) return true;
-    return CGAL::Polygon_mesh_processing::does_self_intersect(surface);
 }
 
 /// One closed, outward manifold through every point but those inside.
@@ -88,17 +65,8 @@ TEST_P(AlphaSolidOfDenseModel, HasTheModelsGenusAndAllItsPointsWithoutAWord) {
     EXPECT_EQ(facts.genus, GetParam().genus);
     EXPECT_THAT(result.warnings, testing::IsEmpty());
 }
-INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfDenseModel,
-                         testing::Values(Model{"meshes/bear.off", 0}, Model{"meshes/bear_bis.off", 0},
-                                         Model{"meshes/blobby.off", 0}, Model{"meshes/cube-meshed.off", 0},
-                                         Model{"meshes/ellipe0.003.off", 0}, Model{"meshes/larger_sphere.off", 0},
-                                         Model{"meshes/retinal.off", 0}, Model{"meshes/sphere966.off", 0},
-                                         Model{"6-formats/obj/ok/trimesh_ico4.obj", 0},
-                                         Model{"6-formats/ply/ok/trimesh_sphere.ply", 0}, Model{"meshes/eight.off", 2},
-                                         Model{"meshes/knot.off", 1}, Model{"meshes/knot1.off", 1},
-                                         Model{"6-formats/stl/ok/trimesh_torus.STL", 1}));
+INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfDenseModel, testing::ValuesIn(dense_models));
 
-/// Dense enough for their genus, but points lie in creases and grooves narrower than 2 alpha.
 class AlphaSolidOfGroovedModel : public AlphaSolidOfModel {};
 TEST_P(AlphaSolidOfGroovedModel, HasTheModelsGenusAndSaysWhichPointsAreInside) {
     expect_promised(result.solid, facts);
@@ -110,16 +78,7 @@ TEST_P(AlphaSolidOfGroovedModel, HasTheModelsGenusAndSaysWhichPointsAreInside) {
     ASSERT_EQ(result.warnings.size(), 1u);
     EXPECT_THAT(result.warnings[0], testing::HasSubstr(fmt::format("{} of {} points lie inside", inside, points)));
 }
-INSTANTIATE_TEST_SUITE_P(
-    Models, AlphaSolidOfGroovedModel,
-    testing::Values(Model{"meshes/armadillo.off", 0}, Model{"meshes/bull.off", 0}, Model{"meshes/bunny00.off", 0},
-                    Model{"meshes/cactus.off", 0}, Model{"meshes/camel.off", 0}, Model{"meshes/cow.off", 0},
-                    Model{"meshes/dino.off", 0}, Model{"meshes/diplodocus.off", 0}, Model{"meshes/fandisk.off", 0},
-                    Model{"meshes/fandisk_large.off", 0}, Model{"meshes/hand.off", 0}, Model{"meshes/handle.off", 0},
-                    Model{"meshes/homer.off", 0}, Model{"meshes/oblong.off", 0}, Model{"meshes/spool.off", 0},
-                    Model{"meshes/triceratops.off", 0}, Model{"7-seed-like/femur_gfxmorph.stl", 0},
-                    Model{"meshes/anchor_dense.off", 4}, Model{"meshes/refined_elephant.off", 3},
-                    Model{"meshes/turbine.off", 11}));
+INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfGroovedModel, testing::ValuesIn(grooved_models));
 
 /// Too thin or too sparsely sampled: another genus comes out. That cannot be seen from the points, but that alpha is
 /// doubtful can.

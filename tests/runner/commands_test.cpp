@@ -126,6 +126,20 @@ TEST(Command, ShowExample_IsAWorkflowThatPassesCheck) {
     }
 }
 
+TEST(Command, ShowExample_OfFiltersThatLeadFromPointsToAMesh_Runs) {
+    const TemporaryFolder folder;
+    std::string corners;
+    for (int i = 0; i < 8; ++i)
+        corners += std::to_string(i % 2) + " " + std::to_string(i / 2 % 2) + " " + std::to_string(i / 4) + "\n";
+    const auto scan = folder.write("cube.xyz", corners);
+    for (const std::string filter : {"voxel-thin", "delaunay", "alpha-solid", "sculpt"}) {
+        const auto example = folder.write(filter + ".yaml", scanmill_program({"show", filter, "--example"}).out);
+        const ProgramResult ran =
+            scanmill_program({"run", example.string(), scan.string(), "-o", (folder / filter).string()});
+        EXPECT_EQ(ran.exit_code, 0) << filter << ran.err;
+    }
+}
+
 TEST(Command, Show_PrintsEveryParameterWithItsDefaultAndMeaning) {
     const json listed = json::parse(scanmill_program({"list", "--json"}).out);
     for (const json& filter : listed.at("filters")) {

@@ -29,6 +29,30 @@ void write_sphere(const TemporaryFolder& folder, const std::string& name) {
 
 std::string quickstart() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml"; }
 
+TEST(RunCommand, ShippedWorkflowsAndBatches_PassCheck) {
+    for (const auto& file : std::filesystem::directory_iterator(std::string(SCANMILL_SOURCE_DIR) + "/workflows")) {
+        if (file.path().extension() != ".yaml" || file.path().filename() == "nightly.yaml") continue;  // wants its data
+        EXPECT_EQ(scanmill_program({"check", file.path().string()}).exit_code, 0) << file.path();
+    }
+}
+
+TEST(RunCommand, WorkflowOfThePaper_LeadsToAClosedMeshThroughAllPoints) {
+    const TemporaryFolder folder;
+    write_sphere(folder, "ball");
+    const ProgramResult ran =
+        scanmill_program({"run", std::string(SCANMILL_SOURCE_DIR) + "/workflows/bernardini-1997.yaml", "ball.ply", "-o",
+                          "out", "--json"},
+                         {.folder = folder.path()});
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    const json scan = json::parse(scanmill_program({"info", "--json", (folder / "ball.ply").string()}).out);
+    for (const auto& file : std::filesystem::directory_iterator(folder / "out")) {
+        if (file.path().extension() != ".stl" && file.path().extension() != ".ply") continue;
+        const json made = json::parse(scanmill_program({"info", "--json", file.path().string()}).out).at("files").at(0);
+        EXPECT_EQ(made.at("closed"), true);
+        EXPECT_EQ(made.at("triangles"), 2 * scan.at("files").at(0).at("points").get<int>() - 4);
+    }
+}
+
 TEST(RunCommand, Run_WritesAClosedMeshAndATable) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");

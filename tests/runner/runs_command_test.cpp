@@ -46,7 +46,7 @@ TEST_F(RunsCommand, EveryRun_IsALine) {
 }
 
 TEST_F(RunsCommand, Show_SaysEverythingOfOne) {
-    scanmill({"run", "w.yaml", "a.xyz", "missing.xyz", "-o", "out", "--seed", "7"});
+    scanmill({"run", "w.yaml", "a.xyz", "missing.xyz", "-o", "out", "--seed", "7", "-j", "1"});
     const json run = json::parse(scanmill({"runs", "out", "show", "1", "--json"}).out);
     EXPECT_EQ(run["run"]["seed"], 7);
     EXPECT_EQ(run["run"]["arguments"][1], "run");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -53,6 +54,29 @@ void add_commands(const std::vector<std::string>& block, std::size_t line, Guide
     }
 }
 
+/// Scans run beside each other, so the order of what is said of them is nobody's promise: the messages that the lines
+/// begin with, sorted, each with the lines that belong to it.
+std::vector<std::string> with_messages_sorted(const std::vector<std::string>& lines) {
+    std::vector<std::vector<std::string>> messages;
+    std::size_t at = 0;
+    for (; at < lines.size(); ++at) {
+        const bool begins = lines[at].starts_with("error: ") || lines[at].starts_with("warning: ");
+        const bool goes_on = lines[at].starts_with("hint: ") || lines[at].starts_with("  ");
+        if (begins)
+            messages.push_back({lines[at]});
+        else if (goes_on && !messages.empty())
+            messages.back().push_back(lines[at]);
+        else
+            break;
+    }
+    std::ranges::sort(messages);
+    std::vector<std::string> sorted;
+    for (const std::vector<std::string>& message : messages)
+        sorted.insert(sorted.end(), message.begin(), message.end());
+    sorted.insert(sorted.end(), lines.begin() + static_cast<std::ptrdiff_t>(at), lines.end());
+    return sorted;
+}
+
 }  // namespace
 
 Guide read_guide(const std::filesystem::path& markdown) {
@@ -82,7 +106,7 @@ Guide read_guide(const std::filesystem::path& markdown) {
 }
 
 bool matches(const std::vector<std::string>& expected, const std::vector<std::string>& printed) {
-    return matches_from(expected, 0, printed, 0);
+    return matches_from(with_messages_sorted(expected), 0, with_messages_sorted(printed), 0);
 }
 
 void follow(const Guide& guide, const std::filesystem::path& folder, const std::filesystem::path& home) {

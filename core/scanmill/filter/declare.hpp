@@ -86,6 +86,11 @@ public:
                                             {kind_of<Others>()...}});
         return *this;
     }
+    /// The filter that the value of the input declared last usually comes from: examples begin with it.
+    Declare& made_by(std::string filter) {
+        declaration_.spec.inputs.back().maker = std::move(filter);
+        return *this;
+    }
     /// The first output is the primary one.
     template <class T>
     Declare& out(std::string port, std::string help) {

@@ -15,6 +15,7 @@ Json to_json(const PortSpec& port) {
     if (port.list) json["list"] = true;
     if (port.optional) json["optional"] = true;
     for (const Kind kind : port.also) json["also"].push_back(name_of(kind));
+    if (!port.maker.empty()) json["maker"] = port.maker;
     return json;
 }
 
@@ -63,6 +64,7 @@ PortSpec port_from(const Json& json) {
     PortSpec port{json.at("name"), kind_from(json.at("kind")), json.at("help"), json.value("list", false),
                   json.value("optional", false)};
     for (const auto& also : json.value("also", Json::array())) port.also.push_back(kind_from(also));
+    port.maker = json.value("maker", "");
     return port;
 }
 

@@ -112,21 +112,32 @@ std::string example_wiring(const FilterSpec& spec) {
     return fmt::format("    in: {{{}}}\n", wiring);
 }
 
+/// The steps that lead to this one and what is read from files for them.
+struct ExampleSteps {
+    std::vector<const FilterSpec*> steps;
+    std::vector<const PortSpec*> inputs;
+};
+
+void add_step(ExampleSteps& example, const FilterSpec& spec, const FilterLibrary& library) {
+    const bool is_last = example.steps.empty();
+    example.steps.push_back(&spec);  // backwards
+    for (const PortSpec& port : spec.inputs) {
+        if (is_readable(port.kind)) {
+            if (is_last || !port.optional) example.inputs.push_back(&port);
+            continue;
+        }
+        const FilterSpec* maker = port.maker.empty() ? maker_of(port.kind, library) : library.find(port.maker);
+        if (maker && std::ranges::find(example.steps, maker) == example.steps.end()) add_step(example, *maker, library);
+    }
+}
+
 }  // namespace
 
 std::string example_workflow(const FilterSpec& spec, const FilterLibrary& library) {
-    std::vector<const FilterSpec*> steps;
-    std::vector<const PortSpec*> inputs;
-    for (const PortSpec& port : spec.inputs) {
-        if (is_readable(port.kind)) {
-            inputs.push_back(&port);
-        } else if (const FilterSpec* maker = maker_of(port.kind, library)) {
-            steps.push_back(maker);
-            for (const PortSpec& read : maker->inputs)
-                if (!read.optional) inputs.push_back(&read);
-        }
-    }
-    steps.push_back(&spec);
+    ExampleSteps chain;
+    add_step(chain, spec, library);
+    auto& [steps, inputs] = chain;
+    std::ranges::reverse(steps);
     std::string example = fmt::format("scanmill: 1\nname: {}-example\n", spec.name);
     std::set<std::string_view> fed;
     if (!inputs.empty()) example += "inputs:\n";

@@ -5,19 +5,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <future>
 #include <new>
+#include <optional>
 
 #include "scanmill/engine/byte_size.hpp"
 #include "scanmill/engine/facts.hpp"
 #include "scanmill/engine/path_parameters.hpp"
 #include "scanmill/filter/error.hpp"
-#include "scanmill/filter/module.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/work/file_description.hpp"
 #include "scanmill/work/memory_limit.hpp"
 #include "scanmill/work/resource_use.hpp"
 #include "scanmill/work/sha256.hpp"
+#include "scanmill/work/unchanged_file.hpp"
 
 namespace scanmill {
 
@@ -36,18 +36,6 @@ struct InputLost {};
 struct Unmet {
     Error error;
 };
-
-/// The key knows a file as it was when the run was planned; what it holds now must not be kept under that key.
-void require_unchanged(const fs::path& file, const std::string& content) {
-    if (content_hash(file) != content)
-        throw Error("'{}' changed while the run was going on", file.string()).hint("run it again");
-}
-
-/// The same beside other work, if the job may use a second thread and the system gives one.
-std::future<void> unchanged_beside(const Job& job, const LeafSource& leaf) {
-    const auto policy = job.threads > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred;
-    return std::async(policy, require_unchanged, leaf.file, leaf.content);
-}
 
 fs::path emptied(const fs::path& folder) {
     std::error_code ignored;
@@ -113,9 +101,10 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
         report.node.warnings.push_back(std::move(text));
     };
     const auto start = std::chrono::steady_clock::now();
-    std::future<void> unchanged = uses_cache(work.memory) ? unchanged_beside(job, work.leaf) : std::future<void>();
+    std::optional<UnchangedWhileRead> check;
+    if (uses_cache(work.memory)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
     Value value = read_leaf(work.leaf, on_warning);
-    if (unchanged.valid()) unchanged.get();
+    if (check) check->require();
     if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&value))
         report.node.facts.set("points", static_cast<double>((*points)->size()), Unit::count);
     else if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
