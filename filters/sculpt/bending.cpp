@@ -143,6 +143,12 @@ bool Gains::bares_thin_facet(u32 cell, unsigned open) const {
     return false;
 }
 
+bool Gains::bares_larger_facet(u32 cell, unsigned open, double most) const {
+    for (int facet = 0; facet < 4; ++facet)
+        if ((open >> facet & 1u) == 0 && squared_radius(cell, facet) > most) return true;
+    return false;
+}
+
 double Gains::squared_radius(u32 cell, int facet) const {
     const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];
     const Tetrahedron& corners = tets_.cells[cell];

@@ -41,6 +41,8 @@ public:
     double weight_of_flip(u32 cell, unsigned open) const;
     /// Removing the cell bares a facet with an angle below 0.1°.
     bool bares_thin_facet(u32 cell, unsigned open) const;
+    /// Removing the cell bares a facet whose squared circumradius is above `most`, a result of squared_radius().
+    bool bares_larger_facet(u32 cell, unsigned open, double most) const;
     /// Squared circumradius of the facet, in the scan's unit over a power of two.
     double squared_radius(u32 cell, int facet) const;
     double volume(u32 cell) const;

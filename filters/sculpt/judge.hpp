@@ -12,7 +12,8 @@ namespace scanmill::sculpting {
 
 class Judge {
 public:
-    Judge(const CarvedSolid& solid, const SculptParams& params);
+    /// No flip bares a triangle whose circumradius is larger than those of the boundary as it is now.
+    Judge(const CarvedSolid& solid, const SculptParams& params, unsigned threads);
 
     /// The gain of removing the cell to smooth the boundary: nothing unless the cell flips an edge, gains enough, bares
     /// no thin triangle, and is where that is allowed. Pre: `open` are its open facets.
@@ -23,6 +24,9 @@ public:
     /// The gain of an exposing step, with look-ahead together with the best smoothing step that it makes possible. Pre:
     /// the cell exposes.
     double exposing(u32 cell, unsigned open) const;
+
+    /// A flip would dig where the points cannot tell what is there.
+    bool digs(u32 cell, unsigned open) const { return gains_.bares_larger_facet(cell, open, largest_); }
 
     /// Smoothing is allowed at cells near an exposing step, whatever the bend.
     bool is_near(u32 cell) const { return is_near_[cell] == 1; }
@@ -37,6 +41,7 @@ private:
     const CarvedSolid& solid_;
     Gains gains_;
     double min_gain_;
+    double largest_;
     bool lookahead_;
     Array<u8> is_near_;
 };

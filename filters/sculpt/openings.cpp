@@ -45,7 +45,7 @@ const std::vector<u32>& Openings::star(u32 vertex) {
 
 void Openings::consider_after(Opening& best, u32 first, u32 second, u32 below, double gain_of_first) {
     const unsigned open = solid_.open_facets(second);
-    if (!solid_.flips(second, open)) return;
+    if (!solid_.flips(second, open) || judge_.digs(second, open)) return;
     double gain = gain_of_first + judge_.gains().of(second, open);
     solid_.pretend(second, false);
     gain += judge_.exposing(below, solid_.open_facets(below));
@@ -66,7 +66,7 @@ void Openings::consider(Opening& best, u32 vertex, u32 below) {
     for (u32 beside : tets_.neighbours[over]) {
         if (beside == below || !solid_.has(beside)) continue;
         const unsigned open_beside = solid_.open_facets(beside);
-        if (!solid_.flips(beside, open_beside)) continue;
+        if (!solid_.flips(beside, open_beside) || judge_.digs(beside, open_beside)) continue;
         const double gain = judge_.gains().of(beside, open_beside);
         solid_.pretend(beside, false);
         consider_after(best, beside, over, below, gain);

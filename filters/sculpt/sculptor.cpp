@@ -11,7 +11,7 @@ namespace scanmill::sculpting {
 Sculptor::Sculptor(CarvedSolid& solid, const SculptParams& params, std::size_t interior_points, unsigned threads)
     : solid_(solid),
       tets_(solid.tets()),
-      judge_(solid, params),
+      judge_(solid, params, threads),
       openings_(solid, judge_),
       interior_points_(interior_points),
       smoothing_(tets_),

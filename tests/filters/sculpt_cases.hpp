@@ -53,6 +53,11 @@ inline double bending_of(const TriangleMesh& mesh, SculptWeight weight = SculptW
     return sum;
 }
 
+inline double circumradius(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const double u = (b - a).norm(), v = (c - b).norm(), w = (a - c).norm();
+    return u * v * w / (2 * (b - a).cross(c - a).norm());
+}
+
 inline double volume_of(const TetMesh& tets, u32 cell) {
     const auto& [i, j, k, l] = tets.cells[cell];
     const Vec3& a = tets.positions[i];

@@ -110,6 +110,20 @@ TEST(Sculpt, WebAlongAConcaveEdge_IsRemoved) {
     EXPECT_NEAR(signed_volume(result.mesh), 6, 0.03);
 }
 
+TEST(Sculpt, NearDuplicates_AreBroughtUpWithoutDiggingIntoTheSolid) {
+    // A scan and a copy of it rounded to float: pits a millionth deep, whose edges bend like any others.
+    const PointCloud sphere = fibonacci_sphere(2000, 0);
+    PointCloud rounded;
+    Array<Vec3> positions;
+    for (const Vec3& p : sphere.positions) positions.push_back(p.cast<float>().cast<double>());
+    rounded.positions = std::move(positions);
+    const AlphaSolidResult solid = solid_of(tets_of(joined(sphere, rounded)));
+    EXPECT_GT(solid.interior_points.size(), 500u);
+    const SculptResult result = sculpted(solid.tets);
+    EXPECT_EQ(result.blocked_points.size() + result.deep_points.size(), 0u);
+    EXPECT_LT(result.volume_removed, 0.05 * signed_volume(solid.mesh));
+}
+
 TEST(Sculpt, SeparateSolids_AreEachSculpted) {
     const TetMesh tets = tets_of(joined(dented_cube(), moved(dented_cube(), 1, Vec3(5, 0, 0))));
     TetMesh labelled = tets;
