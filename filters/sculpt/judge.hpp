@@ -25,7 +25,8 @@ public:
     /// the cell exposes.
     double exposing(u32 cell, unsigned open) const;
 
-    /// A flip would dig where the points cannot tell what is there.
+    /// Removing the cell bares a triangle whose circumradius is larger than all were when sculpting began: it digs
+    /// where the points do not tell of a surface.
     bool digs(u32 cell, unsigned open) const { return gains_.bares_larger_facet(cell, open, largest_); }
 
     /// Smoothing is allowed at cells near an exposing step, whatever the bend.

@@ -70,8 +70,8 @@ struct SculptResult {
 /// Post: no cell was added; the boundary is a 2-manifold with the components and the genus of the input's, and
 ///       2 (exposing) more triangles. No smoothing step with enough gain is left within two cells of an exposing step,
 ///       or at an edge that bends by more than 45°; none was made elsewhere, and none makes a triangle with an angle
-///       below 0.1°. No flip, smoothing or opening, makes a triangle whose circumradius is larger than all were before.
-///       Points still inside have a reason, see SculptResult.
+///       below 0.1°. No flip, smoothing or opening, makes a triangle whose circumradius is larger than all were before,
+///       and exposing steps that do come last. Points still inside have a reason, see SculptResult.
 /// Ties: of equal gains that of the larger boundary triangle (by circumradius) for exposing steps, then the cell whose
 ///       corners are lower by x, y, z. Gains are computed from corners sorted by place, so the solid depends neither on
 ///       the order of the points nor on the number of threads.

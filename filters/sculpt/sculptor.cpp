@@ -34,8 +34,7 @@ void Sculptor::find_candidates(unsigned threads) {
             const unsigned open = solid_.open_facets(cell);
             if (open == 0) continue;
             if (solid_.exposes(cell, open))
-                found[begin / chunk].exposing.push_back(
-                    {judge_.exposing(cell, open), judge_.gains().squared_radius(cell, only_corner(open)), cell, now_});
+                found[begin / chunk].exposing.push_back(exposing_step(cell, open));
             else if (const std::optional<double> gain = judge_.smoothing(cell, open))
                 found[begin / chunk].smoothing.push_back({*gain, 0, cell, now_});
         }
@@ -47,6 +46,11 @@ void Sculptor::find_candidates(unsigned threads) {
     }
     smoothing_.append(smoothing);
     exposing_.append(exposing);
+}
+
+WaitingStep Sculptor::exposing_step(u32 cell, unsigned open) const {
+    return {judge_.exposing(cell, open), judge_.gains().squared_radius(cell, only_corner(open)), cell, now_,
+            judge_.digs(cell, open)};
 }
 
 bool Sculptor::step() {
@@ -101,8 +105,7 @@ void Sculptor::refresh(u32 cell) {
     const unsigned open = solid_.open_facets(cell);
     if (open == 0) return;
     if (solid_.exposes(cell, open))
-        exposing_.push(
-            {judge_.exposing(cell, open), judge_.gains().squared_radius(cell, only_corner(open)), cell, now_});
+        exposing_.push(exposing_step(cell, open));
     else if (const std::optional<double> gain = judge_.smoothing(cell, open))
         smoothing_.push({*gain, 0, cell, now_});
 }

@@ -25,6 +25,7 @@ public:
 
 private:
     void find_candidates(unsigned threads);
+    WaitingStep exposing_step(u32 cell, unsigned open) const;
     void remove(u32 cell, SculptStep step);
     /// Looks again at a cell unless that was done since the last removal.
     void refresh(u32 cell);

@@ -17,6 +17,8 @@ struct WaitingStep {
     u32 cell = none;
     /// When the cell was looked at.
     u32 time = 0;
+    /// See Judge::digs(): such steps come last.
+    bool digs = false;
 };
 
 class StepQueue {
@@ -48,6 +50,7 @@ private:
     struct Later {
         const TetMesh& tets;
         bool operator()(const WaitingStep& a, const WaitingStep& b) const {
+            if (a.digs != b.digs) return a.digs;
             if (a.gain != b.gain) return a.gain < b.gain;
             if (a.radius != b.radius) return a.radius < b.radius;
             return a.cell != b.cell && is_lower_cell(tets, b.cell, a.cell);

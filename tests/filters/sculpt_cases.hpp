@@ -58,6 +58,26 @@ inline double circumradius(const Vec3& a, const Vec3& b, const Vec3& c) {
     return u * v * w / (2 * (b - a).cross(c - a).norm());
 }
 
+inline double largest_circumradius(const TriangleMesh& mesh) {
+    double largest = 0;
+    for (const auto& [a, b, c] : mesh.triangles)
+        largest = std::max(largest, circumradius(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
+    return largest;
+}
+
+/// Removing the cell, whose facets `open` are on the boundary, bares a triangle with a larger circumradius.
+inline bool bares_larger(const TetMesh& tets, u32 cell, const std::vector<int>& open, double largest) {
+    for (int facet = 0; facet < 4; ++facet) {
+        if (std::ranges::find(open, facet) != open.end()) continue;
+        const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];
+        const Tetrahedron& corners = tets.cells[cell];
+        if (circumradius(tets.positions[corners[i]], tets.positions[corners[j]], tets.positions[corners[k]]) >
+            largest * (1 + 1e-9))
+            return true;
+    }
+    return false;
+}
+
 inline double volume_of(const TetMesh& tets, u32 cell) {
     const auto& [i, j, k, l] = tets.cells[cell];
     const Vec3& a = tets.positions[i];

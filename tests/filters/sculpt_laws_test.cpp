@@ -101,20 +101,7 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
     ASSERT_TRUE(before.closed);
     const SculptWeight weight = given.params.weight;
     double bending = bending_of(mesh, weight), removed_volume = 0;
-    double largest = 0;
-    for (const auto& [a, b, c] : mesh.triangles)
-        largest = std::max(largest, circumradius(mesh.positions[a], mesh.positions[b], mesh.positions[c]));
-    const auto bares_larger = [&](u32 cell, const std::vector<int>& open) {
-        for (int facet = 0; facet < 4; ++facet) {
-            if (std::ranges::find(open, facet) != open.end()) continue;
-            const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];
-            const Tetrahedron& corners = tets.cells[cell];
-            if (circumradius(tets.positions[corners[i]], tets.positions[corners[j]], tets.positions[corners[k]]) >
-                largest * (1 + 1e-9))
-                return true;
-        }
-        return false;
-    };
+    const double largest = largest_circumradius(mesh);
     std::size_t triangles = before.triangles, exposed = 0;
     for (const SculptRemoval& removal : result.removals) {
         ASSERT_EQ(inside[removal.cell], 1);
@@ -135,7 +122,7 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
         ASSERT_EQ(facts.vertices, before.vertices + exposed);
         const double now = bending_of(mesh, weight);
         ASSERT_NEAR(bending - now, removal.gain, 1e-6);
-        ASSERT_FALSE(!exposes && bares_larger(removal.cell, open)) << "flips dig no pits";
+        ASSERT_FALSE(!exposes && bares_larger(tets, removal.cell, open, largest)) << "flips dig no pits";
         if (removal.step == SculptStep::smoothing) {
             ASSERT_GT(removal.gain, 0);
             for (int facet = 0; facet < 4; ++facet)
@@ -164,7 +151,7 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
         if (open.size() == 2 && near[cell] == 0 &&
             unit_normal(tets, cell, open[0]).dot(unit_normal(tets, cell, open[1])) > std::cos(std::numbers::pi / 4))
             continue;
-        if (open.size() == 2 && bares_larger(cell, open)) continue;
+        if (open.size() == 2 && bares_larger(tets, cell, open, largest)) continue;
         if (!is_admissible(tets, inside, cell, before.euler)) continue;
         ++tried;
         ASSERT_EQ(open.size(), 2u) << "cell " << cell << " would expose a point";
@@ -183,12 +170,15 @@ INSTANTIATE_TEST_SUITE_P(Solids, SculptLaws, testing::Range(std::size_t(0), std:
 double exposing_gain(const TetMesh& tets, Array<u8>& inside, u32 cell, bool lookahead) {
     const TriangleMesh before = mesh_of(tets, inside);
     const long euler = topology(before).euler;
+    const double largest = largest_circumradius(before);
     inside[cell] = 0;
     const double between = bending_of(mesh_of(tets, inside));
     double best = 0;
     for (u32 across : tets.neighbours[cell]) {
         if (!lookahead || across == TetMesh::outside_hull || inside[across] == 0) continue;
-        if (open_facets(tets, inside, across).size() != 2 || !is_admissible(tets, inside, across, euler)) continue;
+        const std::vector<int> open = open_facets(tets, inside, across);
+        if (open.size() != 2 || !is_admissible(tets, inside, across, euler)) continue;
+        if (bares_larger(tets, across, open, largest)) continue;
         inside[across] = 0;
         best = std::max(best, between - bending_of(mesh_of(tets, inside)));
         inside[across] = 1;
@@ -211,11 +201,20 @@ TEST(Sculpt, FirstExposingStep_IsTheBestOfAllByItselfOrWithTheFlipAfterIt) {
             Array<u8> inside(tets.inside.begin(), tets.inside.end());
             const long euler = topology(mesh_of(tets, inside)).euler;
             const double chosen = exposing_gain(tets, inside, first[lookahead], lookahead);
+            const double largest = largest_circumradius(mesh_of(tets, inside));
+            const auto digs = [&](u32 cell) {
+                return bares_larger(tets, cell, open_facets(tets, inside, cell), largest);
+            };
+            bool all_dig = true;
             for (u32 cell = 0; cell < inside.size(); ++cell) {
                 if (open_facets(tets, inside, cell).size() == 1 && is_admissible(tets, inside, cell, euler)) {
-                    EXPECT_LE(exposing_gain(tets, inside, cell, lookahead), chosen + 1e-6);
+                    all_dig &= digs(cell);
+                    if (digs(cell) == digs(first[lookahead])) {
+                        EXPECT_LE(exposing_gain(tets, inside, cell, lookahead), chosen + 1e-6);
+                    }
                 }
             }
+            EXPECT_EQ(digs(first[lookahead]), all_dig) << "digging comes last";
         }
         differ += first[0] != first[1];
     }

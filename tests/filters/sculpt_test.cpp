@@ -121,7 +121,15 @@ TEST(Sculpt, NearDuplicates_AreBroughtUpWithoutDiggingIntoTheSolid) {
     EXPECT_GT(solid.interior_points.size(), 500u);
     const SculptResult result = sculpted(solid.tets);
     EXPECT_EQ(result.blocked_points.size() + result.deep_points.size(), 0u);
-    EXPECT_LT(result.volume_removed, 0.05 * signed_volume(solid.mesh));
+    const auto longest_edge = [](const TriangleMesh& mesh) {
+        double longest = 0;
+        for (const Triangle& t : mesh.triangles)
+            for (int i = 0; i < 3; ++i)
+                longest = std::max(longest, (mesh.positions[t[i]] - mesh.positions[t[(i + 1) % 3]]).norm());
+        return longest;
+    };
+    EXPECT_LT(longest_edge(result.mesh), 1.5 * longest_edge(solid.mesh));
+    EXPECT_LT(result.volume_removed, 0.1 * signed_volume(solid.mesh));
 }
 
 TEST(Sculpt, SeparateSolids_AreEachSculpted) {
