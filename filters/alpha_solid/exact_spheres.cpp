@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <CGAL/MP_Float.h>
-#include <CGAL/Mpzf.h>
-
 #include <cmath>
 #include <limits>
 
+#include "alpha_solid/exact_number.hpp"
 #include "alpha_solid/sphere_polynomials.hpp"
 
 namespace scanmill::alpha {
 
 namespace {
-
-// Both hold every double and are closed under + − ×; Mpzf is faster and needs GMP.
-#ifdef CGAL_HAS_MPZF
-using Exact = CGAL::Mpzf;
-#else
-using Exact = CGAL::MP_Float;
-#endif
 
 /// Offsets over 2^exponent, so that products of many of them stay within double's range.
 template <std::size_t count>

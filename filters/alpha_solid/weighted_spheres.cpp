@@ -2,23 +2,17 @@
 #include "alpha_solid/weighted_spheres.hpp"
 
 #include <CGAL/Interval_nt.h>
-#include <CGAL/MP_Float.h>
-#include <CGAL/Mpzf.h>
 
 #include <cmath>
 #include <limits>
 
+#include "alpha_solid/exact_number.hpp"
 #include "alpha_solid/weighted_polynomials.hpp"
 
 namespace scanmill::alpha {
 
 namespace {
 
-#ifdef CGAL_HAS_MPZF
-using Exact = CGAL::Mpzf;
-#else
-using Exact = CGAL::MP_Float;
-#endif
 /// Rounds outwards while the processor's rounding mode is upwards.
 using Interval = CGAL::Interval_nt<false>;
 

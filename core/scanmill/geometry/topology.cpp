@@ -5,26 +5,11 @@
 #include <numeric>
 #include <span>
 
+#include "scanmill/geometry/disjoint_sets.hpp"
+
 namespace scanmill {
 
 namespace {
-
-class UnionFind {
-public:
-    explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), u32(0)); }
-    u32 root(u32 item) {
-        while (parent_[item] != item) item = parent_[item] = parent_[parent_[item]];
-        return item;
-    }
-    void join(u32 a, u32 b) {
-        a = root(a);
-        b = root(b);
-        if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<u32> parent_;
-};
 
 bool is_degenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
@@ -115,18 +100,18 @@ MeshTopology topology(const TriangleMesh& mesh) {
 
     const SidesOfVertices by_vertex = sides_of_vertices(mesh);
     std::vector<u32> twins(3 * mesh.triangles.size(), none);  // across edges of two triangles
-    UnionFind faces(mesh.triangles.size());
-    UnionFind boundary(mesh.positions.size());
+    DisjointSets faces(mesh.triangles.size());
+    DisjointSets boundary(mesh.positions.size());
     std::vector<bool> on_boundary(mesh.positions.size(), false);
     for (u32 a = 0; a < mesh.positions.size(); ++a)
         for (u32 first = by_vertex.begin[a], last; first < by_vertex.begin[a + 1]; first = last) {
             const u32 b = by_vertex.sides[first].other, side = by_vertex.sides[first].number;
             for (last = first + 1; last < by_vertex.begin[a + 1] && by_vertex.sides[last].other == b; ++last)
-                faces.join(side / 3, by_vertex.sides[last].number / 3);
+                faces.unite(side / 3, by_vertex.sides[last].number / 3);
             ++facts.edges;
             if (last - first == 1) {
                 ++facts.boundary_edges;
-                boundary.join(a, b);
+                boundary.unite(a, b);
                 on_boundary[a] = on_boundary[b] = true;
             } else if (last - first > 2) {
                 ++facts.nonmanifold_edges;
@@ -142,7 +127,7 @@ MeshTopology topology(const TriangleMesh& mesh) {
     std::vector<u32> corner_of(mesh.positions.size(), none), corners(mesh.positions.size(), 0);
     for (u32 t = 0; t < mesh.triangles.size(); ++t) {
         if (is_degenerate(mesh.triangles[t])) continue;
-        if (faces.root(t) == t) ++facts.components;
+        if (faces.find(t) == t) ++facts.components;
         for (u32 i = 0; i < 3; ++i) {
             const u32 vertex = mesh.triangles[t][i];
             corner_of[vertex] = 3 * t + i;
@@ -154,7 +139,7 @@ MeshTopology topology(const TriangleMesh& mesh) {
             unmanifold[vertex] = !fan_has(mesh, twins, corner_of[vertex], corners[vertex]);
     facts.nonmanifold_vertices = static_cast<std::size_t>(std::ranges::count(unmanifold, true));
     for (u32 vertex = 0; vertex < on_boundary.size(); ++vertex)
-        if (on_boundary[vertex] && boundary.root(vertex) == vertex) ++facts.boundary_loops;
+        if (on_boundary[vertex] && boundary.find(vertex) == vertex) ++facts.boundary_loops;
 
     facts.euler = static_cast<long>(facts.vertices) - static_cast<long>(facts.edges) +
                   static_cast<long>(facts.triangles - facts.degenerate_triangles);
