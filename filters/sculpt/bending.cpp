@@ -84,13 +84,13 @@ Vec3 Gains::normal(u32 cell, int facet) const {
     return normal_of(place(corners[a]), place(corners[b]), place(corners[c]));
 }
 
-Vec3 Gains::outer_normal(u32 cell, int across, int kept, u32 without) const {
+Vec3 Gains::outer_normal(u32 cell, int across, int kept, Without without) const {
     EdgeWalk walk(tets_, cell, across, kept);
     while (solid_.has(walk.next(), without)) walk.step();
     return normal(walk.cell(), walk.across());
 }
 
-double Gains::of(u32 cell, unsigned open, u32 without) const {
+double Gains::of(u32 cell, unsigned open, Without without) const {
     const std::array<int, 4> sorted = by_place(tets_, cell);
     std::array<Vec3, 4> normals;
     for (int facet = 0; facet < 4; ++facet) normals[facet] = normal(cell, facet);

@@ -33,7 +33,7 @@ public:
 
     /// The bending at the edges of the cell before its removal less that after it. Pre: the cell exposes or flips, and
     /// `open` are its open facets.
-    double of(u32 cell, unsigned open, u32 without = none) const;
+    double of(u32 cell, unsigned open, Without without = {}) const;
 
     /// The bend at the common edge of a cell's two open facets is above 45°.
     bool is_sharp(u32 cell, unsigned open) const;
@@ -52,7 +52,7 @@ private:
     /// Outward, as long as twice the area.
     Vec3 normal(u32 cell, int facet) const;
     /// That of the boundary triangle beyond the edge that is not the cell's own.
-    Vec3 outer_normal(u32 cell, int across, int kept, u32 without) const;
+    Vec3 outer_normal(u32 cell, int across, int kept, Without without) const;
 
     const CarvedSolid& solid_;
     const TetMesh& tets_;

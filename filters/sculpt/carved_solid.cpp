@@ -30,7 +30,7 @@ bool CarvedSolid::exposes(u32 cell, unsigned open) const {
     return std::popcount(open) == 1 && !is_on_boundary(tets_.cells[cell][only_corner(open)]);
 }
 
-bool CarvedSolid::flips(u32 cell, unsigned open, u32 without) const {
+bool CarvedSolid::flips(u32 cell, unsigned open, Without without) const {
     if (std::popcount(open) != 2) return false;
     // The new edge joins the corners opposite to the open facets; it is inside when only solid cells are round it.
     const auto [c, d] = both_corners(~open & 15u);

@@ -7,7 +7,7 @@
 /// common edge is flipped into it. Cells with three would leave a point outside, cells with four are a solid of their
 /// own, and any other removal makes the boundary touch itself.
 ///
-/// Questions take a cell `without` that is looked on as removed already, or `none`.
+/// Questions take cells `without` that are looked on as removed already.
 
 #include <span>
 #include <vector>
@@ -18,6 +18,7 @@
 namespace scanmill::sculpting {
 
 inline constexpr u32 none = TetMesh::outside_hull;
+using Without = std::span<const u32>;
 
 /// Going round an edge of a cell from facet to facet.
 class EdgeWalk {
@@ -64,10 +65,15 @@ public:
 
     const TetMesh& tets() const { return tets_; }
     const Array<u8>& labels() const { return labels_; }
-    bool has(u32 cell, u32 without = none) const { return cell != none && labels_[cell] == 1 && cell != without; }
+    bool has(u32 cell, Without without = {}) const {
+        if (cell == none || labels_[cell] != 1) return false;
+        for (u32 gone : without)
+            if (cell == gone) return false;
+        return true;
+    }
     bool is_on_boundary(u32 vertex) const { return on_boundary_[vertex] == 1; }
     /// Bit i: the facet opposite to corner i is on the boundary. Pre: has(cell).
-    unsigned open_facets(u32 cell, u32 without = none) const {
+    unsigned open_facets(u32 cell, Without without = {}) const {
         unsigned mask = 0;
         for (int corner = 0; corner < 4; ++corner)
             if (!has(tets_.neighbours[cell][corner], without)) mask |= 1u << corner;
@@ -77,7 +83,7 @@ public:
     /// Whether the cell may be removed and a point comes to the surface. Pre: `open` are its open facets.
     bool exposes(u32 cell, unsigned open) const;
     /// Whether the cell may be removed and an edge is flipped. Pre: `open` are its open facets.
-    bool flips(u32 cell, unsigned open, u32 without = none) const;
+    bool flips(u32 cell, unsigned open, Without without = {}) const;
 
     /// Pre: it exposes or flips.
     void remove(u32 cell);

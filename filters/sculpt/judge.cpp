@@ -39,10 +39,10 @@ Judge::Judge(const CarvedSolid& solid, const SculptParams& params, unsigned thre
     std::ranges::fill(is_near_, u8(0));
 }
 
-std::optional<double> Judge::flip(u32 cell, unsigned open, u32 without) const {
+std::optional<double> Judge::flip(u32 cell, unsigned open, Without without) const {
     if (!solid_.flips(cell, open, without)) return std::nullopt;
     const double gain = gains_.of(cell, open, without);
-    if (!(gain > min_gain_ * gains_.weight_of_flip(cell, open))) return std::nullopt;
+    if (!(gain > least_gain(cell, open))) return std::nullopt;
     if (gains_.bares_thin_facet(cell, open) || digs(cell, open)) return std::nullopt;
     return gain;
 }
@@ -50,9 +50,10 @@ std::optional<double> Judge::flip(u32 cell, unsigned open, u32 without) const {
 double Judge::exposing(u32 cell, unsigned open) const {
     const double alone = gains_.of(cell, open);
     if (!lookahead_) return alone;
+    const Without gone(&cell, 1);
     double best = 0;
     for (u32 across : solid_.tets().neighbours[cell])
-        if (solid_.has(across)) best = std::max(best, flip(across, solid_.open_facets(across, cell), cell).value_or(0));
+        if (solid_.has(across)) best = std::max(best, flip(across, solid_.open_facets(across, gone), gone).value_or(0));
     return alone + best;
 }
 

@@ -18,9 +18,17 @@ public:
     /// The gain of removing the cell to smooth the boundary: nothing unless the cell flips an edge, gains enough, bares
     /// no thin triangle, and is where that is allowed. Pre: `open` are its open facets.
     std::optional<double> smoothing(u32 cell, unsigned open) const {
-        return is_near(cell) || (std::popcount(open) == 2 && gains_.is_sharp(cell, open)) ? flip(cell, open)
-                                                                                          : std::nullopt;
+        return std::popcount(open) == 2 && is_rough(cell, open) ? flip(cell, open) : std::nullopt;
     }
+    /// Removing the cell flips an edge, bares no thin triangle and does not dig, whatever it gains.
+    bool may_flip(u32 cell, unsigned open, Without without) const {
+        return solid_.flips(cell, open, without) && !gains_.bares_thin_facet(cell, open) && !digs(cell, open);
+    }
+    /// Where smoothing is allowed: near an exposing step, or where the edge bends by more than 45°. Pre: `open` are
+    /// two.
+    bool is_rough(u32 cell, unsigned open) const { return is_near(cell) || gains_.is_sharp(cell, open); }
+    /// What a flip must gain at least.
+    double least_gain(u32 cell, unsigned open) const { return min_gain_ * gains_.weight_of_flip(cell, open); }
     /// The gain of an exposing step, with look-ahead together with the best smoothing step that it makes possible. Pre:
     /// the cell exposes.
     double exposing(u32 cell, unsigned open) const;
@@ -37,7 +45,7 @@ public:
     const Gains& gains() const { return gains_; }
 
 private:
-    std::optional<double> flip(u32 cell, unsigned open, u32 without = none) const;
+    std::optional<double> flip(u32 cell, unsigned open, Without without = {}) const;
 
     const CarvedSolid& solid_;
     Gains gains_;

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = SculptParams;
-    return Declare<P>("sculpt", 1)
+    return Declare<P>("sculpt", 2)
         .summary("Takes single cells off a solid until every point lies on its boundary and the boundary bends less.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3; Boissonnat 1984 for the admissible steps")
         .ties(
@@ -21,12 +21,16 @@ SCANMILL_FILTER() {
                 {{"none", SculptWeight::none, "Every edge counts the angle that it bends by."},
                  {"length", SculptWeight::length, "The angle times the edge's length: better on uneven triangles."}},
                 "What an edge counts in the sum that is lessened.")
-        .param("min-gain", &P::min_gain, "A smoothing step must lessen the bending by more than this.", at_least(0))
+        .param(
+            "min-gain", &P::min_gain,
+            "A smoothing step must lessen the bending by more than this, a chain of them by more than this for each.",
+            at_least(0))
         .param("lookahead", &P::lookahead,
                "Whether an exposing step is judged together with the best smoothing step after it.")
         .metric("removed", Unit::count, "Cells removed.", headline)
         .metric("removed-exposing", Unit::count, "Of these, such that brought a point to the surface.")
-        .metric("removed-smoothing", Unit::count, "Of these, such that flipped an edge to lessen the bending.")
+        .metric("removed-smoothing", Unit::count,
+                "Of these, such that flipped an edge to lessen the bending, alone or in a chain.")
         .metric("removed-opening", Unit::count, "Of these, such that flipped an edge to get at a deeper point.")
         .metric("removed-share", Unit::ratio, "Removed cells over the cells inside before.")
         .metric("volume-removed", Unit::volume, "Volume of the removed cells.")

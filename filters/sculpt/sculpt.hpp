@@ -7,7 +7,9 @@
 ///
 /// - exposing: a cell with one facet on the boundary whose opposite corner lies inside; the corner comes to the
 /// surface;
-/// - smoothing: a cell with two facets on the boundary, when it lessens the bending; an edge of the surface is flipped;
+/// - smoothing: a cell with two facets on the boundary, when it lessens the bending, alone or in a chain of up to
+/// three;
+///   an edge of the surface is flipped;
 /// - opening: the same whatever the bending, to get at a point that no exposing cell is left for.
 ///
 /// Bending is the sum, over the edges of the boundary, of the angle between the normals of the two triangles there: 0
@@ -28,7 +30,8 @@ enum class SculptWeight {
 
 struct SculptParams {
     SculptWeight weight = SculptWeight::none;
-    /// A smoothing step must lessen the bending by more than this; for `length`, this times the edge it takes away.
+    /// A smoothing step must lessen the bending by more than this; for `length`, this times the edge it takes away. A
+    /// chain must by more than its steps must together.
     Angle min_gain = Angle::radians(1e-9);
     /// Whether an exposing step is judged together with the best smoothing step that it makes possible.
     bool lookahead = true;
@@ -41,6 +44,8 @@ struct SculptRemoval {
     SculptStep step;
     /// Bending before less bending after, in radians; for `length` times lengths in the scan's unit.
     double gain;
+    /// The next removal belongs to the same chain: the gains of a chain count together.
+    bool chained = false;
 };
 
 struct SculptResult {
@@ -69,12 +74,13 @@ struct SculptResult {
 ///       allowed.
 /// Post: no cell was added; the boundary is a 2-manifold with the components and the genus of the input's, and
 ///       2 (exposing) more triangles. No smoothing step with enough gain is left within two cells of an exposing step,
-///       or at an edge that bends by more than 45°; none was made elsewhere, and none makes a triangle with an angle
-///       below 0.1°. No flip, smoothing or opening, makes a triangle whose circumradius is larger than all were before,
-///       and exposing steps that do come last. Points still inside have a reason, see SculptResult.
+///       or at an edge that bends by more than 45°; nor a chain of up to three such steps of which one is there, each
+///       but the first at a triangle that an earlier one bared. None was made elsewhere, and none makes a triangle with
+///       an angle below 0.1°. No flip, smoothing or opening, makes a triangle whose circumradius is larger than all
+///       were before, and exposing steps that do come last. Points still inside have a reason, see SculptResult.
 /// Ties: of equal gains that of the larger boundary triangle (by circumradius) for exposing steps, then the cell whose
-///       corners are lower by x, y, z. Gains are computed from corners sorted by place, so the solid depends neither on
-///       the order of the points nor on the number of threads.
+///       corners are lower by x, y, z; for chains the first cell that differs. Gains are computed from corners sorted
+///       by place, so the solid depends neither on the order of the points nor on the number of threads.
 /// Cost: linear in the cells to find what bounds the solid; O(r log r) for r removals. About 12 bytes per cell and 40
 ///       per boundary triangle beside the result.
 /// Metrics: see plugin.cpp. Warns about points that stay inside, and when so much was removed that the sampling cannot

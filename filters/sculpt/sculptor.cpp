@@ -12,6 +12,7 @@ Sculptor::Sculptor(CarvedSolid& solid, const SculptParams& params, std::size_t i
     : solid_(solid),
       tets_(solid.tets()),
       judge_(solid, params, threads),
+      chains_(solid, judge_),
       openings_(solid, judge_),
       interior_points_(interior_points),
       smoothing_(tets_),
@@ -24,7 +25,7 @@ Sculptor::Sculptor(CarvedSolid& solid, const SculptParams& params, std::size_t i
 void Sculptor::find_candidates(unsigned threads) {
     constexpr std::size_t chunk = 1 << 14;
     struct Found {
-        std::vector<WaitingStep> smoothing, exposing;
+        std::vector<WaitingStep> smoothing, chains, exposing;
     };
     const std::size_t cells = tets_.cells.size();
     std::vector<Found> found((cells + chunk - 1) / chunk);
@@ -37,14 +38,18 @@ void Sculptor::find_candidates(unsigned threads) {
                 found[begin / chunk].exposing.push_back(exposing_step(cell, open));
             else if (const std::optional<double> gain = judge_.smoothing(cell, open))
                 found[begin / chunk].smoothing.push_back({*gain, 0, cell, now_});
+            else if (const Chain chain = chains_.best_from(cell, open); !chain.cells().empty())
+                found[begin / chunk].chains.push_back({chain.gain(), 0, cell, now_});
         }
     });
-    std::vector<WaitingStep> smoothing, exposing;
+    std::vector<WaitingStep> smoothing, chains, exposing;
     for (const Found& part : found) {
         smoothing.insert(smoothing.end(), part.smoothing.begin(), part.smoothing.end());
+        chains.insert(chains.end(), part.chains.begin(), part.chains.end());
         exposing.insert(exposing.end(), part.exposing.begin(), part.exposing.end());
     }
     smoothing_.append(smoothing);
+    chains_.append(chains);
     exposing_.append(exposing);
 }
 
@@ -54,22 +59,36 @@ WaitingStep Sculptor::exposing_step(u32 cell, unsigned open) const {
 }
 
 bool Sculptor::step() {
-    const auto is_current = [&](const WaitingStep& step) {
-        return solid_.has(step.cell) && looked_at_[step.cell] == step.time;
-    };
-    // Another step may have brought the edge or the point to the surface without changing a gain.
+    if (smooth() || smooth_by_chain()) return true;
+    return interior_points_ > 0 && (expose() || open());
+}
+
+bool Sculptor::smooth() {
+    // Another step may have brought the edge to the surface without changing a gain.
     const auto still_flips = [&](const WaitingStep& step) {
         return is_current(step) && solid_.flips(step.cell, solid_.open_facets(step.cell));
     };
     WaitingStep best;
-    if (smoothing_.pop(best, still_flips)) {
-        remove(best.cell, SculptStep::smoothing);
-        return true;
+    if (!smoothing_.pop(best, still_flips)) return false;
+    remove(best.cell, SculptStep::smoothing);
+    return true;
+}
+
+bool Sculptor::smooth_by_chain() {
+    const Chain chain = chains_.next();
+    for (u32 cell : chain.cells()) {
+        remove(cell, SculptStep::smoothing);
+        removals_.back().chained = cell != chain.cells().back();
     }
-    if (interior_points_ == 0) return false;
+    return !chain.cells().empty();
+}
+
+bool Sculptor::expose() {
+    // Another step may have brought the point to the surface.
     const auto still_exposes = [&](const WaitingStep& step) {
         return is_current(step) && solid_.exposes(step.cell, solid_.open_facets(step.cell));
     };
+    WaitingStep best;
     while (exposing_.pop(best, still_exposes)) {
         // The smoothing step that look-ahead counted on may have become impossible.
         const double gain = judge_.exposing(best.cell, solid_.open_facets(best.cell));
@@ -81,6 +100,10 @@ bool Sculptor::step() {
         remove(best.cell, SculptStep::exposing);
         return true;
     }
+    return false;
+}
+
+bool Sculptor::open() {
     const Opening opening = openings_.next();
     if (opening.second == none) return false;
     if (opening.first != none) remove(opening.first, SculptStep::opening);
@@ -122,19 +145,28 @@ void Sculptor::refresh_round(u32 removed) {
             while (solid_.has(walk.next())) walk.step();
             if (walk.cell() != removed) round_.push_back(walk.cell());
         }
-    for (u32 cell : round_) refresh(cell);
+    for (u32 cell : round_) {
+        refresh(cell);
+        chains_.look_again_at(cell);
+    }
     // With look-ahead an exposing step's gain depends on those of its neighbours.
     for (u32 cell : round_)
         for (u32 across : tets_.neighbours[cell])
             if (solid_.has(across) && solid_.exposes(across, solid_.open_facets(across))) refresh(across);
 }
 
+void Sculptor::set_near(u32 cell) {
+    if (!judge_.set_near(cell)) return;
+    refresh(cell);
+    chains_.look_again_at(cell);
+}
+
 void Sculptor::allow_smoothing_near(u32 removed) {
     for (u32 first : tets_.neighbours[removed]) {
         if (!solid_.has(first)) continue;
-        if (judge_.set_near(first)) refresh(first);
+        set_near(first);
         for (u32 second : tets_.neighbours[first])
-            if (solid_.has(second) && judge_.set_near(second)) refresh(second);
+            if (solid_.has(second)) set_near(second);
     }
 }
 
