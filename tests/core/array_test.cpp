@@ -2,6 +2,7 @@
 #include "scanmill/data/array.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <limits>
 #include <numeric>
@@ -27,6 +28,24 @@ TEST(Block, LargeOne_BeginsOnAHugePageAndIsWritableToItsEnd) {
     EXPECT_EQ(misalignment(block, std::size_t(2) << 20), 0u);
     block[0] = block[bytes - 1] = std::byte{1};
     free_block(block, bytes);
+}
+
+TEST(Block, MoreThanMemoryCanAddress_Throws) {
+    EXPECT_THROW((void)allocate_block(std::numeric_limits<std::size_t>::max()), std::bad_alloc);
+    EXPECT_THROW((void)allocate_block(std::size_t(1) << 62), std::bad_alloc);
+}
+
+TEST(Block, LargeOneGivenBack_LeavesTheProcess) {
+    const auto is_mapped = [](void* place) {
+        unsigned char residence = 0;
+        return ::mincore(place, 1, &residence) == 0;
+    };
+    const std::size_t bytes = (std::size_t(6) << 20) + 5;
+    auto* block = static_cast<std::byte*>(allocate_block(bytes));
+    const std::size_t last = bytes / 4096 * 4096;
+    EXPECT_TRUE(is_mapped(block) && is_mapped(block + last));
+    free_block(block, bytes);
+    EXPECT_FALSE(is_mapped(block) || is_mapped(block + last));
 }
 
 TEST(Array, MoreElementsThanMemoryCanAddress_Throws) {
