@@ -5,11 +5,10 @@
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Delaunay_triangulation_cell_base_3.h>
 #include <CGAL/Spatial_lock_grid_3.h>
-#include <CGAL/Triangulation_cell_base_with_info_3.h>
-#include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include <span>
 
+#include "delaunay/cell_containers.hpp"
 #include "delaunay/insertion_order.hpp"
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/frame.hpp"
@@ -17,15 +16,8 @@
 
 namespace scanmill {
 
-/// Of the input rows at a vertex's place the smallest.
-struct FirstRow {
-    static constexpr u32 none = 0xffff'ffff;
-    u32 row = none;
-};
-
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<FirstRow, Kernel>;
-using CellBase =
-    CGAL::Triangulation_cell_base_with_info_3<u32, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using VertexBase = RowVertexBase<Kernel, CGAL::Triangulation_vertex_base_3<Kernel>>;
+using CellBase = NumberedCellBase<Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
 template <class Concurrency>
 using DataStructure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase, Concurrency>;
 /// A grid over space: threads lock its boxes before they change cells there. Whoever finds a lock taken gives up at
@@ -33,7 +25,7 @@ using DataStructure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase,
 using Locks = CGAL::Spatial_lock_grid_3<CGAL::Tag_non_blocking>;
 using SharedTriangulation =
     CGAL::Delaunay_triangulation_3<Kernel, DataStructure<CGAL::Parallel_tag>, CGAL::Default, Locks>;
-/// For one thread: what makes insertions safe among threads costs time, and memory that is kept for the next one.
+/// For one thread: what makes insertions safe among threads costs time.
 using LoneTriangulation = CGAL::Delaunay_triangulation_3<Kernel, DataStructure<CGAL::Sequential_tag>>;
 
 /// Several threads are worth what they cost.

@@ -2,11 +2,10 @@
 #include <CGAL/Regular_triangulation_3.h>
 #include <CGAL/Regular_triangulation_cell_base_3.h>
 #include <CGAL/Regular_triangulation_vertex_base_3.h>
-#include <CGAL/Triangulation_cell_base_with_info_3.h>
-#include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include <cassert>
 
+#include "delaunay/cell_containers.hpp"
 #include "delaunay/insertion_order.hpp"
 #include "delaunay/raw_cells.hpp"
 
@@ -14,16 +13,11 @@ namespace scanmill {
 
 namespace {
 
-struct Row {
-    u32 row = 0;
-};
-
 // Points that become hidden are dropped: whoever is in no cell in the end is hidden.
 using WeightedCellBase = CGAL::Regular_triangulation_cell_base_3<Kernel, CGAL::Triangulation_cell_base_3<Kernel>,
                                                                  CGAL::Discard_hidden_points>;
-using WeightedCell = CGAL::Triangulation_cell_base_with_info_3<u32, Kernel, WeightedCellBase>;
-using WeightedVertex =
-    CGAL::Triangulation_vertex_base_with_info_3<Row, Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>;
+using WeightedCell = NumberedCellBase<Kernel, WeightedCellBase>;
+using WeightedVertex = RowVertexBase<Kernel, CGAL::Regular_triangulation_vertex_base_3<Kernel>>;
 using Weighted =
     CGAL::Regular_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<WeightedVertex, WeightedCell>>;
 

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Puts the vertices and cells of our triangulations into slabs. CGAL's data structure names its containers itself, so
+/// this is where they can be told whose memory to take: a container of our elements is the same one with another
+/// allocator.
+///
+/// Include it before any triangulation is named.
+
+#include <CGAL/Compact_container.h>
+#include <CGAL/Concurrent_compact_container.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <tbb/scalable_allocator.h>
+
+#include "delaunay/slab_allocator.hpp"
+
+namespace scanmill {
+
+/// The place of a finite cell among all, or TetMesh::outside_hull.
+struct CellNumber {
+    u32 number;
+};
+
+/// Of the input rows at a vertex's place the smallest.
+struct FirstRow {
+    static constexpr u32 none = 0xffff'ffff;
+    u32 row = none;
+};
+
+template <class Kernel, class Base>
+using NumberedCellBase = CGAL::Triangulation_cell_base_with_info_3<CellNumber, Kernel, Base>;
+template <class Kernel, class Base>
+using RowVertexBase = CGAL::Triangulation_vertex_base_with_info_3<FirstRow, Kernel, Base>;
+
+template <class Element>
+using LoneContainer = CGAL::Compact_container<Element, SlabAllocator<Element>>;
+template <class Element>
+using SharedContainer = CGAL::Concurrent_compact_container<Element, SlabAllocator<Element>>;
+
+}  // namespace scanmill
+
+namespace CGAL {
+
+template <class Kernel, class Base>
+class Compact_container<scanmill::NumberedCellBase<Kernel, Base>, Default, Default, Default>
+    : public scanmill::LoneContainer<scanmill::NumberedCellBase<Kernel, Base>> {};
+template <class Kernel, class Base>
+class Compact_container<scanmill::RowVertexBase<Kernel, Base>, Default, Default, Default>
+    : public scanmill::LoneContainer<scanmill::RowVertexBase<Kernel, Base>> {};
+
+// It takes memory under its own lock.
+template <class Kernel, class Base>
+class Concurrent_compact_container<scanmill::NumberedCellBase<Kernel, Base>,
+                                   tbb::scalable_allocator<scanmill::NumberedCellBase<Kernel, Base>>>
+    : public scanmill::SharedContainer<scanmill::NumberedCellBase<Kernel, Base>> {};
+template <class Kernel, class Base>
+class Concurrent_compact_container<scanmill::RowVertexBase<Kernel, Base>,
+                                   tbb::scalable_allocator<scanmill::RowVertexBase<Kernel, Base>>>
+    : public scanmill::SharedContainer<scanmill::RowVertexBase<Kernel, Base>> {};
+
+}  // namespace CGAL
