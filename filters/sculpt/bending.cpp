@@ -36,9 +36,12 @@ std::array<int, 4> by_place(const TetMesh& tets, u32 cell) {
 
 /// Twice the area long; the same bits, but for the sign, in whatever order the corners come.
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-    if (is_lower(b, a) && is_lower(b, c)) return (c - b).cross(a - b);
-    if (is_lower(c, a) && is_lower(c, b)) return (a - c).cross(b - c);
-    return (b - a).cross(c - a);
+    // From the lowest corner; which one that is cannot be foreseen, so no branch asks for it.
+    const std::array<const Vec3*, 5> corners{&a, &b, &c, &a, &b};
+    std::size_t low = is_lower(b, a) ? 1 : 0;
+    low = is_lower(c, *corners[low]) ? 2 : low;
+    const Vec3& lowest = *corners[low];
+    return (*corners[low + 1] - lowest).cross(*corners[low + 2] - lowest);
 }
 
 }  // namespace

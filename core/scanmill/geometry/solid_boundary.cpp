@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 
 #include "scanmill/filter/parallel.hpp"
 
@@ -47,16 +48,24 @@ std::size_t surplus_edges(std::span<LinkEdge> link, u32 centre) {
 
 Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labels, unsigned threads) {
     const std::size_t cells = tets.cells.size();
-    const auto is_boundary = [&](std::size_t cell, int corner) {
-        const u32 across = tets.neighbours[cell][corner];
-        return across == TetMesh::outside_hull || labels[across] != solid;
-    };
+    // The labels beyond the facets are looked up once: per cell a bit for each corner whose facet is on the boundary.
+    Array<u8> open(cells);
     Array<std::size_t> starts((cells + chunk - 1) / chunk);
     for_each_chunk(threads, cells, chunk, [&](std::size_t begin, std::size_t end) {
         std::size_t count = 0;
-        for (std::size_t c = begin; c < end; ++c)
+        for (std::size_t c = begin; c < end; ++c) {
+            unsigned mask = 0;
             if (labels[c] == solid)
-                for (int corner = 0; corner < 4; ++corner) count += is_boundary(c, corner);
+                for (int corner = 0; corner < 4; ++corner) {
+                    const u32 across = tets.neighbours[c][corner];
+                    const bool at_hull = across == TetMesh::outside_hull;
+                    // Without a branch: which facets are on the boundary cannot be foreseen.
+                    const unsigned is_open = unsigned(at_hull) | unsigned(labels[at_hull ? 0 : across] != solid);
+                    mask |= is_open << corner;
+                    count += is_open;
+                }
+            open[c] = static_cast<u8>(mask);
+        }
         starts[begin / chunk] = count;
     });
     std::size_t total = 0;
@@ -65,14 +74,11 @@ Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labe
     Array<Triangle> triangles(total);
     for_each_chunk(threads, cells, chunk, [&](std::size_t begin, std::size_t end) {
         std::size_t next = starts[begin / chunk];
-        for (std::size_t c = begin; c < end; ++c) {
-            if (labels[c] != solid) continue;
-            for (int corner = 0; corner < 4; ++corner) {
-                if (!is_boundary(c, corner)) continue;
-                const auto& [i, j, k] = outward_facet[corner];
+        for (std::size_t c = begin; c < end; ++c)
+            for (unsigned left = open[c]; left != 0; left &= left - 1) {
+                const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(std::countr_zero(left))];
                 triangles[next++] = {tets.cells[c][i], tets.cells[c][j], tets.cells[c][k]};
             }
-        }
     });
     return triangles;
 }
@@ -90,8 +96,8 @@ BoundaryLinks::BoundaryLinks(std::span<const Triangle> triangles, std::size_t ve
     : ends_(vertices),
       edges_(3 * triangles.size()) {
     std::ranges::fill(ends_, 0);
-    const auto claim = [&](u32 vertex) {
-        return std::atomic_ref(ends_[vertex]).fetch_add(1, std::memory_order_relaxed);
+    const auto claim = [&, alone = threads <= 1](u32 vertex) {
+        return alone ? ends_[vertex]++ : std::atomic_ref(ends_[vertex]).fetch_add(1, std::memory_order_relaxed);
     };
     for_each_chunk(threads, triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t)
