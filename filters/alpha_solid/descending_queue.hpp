@@ -8,7 +8,6 @@
 #include <bit>
 #include <cassert>
 #include <limits>
-#include <vector>
 
 #include "scanmill/data/array.hpp"
 
@@ -31,7 +30,7 @@ public:
     /// `soon(item)` is called for some items a little before they come out, to fetch what they need.
     template <class Wanted, class Soon>
     bool pop(u32& item, const Wanted& wanted, const Soon& soon) {
-        std::vector<Entry>& current = buckets_[0];
+        Array<Entry>& current = buckets_[0];
         while (true) {
             while (!current.empty()) {
                 item = current.back().item;
@@ -64,7 +63,7 @@ private:
         std::size_t first = 1;
         while (first < buckets_.size() && buckets_[first].empty()) ++first;
         if (first == buckets_.size()) return false;
-        std::vector<Entry> entries;
+        Array<Entry> entries;
         entries.swap(buckets_[first]);
         if (entries.size() <= few)
             for (const Entry& entry : entries) soon(entry.item);
@@ -81,7 +80,7 @@ private:
     static constexpr std::size_t few = 64;
 
     u64 level_ = key_of(std::numeric_limits<double>::infinity());
-    std::array<std::vector<Entry>, 65> buckets_;
+    std::array<Array<Entry>, 65> buckets_;
 };
 
 }  // namespace scanmill::alpha

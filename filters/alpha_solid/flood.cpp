@@ -44,7 +44,10 @@ public:
         flood.needed = static_cast<std::size_t>(std::max(1.0, std::ceil(share * (1 - 1e-12))));
         covered_ = flood.points;
         const auto unseen = [&](u32 cell) { return std::exchange(seen_[cell], u8(1)) == 0; };
-        const auto soon = [&](u32 cell) { __builtin_prefetch(&cells_[cell]); };
+        const auto soon = [&](u32 cell) {
+            __builtin_prefetch(&seen_[cell], 1);
+            __builtin_prefetch(&cells_[cell]);
+        };
         u32 cell = 0;
         while (queue_.pop(cell, unseen, soon)) {
             const double level = queue_.level();

@@ -130,14 +130,27 @@ public:
 
     /// Judges the solid as it stands.
     bool is_valid() {
+        triangles_.reset();
         if (!holds_enough()) return false;
         const GrowingSolid::Verdict verdict = growing_->verdict();
         if (verdict != GrowingSolid::Verdict::many_suspects) return verdict == GrowingSolid::Verdict::manifold;
         const unsigned threads = selector_.context_.threads();
-        const Array<Triangle> triangles = boundary_triangles(selector_.tets_, growing_->labels(), threads);
-        const BoundaryDefects defects = boundary_defects(triangles, selector_.tets_.positions.size(), threads);
+        triangles_ = boundary_triangles(selector_.tets_, growing_->labels(), threads);
+        const BoundaryDefects defects = boundary_defects(*triangles_, selector_.tets_.positions.size(), threads);
         growing_->suspect_only(defects.vertices);
         return defects.vertices.empty();
+    }
+    /// Pre: it was judged valid and has not grown since.
+    Selection valid_selection() {
+        if (!triangles_)
+            triangles_ = boundary_triangles(selector_.tets_, growing_->labels(), selector_.context_.threads());
+        Selection selection;
+        selection.outside = outside_;
+        selection.labels = growing_->labels();
+        selection.triangles = std::move(*triangles_);
+        DisjointSets vertices(selector_.tets_.positions.size());
+        selection.components = selector_.one_piece_ ? 1 : join_vertices(selection.triangles, vertices);
+        return selection;
     }
 
 private:
@@ -165,6 +178,8 @@ private:
     std::size_t pieces_ = 1;
     /// When the largest piece is kept: what the pieces hold, and what they held when the largest was last chosen.
     std::optional<GrowingPieces> held_;
+    /// The boundary, when all of it was looked at for the last judgement.
+    std::optional<Array<Triangle>> triangles_;
     std::size_t most_ = 0, with_most_ = 0;
 };
 
@@ -178,8 +193,8 @@ Selection Selector::scan() const {
         if (steps % 4096 == 0) context_.check_cancelled();
         growth.step();
         if (!growth.is_valid()) continue;
-        Selection selection = described(growth.solid().labels(), growth.outside(), AlphaChoice::scan);
-        assert(is_valid(selection));
+        Selection selection = growth.valid_selection();
+        assert(is_valid(described(selection.labels, selection.outside, AlphaChoice::scan)));
         return selection;
     }
     return repaired(start);

@@ -3,6 +3,7 @@
 
 #include <CGAL/Interval_nt.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -95,6 +96,39 @@ double exact_cell_value(const Corners& corners, double largest) {
     return quotient(cell_fraction(corners, Seen<Exact>(corners[0], exponent), largest), exponent);
 }
 
+/// Within these no product overflows, nor underflows so far as to matter against the bound.
+constexpr double least_size = 1e-45, largest_size = 1e45, largest_lift = 1e100;
+
+/// Whether corner i attaches the facet opposite to it: whether the centre of the cell's sphere lies beyond that facet.
+std::array<bool, 4> attachments(const Corners& corners) {
+    const Seen<double> seen(corners[0], 0);
+    const Lifted<double> u = seen(corners[1]), v = seen(corners[2]), w = seen(corners[3]);
+    const Offset<double> vw = cross(v.offset, w.offset), wu = cross(w.offset, u.offset), uv = cross(u.offset, v.offset);
+    const Offset<double> centre = circumcentre_numerator(u.lift, v.lift, w.lift, vw, wu, uv);
+    const double volume = dot(u.offset, vw);
+    const Offset<double> sum{vw[0] + wu[0] + uv[0], vw[1] + wu[1] + uv[1], vw[2] + wu[2] + uv[2]};
+    // Barycentric coordinates of the centre, times 2 volume².
+    const std::array<double, 4> coordinates{2 * volume * volume - dot(centre, sum), dot(centre, vw), dot(centre, wu),
+                                            dot(centre, uv)};
+    // With U, V, W short for the offsets' largest components and L for three times their squares plus what the weights
+    // differ by, the monomials sum to at most 20 (L_u VW + L_v WU + L_w UV) (VW + WU + UV) in absolute value, and pass
+    // at most 23 roundings each, the offsets' included. 20 · 23 · 2^-53 < 5.2e-14.
+    const double su = largest(u.offset), sv = largest(v.offset), sw = largest(w.offset);
+    const auto most = [&](double size, const WeightedPoint& corner) {
+        return 3 * size * size + std::abs(corners[0].weight - corner.weight);
+    };
+    const double lu = most(su, corners[1]), lv = most(sv, corners[2]), lw = most(sw, corners[3]);
+    const bool is_moderate = std::min({su, sv, sw}) > least_size && std::max({su, sv, sw}) < largest_size &&
+                             std::max({lu, lv, lw}) < largest_lift;
+    const double bound = is_moderate
+                             ? 5.5e-14 * ((lu * sv * sw + lv * sw * su + lw * su * sv) * (sv * sw + sw * su + su * sv))
+                             : std::numeric_limits<double>::infinity();
+    std::array<bool, 4> attached;
+    for (int i = 0; i < 4; ++i)
+        attached[i] = std::abs(coordinates[i]) > bound ? coordinates[i] < 0 : exactly_attached(corners, i);
+    return attached;
+}
+
 struct Bounds {
     double low, high;
     /// Narrow enough for a value. Not when a bound is infinite or NaN.
@@ -105,26 +139,26 @@ Bounds bounds(const Interval& interval) { return {interval.inf(), interval.sup()
 Bounds bounds(const Fraction<Interval>& fraction) { return bounds(fraction.numerator / fraction.denominator); }
 
 struct CellBounds {
-    std::array<Bounds, 4> values, powers;
+    std::array<Bounds, 4> facets;
     Bounds cell;
 };
 
-CellBounds cell_bounds(const Corners& corners, double largest) {
+/// Of the facets in the mask, and of the cell if that is asked for.
+CellBounds cell_bounds(const Corners& corners, double largest, unsigned facets, bool with_cell) {
     const CGAL::Protect_FPU_rounding<true> upwards;
     CellBounds result;
-    for (int i = 0; i < 4; ++i) {
+    for (unsigned left = facets; left != 0; left &= left - 1) {
+        const int i = std::countr_zero(left);
         const Seen<Interval> seen(first_of(corners, i), 0);
-        const FacetSphere<Interval> sphere = facet_sphere(corners, i, seen);
-        result.values[i] = bounds(sphere.squared_radius(seen.lacking(largest)));
-        result.powers[i] = bounds(sphere.power(seen(apex_of(corners, i))));
+        result.facets[i] = bounds(facet_sphere(corners, i, seen).squared_radius(seen.lacking(largest)));
     }
-    result.cell = bounds(cell_fraction(corners, Seen<Interval>(corners[0], 0), largest));
+    if (with_cell) result.cell = bounds(cell_fraction(corners, Seen<Interval>(corners[0], 0), largest));
     return result;
 }
 
 }  // namespace
 
-CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& given, double largest) {
+CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& given, double largest, unsigned facets) {
     // Sorted by coordinates, so that the arithmetic does not know the corners' numbers.
     std::array<int, 4> order{0, 1, 2, 3};
     std::ranges::sort(order, [&](int a, int b) {
@@ -132,17 +166,21 @@ CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& given, dou
         return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
     });
     const Corners corners{given[order[0]], given[order[1]], given[order[2]], given[order[3]]};
+    unsigned asked = 0;
+    for (int i = 0; i < 4; ++i) asked |= (facets >> order[i] & 1u) << i;
 
-    const CellBounds found = cell_bounds(corners, largest);
+    const std::array<bool, 4> attached = attachments(corners);
+    const bool any_attached = std::ranges::find(attached, true) != attached.end();
+    const CellBounds found = cell_bounds(corners, largest, asked, any_attached);
+    double own = 0;
+    if (any_attached) own = found.cell.narrow() ? found.cell.middle() : exact_cell_value(corners, largest);
     CellSpheres result{};
     for (int i = 0; i < 4; ++i) {
-        const bool known = found.powers[i].low > 0 || found.powers[i].high < 0;
-        const bool attached = known ? found.powers[i].high < 0 : exactly_attached(corners, i);
-        double value = found.values[i].narrow() ? found.values[i].middle() : exact_facet_value(corners, i, largest);
-        if (attached)
-            value = std::max(value, found.cell.narrow() ? found.cell.middle() : exact_cell_value(corners, largest));
-        result.values[order[i]] = value;
-        result.attached |= static_cast<u8>(attached << order[i]);
+        double value = 0;
+        if ((asked >> i & 1u) != 0)
+            value = found.facets[i].narrow() ? found.facets[i].middle() : exact_facet_value(corners, i, largest);
+        result.values[order[i]] = attached[i] ? std::max(value, own) : value;
+        result.attached |= static_cast<u8>(attached[i] << order[i]);
     }
     return result;
 }

@@ -21,6 +21,8 @@ struct WeightedPoint {
 
 /// Pre: not coplanar; weights finite, from 0 to `largest`. Values as in CellSpheres, squared radii with weights lowered
 /// by `largest`; relative error below 1e-8. Attachment is exact. Neither depends on the order of the corners.
-CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& corners, double largest);
+/// Facets that are not in the mask `facets` (bit i: opposite to corner i) have the cell's part alone: its own squared
+/// radius where the corner attaches them, else 0.
+CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& corners, double largest, unsigned facets = 15);
 
 }  // namespace scanmill::alpha
