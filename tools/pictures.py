@@ -6,95 +6,8 @@ import math
 import pathlib
 import random
 
-INK, PALE, BRIGHT, SOLID = "#333333", "#b8b8b8", "#d1495b", "#cfe3ee"
-
-
-class Picture:
-    """An SVG drawing in units of our own, y upwards."""
-
-    def __init__(self, width, height, scale=60):
-        self.width, self.height, self.scale = width, height, scale
-        self.rows = []
-
-    def place(self, p):
-        return round(p[0] * self.scale, 1), round((self.height - p[1]) * self.scale, 1)
-
-    def add(self, row):
-        self.rows.append("  " + row)
-
-    def dot(self, p, colour=INK, radius=4, hollow=False):
-        x, y = self.place(p)
-        fill = f'fill="white" stroke="{colour}" stroke-width="1.5"' if hollow else f'fill="{colour}"'
-        self.add(f'<circle cx="{x}" cy="{y}" r="{radius}" {fill}/>')
-
-    def circle(self, centre, radius, colour=INK, fill="none", dash=""):
-        x, y = self.place(centre)
-        self.add(
-            f'<circle cx="{x}" cy="{y}" r="{round(radius * self.scale, 1)}" fill="{fill}" stroke="{colour}"'
-            f' stroke-width="1.5"{dash and f" stroke-dasharray={chr(34)}{dash}{chr(34)}"}/>'
-        )
-
-    def line(self, p, q, colour=INK, width=1, dash=""):
-        (x, y), (u, v) = self.place(p), self.place(q)
-        self.add(
-            f'<line x1="{x}" y1="{y}" x2="{u}" y2="{v}" stroke="{colour}" stroke-width="{width}"'
-            f'{dash and f" stroke-dasharray={chr(34)}{dash}{chr(34)}"}/>'
-        )
-
-    def polygon(self, corners, fill, colour=PALE, width=1):
-        places = " ".join("{},{}".format(*self.place(p)) for p in corners)
-        self.add(f'<polygon points="{places}" fill="{fill}" stroke="{colour}" stroke-width="{width}"/>')
-
-    def cross(self, p, size=0.06, colour=PALE):
-        self.line((p[0] - size, p[1]), (p[0] + size, p[1]), colour)
-        self.line((p[0], p[1] - size), (p[0], p[1] + size), colour)
-
-    def text(self, p, words, colour=INK):
-        x, y = self.place(p)
-        self.add(f'<text x="{x}" y="{y}" font-family="sans-serif" font-size="15" fill="{colour}">{words}</text>')
-
-    def arrow(self, p, q, colour=INK):
-        self.line(p, q, colour, 1.5)
-        turn = math.atan2(q[1] - p[1], q[0] - p[0])
-        for side in (2.7, -2.7):
-            self.line(q, (q[0] + 0.15 * math.cos(turn + side), q[1] + 0.15 * math.sin(turn + side)), colour, 1.5)
-
-    def write(self, path):
-        width, height = round(self.width * self.scale), round(self.height * self.scale)
-        head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}">\n'
-        ground = f'  <rect width="{width}" height="{height}" fill="white"/>\n'
-        path.write_text(head + ground + "\n".join(self.rows) + "\n</svg>\n")
-
-
-def circumcircle(a, b, c):
-    """Centre and radius of the circle through three points; None when they lie on a line."""
-    bx, by, cx, cy = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
-    twice = 2 * (bx * cy - by * cx)
-    if abs(twice) < 1e-12:
-        return None
-    x = (cy * (bx * bx + by * by) - by * (cx * cx + cy * cy)) / twice
-    y = (bx * (cx * cx + cy * cy) - cx * (bx * bx + by * by)) / twice
-    return (a[0] + x, a[1] + y), math.hypot(x, y)
-
-
-def delaunay(points):
-    """All triangles with an empty circumcircle, by trying every three points."""
-    triangles = []
-    for corners in itertools.combinations(points, 3):
-        circle = circumcircle(*corners)
-        if circle and all(p in corners or math.dist(p, circle[0]) >= circle[1] for p in points):
-            triangles.append((corners, circle))
-    return triangles
-
-
-def scattered(source, count, least, width, height, inside=lambda p: True):
-    """Points at least so far from each other."""
-    points = []
-    while len(points) < count:
-        p = (source.uniform(0.2, width - 0.2), source.uniform(0.2, height - 0.2))
-        if inside(p) and all(math.dist(p, q) > least for q in points):
-            points.append(p)
-    return points
+from drawing import BRIGHT, INK, PALE, SOLID, Picture
+from plane_geometry import delaunay, nearest_on_profile, scattered, spread_over
 
 
 def voxel_thin():
@@ -237,29 +150,6 @@ def virtual_scan():
     picture.text((0.2, 1.4), "sensor")
     picture.text((7.25, 2.1), "hidden")
     return picture
-
-
-def nearest_on_profile(p, profile):
-    """The nearest point of a polyline."""
-    best = None
-    for (ax, ay), (bx, by) in itertools.pairwise(profile):
-        along = ((p[0] - ax) * (bx - ax) + (p[1] - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
-        along = min(1, max(0, along))
-        q = (ax + along * (bx - ax), ay + along * (by - ay))
-        if best is None or math.dist(p, q) < math.dist(p, best):
-            best = q
-    return best
-
-
-def spread_over(profile, step):
-    """Points at equal steps along a polyline."""
-    at = step / 2
-    for a, b in itertools.pairwise(profile):
-        length = math.dist(a, b)
-        while at < length:
-            yield a[0] + (b[0] - a[0]) * at / length, a[1] + (b[1] - a[1]) * at / length
-            at += step
-        at -= length
 
 
 def measure():
