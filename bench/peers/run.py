@@ -19,23 +19,23 @@ from harness.process import Failure, Process
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+sys.path.append(str(HERE.parent))
+
+from tables.options import at_least_one, limit  # noqa: E402
 
 
 def arguments():
     parser = argparse.ArgumentParser(description="Runs Scanmill beside other programs.")
     parser.add_argument("build", type=pathlib.Path, help="a build folder of the preset bench")
     parser.add_argument("--rows", default="", help="parts of row names, separated by commas; all rows without")
-    parser.add_argument("--rounds", type=int, help="counted rounds, instead of each row's own number")
+    parser.add_argument("--rounds", type=at_least_one, help="counted rounds, instead of each row's own number")
     parser.add_argument("--large", action="store_true", help="also the rows that take minutes and gigabytes")
-    parser.add_argument("--limit", type=float, default=300, help="seconds for one answer (default: %(default)s)")
+    limit(parser, 300, "one answer")
     parser.add_argument("--budget", type=float, default=20, help="seconds of work per contender (default: %(default)s)")
     parser.add_argument("--into", type=pathlib.Path, help="folder of the results (bench, of some rows build/peers)")
     parser.add_argument("--only-table", action="store_true", help="measure nothing; RESULTS.md anew from results.json")
     parser.add_argument("--list", action="store_true", help="print the rows' names and stop")
-    options = parser.parse_args()
-    if options.rounds is not None and options.rounds < 1:
-        parser.error(f"--rounds must be at least 1, not {options.rounds}")
-    return options
+    return parser.parse_args()
 
 
 def all_rows(inputs, large):

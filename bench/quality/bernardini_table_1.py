@@ -6,7 +6,6 @@ Runs the workflow over all objects, ROUNDS times with one thread and with all, w
 program's own JSON: the metrics and seconds of the steps, and the facts of the mesh that was written. Writes
 bernardini-table-1.md and .json. Ends with 1 when a run failed, or a fetched file is missing.
 """
-import argparse
 import pathlib
 import sys
 import tempfile
@@ -17,6 +16,7 @@ sys.path[:0] = [str(BENCH), str(BENCH / "peers")]
 import table_1_page  # noqa: E402
 from harness import machine  # noqa: E402
 from paper_table_1 import STAND_INS  # noqa: E402
+from tables import options as options_of  # noqa: E402
 from tables import page, scanmill  # noqa: E402
 
 ROOT = BENCH.parent
@@ -24,19 +24,13 @@ FILTERS = ("delaunay", "alpha-solid", "sculpt")
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description="The paper's Table 1 beside ours.")
-    parser.add_argument("program", type=pathlib.Path, help="scanmill, with its filters")
-    parser.add_argument("--workflow", type=pathlib.Path, default=ROOT / "workflows" / "bernardini-1997.yaml")
-    parser.add_argument("--data", type=pathlib.Path, default=ROOT / "build" / "data", help="what `make data` fetched")
+    parser = options_of.of_a_table("The paper's Table 1 beside ours.", ROOT / "workflows" / "bernardini-1997.yaml", 600,
+                                   "quality")
     parser.add_argument("--more-data", type=pathlib.Path, default=ROOT.parent / "shared" / "data",
                         help="files that may be there or not (default: %(default)s)")
-    parser.add_argument("--rounds", type=int, default=5, help="runs for each number of threads (default: %(default)s)")
-    parser.add_argument("--limit", type=float, default=600, help="seconds for one run (default: %(default)s)")
-    parser.add_argument("--into", type=pathlib.Path, default=BENCH / "quality", help="folder of the results")
-    options = parser.parse_args()
-    if options.rounds < 1:
-        parser.error(f"--rounds must be at least 1, not {options.rounds}")
-    return options
+    parser.add_argument("--rounds", type=options_of.at_least_one, default=5,
+                        help="runs for each number of threads (default: %(default)s)")
+    return parser.parse_args()
 
 
 def begun(one, options):

@@ -6,7 +6,6 @@ Seeded points on known surfaces, one run of the program for each surface, and a 
 program's report tells (see verdict.py). Writes results.json and results.md. Ends with 1 when the program crashed
 anywhere, or an input is missing; wrong results and refusals are what the page is about and end nothing.
 """
-import argparse
 import os
 import pathlib
 import sys
@@ -20,6 +19,7 @@ import shapes  # noqa: E402
 import summary  # noqa: E402
 import verdict  # noqa: E402
 from harness import machine  # noqa: E402
+from tables import options as options_of  # noqa: E402
 from tables import page, scanmill  # noqa: E402
 from tables.ply import write_ply  # noqa: E402
 
@@ -29,18 +29,11 @@ POINTS_WITH_NOISE = 3000
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description="Success of points to mesh against noise and density.")
-    parser.add_argument("program", type=pathlib.Path, help="scanmill, with its filters")
-    parser.add_argument("--workflow", type=pathlib.Path, default=BENCH / "robustness" / "reconstruction.yaml")
-    parser.add_argument("--data", type=pathlib.Path, default=BENCH.parent / "build" / "data",
-                        help="what `make data` fetched")
-    parser.add_argument("--seeds", type=int, default=5, help="trials for each cell (default: %(default)s)")
-    parser.add_argument("--limit", type=float, default=1800, help="seconds for one run (default: %(default)s)")
-    parser.add_argument("--into", type=pathlib.Path, default=BENCH / "robustness", help="folder of the results")
-    options = parser.parse_args()
-    if options.seeds < 1:
-        parser.error(f"--seeds must be at least 1, not {options.seeds}")
-    return options
+    parser = options_of.of_a_table("Success of points to mesh against noise and density.",
+                                   BENCH / "robustness" / "reconstruction.yaml", 1800, "robustness")
+    parser.add_argument("--seeds", type=options_of.at_least_one, default=5,
+                        help="trials for each cell (default: %(default)s)")
+    return parser.parse_args()
 
 
 def surfaces(data):

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the command lines of the benches have in common."""
+import argparse
+import pathlib
+
+BENCH = pathlib.Path(__file__).resolve().parents[1]
+
+
+def at_least_one(text):
+    """A type for argparse: a whole number from 1 on."""
+    try:
+        number = int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}' is no whole number") from None
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"must be at least 1, not {number}")
+    return number
+
+
+def limit(parser, seconds, what):
+    parser.add_argument("--limit", type=float, default=seconds, help=f"seconds for {what} (default: %(default)s)")
+
+
+def of_a_table(description, workflow, seconds, folder):
+    """A parser for a bench that runs a workflow over scans, each run within so many seconds, and writes a page into a
+    folder of bench/."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("program", type=pathlib.Path, help="scanmill, with its filters")
+    parser.add_argument("--workflow", type=pathlib.Path, default=workflow)
+    parser.add_argument("--data", type=pathlib.Path, default=BENCH.parent / "build" / "data",
+                        help="what `make data` fetched")
+    limit(parser, seconds, "one run")
+    parser.add_argument("--into", type=pathlib.Path, default=BENCH / folder, help="folder of the results")
+    return parser
