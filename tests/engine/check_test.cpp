@@ -238,6 +238,11 @@ TEST_F(Check, Expect_KnowsFactsAndMetricsOfTheStep) {
     EXPECT_THAT(steps("  - thin:\n    expect: {kept: [1, 2, 3]}\n"), ElementsAre(HasSubstr("a range has two ends")));
     EXPECT_THAT(steps("  - thin:\n    expect: {kept: [9, 1]}\n"), ElementsAre(HasSubstr("the lower end first")));
     EXPECT_THAT(steps("  - thin:\n    expect: {kept: 0.5}\n"), ElementsAre(HasSubstr("a count is never 0.5")));
+    for (const char* other : {">=", "<=", "==", "!=", "=", "≥"})
+        EXPECT_THAT(steps(std::string("  - thin:\n    expect: {kept: '") + other + " 3'}\n"),
+                    ElementsAre(HasSubstr(std::string("expect kept: '") + other +
+                                          "' is no comparison; expected a value, `< value`, `> value`, or [low, high], "
+                                          "both of which count")));
 }
 
 TEST_F(Check, OutputTemplates_AreCheckedBeforeTheRun) {

@@ -49,7 +49,8 @@ TEST_F(WorkflowSchema, WhatCheckAccepts_IsAccepted) {
           with_n("  - thin: {size: +1e-3 mm, rule: random, count: $n}\n"),
           with_n("  - thin: {count: {sweep: [1, $n, 9]}}\n    expect: {kept: '> 3', points: [1, 9]}\n"),
           with_n("  - thin: {count: $n}\n  - tetrahedralise:\n  - solid: {alpha: auto, coverage: 0.5, angle: 0 deg}\n"
-                 "    expect: {closed: true, alpha: < 3 %diag, bending: < 40 deg}\n"),
+                 "    expect: {closed: true, alpha: < 3 %diag, bending: < 40 deg, volume: [-2 mm3, 3 cm³], skin: 2 "
+                 "u^2}\n"),
           with_n("  - one-of:\n      - thin: {count: $n}\n      - id: b\n        thin:\n"
                  "      - name: twice\n        steps: [{thin: }, {id: again, thin: }]\n    id: any\n"),
           std::string("scanmill: 1\nname: w\nsummary: Nothing.\ninputs: {a: {kind: points, unit: mm, help: It.}, "
@@ -129,6 +130,10 @@ const std::vector<Mistake> mistakes{
      "steps 0 expect: Object contains a property" + known_only + "'closed'", "nothing is known as 'closed'"},
     {steps("  - thin:\n    expect: {kept: [1, 2, 3]}\n"), "steps 0 expect kept: Array should contain no more than 2",
      "a range has two ends"},
+    {steps("  - thin:\n  - tetrahedralise:\n  - solid:\n    expect: {volume: 12}\n"),
+     "steps 2 expect volume: ", "expect volume: '12' has no unit"},
+    {steps("  - thin:\n  - tetrahedralise:\n  - solid:\n    expect: {skin: 12 mm3}\n"),
+     "steps 2 expect skin: ", "expect skin: '12 mm3' is not an area"},
     {steps("  - thin:\n    expect: {kept: '>= 1'}\n"), "steps 0 expect kept: Failed to match regex", "expect kept:"},
     {steps("  - thin:\n    tetrahedralise:\n"), "steps 0: Failed to validate against exactly one child schema",
      "'tetrahedralise' stands beside 'thin'"},

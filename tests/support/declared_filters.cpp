@@ -63,6 +63,8 @@ DeclaredFilters::DeclaredFilters() {
                  .param("coverage", &SolidParams::coverage, help, above(0), at_most(1))
                  .param("angle", &SolidParams::angle, help, at_least(0), at_most(180))
                  .metric("alpha", Unit::length, help)
+                 .metric("volume", Unit::volume, help)
+                 .metric("skin", Unit::area, help)
                  .metric("bending", Unit::angle, help)));
     add(spec(declare<SimplifyParams>("simplify")
                  .in<TriangleMesh>("mesh", help)

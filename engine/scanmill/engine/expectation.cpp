@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scanmill/engine/facts.hpp"
+#include "scanmill/engine/length_power.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
 
@@ -16,7 +17,9 @@ ParameterSpec written_as(Unit unit) {
     ParameterSpec spec;
     switch (unit) {
         case Unit::boolean: spec.type = ParameterType::boolean; break;
-        case Unit::length: spec.type = ParameterType::length; break;
+        case Unit::length:
+        case Unit::area:
+        case Unit::volume: spec.type = ParameterType::length; break;
         case Unit::angle: spec.type = ParameterType::angle; break;
         case Unit::ratio: spec.type = ParameterType::ratio; break;
         default: spec.type = ParameterType::number;
@@ -33,36 +36,54 @@ std::vector<MetricSpec> expectable(const FilterSpec& spec) {
 
 namespace {
 
-/// In the metric's own unit: scan units, radians, fractions, 0 or 1.
-double number_of(const ParameterValue& value, const LengthScale& scale) {
+ParameterValue parse_end(Unit unit, const std::string& text) {
+    const int power = power_of_length(unit);
+    if (power > 1) return ParameterScalar(parse_length_power(text, power));
+    return parse(written_as(unit), {{text}, false});
+}
+
+/// In the metric's own unit: scan units and their powers, radians, fractions, 0 or 1.
+double number_of(const ParameterValue& value, Unit unit, const LengthScale& scale) {
     const ParameterScalar& scalar = std::get<ParameterScalar>(value);
     if (const auto* flag = std::get_if<bool>(&scalar)) return *flag ? 1 : 0;
-    if (const auto* length = std::get_if<Length>(&scalar)) return length->resolved(scale).value();
+    if (const auto* length = std::get_if<Length>(&scalar)) {
+        const int power = power_of_length(unit);
+        return power > 1 ? resolved_length_power(*length, power, scale) : length->resolved(scale).value();
+    }
     if (const auto* angle = std::get_if<Angle>(&scalar)) return angle->in_radians();
     if (const auto* ratio = std::get_if<Ratio>(&scalar)) return ratio->value();
     return std::get<double>(scalar);
 }
 
 bool is_met(const PlannedExpectation& expectation, double found, const LengthScale& scale) {
-    const double low = number_of(expectation.low, scale);
+    const auto number = [&](const ParameterValue& end) { return number_of(end, expectation.unit, scale); };
+    const double low = number(expectation.low);
     switch (expectation.relation) {
         case Expectation::Relation::equal: return found == low;
         case Expectation::Relation::below: return found < low;
         case Expectation::Relation::above: return found > low;
-        case Expectation::Relation::between: return found >= low && found <= number_of(expectation.high, scale);
+        case Expectation::Relation::between: return found >= low && found <= number(expectation.high);
     }
     return false;
+}
+
+/// Whether nothing lies between the ends, whatever the scan. Lengths in different units cannot be compared without it.
+bool is_backwards(const PlannedExpectation& expectation) {
+    if (expectation.relation != Expectation::Relation::between) return false;
+    if (power_of_length(expectation.unit) == 0)
+        return number_of(expectation.low, expectation.unit, {}) > number_of(expectation.high, expectation.unit, {});
+    const auto length = [](const ParameterValue& end) { return std::get<Length>(std::get<ParameterScalar>(end)); };
+    const Length low = length(expectation.low), high = length(expectation.high);
+    return low.in() == high.in() && low.amount() > high.amount();
 }
 
 /// Throws Error for what no number can meet.
 void require_possible(const PlannedExpectation& expectation) {
     const bool equal = expectation.relation == Expectation::Relation::equal;
     if (expectation.unit == Unit::count && equal)
-        if (const double wanted = number_of(expectation.low, {}); wanted != std::floor(wanted))
+        if (const double wanted = number_of(expectation.low, Unit::count, {}); wanted != std::floor(wanted))
             throw Error("a count is never {}; expected a whole number", number_text(wanted));
-    if (expectation.unit == Unit::length || expectation.relation != Expectation::Relation::between) return;
-    const double low = number_of(expectation.low, {}), high = number_of(expectation.high, {});
-    if (low > high) throw Error("nothing lies in {}; expected the lower end first", expectation.text);
+    if (is_backwards(expectation)) throw Error("nothing lies in {}; expected the lower end first", expectation.text);
 }
 
 std::string expectation_text(const Expectation& written) {
@@ -91,12 +112,11 @@ std::optional<PlannedExpectation> plan_expectation(const Expectation& written, c
                                       spec.name, enumerated(names), did_you_mean(written.name, names)));
         return std::nullopt;
     }
-    const ParameterSpec form = written_as(asked->unit);
     PlannedExpectation planned{written.name, written.position,         written.relation, asked->unit, {},
                                {},           expectation_text(written)};
     try {
-        planned.low = parse(form, {{written.value}, false});
-        if (written.relation == Expectation::Relation::between) planned.high = parse(form, {{written.high}, false});
+        planned.low = parse_end(asked->unit, written.value);
+        if (written.relation == Expectation::Relation::between) planned.high = parse_end(asked->unit, written.high);
         require_possible(planned);
     } catch (const Error& error) {
         diagnostics.error(written.position, fmt::format("expect {}: {}", written.name, error.sentence()));

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scanmill/engine/length_power.hpp"
+
 namespace scanmill {
 
 namespace {
@@ -21,12 +23,18 @@ std::string number_pattern(const std::optional<Bound>& low) {
            R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?)";
 }
 
+constexpr std::string_view length_units = "u|%diag|spacing|um|mm|cm|m|in|ft";
+
 /// The last two keys are for editors: what they say instead of the pattern, and what they propose.
-Json text_with_unit(const ParameterSpec& parameter, std::string_view units, Json examples) {
+Json text_with_unit(const std::optional<Bound>& low, const std::string& units, std::string_view expected,
+                    Json examples) {
     return {{"type", "string"},
-            {"pattern", number_pattern(parameter.low) + " *(" + std::string(units) + ")$"},
-            {"patternErrorMessage", "Expected " + expectation(parameter) + "."},
+            {"pattern", number_pattern(low) + " *(" + units + ")$"},
+            {"patternErrorMessage", fmt::format("Expected {}.", expected)},
             {"examples", std::move(examples)}};
+}
+Json text_with_unit(const ParameterSpec& parameter, std::string_view units, Json examples) {
+    return text_with_unit(parameter.low, std::string(units), expectation(parameter), std::move(examples));
 }
 
 void bound(Json& schema, const ParameterSpec& parameter) {
@@ -55,7 +63,7 @@ Json scalar_of(const ParameterSpec& parameter) {
         case ParameterType::number: return number_of("number", parameter);
         case ParameterType::choice: return choices_of(parameter);
         case ParameterType::length:
-            return text_with_unit(parameter, "u|%diag|spacing|um|mm|cm|m|in|ft", {"0.2 mm", "0.1 %diag", "3 spacing"});
+            return text_with_unit(parameter, length_units, {"0.2 mm", "0.1 %diag", "3 spacing"});
         case ParameterType::angle: return text_with_unit(parameter, "deg|rad", {"40 deg"});
         case ParameterType::ratio:
             return {{"anyOf", Json::array({text_with_unit(parameter, "%", {"5 %"}), number_of("number", parameter)})}};
@@ -88,6 +96,12 @@ Json value_schema(const ParameterSpec& parameter) {
     if (!parameter.list || !parameter.size || *parameter.size == 1) alternatives.push_back(scalar_of(parameter));
     if (parameter.list) alternatives.push_back(list_of(parameter));
     return alternatives.size() == 1 ? alternatives.front() : Json{{"anyOf", std::move(alternatives)}};
+}
+
+Json length_power_schema(int power) {
+    const std::string exponent = power == 2 ? "(\\^?2|²)" : "(\\^?3|³)", digit = std::to_string(power);
+    return text_with_unit({}, fmt::format("({}){}", length_units, exponent), length_power_examples(power),
+                          {"12 mm" + digit, "0.5 u" + digit});
 }
 
 Json parameter_schema(const ParameterSpec& parameter) {

@@ -18,4 +18,7 @@ nlohmann::ordered_json parameter_schema(const ParameterSpec& parameter);
 /// A plain value of the type, as `expect` takes it.
 nlohmann::ordered_json value_schema(const ParameterSpec& parameter);
 
+/// An area or a volume, as `expect` takes it (see length_power.hpp). Pre: power is 2 or 3.
+nlohmann::ordered_json length_power_schema(int power);
+
 }  // namespace scanmill

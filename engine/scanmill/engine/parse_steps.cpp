@@ -158,6 +158,24 @@ void StepParser::wiring(const YamlNode& node, StepSyntax& step) {
     }
 }
 
+/// Reads "< 3", "> 3" and "3"; false for a comparison that there is not, which is reported.
+bool read_comparison(std::string_view text, Position position, Expectation& expectation, Diagnostics& diagnostics) {
+    for (std::string_view other : {"<=", ">=", "==", "!=", "=", "≤", "≥", "≠"})
+        if (text.starts_with(other)) {
+            diagnostics.error(
+                position, fmt::format("expect {}: '{}' is no comparison; expected a value, `< value`, `> value`, or "
+                                      "[low, high], both of which count",
+                                      expectation.name, other));
+            return false;
+        }
+    if (text.starts_with('<')) expectation.relation = Expectation::Relation::below;
+    if (text.starts_with('>')) expectation.relation = Expectation::Relation::above;
+    if (expectation.relation != Expectation::Relation::equal) text.remove_prefix(1);
+    while (text.starts_with(' ')) text.remove_prefix(1);
+    expectation.value = text;
+    return true;
+}
+
 void StepParser::expectations(const YamlNode& node, StepSyntax& step) {
     if (!require_map(node, "a map, as {closed: true, components: 1}", diagnostics_)) return;
     for (const YamlEntry& entry : node.entries) {
@@ -171,16 +189,9 @@ void StepParser::expectations(const YamlNode& node, StepSyntax& step) {
             expectation.relation = Expectation::Relation::between;
             expectation.value = entry.value.items[0].text;
             expectation.high = entry.value.items[1].text;
-        } else if (const auto text =
-                       require_text(entry.value, "a value, `< value`, `> value` or [low, high]", diagnostics_)) {
-            std::string_view rest = *text;
-            if (rest.starts_with('<')) expectation.relation = Expectation::Relation::below;
-            if (rest.starts_with('>')) expectation.relation = Expectation::Relation::above;
-            if (expectation.relation != Expectation::Relation::equal) rest.remove_prefix(1);
-            while (rest.starts_with(' ')) rest.remove_prefix(1);
-            expectation.value = rest;
         } else {
-            continue;
+            const auto text = require_text(entry.value, "a value, `< value`, `> value` or [low, high]", diagnostics_);
+            if (!text || !read_comparison(*text, entry.value.position, expectation, diagnostics_)) continue;
         }
         step.expect.push_back(std::move(expectation));
     }

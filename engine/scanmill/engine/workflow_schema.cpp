@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "scanmill/engine/expectation.hpp"
+#include "scanmill/engine/length_power.hpp"
 #include "scanmill/engine/parameter_schema.hpp"
 #include "scanmill/engine/schema_parts.hpp"
 
@@ -73,7 +74,8 @@ Json expect_schema(const FilterSpec& spec) {
     Json properties = Json::object();
     Json patterns = Json::object();
     for (const MetricSpec& metric : expectable(spec)) {
-        const Json value = value_schema(written_as(metric.unit));
+        const int power = power_of_length(metric.unit);
+        const Json value = power > 1 ? length_power_schema(power) : value_schema(written_as(metric.unit));
         const Json expected{
             {"description", metric.help},
             {"anyOf", Json::array({value, Json{{"type", "string"}, {"pattern", "^[<>] *[^<>= ]"}},
