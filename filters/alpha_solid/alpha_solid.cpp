@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "alpha_solid/alpha_solid.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "alpha_solid/pieces.hpp"
 #include "alpha_solid/remarks.hpp"
@@ -29,8 +32,13 @@ void require_usable(const TetMesh& tets, const AlphaSolidParams& params) {
     const double size = bounding_box(tets.positions.span()).diagonal();
     if (!(size > 1e-100 && size < 1e100))
         throw Error(
-            "needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {:.3g}",
-            size);
+            "needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {:.3g}", size)
+            .hint("give it in a larger or smaller unit");
+    if (tets.weights.empty()) return;
+    const auto [least, largest] = std::ranges::minmax(tets.weights);
+    if (!(least >= 0 && largest <= 1e200))
+        throw Error("needs weights from 0 to 1e200; these go from {:.3g} to {:.3g}", least, largest)
+            .hint("`delaunay: {weights: spacing}` computes them");
 }
 
 /// A radius whose square is not below `squared`, so that giving it as alpha selects the same cells.
@@ -45,6 +53,20 @@ double radius_below(double squared) {
     if (std::isinf(root)) return root;
     while (root * root >= squared) root = std::nextafter(root, 0.0);
     return root;
+}
+
+/// Throws Error when no number is the square of a radius that is needed.
+void require_number(double squared, const TetMesh& tets) {
+    if (squared < std::numeric_limits<double>::max()) return;
+    const std::string_view unit = symbol(tets.frame.unit);
+    std::string text = fmt::format("the solid needs an alpha above 1e154 {}; the scan is only {:.3g} {} in size", unit,
+                                   bounding_box(tets.positions.span()).diagonal(), unit);
+    if (tets.weights.empty()) throw Error(text).hint("all points but hairs lie in one plane; region-grow accepts that");
+    const auto [least, largest] = std::ranges::minmax(tets.weights);
+    throw Error(text + fmt::format(", and its weights go from {:.3g} to {:.3g} {}²", least, largest, unit))
+        .hint(
+            "weights should not differ by more than squares of distances between points: a smaller factor brings them "
+            "nearer to each other, `weights: spacing` fits them to the points");
 }
 
 /// Fills what follows from the labels: inside, counts, interior and uncovered points.
@@ -116,6 +138,8 @@ AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params
     context.progress(0.9);
 
     AlphaSolidResult result;
+    if (!params.alpha) require_number(flood.values[selection.outside], tets);
+    require_number(flood.cover, tets);
     result.alpha_cover = radius(flood.cover);
     result.alpha = params.alpha ? params.alpha->value() : radius(flood.values[selection.outside]);
     result.spectrum = spectrum_from(flood, std::min(flood.cover, limits.value));
@@ -127,6 +151,10 @@ AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params
         const AlphaRange nearest = selector.nearest_valid(limits.value);
         result.nearest_valid = {radius(nearest.from), radius_below(nearest.to)};
     }
+    const bool is_joined = params.components == AlphaComponents::single && params.coverage.value() == 1;
+    if (!params.alpha && is_joined && selection.outside < flood.outside_above(flood.cover))
+        if (const auto apart = selector.apart())
+            result.separate = {apart->components, radius(flood.values[apart->outside])};
     result.tets = tets;
     describe_cells(result, selection, context.threads());
     result.mesh = boundary_mesh(tets, std::move(selection.triangles));

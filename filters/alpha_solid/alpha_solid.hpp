@@ -21,7 +21,8 @@ enum class AlphaSearch {
 };
 
 enum class AlphaComponents {
-    single,  ///< one solid; with coverage below 100 % the one that holds the most points, the others are left out
+    single,  ///< one solid, for which alpha grows; with coverage below 100 % others than the one that holds the most
+             ///< points are left out
     many     ///< any number of solids
 };
 
@@ -47,6 +48,12 @@ enum class AlphaChoice {
 /// tetrahedralisation.
 struct AlphaInterval {
     double least = 0, largest = 0;
+};
+
+/// Solids that stand apart at a smaller alpha than the one that joins them.
+struct SeparateSolids {
+    std::size_t count = 0;
+    double alpha = 0;
 };
 
 struct AlphaSolidResult {
@@ -79,6 +86,8 @@ struct AlphaSolidResult {
     std::size_t nonmanifold_edges = 0, nonmanifold_vertices = 0;
     /// Present when alpha was given and its solid is not valid: the radii nearest to it whose solid is.
     std::optional<AlphaInterval> nearest_valid;
+    /// Present when alpha grew to join, for `single` with all points, what `many` would leave apart.
+    std::optional<SeparateSolids> separate;
 };
 
 /// Finds the smallest alpha whose solid is valid: the asked share of the points is in or on it, its boundary is a
@@ -86,9 +95,11 @@ struct AlphaSolidResult {
 /// alpha up to four times alpha_cover has one, the solid at alpha_cover (for `single` the first connected one above) is
 /// repaired by adding the cheapest cells round every non-manifold vertex.
 ///
+/// With `search: scan` alpha does not fall when coverage rises; bisection promises nothing of that.
+///
 /// Pre:  a tetrahedralisation made by delaunay(); alpha above 0; coverage in (0, 1]; size of the scan between 1e-100
-/// and
-///       1e100. Throws Error with numbers, also when the given alpha leaves no cell inside.
+///       and 1e100, weights from 0 to 1e200. Throws Error with numbers, also when the given alpha leaves no cell
+///       inside, or when alpha would have to be so large that its square is no number.
 /// Post: see AlphaSolidResult. Facet values are computed from corners sorted by coordinates and compared exactly; equal
 ///       values enter together. So the solid depends neither on the order of the points nor on the number of threads.
 ///       A point exactly on a facet's smallest circumsphere does not attach the facet.
@@ -102,10 +113,10 @@ struct AlphaSolidResult {
 /// scan from alpha_cover past the given alpha.
 ///
 /// Metrics: alpha, alpha-cover, spectrum, cells, interior-points, uncovered-points, hidden-points, triangles. Warns, in
-/// a sentence each, about a given alpha whose solid is not valid (and names the nearest that works), points left out, a
-/// repaired or hull solid, and an ambiguous choice: points inside, or a chosen alpha far above alpha_cover or the
-/// boundary's edges. Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for
-/// alpha-shapes.
+/// a sentence each, about a given alpha whose solid is not valid (and names the nearest that works), points and cells
+/// left out, separate solids that were joined, a repaired or hull solid, and an ambiguous choice: points inside, or a
+/// chosen alpha far above alpha_cover or the boundary's edges. Source: Bernardini, Bajaj, Chen, Schikore 1997, section
+/// 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
 
 }  // namespace scanmill

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
-#include <limits>
 
 #include "alpha_solid/exact_number.hpp"
 #include "alpha_solid/sphere_polynomials.hpp"
@@ -15,17 +14,11 @@ int normalise(Offsets<Exact, count>& offsets) {
     double size = 0;
     for (const Offset<Exact>& offset : offsets)
         for (const Exact& component : offset) size = std::max(size, std::abs(CGAL::to_double(component)));
-    const int exponent = size > 0 ? std::ilogb(size) : 0;
+    const int exponent = exponent_near(size);
     const Exact scale(std::ldexp(1.0, -exponent));
     for (Offset<Exact>& offset : offsets)
         for (Exact& component : offset) component = component * scale;
     return exponent;
-}
-
-/// numerator / denominator · 4^exponent.
-double quotient(const Exact& numerator, const Exact& denominator, int exponent) {
-    const double value = std::ldexp(CGAL::to_double(numerator) / CGAL::to_double(denominator), 2 * exponent);
-    return std::isfinite(value) ? value : std::numeric_limits<double>::max();
 }
 
 }  // namespace
@@ -37,7 +30,7 @@ double exact_squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c, c
     const Offset<Exact> vw = cross(v, w);
     const Exact determinant = dot(u, vw);
     const Offset<Exact> centre = circumcentre_numerator(dot(u, u), dot(v, v), dot(w, w), vw, cross(w, u), cross(u, v));
-    return quotient(dot(centre, centre), Exact(4) * determinant * determinant, exponent);
+    return exact_quotient(dot(centre, centre), Exact(4) * determinant * determinant, exponent);
 }
 
 double exact_squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -45,7 +38,7 @@ double exact_squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c) {
     const int exponent = normalise(offsets);
     const auto& [u, v] = offsets;
     const Offset<Exact> normal = cross(u, v), third = minus(v, u);
-    return quotient(dot(u, u) * dot(v, v) * dot(third, third), Exact(4) * dot(normal, normal), exponent);
+    return exact_quotient(dot(u, u) * dot(v, v) * dot(third, third), Exact(4) * dot(normal, normal), exponent);
 }
 
 int exact_smallest_sphere_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {

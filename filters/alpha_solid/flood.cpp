@@ -39,9 +39,7 @@ public:
         flood.cells.reserve(cells_.size());
         flood.values.reserve(cells_.size());
         for (u32 cells : cells_left_) flood.points += cells > 0;
-        // A share like 99.9 % of 1000 points is 999, whatever its last bit.
-        const double share = limits.coverage * static_cast<double>(flood.points);
-        flood.needed = static_cast<std::size_t>(std::max(1.0, std::ceil(share * (1 - 1e-12))));
+        flood.needed = needed_points(limits.coverage, flood.points);
         covered_ = flood.points;
         const auto unseen = [&](u32 cell) { return std::exchange(seen_[cell], u8(1)) == 0; };
         const auto soon = [&](u32 cell) {
@@ -86,9 +84,15 @@ private:
             for (u32 corner : cells_[cell].corners) __builtin_prefetch(&cells_left_[corner], 1);
         for (u32 cell : cells) {
             for (u32 corner : cells_[cell].corners)
-                if (--cells_left_[corner] == 0 && covered_-- == flood.needed) flood.cover = flood.values[counted_];
+                if (--cells_left_[corner] == 0) uncover_one(flood);
             ++counted_;
         }
+    }
+
+    /// A point has lost its last cell.
+    void uncover_one(Flood& flood) {
+        if (covered_ == flood.points) flood.cover_all = flood.values[counted_];
+        if (covered_-- == flood.needed) flood.cover = flood.values[counted_];
     }
 
     static constexpr std::size_t batch = 32;
@@ -103,6 +107,12 @@ private:
 };
 
 }  // namespace
+
+std::size_t needed_points(double coverage, std::size_t points) {
+    // A share like 99.9 % of 1000 points is 999, whatever its last bit.
+    const double share = coverage * static_cast<double>(points);
+    return static_cast<std::size_t>(std::max(1.0, std::ceil(share * (1 - 1e-12))));
+}
 
 Flood flood_from_outside(std::span<const SweepCell> cells, std::size_t points, const FloodLimits& limits,
                          Context& context) {

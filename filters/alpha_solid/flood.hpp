@@ -21,6 +21,8 @@ struct Flood {
     Array<double> values;
     /// alpha_cover²: the least value at which at least `needed` points are in or on the solid.
     double cover = 0;
+    /// The same for all points; not below `cover`.
+    double cover_all = 0;
     /// Points that have a cell, and the share of them that was asked for, rounded up.
     std::size_t points = 0, needed = 0;
 
@@ -36,6 +38,9 @@ struct FloodLimits {
     /// … and below alpha_cover² for this share of the points, in (0, 1].
     double coverage = 1;
 };
+
+/// How many of so many points a share of them is, rounded up; 1 at least. Pre: coverage in (0, 1].
+std::size_t needed_points(double coverage, std::size_t points);
 
 /// Every group of equal values is complete. Corners are below `points`. Cost: O(m log m) time in theory for m cells
 /// swept, nearly linear in practice; 12 bytes per cell swept and 1 per cell.

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = AlphaSolidParams;
-    return Declare<P>("alpha-solid", 2)
+    return Declare<P>("alpha-solid", 3)
         .summary(
             "Finds the solid that the points enclose: every cell that a ball of radius alpha cannot enter from "
             "outside.")
@@ -23,11 +23,13 @@ SCANMILL_FILTER() {
                 {{"scan", AlphaSearch::scan, "The least alpha whose solid is valid."},
                  {"binary", AlphaSearch::binary, "The paper's bisection: a valid solid, not always the least."}},
                 "How alpha: auto is found.")
-        .choice("components", &P::components,
-                {{"single", AlphaComponents::single,
-                  "One solid; with coverage below 100 % the one with the most points, the others are left out."},
-                 {"many", AlphaComponents::many, "Any number of solids."}},
-                "How many separate solids are valid.")
+        .choice(
+            "components", &P::components,
+            {{"single", AlphaComponents::single,
+              "One solid: alpha grows until it joins all; with coverage below 100 % others than the one with the most "
+              "points are left out."},
+             {"many", AlphaComponents::many, "Any number of solids: what stands apart at the least alpha stays so."}},
+            "How many separate solids are valid.")
         .param("coverage", &P::coverage, "Share of the points that must be in or on the solid.", above(0), at_most(1))
         .metric("alpha", Unit::length, "The radius used.", headline)
         .metric("alpha-cover", Unit::length, "The least radius that covers the asked share of the points.")

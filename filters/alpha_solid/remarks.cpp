@@ -28,6 +28,8 @@ std::string counted(std::size_t count, std::string_view one, std::string_view ma
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
+std::string_view unit_of(const AlphaSolidResult& result) { return symbol(result.tets.frame.unit); }
+
 std::string joined(const std::vector<std::string>& parts) {
     std::string text;
     for (std::size_t i = 0; i < parts.size(); ++i)
@@ -35,13 +37,22 @@ std::string joined(const std::vector<std::string>& parts) {
     return text;
 }
 
+/// That more points are outside than the share allows, or nothing.
+std::string too_many_outside(const AlphaSolidResult& result, const AlphaSolidParams& params) {
+    const std::size_t points = result.tets.positions.size() - result.hidden_points.size();
+    const std::size_t outside = result.uncovered_points.size();
+    const std::size_t allowed = points - needed_points(params.coverage.value(), points);
+    if (outside <= allowed) return {};
+    const std::string text = fmt::format("{} of {} points are outside of it", outside, result.tets.positions.size());
+    if (params.coverage.value() == 1) return text;
+    return text + fmt::format(", more than the {} that coverage {} allows", allowed, params.coverage.text());
+}
+
 /// What is wrong at a given alpha, and the nearest that works.
 std::string wrong_alpha(const AlphaSolidResult& result, const AlphaSolidParams& params) {
-    const std::string_view unit = symbol(result.tets.frame.unit);
+    const std::string_view unit = unit_of(result);
     std::vector<std::string> faults;
-    if (!result.uncovered_points.empty())
-        faults.push_back(fmt::format("{} of {} points are outside of it", result.uncovered_points.size(),
-                                     result.tets.positions.size()));
+    if (std::string text = too_many_outside(result, params); !text.empty()) faults.push_back(std::move(text));
     if (result.nonmanifold_vertices > 0)
         faults.push_back(
             fmt::format("its boundary has {} and {} with more than two triangles",
@@ -93,7 +104,7 @@ double radius_in_edges(const AlphaSolidResult& result) {
 
 /// What speaks against an alpha that was chosen.
 std::vector<std::string> doubts(const AlphaSolidResult& result) {
-    const std::string_view unit = symbol(result.tets.frame.unit);
+    const std::string_view unit = unit_of(result);
     std::vector<std::string> signs;
     if (result.alpha >= ambiguous_factor * result.alpha_cover)
         signs.push_back(
@@ -117,8 +128,39 @@ std::string ambiguity(const AlphaSolidResult& result) {
                                     result.interior_points.size(), result.tets.positions.size()));
     if (signs.empty()) return {};
     return joined(signs) +
-           ": what is narrower than 2 alpha may be filled; sculpt opens what it can, and more points in gaps and thin "
+           ": what is narrower than 2 alpha may be filled, gaps between parts too; sculpt opens what it can, and more "
+           "points in gaps and thin "
            "parts, or a lower coverage against outliers, allow a smaller alpha";
+}
+
+/// What is not in the solid, or nothing.
+std::string missing_from(const AlphaSolidResult& result) {
+    const std::size_t points = result.uncovered_points.size(), cells = result.cells_left_out;
+    const std::string of_others =
+        counted(cells, "cell of other solids was", "cells of other solids were") + " left out";
+    if (points == 0) return cells == 0 ? "" : of_others;
+    return fmt::format("{} of {} points are not in or on the solid{}", points, result.tets.positions.size(),
+                       cells == 0 ? "" : "; " + of_others);
+}
+
+/// That no alpha-solid was valid as it is, and what was made of one instead.
+std::string repair(const AlphaSolidResult& result, const AlphaSolidParams& params) {
+    const std::string_view unit = unit_of(result);
+    // One that leaves points out may be valid soon above it.
+    const bool may_leave_out = params.components == AlphaComponents::single && params.coverage.value() < 1;
+    const std::string none =
+        may_leave_out
+            ? fmt::format("no alpha below {:.4g} {} gives a manifold boundary round enough points", result.alpha, unit)
+            : fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary",
+                          max_scan * result.alpha_cover, unit);
+    if (result.choice == AlphaChoice::hull)
+        return fmt::format(
+            "{}, and closing the solid at {:.4g} {} round its non-manifold vertices filled the convex hull; more "
+            "points, "
+            "or a coverage below 100 % against outliers, allow a smaller alpha",
+            none, result.alpha, unit);
+    return fmt::format("{}; the solid at {:.4g} {} was closed round its non-manifold vertices", none, result.alpha,
+                       unit);
 }
 
 }  // namespace
@@ -138,27 +180,17 @@ std::string text_within(const AlphaInterval& interval, double alpha) {
 }
 
 void remark(const AlphaSolidResult& result, const AlphaSolidParams& params, Context& context) {
-    if (result.nearest_valid) {
-        context.warn(wrong_alpha(result, params));
-        return;
-    }
-    const std::string_view unit = symbol(result.tets.frame.unit);
-    if (const std::size_t uncovered = result.uncovered_points.size(); uncovered > 0)
+    if (result.nearest_valid) context.warn(wrong_alpha(result, params));
+    const bool is_told =
+        result.nearest_valid && result.cells_left_out == 0 && !too_many_outside(result, params).empty();
+    if (const std::string text = missing_from(result); !text.empty() && !is_told) context.warn(text);
+    if (result.nearest_valid) return;
+    if (const auto& apart = result.separate)
         context.warn(fmt::format(
-            "{} of {} points are not in or on the solid{}", uncovered, result.tets.positions.size(),
-            result.cells_left_out > 0 ? fmt::format("; {} cells of other solids were left out", result.cells_left_out)
-                                      : ""));
-    if (result.choice == AlphaChoice::repaired)
-        context.warn(
-            fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary; the one at {:.4g} {} "
-                        "was closed round its non-manifold vertices",
-                        max_scan * result.alpha_cover, unit, result.alpha, unit));
-    if (result.choice == AlphaChoice::hull)
-        context.warn(
-            fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary, and closing the one at "
-                        "{:.4g} {} round its non-manifold vertices filled the convex hull; more points, or a coverage "
-                        "below 100 % against outliers, allow a smaller alpha",
-                        max_scan * result.alpha_cover, unit, result.alpha, unit));
+            "alpha {:.4g} {} joins {} solids that stand apart at {:.4g} {}; 'components: many' keeps them apart",
+            result.alpha, unit_of(result), apart->count, apart->alpha, unit_of(result)));
+    if (result.choice == AlphaChoice::repaired || result.choice == AlphaChoice::hull)
+        context.warn(repair(result, params));
     if (const std::string text = ambiguity(result); !text.empty()) context.warn(text);
 }
 

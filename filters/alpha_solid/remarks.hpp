@@ -6,8 +6,9 @@
 
 namespace scanmill::alpha {
 
-/// Warns about: a given alpha whose solid is not valid, in one sentence with the nearest that works; else points left
-/// out, a repaired or hull solid, and an ambiguous choice.
+/// Warns about: a given alpha whose solid is not valid, in one sentence with the nearest that works; points and cells
+/// left out (points beyond the asked share are told with the alpha); and, of a valid or chosen alpha, a repaired or
+/// hull solid and an ambiguous choice.
 void remark(const AlphaSolidResult& result, const AlphaSolidParams& params, Context& context);
 
 /// A radius of the interval near `alpha`, written in as few digits (at least 4) as still give one of it. Pre: least is

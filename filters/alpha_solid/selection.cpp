@@ -7,8 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "alpha_solid/growing_pieces.hpp"
-#include "alpha_solid/growing_solid.hpp"
+#include "alpha_solid/growth.hpp"
 #include "alpha_solid/pieces.hpp"
 
 namespace scanmill::alpha {
@@ -37,7 +36,9 @@ Selector::Selector(const TetMesh& tets, const Flood& flood, const AlphaSolidPara
     : tets_(tets),
       flood_(flood),
       context_(context),
-      search_(params.search) {
+      search_(params.search),
+      cover_(flood.cover),
+      needed_(flood.needed) {
     const bool single = params.components == AlphaComponents::single;
     keeps_largest_ = single && params.coverage.value() < 1;
     one_piece_ = single && !keeps_largest_;
@@ -68,8 +69,8 @@ bool Selector::is_valid(const Selection& selection) const {
     if (!selection.defects.vertices.empty()) return false;
     if (one_piece_ && selection.components != 1) return false;
     // From alpha_cover on, only what was left out can be missing.
-    const bool is_covered = !keeps_largest_ && selection.outside <= flood_.outside_above(flood_.cover);
-    return is_covered || covered_points(tets_, selection.labels) >= flood_.needed;
+    const bool is_covered = !keeps_largest_ && selection.outside <= flood_.outside_above(cover_);
+    return is_covered || covered_points(tets_, selection.labels) >= needed_;
 }
 
 Selection Selector::given(double value) const {
@@ -78,117 +79,31 @@ Selection Selector::given(double value) const {
     return selection;
 }
 
-/// An alpha-solid while alpha grows: cells enter level by level.
-class Selector::Growth {
-public:
-    Growth(const Selector& selector, const Selection& start)
-        : selector_(selector),
-          outside_(start.outside),
-          vertices_(selector.one_piece_ ? selector.tets_.positions.size() : 0) {
-        growing_.emplace(selector.tets_, start.labels, start.defects.vertices);
-        if (selector.one_piece_) pieces_ = join_vertices(start.triangles, vertices_);
-        if (selector.keeps_largest_) {
-            held_.emplace(selector.tets_, start.labels);
-            note_judged();
-        }
-    }
+Selector Selector::for_all_points() const {
+    Selector all = *this;
+    all.cover_ = flood_.cover_all;
+    all.needed_ = flood_.points;
+    all.one_piece_ = true;
+    all.keeps_largest_ = false;
+    return all;
+}
 
-    bool at_hull() const { return outside_ == 0; }
-    double next_value() const { return selector_.flood_.values[outside_ - 1]; }
-    std::size_t outside() const { return outside_; }
-
-    void step() {
-        const std::size_t begin = selector_.flood_.group_begin(outside_ - 1);
-        const std::span<const u32> cells(selector_.flood_.cells.data() + begin, outside_ - begin);
-        outside_ = begin;
-        if (held_) {
-            growing_->add_joined(cells);
-            held_->add(cells);
-            return;
-        }
-        growing_->add(cells);
-        // Every point is covered, so pieces only merge.
-        if (pieces_ > 1)
-            for (u32 cell : cells)
-                for (u32 vertex : selector_.tets_.cells[cell])
-                    pieces_ -= vertices_.unite(selector_.tets_.cells[cell][0], vertex);
-    }
-
-    bool holds_enough() {
-        if (!held_) return pieces_ == 1;
-        if (held_->most() < selector_.flood_.needed) return false;
-        follow_largest();
-        return true;
-    }
-
-    GrowingSolid& solid() { return *growing_; }
-
-    AlphaRange range() const {
-        const Array<double>& values = selector_.flood_.values;
-        return {values[outside_], at_hull() ? std::numeric_limits<double>::infinity() : values[outside_ - 1]};
-    }
-
-    /// Judges the solid as it stands.
-    bool is_valid() {
-        triangles_.reset();
-        if (!holds_enough()) return false;
-        const GrowingSolid::Verdict verdict = growing_->verdict();
-        if (verdict != GrowingSolid::Verdict::many_suspects) return verdict == GrowingSolid::Verdict::manifold;
-        const unsigned threads = selector_.context_.threads();
-        triangles_ = boundary_triangles(selector_.tets_, growing_->labels(), threads);
-        const BoundaryDefects defects = boundary_defects(*triangles_, selector_.tets_.positions.size(), threads);
-        growing_->suspect_only(defects.vertices);
-        return defects.vertices.empty();
-    }
-    /// Pre: it was judged valid and has not grown since.
-    Selection valid_selection() {
-        if (!triangles_)
-            triangles_ = boundary_triangles(selector_.tets_, growing_->labels(), selector_.context_.threads());
-        Selection selection;
-        selection.outside = outside_;
-        selection.labels = growing_->labels();
-        selection.triangles = std::move(*triangles_);
-        DisjointSets vertices(selector_.tets_.positions.size());
-        selection.components = selector_.one_piece_ ? 1 : join_vertices(selection.triangles, vertices);
-        return selection;
-    }
-
-private:
-    /// Another piece than the one that grew may hold the most points by now, or as many. Pieces only gain points, so as
-    /// long as neither number changes the choice between equals stays.
-    void follow_largest() {
-        const bool is_judged = most_ == held_->most() && with_most_ == held_->pieces_with_most();
-        const bool is_alone = held_->pieces_with_most() == 1 && growing_->covered() == held_->most();
-        note_judged();
-        if (is_judged || is_alone) return;
-        const Selection largest = selector_.solid_without(outside_);
-        growing_.emplace(selector_.tets_, largest.labels, largest.defects.vertices);
-    }
-
-    void note_judged() {
-        most_ = held_->most();
-        with_most_ = held_->pieces_with_most();
-    }
-
-    const Selector& selector_;
-    std::optional<GrowingSolid> growing_;
-    std::size_t outside_;
-    /// When one piece is asked for: points joined by it, and the number of pieces left.
-    DisjointSets vertices_;
-    std::size_t pieces_ = 1;
-    /// When the largest piece is kept: what the pieces hold, and what they held when the largest was last chosen.
-    std::optional<GrowingPieces> held_;
-    /// The boundary, when all of it was looked at for the last judgement.
-    std::optional<Array<Triangle>> triangles_;
-    std::size_t most_ = 0, with_most_ = 0;
-};
-
+/// For any share the least valid solid is one for every smaller share too, and so is the least in one piece, joined
+/// across facets, where repairs start; so alpha never falls when the share grows. Only repairs for all points start
+/// from less, from pieces that touch.
 Selection Selector::scan() const {
-    Selection start = solid_without(flood_.outside_above(flood_.cover));
+    Selection chosen = scan_for_share();
+    if (!keeps_largest_ || flood_.values[chosen.outside] <= flood_.cover_all) return chosen;
+    Selection whole = for_all_points().scan_for_share();
+    return flood_.values[whole.outside] < flood_.values[chosen.outside] ? std::move(whole) : std::move(chosen);
+}
+
+Selection Selector::scan_for_share() const {
+    Selection start = solid_without(flood_.outside_above(cover_));
     if (is_valid(start)) return start;
 
     Growth growth(*this, start);
-    const double last = max_scan * max_scan * flood_.cover;
+    const double last = max_scan * max_scan * cover_;
     for (std::size_t steps = 0; !growth.at_hull() && growth.next_value() <= last; ++steps) {
         if (steps % 4096 == 0) context_.check_cancelled();
         growth.step();
@@ -202,7 +117,7 @@ Selection Selector::scan() const {
 
 AlphaRange Selector::nearest_valid(double value) const {
     // Below alpha_cover points are left out.
-    Growth growth(*this, solid_without(flood_.outside_above(flood_.cover)));
+    Growth growth(*this, solid_without(flood_.outside_above(cover_)));
     const double alpha = std::sqrt(value);
     std::optional<AlphaRange> nearest;
     for (std::size_t steps = 0;; ++steps) {
@@ -219,6 +134,17 @@ AlphaRange Selector::nearest_valid(double value) const {
     }
     assert(nearest);  // the hull is valid
     return *nearest;
+}
+
+std::optional<Selection> Selector::apart() const {
+    assert(one_piece_);
+    Selector any = *this;
+    any.one_piece_ = false;
+    // All points are covered there, so a larger alpha only joins pieces.
+    if (any.solid_without(flood_.outside_above(cover_)).components < 2) return std::nullopt;
+    Selection selection = any.scan_for_share();
+    if (selection.components < 2) return std::nullopt;
+    return selection;
 }
 
 Selection Selector::repaired(const Selection& start) const {
@@ -242,7 +168,7 @@ Selection Selector::repaired(const Selection& start) const {
 
 Selection Selector::bisect() const {
     // Every different alpha-solid from the hull (nothing outside) down to alpha_cover.
-    const std::size_t cover = flood_.outside_above(flood_.cover);
+    const std::size_t cover = flood_.outside_above(cover_);
     Array<std::size_t> candidates;
     for (std::size_t i = 0; i <= cover; ++i)
         if (i == 0 || flood_.values[i] != flood_.values[i - 1]) candidates.push_back(i);

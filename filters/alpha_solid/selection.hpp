@@ -2,6 +2,8 @@
 #pragma once
 /// Which alpha-solid: the search through the order in which cells enter as alpha grows.
 
+#include <optional>
+
 #include "alpha_solid/alpha_solid.hpp"
 #include "alpha_solid/flood.hpp"
 #include "alpha_solid/labels.hpp"
@@ -36,7 +38,9 @@ public:
 
     /// The alpha-solid at squared radius `value`, whatever its boundary.
     Selection given(double value) const;
-    /// The least valid alpha-solid, or a repaired one when none is valid up to four times alpha_cover.
+    /// The least valid alpha-solid, or a repaired one when none is valid up to four times alpha_cover. Of `single` with
+    /// a share of the points and with all of them, whichever has the smaller alpha: pieces that touch are one sooner
+    /// than they are joined across facets, and may be repaired then.
     Selection scan() const;
     /// A valid alpha-solid by bisection between alpha_cover and the hull.
     Selection bisect() const;
@@ -49,9 +53,16 @@ public:
     /// above `value`.
     AlphaRange nearest_valid(double value) const;
 
+    /// The alpha-solid that is valid when any number of pieces is, if that are several. Pre: one piece was asked for,
+    /// with all points, and the alpha-solid at alpha_cover is not valid.
+    std::optional<Selection> apart() const;
+
 private:
     class Growth;
 
+    /// Asks for all points in one piece.
+    Selector for_all_points() const;
+    Selection scan_for_share() const;
     Selection solid_without(std::size_t outside) const;
     Selection described(Array<u8> labels, std::size_t outside, AlphaChoice choice) const;
     Selection repaired(const Selection& start) const;
@@ -60,6 +71,9 @@ private:
     const Flood& flood_;
     Context& context_;
     AlphaSearch search_;
+    /// alpha_cover² and the number of points that it covers.
+    double cover_;
+    std::size_t needed_;
     /// `single` with full coverage: only a solid in one piece is valid.
     bool one_piece_;
     /// `single` with less: pieces but the largest are left out.

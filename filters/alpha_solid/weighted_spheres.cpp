@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cmath>
-#include <limits>
 
 #include "alpha_solid/exact_number.hpp"
 #include "alpha_solid/weighted_polynomials.hpp"
@@ -66,13 +65,11 @@ int exponent_of(const Corners& corners) {
     for (const WeightedPoint& corner : corners)
         size = std::max({size, largest(offsets_from(*corners[0].position, *corner.position)[0]),
                          std::sqrt(std::abs(corner.weight - corners[0].weight))});
-    return std::ilogb(size);
+    return exponent_near(size);
 }
 
 double quotient(const Fraction<Exact>& fraction, int exponent) {
-    const double value =
-        std::ldexp(CGAL::to_double(fraction.numerator) / CGAL::to_double(fraction.denominator), 2 * exponent);
-    return std::isfinite(value) ? value : std::numeric_limits<double>::max();
+    return exact_quotient(fraction.numerator, fraction.denominator, exponent);
 }
 
 const WeightedPoint& first_of(const Corners& corners, int facet) {

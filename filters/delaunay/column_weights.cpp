@@ -10,11 +10,21 @@ namespace scanmill {
 
 namespace {
 
+/// "; columns of one number: w and quality", or that there are none.
+std::string single_columns(const PointCloud& cloud) {
+    std::vector<std::string> names;
+    for (const Column& column : cloud.columns)
+        if (column.components() == 1) names.push_back(column.name());
+    return names.empty() ? "; no column has one number" : fmt::format("; columns of one number: {}", enumerated(names));
+}
+
 const Column& column_named(const PointCloud& cloud, const std::string& name) {
     if (const Column* column = cloud.columns.find(name)) {
         if (column->components() == 1) return *column;
-        throw Error("weights need a column of one number per point; '{}' has {}", name,
-                    column->is_list() ? "lists" : fmt::format("{} numbers", column->components()));
+        throw Error("weights need a column of one number per point; '{}' has {}{}", name,
+                    column->is_list() ? "lists" : fmt::format("{} numbers", column->components()),
+                    single_columns(cloud))
+            .hint("`weights: spacing` needs no column");
     }
     std::vector<std::string> names{"spacing"};
     for (const Column& column : cloud.columns) names.push_back(column.name());

@@ -49,8 +49,8 @@ struct DelaunayResult {
 /// largest of their weights (a warning counts the places where they differed); insertion is on one thread; a warning
 /// counts hidden points, and a column `hidden` (uint8, at the vertices) marks them; without any there is no such
 /// column. An input column of that name then becomes `hidden-of-points`. Throws Error for a missing or unfit column,
-/// weights that are no numbers from 0 to 1e200, and a factor out of range. A factor other than 1 without weights
-/// changes nothing and is told.
+/// weights that are no numbers from 0 to 1e200, a factor out of range, and a scan that is not between 1e-100 and 1e100
+/// in size. A factor other than 1 without weights changes nothing and is told.
 DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams& params, Context& context);
 
 }  // namespace scanmill

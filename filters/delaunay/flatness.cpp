@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::size_t chunk = 1 << 15;
 constexpr std::string_view way_out = "voxel-thin accepts flat scans";
+constexpr std::string_view few_points =
+    "`scanmill info` tells how many points a file has; a step before may keep too few, as voxel-thin does with a large "
+    "bin-size or min-points";
 
 struct Farthest {
     double measure = -1;
@@ -77,7 +80,8 @@ Extents extents(std::span<const Vec3> positions, const Vec3& origin, unsigned th
 
 void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsigned threads) {
     if (positions.size() < 4)
-        throw Error("needs at least 4 points that are not coplanar; the cloud has {}", positions.size());
+        throw Error("needs at least 4 points that are not coplanar; the cloud has {}", positions.size())
+            .hint(std::string(few_points));
     const Extents found = extents(positions, frame.origin, threads);
     if (!std::isfinite(found.from_point))
         throw Error("needs points whose distances are finite numbers; the cloud has {} points up to {:.2g} {} apart",
@@ -90,7 +94,8 @@ void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsign
 void refuse_flat(std::span<const Vec3> positions, int dimension, double distance, const Frame& frame) {
     if (const std::size_t distinct = distinct_places(positions); distinct < 4)
         throw Error("needs at least 4 points that are not coplanar; the cloud has {} points at {} distinct place{}",
-                    positions.size(), distinct, distinct == 1 ? "" : "s");
+                    positions.size(), distinct, distinct == 1 ? "" : "s")
+            .hint(std::string(few_points));
     const std::string_view shape = dimension == 0 ? "one place" : dimension == 1 ? "one line" : "one plane";
     throw Error("needs at least 4 points that are not coplanar; the cloud has {}, all within {:.2g} {} of {}{}",
                 positions.size(), distance, symbol(frame.unit), shape,

@@ -18,9 +18,10 @@ SCANMILL_FILTER() {
             "Finite coordinates, at least 4 distinct points that are not coplanar; every column is carried along.")
         .out<TetMesh>("tets", "The cells over the distinct points, in canonical order.")
         .param("weights", &P::weights,
-               "Lets space between points shrink and grow with the sampling: `spacing` gives every point the square of "
-               "its distance to its neighbours, the name of a column what that says, in squared lengths of the scan's "
-               "unit.",
+               "Lets space between points shrink and grow with the sampling. Two words have a meaning of their own: "
+               "`none` gives no weights, `spacing` gives every point the square of its distance to its neighbours. Any "
+               "other is the name of a column of squared lengths in the scan's unit; one that is called `none` or "
+               "`spacing` must be renamed in the file before it can be used.",
                word("none"))
         .param("factor", &P::factor, "The weights are multiplied with this; with `spacing` at most 4.", at_least(0))
         .metric("cells", Unit::count, "Finite tetrahedra.")

@@ -13,7 +13,20 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::string_view hidden_name = "hidden", older = "-of-points";
+constexpr std::string_view hidden_name = "hidden", older = "-of-points", spacing_name = "spacing";
+/// Of a scan with weights; as alpha-solid needs it.
+constexpr double least_weighted_size = 1e-100, largest_weighted_size = 1e100;
+
+/// Squares of distances stand beside weights.
+void require_squares(const PointCloud& cloud) {
+    const double size = bounding_box(cloud.positions.span()).diagonal();
+    if (!(size > least_weighted_size && size < largest_weighted_size))
+        throw Error(
+            "with weights needs a scan between {:.0e} and {:.0e} in size, so that squares of lengths are "
+            "numbers; it is {:.3g} {}",
+            least_weighted_size, largest_weighted_size, size, symbol(cloud.frame.unit))
+            .hint("give it in a larger or smaller unit, or leave weights away");
+}
 
 /// Rows by place, those of one place by row.
 Array<u32> rows_by_place(std::span<const Vec3> positions) {
@@ -51,8 +64,14 @@ std::size_t merge_places(std::span<const Vec3> positions, PointWeights& points) 
 
 PointWeights point_weights(const PointCloud& cloud, const DelaunayParams& params, Context& context) {
     if (!(params.factor >= 0 && std::isfinite(params.factor)))
-        throw Error("factor must be a number of 0 or more; it is {}", params.factor);
-    const bool by_spacing = *params.weights == "spacing";
+        throw Error("factor must be a number of 0 or more; it is {}", params.factor)
+            .hint("1 takes the weights as they are");
+    require_squares(cloud);
+    const bool by_spacing = *params.weights == spacing_name;
+    if (by_spacing && cloud.columns.find(spacing_name))
+        context.warn(
+            "`weights: spacing` computes the weights; the points' column 'spacing' is not read. Under another name it "
+            "could be");
     if (by_spacing && params.factor > largest_spacing_factor)
         throw Error("with `weights: spacing` factor must be at most {}; it is {}", largest_spacing_factor,
                     params.factor)
@@ -62,7 +81,8 @@ PointWeights point_weights(const PointCloud& cloud, const DelaunayParams& params
                                 : column_weights(cloud, *params.weights, params.factor);
     if (by_spacing && *std::ranges::max_element(points.weights) > largest_weight)
         throw Error("needs a scan whose spacing is below {:.0e}, so that weights are numbers",
-                    std::sqrt(largest_weight));
+                    std::sqrt(largest_weight))
+            .hint("give it in a larger unit");
     if (const std::size_t different = merge_places(cloud.positions.span(), points); different > 0)
         context.warn(fmt::format("at {} places points with different weights were merged; the largest weight counts",
                                  different));

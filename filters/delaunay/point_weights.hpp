@@ -14,7 +14,8 @@ struct PointWeights {
 };
 
 /// Of several points at one place with different weights the largest counts; a warning says at how many places.
-/// Pre: params.weights, finite positions at two places or more. Throws Error for a factor that is no number of 0 or
+/// With `spacing`, a column of that name is told to be left alone. Pre: params.weights, finite positions at two places
+/// or more. Throws Error for a scan that is not between 1e-100 and 1e100 in size, a factor that is no number of 0 or
 /// more, or too large for `spacing`, and what column_weights() refuses.
 PointWeights point_weights(const PointCloud& cloud, const DelaunayParams& params, Context& context);
 

@@ -71,6 +71,24 @@ TEST(AlphaSolidOfTheBunny, ReachesIntoNoPointsNeighbourhood) {
     EXPECT_EQ(result.mesh.vertex_columns.find("confidence")->rows(), result.mesh.positions.size());
 }
 
+TEST(AlphaSolidOfABodyInThreePieces, IsOne_BecauseTheirCutsAreOpen_AndSaysThatGapsAreSpanned) {
+    // Two rings were cut out of it: what closes the ends of the three pieces spans the gaps as well.
+    SCANMILL_REAL_SCAN(path, fetched_data, "meshes/blobby_3cc.off");
+    const auto cloud = read_points(path);
+    for (AlphaComponents components : {AlphaComponents::single, AlphaComponents::many}) {
+        Context context;
+        AlphaSolidParams params;
+        params.components = components;
+        const AlphaSolidResult result = alpha_solid(delaunay(*cloud, {}, context).tets, params, context);
+        expect_valid(result);
+        EXPECT_FALSE(result.separate);
+        EXPECT_EQ(topology(result.mesh).genus, 0u);
+        EXPECT_THAT(context.warnings(),
+                    testing::Contains(testing::AllOf(testing::HasSubstr("to span gaps"),
+                                                     testing::HasSubstr("gaps between parts too"))));
+    }
+}
+
 TEST(AlphaSolidOfTheDragon, InFull_IsOneClosedManifoldThroughAllItsPoints) {
     SCANMILL_REAL_SCAN(path, fetched_data, "dragon/dragon_vrip.ply");
     const auto cloud = read_points(path);

@@ -1,313 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The alpha-solid of weighted points: values against exact arithmetic, the solid against its definition.
+// The alpha-solid of weighted points: what holds for any, what weights are for, what is refused.
 
-#include <CGAL/Exact_rational.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
-#include <deque>
 
-#include "alpha_solid/flood.hpp"
-#include "alpha_solid/sphere_polynomials.hpp"
-#include "alpha_solid/weighted_spheres.hpp"
 #include "filters/weighted_cases.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/hidden_vertices.hpp"
-#include "scanmill/geometry/solid_boundary.hpp"
 #include "support/real_data.hpp"
 
-namespace scanmill::alpha {
+namespace scanmill {
 namespace {
 
 using namespace test;
 using testing::HasSubstr;
-using Number = CGAL::Exact_rational;
-using Vector = Offset<Number>;
-
-struct Ball {
-    Vector centre;
-    Number squared;
-};
-
-Vector vector(const Vec3& p) { return {Number(p.x()), Number(p.y()), Number(p.z())}; }
-Number power(const Ball& ball, const WeightedPoint& p) {
-    const Vector to = minus(vector(*p.position), ball.centre);
-    return Number(dot(to, to) - Number(p.weight) - ball.squared);
-}
-
-/// The smallest sphere orthogonal to the points: its centre is the first plus a combination of the edges, found by
-/// Cramer's rule. Weights as they are, so `squared` may be negative.
-Ball orthogonal_sphere(const std::vector<WeightedPoint>& points) {
-    const std::size_t n = points.size() - 1;
-    const Vector origin = vector(*points[0].position);
-    std::vector<Vector> edges;
-    std::vector<Number> right;
-    for (std::size_t i = 1; i <= n; ++i) {
-        edges.push_back(minus(vector(*points[i].position), origin));
-        right.push_back((dot(edges.back(), edges.back()) + Number(points[0].weight) - Number(points[i].weight)) / 2);
-    }
-    const auto determinant = [&](std::size_t replaced) {
-        std::array<std::array<Number, 3>, 3> m;
-        for (std::size_t i = 0; i < 3; ++i)
-            for (std::size_t j = 0; j < 3; ++j)
-                m[i][j] = i >= n || j >= n ? Number(i == j) : j == replaced ? right[i] : dot(edges[i], edges[j]);
-        return Number(m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                      m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                      m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]));
-    };
-    const Number whole = determinant(9);
-    Vector offset{0, 0, 0}, centre = origin;
-    for (std::size_t j = 0; j < n; ++j) {
-        const Number share = determinant(j) / whole;
-        for (std::size_t axis = 0; axis < 3; ++axis) offset[axis] += share * edges[j][axis];
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] += offset[axis];
-    return {centre, Number(dot(offset, offset) - Number(points[0].weight))};
-}
-
-double lowered(const Ball& ball, double largest) { return CGAL::to_double(Number(ball.squared + Number(largest))); }
-
-bool is_flat(const std::array<WeightedPoint, 4>& p) {
-    const auto [u, v, w] = offsets_from<Number>(*p[0].position, *p[1].position, *p[2].position, *p[3].position);
-    return dot(u, cross(v, w)) == 0;
-}
-
-/// Returns how many corners lay exactly on a facet's sphere.
-int expect_exact(const std::array<WeightedPoint, 4>& p, double largest) {
-    const CellSpheres spheres = weighted_cell_spheres(p, largest);
-    const double cell = lowered(orthogonal_sphere({p[0], p[1], p[2], p[3]}), largest);
-    int ties = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const Ball facet = orthogonal_sphere({p[(i + 1) % 4], p[(i + 2) % 4], p[(i + 3) % 4]});
-        const Number of_apex = power(facet, p[i]);
-        const bool attached = of_apex < 0;
-        ties += of_apex == 0;
-        EXPECT_EQ((spheres.attached >> i & 1) != 0, attached);
-        EXPECT_NEAR(spheres.values[i] / (attached ? cell : lowered(facet, largest)), 1, 1e-8);
-    }
-    return ties;
-}
-
-TEST(WeightedSpheres, ACornerOfTheCube_HasItsClosedForms) {
-    // Edges along the axes and weights 0 but for the origin's w: the sphere through the three tips, orthogonal to the
-    // origin's, has its centre at ((1 + w) / 2) (1, 1, 1).
-    const Vec3 o(0, 0, 0), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-    const double w = 0.25;
-    const CellSpheres spheres = weighted_cell_spheres({{{&o, w}, {&x, 0}, {&y, 0}, {&z, 0}}}, w);
-    // The centre lies beyond the facet of the tips: the origin attaches it, and it has the cell's value
-    // 3 ((1 + w) / 2)² - w, lowered: + w.
-    EXPECT_EQ(spheres.attached, 0b0001);
-    EXPECT_DOUBLE_EQ(spheres.values[0], 3 * std::pow((1 + w) / 2, 2));
-    for (int i = 1; i < 4; ++i) EXPECT_DOUBLE_EQ(spheres.values[i], 2 * std::pow((1 + w) / 2, 2));
-}
-
-TEST(WeightedSpheres, ACornerExactlyOnTheFacetsSphere_DoesNotAttach) {
-    // Tips at 3 that are heavier by 3: the centre (1, 1, 1) lies in their facet. A hair less, and it lies beyond.
-    const Vec3 o(0, 0, 0), x(3, 0, 0), y(0, 3, 0), z(0, 0, 3);
-    const auto attached = [&](double w) {
-        return weighted_cell_spheres({{{&o, 0}, {&x, w}, {&y, w}, {&z, w}}}, 4).attached;
-    };
-    EXPECT_EQ(attached(3), 0);
-    EXPECT_EQ(attached(std::nextafter(3, 0)), 0b0001);
-    EXPECT_EQ(attached(std::nextafter(3, 4)), 0);
-}
-
-TEST(WeightedSpheres, RandomCorners_AgreeWithExactArithmetic) {
-    Random random(1);
-    for (int i = 0; i < 400; ++i) {
-        std::array<Vec3, 4> p;
-        std::array<WeightedPoint, 4> corners;
-        for (int k = 0; k < 4; ++k) {
-            for (double& coordinate : p[k]) coordinate = random.uniform(-1, 1);
-            corners[k] = {&p[k], random.uniform(0, i % 2 ? 0.1 : 3)};
-        }
-        expect_exact(corners, 3);
-    }
-}
-
-TEST(WeightedSpheres, CornersOnASmallLattice_AgreeWithExactArithmetic) {
-    Random random(2);
-    int ties = 0;
-    for (int i = 0; i < 800; ++i) {
-        std::array<Vec3, 4> p;
-        std::array<WeightedPoint, 4> corners;
-        for (int k = 0; k < 4; ++k) {
-            for (double& coordinate : p[k]) coordinate = static_cast<double>(random.index(3));
-            corners[k] = {&p[k], static_cast<double>(random.index(3))};
-        }
-        if (!is_flat(corners)) ties += expect_exact(corners, 2);
-    }
-    EXPECT_GT(ties, 100);
-}
-
-TEST(WeightedSpheres, CornersOnALatticeThatDoublesRound_AgreeWithExactArithmetic) {
-    // Thirds and tenths are no doubles: what was a tie on the lattice lies a few roundings to either side of it.
-    Random random(5);
-    int attached = 0, free = 0;
-    for (int i = 0; i < 1500; ++i) {
-        const double step = i % 2 ? 0.1 : 1.0 / 3, away = i % 3 == 0 ? 1000 : 0;
-        std::array<Vec3, 4> p;
-        std::array<WeightedPoint, 4> corners;
-        for (int k = 0; k < 4; ++k) {
-            for (double& coordinate : p[k]) coordinate = away + step * static_cast<double>(random.index(3));
-            corners[k] = {&p[k], step * step * static_cast<double>(random.index(3))};
-        }
-        if (is_flat(corners)) continue;
-        expect_exact(corners, 2 * step * step);
-        const int count = std::popcount(weighted_cell_spheres(corners, 2 * step * step).attached);
-        attached += count;
-        free += 4 - count;
-    }
-    EXPECT_GT(attached, 300);
-    EXPECT_GT(free, 300);
-}
-
-TEST(WeightedSpheres, FacetsThatAreNotAskedFor_HaveTheCellsPartAlone) {
-    Random random(6);
-    int parts = 0;
-    for (int i = 0; i < 100; ++i) {
-        std::array<Vec3, 4> p;
-        std::array<WeightedPoint, 4> corners;
-        for (int k = 0; k < 4; ++k) {
-            for (double& coordinate : p[k]) coordinate = random.uniform(-1, 1);
-            corners[k] = {&p[k], random.uniform(0, 1)};
-        }
-        const CellSpheres all = weighted_cell_spheres(corners, 1);
-        const Ball cell = orthogonal_sphere({corners.begin(), corners.end()});
-        const double own = CGAL::to_double(Number(cell.squared + 1));
-        for (unsigned facets = 0; facets < 16; ++facets) {
-            const CellSpheres some = weighted_cell_spheres(corners, 1, facets);
-            ASSERT_EQ(some.attached, all.attached);
-            for (int k = 0; k < 4; ++k) {
-                if ((facets >> k & 1) != 0) {
-                    EXPECT_EQ(some.values[k], all.values[k]);
-                } else if ((all.attached >> k & 1) != 0) {
-                    EXPECT_NEAR(some.values[k] / own, 1, 1e-8);
-                    ++parts;
-                } else {
-                    EXPECT_EQ(some.values[k], 0);
-                }
-            }
-        }
-    }
-    EXPECT_GT(parts, 100);
-}
-
-TEST(WeightedSpheres, SliversAndTinyDifferences_AgreeWithExactArithmetic) {
-    Random random(3);
-    for (int i = 0; i < 400; ++i) {
-        std::array<Vec3, 4> p;
-        std::array<WeightedPoint, 4> corners;
-        const double thinness = std::pow(10, -random.uniform(0, 12));
-        for (int k = 0; k < 4; ++k) {
-            for (double& coordinate : p[k]) coordinate = random.uniform(-1, 1);
-            corners[k] = {&p[k], 0.5 + thinness * random.uniform(-0.5, 0.5)};
-        }
-        if (i % 2 == 0) p[3] = (p[0] + p[1] + p[2]) / 3 + thinness * p[3];
-        if (i % 2 == 1) p[2] = p[0] + thinness * p[2];
-        if (!is_flat(corners)) expect_exact(corners, 1);
-    }
-}
-
-TEST(WeightedSpheres, CornersInAnyOrder_GiveTheSameBits) {
-    Random random(4);
-    for (int i = 0; i < 50; ++i) {
-        std::array<Vec3, 4> p;
-        std::array<WeightedPoint, 4> corners;
-        for (int k = 0; k < 4; ++k) {
-            for (double& coordinate : p[k]) coordinate = random.uniform(-1, 1);
-            corners[k] = {&p[k], random.uniform(0, 1)};
-        }
-        const CellSpheres cell = weighted_cell_spheres(corners, 1);
-        std::array<std::size_t, 4> order{0, 1, 2, 3};
-        while (std::next_permutation(order.begin(), order.end())) {
-            const CellSpheres other =
-                weighted_cell_spheres({corners[order[0]], corners[order[1]], corners[order[2]], corners[order[3]]}, 1);
-            for (int k = 0; k < 4; ++k) {
-                EXPECT_EQ(other.values[k], cell.values[order[k]]);
-                EXPECT_EQ(other.attached >> k & 1, cell.attached >> order[k] & 1);
-            }
-        }
-    }
-}
-
-TEST(WeightedSpheres, ExtremeSizes_ScaleExactly) {
-    const Vec3 a(0.1, 0.2, 0.3), b(1, 0.1, 0), c(0, 1.1, 0.2), d(0.3, 0, 0.9);
-    const CellSpheres unit = weighted_cell_spheres({{{&a, 0.1}, {&b, 0.2}, {&c, 0}, {&d, 0.3}}}, 0.4);
-    for (int exponent : {-100, 300}) {
-        const double k = std::ldexp(1.0, exponent), kk = k * k;
-        const Vec3 ka = k * a, kb = k * b, kc = k * c, kd = k * d;
-        const CellSpheres scaled =
-            weighted_cell_spheres({{{&ka, 0.1 * kk}, {&kb, 0.2 * kk}, {&kc, 0}, {&kd, 0.3 * kk}}}, 0.4 * kk);
-        EXPECT_EQ(scaled.attached, unit.attached);
-        for (int i = 0; i < 4; ++i) EXPECT_NEAR(scaled.values[i] / kk / unit.values[i], 1, 1e-8);
-    }
-}
-
-/// The definition, in exact arithmetic, of a wall at squared radius `value`.
-bool is_wall(const TetMesh& tets, u32 cell, int corner, double value) {
-    const double largest = std::ranges::max(tets.weights);
-    const auto at = [&](u32 vertex) { return WeightedPoint{&tets.positions[vertex], tets.weights[vertex]}; };
-    const auto of_cell = [&](u32 c) {
-        const auto& [i, j, k, l] = tets.cells[c];
-        return Number(orthogonal_sphere({at(i), at(j), at(k), at(l)}).squared + Number(largest));
-    };
-    const Tetrahedron& own = tets.cells[cell];
-    const auto& [i, j, k] = outward_facet[corner];
-    const Ball facet = orthogonal_sphere({at(own[i]), at(own[j]), at(own[k])});
-    bool attached = power(facet, at(own[corner])) < 0;
-    Number least = of_cell(cell);
-    if (const u32 across = tets.neighbours[cell][corner]; across != TetMesh::outside_hull) {
-        for (u32 vertex : tets.cells[across])
-            if (std::ranges::find(own, vertex) == own.end()) attached |= power(facet, at(vertex)) < 0;
-        least = std::min(least, of_cell(across));
-    }
-    return (attached ? least : Number(facet.squared + Number(largest))) <= Number(value);
-}
-
-Array<u8> brute_force_inside(const TetMesh& tets, double value) {
-    Array<u8> inside(tets.cells.size(), u8(1));
-    std::deque<u32> open;
-    const auto enter = [&](u32 cell) {
-        inside[cell] = 0;
-        open.push_back(cell);
-    };
-    for (u32 c = 0; c < inside.size(); ++c)
-        for (int i = 0; i < 4; ++i)
-            if (tets.neighbours[c][i] == TetMesh::outside_hull && inside[c] && !is_wall(tets, c, i, value)) enter(c);
-    for (; !open.empty(); open.pop_front())
-        for (int i = 0; i < 4; ++i)
-            if (const u32 across = tets.neighbours[open.front()][i];
-                across != TetMesh::outside_hull && inside[across] && !is_wall(tets, open.front(), i, value))
-                enter(across);
-    return inside;
-}
-
-TEST(AlphaSolidWeights, Solid_IsTheBruteForceFloodFill) {
-    const std::vector<TetMesh> all{weighted(with_random_weights(random_cube(60, 1), 0.05, 1), weighted_by("w")).tets,
-                                   weighted(random_cube(60, 2)).tets,
-                                   weighted(fibonacci_sphere(70, 1e-2), weighted_by("spacing", 0.5)).tets};
-    int compared = 0;
-    for (const TetMesh& tets : all) {
-        Context context;
-        const Flood flood =
-            flood_from_outside(sweep_cells(tets, context), tets.positions.size(), {.value = 0, .coverage = 1}, context);
-        for (double quantile : {0.05, 0.1, 0.2, 0.3, 0.5}) {
-            std::size_t i = static_cast<std::size_t>(quantile * static_cast<double>(flood.values.size()));
-            while (i + 1 < flood.values.size() && flood.values[i + 1] > flood.values[i] * (1 - 1e-6)) ++i;
-            if (i + 1 == flood.values.size()) continue;
-            ++compared;
-            const double alpha = std::sqrt(std::sqrt(flood.values[i] * flood.values[i + 1]));
-            const AlphaSolidResult result = solid_of(tets, at_alpha(alpha));
-            const Array<u8> expected = brute_force_inside(tets, alpha * alpha);
-            EXPECT_TRUE(std::ranges::equal(result.tets.inside, expected)) << quantile;
-        }
-    }
-    EXPECT_GE(compared, 9);
-}
 
 TEST(AlphaSolidWeights, EqualWeights_GiveTheResultOfNone) {
     for (const PointCloud& cloud : {fibonacci_sphere(300, 1e-3), lattice_cube(4, 0.1, true)}) {
@@ -389,6 +97,30 @@ TEST(AlphaSolidWeights, WeightsForSomePointsOnly_AreRefused) {
     EXPECT_THAT(refusal(tets, {}), HasSubstr("needs a weight for each of 20 vertices or none; there are 3"));
 }
 
+TEST(AlphaSolidWeights, WeightsBeyondWhatSquaresBear_AreRefusedWithTheirRange) {
+    TetMesh tets = weighted(random_cube(20, 1)).tets;
+    Array<double> weights(20, 1.0);
+    weights[3] = 1e201;
+    tets.weights = std::move(weights);
+    EXPECT_THAT(refusal(tets, {}), testing::AllOf(HasSubstr("needs weights from 0 to 1e200; these go from 1 to 1e+201"),
+                                                  HasSubstr("hint: ")));
+    tets.weights = Array<double>(20, std::nan(""));
+    EXPECT_THAT(refusal(tets, {}), HasSubstr("needs weights from 0 to 1e200"));
+}
+
+TEST(AlphaSolidWeights, AnAlphaWhoseSquareIsNoNumber_IsRefusedWithTheWeights) {
+    // The hull's corners are never hidden, and spheres orthogonal to them and to so heavy a point reach to 1e200.
+    Array<double> weights(50, 0.0);
+    weights[7] = 1e200;
+    const TetMesh tets = weighted(with_weights(random_cube(50, 1), weights), weighted_by("w")).tets;
+    EXPECT_THAT(refusal(tets, {}),
+                testing::AllOf(HasSubstr("the solid needs an alpha above 1e154 u; the scan is only 1."),
+                               HasSubstr("its weights go from 0 to 1e+200 u²"), HasSubstr("hint: weights should not")));
+    // As heavy, and as large: nothing is wrong with that.
+    const PointCloud large = moved(random_cube(50, 1), 1e99);
+    EXPECT_GT(solid_of(weighted(with_weights(large, Array<double>(50, 1e197)), weighted_by("w")).tets).alpha, 1e97);
+}
+
 TEST(AlphaSolidWeights, AHoleNarrowerThanTheCoarseSpacing_StaysOpenWhereTheSamplingIsFine) {
     const PointCloud cloud = plate_with_a_hole();
     // One radius for all must be 0.7 to cover the plate, and a ball of that size does not enter a hole of 0.8.
@@ -417,4 +149,4 @@ TEST(AlphaSolidWeights, ARealScan_HidesNothing_AndLosesFewerPointsInside) {
 }
 
 }  // namespace
-}  // namespace scanmill::alpha
+}  // namespace scanmill

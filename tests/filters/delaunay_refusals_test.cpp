@@ -46,7 +46,8 @@ TEST(Delaunay, NaNOrInfinity_IsRefusedWithItsPlace) {
 }
 
 TEST(Delaunay, TooFewPoints_AreRefused) {
-    EXPECT_THAT(refusal(cloud_of({})), HasSubstr("the cloud has 0"));
+    const auto says_where_to_look = HasSubstr("hint: `scanmill info` tells how many points a file has");
+    EXPECT_THAT(refusal(cloud_of({})), testing::AllOf(HasSubstr("the cloud has 0"), says_where_to_look));
     EXPECT_THAT(refusal(cloud_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})),
                 HasSubstr("at least 4 points that are not coplanar"));
 }
@@ -54,6 +55,7 @@ TEST(Delaunay, TooFewPoints_AreRefused) {
 TEST(Delaunay, TooFewDistinctPoints_AreRefusedWithBothNumbers) {
     const std::string text = refusal(cloud_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 0}}));
     EXPECT_THAT(text, HasSubstr("the cloud has 5 points at 3 distinct places"));
+    EXPECT_THAT(text, HasSubstr("hint: "));
 }
 
 TEST(Delaunay, EqualPoints_AreRefused_AsOnePlace) {

@@ -56,8 +56,11 @@ TEST(DelaunayWeights, AColumnOfSeveralNumbers_IsRefused) {
     cloud.columns.add(Column("normal", 3, Buffer<float>(Array<float>(30, 1.0f))));
     cloud.columns.add(Column("list", Buffer<u64>(Array<u64>(11, u64(0))), Buffer<u8>{}));
     EXPECT_THAT(weights_refusal(cloud, weighted_by("normal")),
-                HasSubstr("weights need a column of one number per point; 'normal' has 3 numbers"));
-    EXPECT_THAT(weights_refusal(cloud, weighted_by("list")), HasSubstr("'list' has lists"));
+                AllOf(HasSubstr("weights need a column of one number per point; 'normal' has 3 numbers; no column has"),
+                      HasSubstr("hint: `weights: spacing` needs no column")));
+    cloud.columns.add(Column("quality", 1, Buffer<float>(Array<float>(10, 1.0f))));
+    EXPECT_THAT(weights_refusal(cloud, weighted_by("list")),
+                HasSubstr("'list' has lists; columns of one number: quality\n"));
 }
 
 TEST(DelaunayWeights, AFactorOutOfRange_IsRefused) {
@@ -67,7 +70,24 @@ TEST(DelaunayWeights, AFactorOutOfRange_IsRefused) {
     EXPECT_EQ(weights_refusal(cloud, weighted_by("w", 4.5)), "accepted");
     for (double factor : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         EXPECT_THAT(weights_refusal(cloud, weighted_by("w", factor)),
-                    HasSubstr("factor must be a number of 0 or more"));
+                    AllOf(HasSubstr("factor must be a number of 0 or more"), HasSubstr("hint: ")));
+}
+
+TEST(DelaunayWeights, SizesWhoseSquaresAreNoNumbers_AreRefusedWithAHint) {
+    for (double size : {1e-110, 1e-160, 1e110, 1e156}) {
+        const PointCloud cloud = moved(random_cube(30, 1), size);
+        EXPECT_THAT(weights_refusal(cloud, weighted_by("spacing")),
+                    AllOf(HasSubstr("with weights needs a scan between 1e-100 and 1e+100 in size, so that squares of "
+                                    "lengths are numbers; it is "),
+                          HasSubstr("hint: give it in a larger or smaller unit")))
+            << size;
+        EXPECT_THAT(weights_refusal(with_weights(cloud, Array<double>(30, 1.0)), weighted_by("w")),
+                    HasSubstr("with weights needs a scan between"));
+    }
+    for (double size : {1e-90, 1e90}) {
+        const TetMesh tets = weighted(moved(random_cube(30, 1), size)).tets;
+        EXPECT_NEAR(tets.weights[0] / size / size / weighted(random_cube(30, 1)).tets.weights[0], 1, 1e-12);
+    }
 }
 
 TEST(DelaunayWeights, AFlatScan_IsRefusedAsWithoutWeights) {

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Weighted points: the cells are those of the regular triangulation, whatever the order of the points.
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
-#include <set>
 
+#include "filters/regular_cells.hpp"
 #include "filters/weighted_cases.hpp"
 
 namespace scanmill {
@@ -17,22 +15,6 @@ namespace {
 using namespace test;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-Kernel::Weighted_point_3 exact(const TetMesh& tets, u32 vertex) {
-    const Vec3& p = tets.positions[vertex];
-    return {Kernel::Point_3(p.x(), p.y(), p.z()), tets.weights[vertex]};
-}
-
-/// The definition, exactly: no vertex, hidden or not, has a negative power to the sphere orthogonal to a cell.
-void expect_regular(const TetMesh& tets) {
-    ASSERT_EQ(tets.weights.size(), tets.positions.size());
-    const auto side = Kernel().power_side_of_oriented_power_sphere_3_object();
-    for (const auto& [a, b, c, d] : tets.cells)
-        for (u32 p = 0; p < tets.positions.size(); ++p)
-            ASSERT_NE(side(exact(tets, a), exact(tets, b), exact(tets, c), exact(tets, d), exact(tets, p)),
-                      CGAL::ON_POSITIVE_SIDE);
-}
 
 double volume(const TetMesh& tets) {
     double sum = 0;
@@ -41,27 +23,6 @@ double volume(const TetMesh& tets) {
         sum += u.cross(v).dot(tets.positions[d] - tets.positions[a]) / 6;
     }
     return sum;
-}
-
-template <class T>
-bool same_bytes(const Buffer<T>& a, const Buffer<T>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-void expect_same_cells(const TetMesh& a, const TetMesh& b) {
-    EXPECT_TRUE(same_bytes(a.cells, b.cells));
-    EXPECT_TRUE(same_bytes(a.neighbours, b.neighbours));
-}
-
-/// Cells as sets of places, whatever the vertices' numbers.
-std::set<std::array<Point, 4>> cell_places(const TetMesh& tets) {
-    std::set<std::array<Point, 4>> result;
-    for (const Tetrahedron& cell : tets.cells) {
-        std::array<Point, 4> corners;
-        for (int i = 0; i < 4; ++i) corners[i] = point(tets.positions[cell[i]]);
-        std::ranges::sort(corners);
-        result.insert(corners);
-    }
-    return result;
 }
 
 PointCloud reordered(const PointCloud& cloud, std::uint64_t seed) {
@@ -154,75 +115,6 @@ TEST(DelaunayWeights, EqualWeights_GiveTheBytesOfNone) {
             EXPECT_EQ(equal.hidden, 0u);
             expect_same_cells(equal.tets, none);
         }
-    }
-}
-
-TEST(DelaunayWeights, Spacing_IsTheMeanOfSixNeighbours) {
-    // In the middle of a lattice all six are at distance 1.
-    const TetMesh tets = weighted(lattice_cube(4)).tets;
-    for (u32 vertex = 0; vertex < tets.positions.size(); ++vertex) {
-        const Vec3& p = tets.positions[vertex];
-        const bool inner = p.minCoeff() > 0 && p.maxCoeff() < 4;
-        if (inner) {
-            EXPECT_EQ(tets.weights[vertex], 1);
-        }
-        // A corner has three neighbours along the edges and three across the faces.
-        if (p == Vec3::Zero()) {
-            EXPECT_DOUBLE_EQ(tets.weights[vertex], std::pow((1 + std::sqrt(2)) / 2, 2));
-        }
-    }
-    // Of five points each has only four others.
-    const TetMesh few = weighted(cloud_of({{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {0, 0, 10}})).tets;
-    EXPECT_DOUBLE_EQ(few.weights[0], std::pow((3 + 3 + 3 + 10) / 4.0, 2));
-}
-
-TEST(DelaunayWeights, Spacing_IsLoweredToWhatNeighboursAllow_SoThatNothingIsHidden) {
-    for (double factor : {0.5, 1.0, 4.0}) {
-        const PointCloud blob = joined(random_cube(300, 1), moved(random_cube(300, 2), 0.05, Vec3(0.4, 0.4, 0.4)));
-        const DelaunayResult result = weighted(blob, weighted_by("spacing", factor));
-        EXPECT_EQ(result.hidden, 0u);
-        std::size_t at_their_limit = 0;
-        for (u32 i = 0; i < blob.size(); ++i) {
-            double allowed = HUGE_VAL;
-            for (u32 j = 0; j < blob.size(); ++j)
-                if (j != i)
-                    allowed = std::min(
-                        allowed, result.tets.weights[j] + 0.9 * (blob.positions[j] - blob.positions[i]).squaredNorm());
-            ASSERT_LE(result.tets.weights[i], allowed * (1 + 1e-14));
-            at_their_limit += result.tets.weights[i] >= allowed * (1 - 1e-14);
-        }
-        EXPECT_GT(at_their_limit, 10u) << "the closure is the largest: something holds every lowered weight";
-        expect_regular(result.tets);
-    }
-}
-
-TEST(DelaunayWeights, TwoVeryNearPoints_HaveNearlyTheSameWeight) {
-    PointCloud cloud = joined(lattice_cube(3), cloud_of({{1.0 + 0x1p-10, 1, 1}}));
-    const DelaunayResult result = weighted(cloud);
-    EXPECT_EQ(result.hidden, 0u);
-    EXPECT_NEAR(result.tets.weights[1 + 4 + 16], result.tets.weights[64], 0.9 * 0x1p-20 + 1e-15);
-}
-
-TEST(DelaunayWeights, AnyOrderAndAnyThreads_GiveTheSameWeights) {
-    const PointCloud cloud = joined(random_cube(3000, 1), moved(random_cube(3000, 2), 0.1));
-    const TetMesh one = weighted(cloud).tets;
-    const TetMesh three = weighted(cloud, weighted_by("spacing"), 3).tets;
-    expect_same_cells(one, three);
-    EXPECT_TRUE(same_bytes(one.weights, three.weights));
-    std::vector<u32> backwards(cloud.size());
-    std::iota(backwards.rbegin(), backwards.rend(), 0);
-    const TetMesh turned = weighted(gather(cloud, backwards)).tets;
-    EXPECT_TRUE(same_bytes(gather(turned.weights, backwards), one.weights));
-    EXPECT_EQ(cell_places(turned), cell_places(one));
-}
-
-TEST(DelaunayWeights, ScaledByAPowerOfTwo_WeightsScaleByItsSquare) {
-    const PointCloud cloud = random_cube(400, 3);
-    const TetMesh here = weighted(cloud).tets;
-    for (int exponent : {-20, 20}) {
-        const TetMesh there = weighted(moved(cloud, std::ldexp(1, exponent))).tets;
-        expect_same_cells(here, there);
-        for (u32 i = 0; i < cloud.size(); ++i) ASSERT_EQ(there.weights[i], std::ldexp(here.weights[i], 2 * exponent));
     }
 }
 
