@@ -36,6 +36,21 @@ TEST(RunCommand, ShippedWorkflowsAndBatches_PassCheck) {
     }
 }
 
+TEST(RunCommand, TheShippedBatch_PassesCheckWhereItsScansAre) {
+    const TemporaryFolder folder;
+    for (const auto& file : std::filesystem::directory_iterator(std::string(SCANMILL_SOURCE_DIR) + "/workflows")) {
+        std::filesystem::create_directories(folder / "workflows");
+        std::filesystem::copy_file(file.path(), folder / "workflows" / file.path().filename());
+    }
+    // Names of what `make data` fetches; nobody looks into them.
+    for (const char* scan :
+         {"points_3/kitten.xyz", "points_3/sphere_20k.xyz", "meshes/bunny00.off", "meshes/fandisk_large.off"})
+        folder.write(std::string("build/data/") + scan, "0 0 0\n");
+    const ProgramResult found = scanmill_program({"check", (folder / "workflows" / "nightly.yaml").string()});
+    EXPECT_EQ(found.exit_code, 0) << found.err;
+    EXPECT_THAT(found.out, HasSubstr("ok, 4 scans, 1 workflow, 6 variants, 14 cells"));
+}
+
 TEST(RunCommand, WorkflowOfThePaper_LeadsToAClosedMeshThroughAllPoints) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");
