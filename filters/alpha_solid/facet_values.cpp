@@ -14,7 +14,7 @@ namespace {
 /// `spheres(cell, facets)` gives a cell's CellSpheres; its part alone will do for facets that are not in the mask.
 template <class Spheres>
 Array<SweepCell> sweep_cells_with(const TetMesh& tets, const Spheres& spheres, Context& context) {
-    constexpr std::size_t chunk = 1 << 14;
+    constexpr std::size_t chunk = 1 << 13;
     const std::size_t count = tets.cells.size();
     Array<SweepCell> cells(count);
     // Where one of its two cells attaches a facet, that cell's part is the larger.

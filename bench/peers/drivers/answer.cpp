@@ -80,12 +80,15 @@ RawInput read_raw(const std::string& path) {
     input.points = read_array<std::array<double, 3>>(path + ".points");
     if (std::ifstream(path + ".triangles").good())
         input.triangles = read_array<std::array<std::uint32_t, 3>>(path + ".triangles");
+    if (std::ifstream(path + ".weights").good()) input.weights = read_array<double>(path + ".weights");
     return input;
 }
 
 void write_raw(const std::string& path, const RawInput& input) {
     std::remove((path + ".triangles").c_str());
     if (!input.triangles.empty()) write_array(path + ".triangles", input.triangles);
+    std::remove((path + ".weights").c_str());
+    if (!input.weights.empty()) write_array(path + ".weights", input.weights);
     write_array(path + ".points", input.points);
 }
 

@@ -37,6 +37,8 @@ struct RawInput {
     std::vector<std::array<double, 3>> points;
     /// Empty for a cloud.
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    /// Empty, or one per point: squared lengths.
+    std::vector<double> weights;
 
     /// As an answer.
     Json counts() const;

@@ -18,6 +18,7 @@ int main() {
     };
     return answer({{"load", load},
                    {"delaunay", of_input(delaunay)},
+                   {"regular", of_input(regular)},
                    {"fixed-alpha-shape", of_input(fixed_alpha_shape)},
                    {"optimal-alpha-shape", of_input(optimal_alpha_shape)},
                    {"distances", [&](const Json& request) { return distances(input, points, request); }}},

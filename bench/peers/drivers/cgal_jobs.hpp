@@ -8,6 +8,8 @@ namespace peers {
 
 /// Delaunay_triangulation_3; with "parallel", that of Parallel_tag in "threads" threads.
 Json delaunay(const RawInput& input, const Json& request);
+/// Regular_triangulation_3 of the points with their weights.
+Json regular(const RawInput& input, const Json& request);
 /// Fixed_alpha_shape_3 at the radius "alpha".
 Json fixed_alpha_shape(const RawInput& input, const Json& request);
 /// Alpha_shape_3 and find_optimal_alpha(1).

@@ -2,10 +2,12 @@
 /// Makes the raw arrays that every program of a row loads; coordinates are rounded to float, so that programs that
 /// store floats work on the same points.
 ///
-/// usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT
+/// usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT |
+///                    weighted RAW OUT
 ///   scan    the points of a file, and the triangles where it has some
 ///   torus   350000 or 3500000 points in random order that keep their distance, on a bumpy torus with radii 1 and 0.4
 ///   random-torus  points uniform by area on a plain torus with these radii, each on its own
+///   weighted  the points of RAW, each with the weight that delaunay gives it for its spacing
 ///   around  points uniform on the triangles of RAW, moved by up to 1 % of its diagonal along each axis
 
 #include <Eigen/Geometry>
@@ -16,6 +18,7 @@
 #include <stdexcept>
 
 #include "answer.hpp"
+#include "delaunay/spacing_weights.hpp"
 #include "scanmill/data/value.hpp"
 #include "scanmill/filter/random.hpp"
 #include "scanmill/formats/files.hpp"
@@ -121,6 +124,14 @@ RawInput around(const RawInput& mesh, std::size_t count) {
     return raw;
 }
 
+RawInput weighted(const RawInput& given) {
+    scanmill::Array<Vec3> positions;
+    for (const auto& p : given.points) positions.push_back(Vec3(p.data()));
+    scanmill::Context context{scanmill::ContextOptions()};
+    const scanmill::Array<double> weights = scanmill::spacing_weights(positions, 1, context);
+    return {given.points, {}, {weights.begin(), weights.end()}};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -133,9 +144,12 @@ int main(int argc, char** argv) try {
         write_raw(words[2], random_torus(std::stoul(words[1])));
     else if (words.size() == 4 && words[0] == "around")
         write_raw(words[3], around(peers::read_raw(words[1]), std::stoul(words[2])));
+    else if (words.size() == 3 && words[0] == "weighted")
+        write_raw(words[2], weighted(peers::read_raw(words[1])));
     else
         throw std::runtime_error(
-            "usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT");
+            "usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT | "
+            "weighted RAW OUT");
     return 0;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

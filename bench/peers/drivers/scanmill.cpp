@@ -42,6 +42,10 @@ Array<Vec3> positions_of(const peers::RawInput& raw) {
 Json load(Held& held, const Json& request) {
     const peers::RawInput raw = peers::read_raw(request.at("path"));
     held.cloud.positions = positions_of(raw);
+    held.cloud.columns = {};
+    if (!raw.weights.empty())
+        held.cloud.columns.add(
+            Column("weight", 1, Buffer<double>(Array<double>(raw.weights.begin(), raw.weights.end()))));
     held.triangles.assign(raw.triangles.begin(), raw.triangles.end());
     if (request.contains("points")) held.queries = positions_of(peers::read_raw(request["points"]));
     return raw.counts();
@@ -85,17 +89,24 @@ Json tetrahedralise(Held& held, const Json& request) {
     return {{"seconds", seconds}, {"cells", result.tets.cells.size()}, {"vertices", result.tets.positions.size()}};
 }
 
-/// With "alpha", at that radius; without, at the one that is chosen. The tetrahedralisation counts.
+/// With "alpha", at that radius; without, at the one that is chosen. With "weighted", of the points with their weights.
+/// The tetrahedralisation counts.
 Json solid(Held& held, const Json& request) {
     AlphaSolidParams params;
     if (request.contains("alpha")) params.alpha = request["alpha"].get<double>();
+    DelaunayParams shape;
+    if (request.value("weighted", false)) shape.weights = "weight";
     Context context = context_for(request);
+    std::optional<DelaunayResult> tets;
     AlphaSolidResult result;
-    const double seconds = peers::seconds_of([&] {
-        const DelaunayResult tets = delaunay(held.cloud, {}, context);
-        result = alpha_solid(tets.tets, params, context);
-    });
-    return {{"seconds", seconds}, {"alpha", result.alpha}, {"triangles", result.mesh.triangles.size()}};
+    const double tetrahedralising = peers::seconds_of([&] { tets = delaunay(held.cloud, shape, context); });
+    const double choosing = peers::seconds_of([&] { result = alpha_solid(tets->tets, params, context); });
+    return {{"seconds", tetrahedralising + choosing},
+            {"delaunay_seconds", tetrahedralising},
+            {"alpha_solid_seconds", choosing},
+            {"cells", tets->tets.cells.size()},
+            {"alpha", result.alpha},
+            {"triangles", result.mesh.triangles.size()}};
 }
 
 /// From points to the sculpted mesh. What a step does not need any more is given back before the next, as between the

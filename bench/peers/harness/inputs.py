@@ -2,7 +2,7 @@
 """What the rows work on: real scans and seeded shapes, as raw arrays that every program reads alike.
 
 NAME.points holds three doubles per point, all of them exactly representable as float, so that programs that store
-floats work on the same points; NAME.triangles, where there are any, three 32-bit indices each.
+floats work on the same points; NAME.triangles, where there are any, three 32-bit indices each, NAME.weights a double per point.
 """
 import pathlib
 import subprocess
@@ -55,6 +55,15 @@ class Inputs:
         describe = "torus (radii 1 and 0.4), points uniform by area in random order, seed 1"
         name = f"random-torus-{count}"
         return Input(describe, self.folder / name, lambda path: self._run_maker(path, [], ["random-torus", str(count)]))
+
+    def weighted(self, cloud):
+        """The same points, each with the weight that `delaunay: {weights: spacing}` gives it, in NAME.weights."""
+
+        def make(path):
+            cloud.make()
+            self._run_maker(path, [cloud.path.with_suffix(".points")], ["weighted", str(cloud.path)])
+
+        return Input(f"{cloud.describe}; weights of their spacing", self.folder / f"weighted-{cloud.path.name}", make)
 
     def around(self, mesh, count):
         """Seeded points near a mesh: uniform on its surface, then moved by up to 1 % of its diagonal on each axis."""
