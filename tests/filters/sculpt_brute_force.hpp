@@ -34,6 +34,9 @@ inline std::vector<SculptCase> sculpt_cases() {
              solid_of(tets_of(joined(fibonacci_sphere(80, 0.05), moved(fibonacci_sphere(80, 0.05), 1, Vec3(4, 0, 0)))),
                       many())
                  .tets,
+             {}},
+            {"a rough ball, in places smooth enough to be left alone",
+             solid_of(tets_of(fibonacci_sphere(400, 0.07))).tets,
              {}}};
 }
 

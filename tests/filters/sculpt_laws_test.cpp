@@ -88,7 +88,7 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Solids, SculptLaws, testing::Range(std::size_t(0), std::size_t(8)));
+INSTANTIATE_TEST_SUITE_P(Solids, SculptLaws, testing::Range(std::size_t(0), std::size_t(9)));
 
 /// What removing `cell` gains, with the best admissible flip of a neighbour after it if asked. Brute force.
 double exposing_gain(const TetMesh& tets, Carving& carving, u32 cell, bool lookahead) {
