@@ -19,7 +19,7 @@ from harness.process import Failure, Process
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path.append(str(HERE.parent))
+sys.path.insert(0, str(HERE.parent))
 
 from tables.options import at_least_one, limit  # noqa: E402
 

@@ -23,7 +23,8 @@ using namespace alpha;
 void require_usable(const TetMesh& tets, const AlphaSolidParams& params) {
     if (tets.cells.empty()) throw Error("needs a tetrahedralisation with cells; this one has none");
     if (tets.neighbours.size() != tets.cells.size())
-        throw Error("needs the neighbours of all {} cells; there are {}", tets.cells.size(), tets.neighbours.size());
+        throw Error("needs the neighbours of all {} cells; there are {}", tets.cells.size(), tets.neighbours.size())
+            .hint("'delaunay' makes them");
     const double coverage = params.coverage.value();
     if (!(coverage > 0 && coverage <= 1))
         throw Error("coverage must be above 0 % and at most 100 %; it is {}", params.coverage.text());

@@ -61,7 +61,8 @@ Array<SweepCell> sweep_cells(const TetMesh& tets, Context& context) {
     if (tets.weights.empty()) return sweep_cells_with(tets, unweighted, context);
     if (tets.weights.size() != tets.positions.size())
         throw Error("needs a weight for each of {} vertices or none; there are {}", tets.positions.size(),
-                    tets.weights.size());
+                    tets.weights.size())
+            .hint("'delaunay: {weights: …}' gives each a weight");
     const auto [least, largest] = std::ranges::minmax(tets.weights);
     if (!(least < largest)) return sweep_cells_with(tets, unweighted, context);
     const auto weighted = [&tets, largest = largest](const Tetrahedron& cell, unsigned facets) {

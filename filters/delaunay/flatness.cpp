@@ -85,7 +85,8 @@ void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsign
     const Extents found = extents(positions, frame.origin, threads);
     if (!std::isfinite(found.from_point))
         throw Error("needs points whose distances are finite numbers; the cloud has {} points up to {:.2g} {} apart",
-                    positions.size(), found.from_point, symbol(frame.unit));
+                    positions.size(), found.from_point, symbol(frame.unit))
+            .hint("give it in a larger unit");
     if (found.from_point <= found.rounding) refuse_flat(positions, 0, found.from_point, frame);
     if (found.from_line <= found.rounding) refuse_flat(positions, 1, found.from_line, frame);
     if (found.from_plane <= found.rounding) refuse_flat(positions, 2, found.from_plane, frame);

@@ -28,6 +28,16 @@ using SharedTriangulation =
 /// For one thread: what makes insertions safe among threads costs time.
 using LoneTriangulation = CGAL::Delaunay_triangulation_3<Kernel, DataStructure<CGAL::Sequential_tag>>;
 
+// CGAL's own containers would serve too, and keep their memory: see cell_containers.hpp.
+static_assert(std::is_base_of_v<SharedContainer<SharedTriangulation::Cell>,
+                                SharedTriangulation::Triangulation_data_structure::Cell_range>);
+static_assert(std::is_base_of_v<SharedContainer<SharedTriangulation::Vertex>,
+                                SharedTriangulation::Triangulation_data_structure::Vertex_range>);
+static_assert(std::is_base_of_v<LoneContainer<LoneTriangulation::Cell>,
+                                LoneTriangulation::Triangulation_data_structure::Cell_range>);
+static_assert(std::is_base_of_v<LoneContainer<LoneTriangulation::Vertex>,
+                                LoneTriangulation::Triangulation_data_structure::Vertex_range>);
+
 /// Several threads are worth what they cost.
 bool is_worth_sharing(std::size_t points, unsigned threads);
 

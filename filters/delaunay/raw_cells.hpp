@@ -60,8 +60,9 @@ void fill_cells(Triangulation& triangulation, std::size_t points, unsigned threa
     const auto last = triangulation.tds().cells().end();
     for_each_chunk(threads, cells.count, cells.chunk, [&](std::size_t begin, std::size_t end) {
         auto at = cells.chunks[begin / cells.chunk], soon = at;
-        for (std::size_t c = begin, looked = begin; c < end; ++at) {
-            for (; looked < c + few && soon != last; ++looked, ++soon) fetch_round(*soon);
+        for (std::size_t ahead = 0; ahead < few && soon != last; ++ahead, ++soon) fetch_round(*soon);
+        for (std::size_t c = begin; c < end; ++at) {
+            if (soon != last) fetch_round(*soon++);
             if (at->info().number == TetMesh::outside_hull) continue;
             Tetrahedron cell;
             for (int corner = 0; corner < 4; ++corner) cell[corner] = at->vertex(corner)->info().row;

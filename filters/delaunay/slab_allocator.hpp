@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scanmill/data/array.hpp"
+#include "scanmill/data/watched_memory.hpp"
 
 namespace scanmill {
 
@@ -28,7 +29,7 @@ public:
     /// Aligned for any type; throws std::bad_alloc.
     void* allocate(std::size_t bytes) {
         const std::size_t size = (bytes + alignment - 1) / alignment * alignment;
-        if (size > left_) add_slab(size);
+        if (size > left_ || watched_memory) add_slab(size);
         void* const block = next_;
         next_ += size;
         left_ -= size;
@@ -54,7 +55,7 @@ private:
     /// What is left of the last one is given up. Slabs are as large as all before together, so that a small container
     /// takes little.
     void add_slab(std::size_t least) {
-        const std::size_t size = std::max(least, std::clamp(bytes_, least_slab, largest_slab));
+        const std::size_t size = watched_memory ? least : std::max(least, std::clamp(bytes_, least_slab, largest_slab));
         slabs_.reserve(slabs_.size() + 1);
         slabs_.push_back({allocate_block(size), size});
         next_ = static_cast<std::byte*>(slabs_.back().block);
@@ -79,6 +80,9 @@ public:
     using value_type = T;
 
     SlabAllocator() : slabs_(std::make_shared<Slabs>()) {}
+    /// Moves nothing: an allocator that was moved from allocates as before.
+    SlabAllocator(const SlabAllocator&) noexcept = default;
+    SlabAllocator& operator=(const SlabAllocator&) noexcept = default;
     template <class Other>
     SlabAllocator(const SlabAllocator<Other>& other) noexcept : slabs_(other.slabs()) {}
 

@@ -21,6 +21,9 @@ using WeightedVertex = RowVertexBase<Kernel, CGAL::Regular_triangulation_vertex_
 using Weighted =
     CGAL::Regular_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<WeightedVertex, WeightedCell>>;
 
+static_assert(std::is_base_of_v<LoneContainer<Weighted::Cell>, Weighted::Triangulation_data_structure::Cell_range>);
+static_assert(std::is_base_of_v<LoneContainer<Weighted::Vertex>, Weighted::Triangulation_data_structure::Vertex_range>);
+
 void insert_all(Weighted& triangulation, std::span<const PointRow> points, std::span<const double> weights,
                 std::span<const u8> is_duplicate, Context& context) {
     Weighted::Vertex_handle last;

@@ -11,7 +11,7 @@ SCANMILL_FILTER() {
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3; Boissonnat 1984 for the admissible steps")
         .ties(
             "Of equal gains the step at the larger triangle comes first, then the one whose cell has the lower "
-            "corners.")
+            "corners; of chains of flips the one whose first cell has.")
         .in<TetMesh>("tets",
                      "Cells of a Delaunay tetrahedralisation, labelled by alpha-solid; its boundary a manifold.")
         .made_by("alpha-solid")

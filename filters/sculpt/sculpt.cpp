@@ -21,7 +21,8 @@ constexpr double much = 0.5;
 void require_usable(const TetMesh& tets, const SculptParams& params) {
     if (tets.cells.empty()) throw Error("needs a tetrahedralisation with cells; this one has none");
     if (tets.neighbours.size() != tets.cells.size())
-        throw Error("needs the neighbours of all {} cells; there are {}", tets.cells.size(), tets.neighbours.size());
+        throw Error("needs the neighbours of all {} cells; there are {}", tets.cells.size(), tets.neighbours.size())
+            .hint("'delaunay' makes them");
     if (tets.inside.empty())
         throw Error("needs cells labelled inside or outside; none of the {} is labelled", tets.cells.size())
             .hint("put 'alpha-solid' between 'delaunay' and 'sculpt'");
@@ -33,8 +34,8 @@ void require_usable(const TetMesh& tets, const SculptParams& params) {
     const double size = bounding_box(tets.positions.span()).diagonal();
     if (!(size > 1e-100 && size < 1e100))
         throw Error(
-            "needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {:.3g}",
-            size);
+            "needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {:.3g}", size)
+            .hint("give it in another unit");
 }
 
 void require_manifold(const BoundaryDefects& defects, std::size_t triangles) {
@@ -103,7 +104,7 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
     if (!result.deep_points.empty())
         context.warn(fmt::format(
             "{} of {} points stay inside the solid, more than two cells below its boundary: at {}; a smaller alpha "
-            "or tight-cocone may reach them",
+            "may reach them",
             result.deep_points.size(), tets.positions.size(), places_of_first(tets, result.deep_points)));
     if (static_cast<double>(result.removals.size()) > much * static_cast<double>(cells_before))
         context.warn(fmt::format(

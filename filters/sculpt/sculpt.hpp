@@ -5,11 +5,9 @@
 /// The alpha-solid fills what is narrower than its ball: concave edges and grooves are bridged by cells, and points
 /// there lie inside. Every step removes one cell so that the boundary stays a closed 2-manifold of the same genus:
 ///
-/// - exposing: a cell with one facet on the boundary whose opposite corner lies inside; the corner comes to the
-/// surface;
-/// - smoothing: a cell with two facets on the boundary, when it lessens the bending, alone or in a chain of up to
-/// three;
-///   an edge of the surface is flipped;
+/// - exposing: a cell with one facet on the boundary whose opposite corner lies inside; the corner comes up;
+/// - smoothing: a cell with two facets on the boundary, when it lessens the bending, alone or in a chain of up to three
+///   such cells; an edge of the surface is flipped;
 /// - opening: the same whatever the bending, to get at a point that no exposing cell is left for.
 ///
 /// Bending is the sum, over the edges of the boundary, of the angle between the normals of the two triangles there: 0

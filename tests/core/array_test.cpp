@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "scanmill/data/watched_memory.hpp"
+
 namespace scanmill::test {
 namespace {
 
@@ -23,6 +25,7 @@ TEST(Block, AnySize_IsAlignedForEveryColumnType) {
 }
 
 TEST(Block, LargeOne_BeginsOnAHugePageAndIsWritableToItsEnd) {
+    if (watched_memory) GTEST_SKIP() << "AddressSanitizer's heap has it";
     const std::size_t bytes = (std::size_t(4) << 20) + 1;
     auto* block = static_cast<std::byte*>(allocate_block(bytes));
     EXPECT_EQ(misalignment(block, std::size_t(2) << 20), 0u);
@@ -36,6 +39,7 @@ TEST(Block, MoreThanMemoryCanAddress_Throws) {
 }
 
 TEST(Block, LargeOneGivenBack_LeavesTheProcess) {
+    if (watched_memory) GTEST_SKIP() << "AddressSanitizer's heap has it";
     const auto is_mapped = [](void* place) {
         unsigned char residence = 0;
         return ::mincore(place, 1, &residence) == 0;
@@ -46,6 +50,12 @@ TEST(Block, LargeOneGivenBack_LeavesTheProcess) {
     EXPECT_TRUE(is_mapped(block) && is_mapped(block + last));
     free_block(block, bytes);
     EXPECT_FALSE(is_mapped(block) || is_mapped(block + last));
+}
+
+TEST(BlockDeathTest, WhatLiesBehindALargeOne_IsWatched) {
+    if (!watched_memory) GTEST_SKIP() << "only AddressSanitizer watches memory";
+    Array<int> numbers(600'000);
+    EXPECT_DEATH(numbers.data()[numbers.size()] = 1, "AddressSanitizer");
 }
 
 TEST(Array, MoreElementsThanMemoryCanAddress_Throws) {

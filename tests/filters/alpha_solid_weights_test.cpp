@@ -64,6 +64,17 @@ TEST(AlphaSolidWeights, AnyOrderAndThreads_GiveTheSameSolid) {
     }
 }
 
+TEST(AlphaSolidWeights, OfManyCells_ThreadsGiveTheSameSolid) {
+    // Walls between cells that different threads have looked at.
+    const PointCloud cloud = with_random_weights(fibonacci_sphere(8000, 1e-2), 1e-4, 5);
+    const TetMesh tets = weighted(cloud, weighted_by("w")).tets;
+    ASSERT_GT(tets.cells.size(), 3 * 8192u);
+    const AlphaSolidResult one = solid_of(tets), three = solid_of(tets, {}, 3);
+    EXPECT_EQ(three.alpha, one.alpha);
+    EXPECT_TRUE(std::ranges::equal(three.tets.inside, one.tets.inside));
+    EXPECT_TRUE(std::ranges::equal(three.mesh.triangles, one.mesh.triangles));
+}
+
 TEST(AlphaSolidWeights, AHiddenPoint_IsNeitherInteriorNorUncovered) {
     // The middle of the regular tetrahedron is hidden, that of the hull stays a corner.
     const PointCloud cloud =

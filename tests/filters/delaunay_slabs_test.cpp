@@ -65,6 +65,15 @@ TEST(SlabAllocator, CopiesShareAndOthersDoNot) {
     EXPECT_EQ(other.slabs()->bytes(), 0u);
 }
 
+TEST(SlabAllocator, OfAVectorThatWasMovedFrom_AllocatesOn) {
+    std::vector<double, SlabAllocator<double>> numbers(100, 1.5);
+    const auto moved = std::move(numbers);
+    EXPECT_EQ(moved.size(), 100u);
+    EXPECT_TRUE(numbers.get_allocator() == moved.get_allocator());
+    numbers.assign(1000, 2.5);
+    EXPECT_EQ(numbers.back(), 2.5);
+}
+
 TEST(SlabAllocator, MoreThanMemoryCanAddress_Throws) {
     SlabAllocator<double> allocator;
     EXPECT_THROW((void)allocator.allocate(std::size_t(-1) / 8), std::bad_array_new_length);

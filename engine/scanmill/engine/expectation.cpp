@@ -67,14 +67,23 @@ bool is_met(const PlannedExpectation& expectation, double found, const LengthSca
     return false;
 }
 
-/// Whether nothing lies between the ends, whatever the scan. Lengths in different units cannot be compared without it.
+bool is_absolute(const Length& length) {
+    return length.in() != Length::In::scan_unit && length.in() != Length::In::percent_of_diagonal &&
+           length.in() != Length::In::spacing;
+}
+
+/// Whether nothing lies between the ends, whatever the scan. Only absolute lengths in different units can be compared
+/// without it.
 bool is_backwards(const PlannedExpectation& expectation) {
     if (expectation.relation != Expectation::Relation::between) return false;
     if (power_of_length(expectation.unit) == 0)
         return number_of(expectation.low, expectation.unit, {}) > number_of(expectation.high, expectation.unit, {});
     const auto length = [](const ParameterValue& end) { return std::get<Length>(std::get<ParameterScalar>(end)); };
     const Length low = length(expectation.low), high = length(expectation.high);
-    return low.in() == high.in() && low.amount() > high.amount();
+    if (low.in() == high.in()) return low.amount() > high.amount();
+    if (!is_absolute(low) || !is_absolute(high)) return false;
+    const LengthScale any{LengthUnit::millimetre, {}, {}};
+    return number_of(expectation.low, expectation.unit, any) > number_of(expectation.high, expectation.unit, any);
 }
 
 /// Throws Error for what no number can meet.
@@ -83,7 +92,9 @@ void require_possible(const PlannedExpectation& expectation) {
     if (expectation.unit == Unit::count && equal)
         if (const double wanted = number_of(expectation.low, Unit::count, {}); wanted != std::floor(wanted))
             throw Error("a count is never {}; expected a whole number", number_text(wanted));
-    if (is_backwards(expectation)) throw Error("nothing lies in {}; expected the lower end first", expectation.text);
+    if (is_backwards(expectation))
+        throw Error("nothing lies in {}; expected the lower end first",
+                    expectation.text.substr(expectation.text.find('[')));
 }
 
 std::string expectation_text(const Expectation& written) {
