@@ -152,6 +152,47 @@ def virtual_scan():
     return picture
 
 
+def features():
+    picture = Picture(10.6, 4.6)
+    bend, centre, radius = math.radians(55), (-1.7, 1.5), 0.75
+    bent = lambda p: (p[0], p[1], 0) if p[0] <= 0 else (p[0] * math.cos(bend), p[1], -p[0] * math.sin(bend))
+    seen = lambda p: (3.6 + p[0] + 0.45 * p[1], 2.1 + 0.75 * p[1] + 0.9 * p[2])
+    ring = [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in (2 * math.pi * i / 14 for i in range(14))]
+    grid = [(0.65 * i, 0.75 * j) for i in range(-5, 4) for j in range(5)]
+    # The cross-grained grid would have four cocircular points in every cell.
+    nudged = [(x + 0.02 * math.sin(7 * y) if x not in (0, -3.25, 1.95) else x, y) for x, y in grid]
+    for half in (lambda p: p[0] <= 0, lambda p: p[0] >= 0):
+        points = [p for p in nudged if half(p) and math.dist(p, centre) > 1.2 * radius]
+        points += [p for p in ring if half(p)]
+        for corners, _ in delaunay(points):
+            middle = [sum(p[i] for p in corners) / 3 for i in (0, 1)]
+            if math.dist(middle, centre) > radius:
+                picture.polygon([seen(bent(p)) for p in corners], SOLID, PALE)
+    border = [(-3.25, 0), (0, 0), (1.95, 0), (1.95, 3), (0, 3), (-3.25, 3)]
+    for a, b in zip(border, border[1:] + border[:1]):
+        picture.line(seen(bent(a)), seen(bent(b)), INK, 2.5)
+    for a, b in zip(ring, ring[1:] + ring[:1]):
+        picture.line(seen(bent(a)), seen(bent(b)), INK, 2.5, "5 3")
+    picture.line(seen((0, 0, 0)), seen((0, 3, 0)), BRIGHT, 3)
+    for p in border:
+        picture.dot(seen(bent(p)), BRIGHT, 5)
+    picture.text((0.1, 1.1), "outer boundary")
+    picture.text((2.3, 3.15), "hole")
+    picture.text((2.55, 1.75), "crease", BRIGHT)
+    # Across the crease: the angle between the two normals.
+    foot, left, right = (8.3, 2.2), (6.5, 2.2), (8.3 + 1.8 * math.cos(bend), 2.2 - 1.8 * math.sin(bend))
+    picture.line(left, foot, INK, 2.5)
+    picture.line(foot, right, INK, 2.5)
+    picture.arrow(foot, (8.3, 3.6), BRIGHT)
+    picture.arrow(foot, (8.3 + 1.4 * math.sin(bend), 2.2 + 1.4 * math.cos(bend)), BRIGHT)
+    arc = [(8.3 + 0.8 * math.sin(bend * i / 12), 2.2 + 0.8 * math.cos(bend * i / 12)) for i in range(13)]
+    for a, b in itertools.pairwise(arc):
+        picture.line(a, b, INK, 1)
+    picture.text((8.55, 3.15), "angle")
+    picture.dot(foot, BRIGHT, 5)
+    return picture
+
+
 def measure():
     picture = Picture(9, 4.2)
     truth = [(0.3, 0.8), (2.6, 0.8), (3.4, 3.2), (4.2, 0.8), (8.6, 0.8)]
@@ -176,6 +217,7 @@ def main():
     for name, draw in (
         ("alpha_solid", alpha_solid),
         ("delaunay", delaunay_filter),
+        ("features", features),
         ("measure", measure),
         ("merge", merge),
         ("sculpt", sculpt),

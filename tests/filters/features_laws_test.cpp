@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What holds of feature lines on every mesh: order and threads do not matter, and an independent count agrees.
+
+#include <gmock/gmock.h>
+
+#include "filters/features_laws.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace test;
+
+struct Named {
+    const char* name;
+    TriangleMesh mesh;
+};
+
+void PrintTo(const Named& named, std::ostream* stream) { *stream << named.name; }
+
+TriangleMesh rough_sphere() {
+    TriangleMesh sphere = geodesic_sphere(1, 12);
+    std::mt19937 source(3);
+    std::vector<Vec3> positions(sphere.positions.begin(), sphere.positions.end());
+    for (Vec3& p : positions) p *= 1 + 0.02 * static_cast<double>(source() % 1000) / 1000;
+    std::vector<Triangle> left;
+    for (const Triangle& t : sphere.triangles)
+        if (source() % 10 > 0) left.push_back(t);
+    return mesh_of(positions, left);
+}
+
+class FeatureLaws : public testing::TestWithParam<Named> {};
+
+TEST_P(FeatureLaws, LinesAreTheSame_WhateverTheOrderAndTheThreads) {
+    FeatureParams params;
+    params.sharp_angle = Angle::degrees(20);
+    const FeatureLines lines = features_of(GetParam().mesh, params);
+    EXPECT_TRUE(same_graph(lines.graph, features_of(GetParam().mesh, params, 4).graph));
+    for (const unsigned seed : {1u, 2u, 3u})
+        EXPECT_TRUE(same_graph(lines.graph, features_of(permuted(GetParam().mesh, seed), params, 2).graph));
+}
+
+TEST_P(FeatureLaws, LinesAgreeWithAnIndependentCount) {
+    for (const double sharp : {10.0, 20.0, 40.0}) expect_counted(GetParam().mesh, sharp, 35);
+}
+
+TEST_P(FeatureLaws, NormalsAreUnitAndAtRightAnglesToTheirSegments) { expect_normals(features_of(GetParam().mesh)); }
+
+INSTANTIATE_TEST_SUITE_P(Shapes, FeatureLaws,
+                         testing::Values(Named{"cube", cube()}, Named{"l_block", l_block()},
+                                         Named{"tube", frustum(1, 1, 3, 30, false)},
+                                         Named{"cone", frustum(1, 0, 1, 17, true)}, Named{"plate", plate_with_holes()},
+                                         Named{"grid", grid(5, 3)}, Named{"hinge", hinge(50)},
+                                         Named{"rough_sphere", rough_sphere()}),
+                         [](const auto& named) { return std::string(named.param.name); });
+
+}  // namespace
+}  // namespace scanmill
