@@ -6,6 +6,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/module.hpp"
 #include "scanmill/formats/e57.hpp"
+#include "scanmill/formats/features_json.hpp"
 #include "scanmill/formats/format_modules.hpp"
 #include "scanmill/formats/las.hpp"
 #include "scanmill/formats/metrics_json.hpp"
@@ -33,7 +34,12 @@ std::vector<Format> built_in() {
         {"PTX", {"ptx"}, recognise_ptx, read_ptx, {}},
         {"LAS", {"las", "laz"}, recognise_las, read_las, {}},
         {"E57", {"e57"}, recognise_e57, refuse_e57, {}, true},
-        {"JSON", {"json"}, recognise_json, refuse_json, {{Kind::metrics, write_metrics_json}}, true},
+        {"JSON",
+         {"json"},
+         recognise_json,
+         refuse_json,
+         {{Kind::metrics, write_metrics_json}, {Kind::features, write_features_json}},
+         true},
     };
 }
 
