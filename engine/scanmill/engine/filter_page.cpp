@@ -149,7 +149,7 @@ std::string example_workflow(const FilterSpec& spec, const FilterLibrary& librar
     example += "steps:\n";
     for (const FilterSpec* step : steps) example += example_step(*step, step == &spec) + example_wiring(*step);
     const Kind kind = spec.outputs.front().kind;
-    if (is_readable(kind) || kind == Kind::metrics)
+    if (is_readable(kind) || kind == Kind::metrics || kind == Kind::features)
         example += fmt::format("outputs:\n  \"{{scan}}.{}\": {}\n", is_readable(kind) ? "ply" : "json", spec.name);
     return example;
 }
