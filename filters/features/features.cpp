@@ -7,18 +7,20 @@ namespace scanmill {
 
 namespace {
 
+std::string counted(std::size_t count, std::string_view thing) {
+    return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 void warn_of_doubts(const FeatureCounts& counts, const FeatureParams& params, Context& context) {
     if (counts.without_area > 0)
-        context.warn(
-            fmt::format("{} triangles have no area; they count as part of a neighbour's plane", counts.without_area));
+        context.warn(counted(counts.without_area, "triangle") + " without area: counted to a neighbour's plane");
     if (counts.ambiguous > 0)
-        context.warn(
-            fmt::format("{} boundary loops cannot be told to be outer or holes by their area; the longest loop of a "
-                        "piece was taken for its outer boundary",
-                        counts.ambiguous));
+        context.warn(counted(counts.ambiguous, "boundary loop") +
+                     " whose area does not tell outer boundaries from holes: the longest of a piece was taken for its "
+                     "outer boundary");
     if (counts.dropped > 0)
-        context.warn(
-            fmt::format("{} creases shorter than {} u were left out", counts.dropped, params.min_length.value()));
+        context.warn(fmt::format("{} shorter than {:.6g} u: left out", counted(counts.dropped, "crease"),
+                                 params.min_length.value()));
 }
 
 }  // namespace

@@ -86,6 +86,22 @@ inline void expect_counted(const TriangleMesh& mesh, double sharp_degrees, doubl
     EXPECT_GE(lines.counts.holes + lines.counts.boundaries, count.loops) << "loops that touch in a vertex are two";
 }
 
+/// Vertices by place; lines by type, first and second vertex; an open one from its lower end.
+inline void expect_order(const FeatureGraph& graph) {
+    const auto place = [](const Vec3& p) { return std::tuple(p.x(), p.y(), p.z()); };
+    EXPECT_TRUE(std::ranges::is_sorted(graph.positions, {}, place));
+    EXPECT_TRUE(std::ranges::is_sorted(graph.corners));
+    EXPECT_TRUE(std::ranges::is_sorted(graph.polylines, {}, [&](const FeaturePolyline& line) {
+        return std::tuple(line.type, graph.vertices[line.begin], graph.vertices[line.begin + 1]);
+    }));
+    for (const FeaturePolyline& line : graph.polylines) {
+        const u32 first = graph.vertices[line.begin], last = graph.vertices[line.end - 1];
+        EXPECT_TRUE(line.closed || first < last);
+        const bool is_ring = line.closed && line.type == FeatureType::crease;
+        EXPECT_TRUE(!is_ring || graph.vertices[line.begin + 1] < last);
+    }
+}
+
 /// Also that no polyline passes a corner on its way, but boundaries.
 inline void expect_normals(const FeatureLines& lines) {
     const FeatureGraph& graph = lines.graph;

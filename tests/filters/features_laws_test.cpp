@@ -28,12 +28,23 @@ TriangleMesh rough_sphere() {
     return mesh_of(positions, left);
 }
 
+/// A plate with holes, and behind it another without: an outer boundary that begins above all holes.
+TriangleMesh two_plates() {
+    MeshBuilder builder;
+    for (const auto& [mesh, shift] :
+         {std::pair(plate_with_holes(), Vec3(0, 0, 0)), std::pair(grid(2, 1), Vec3(200, 0, 0))})
+        for (const auto& [a, b, c] : mesh.triangles)
+            builder.triangle(mesh.positions[a] + shift, mesh.positions[b] + shift, mesh.positions[c] + shift);
+    return builder.mesh();
+}
+
 class FeatureLaws : public testing::TestWithParam<Named> {};
 
 TEST_P(FeatureLaws, LinesAreTheSame_WhateverTheOrderAndTheThreads) {
     FeatureParams params;
     params.sharp_angle = Angle::degrees(20);
     const FeatureLines lines = features_of(GetParam().mesh, params);
+    expect_order(lines.graph);
     EXPECT_TRUE(same_graph(lines.graph, features_of(GetParam().mesh, params, 4).graph));
     for (const unsigned seed : {1u, 2u, 3u})
         EXPECT_TRUE(same_graph(lines.graph, features_of(permuted(GetParam().mesh, seed), params, 2).graph));
@@ -50,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, FeatureLaws,
                                          Named{"tube", frustum(1, 1, 3, 30, false)},
                                          Named{"cone", frustum(1, 0, 1, 17, true)}, Named{"plate", plate_with_holes()},
                                          Named{"grid", grid(5, 3)}, Named{"hinge", hinge(50)},
-                                         Named{"rough_sphere", rough_sphere()}),
+                                         Named{"rough_sphere", rough_sphere()}, Named{"two_plates", two_plates()}),
                          [](const auto& named) { return std::string(named.param.name); });
 
 }  // namespace

@@ -153,6 +153,14 @@ TEST(FeaturesOfAFunnel, AreToldApartByTheirArea) {
     EXPECT_EQ(lines.graph.polylines[1].type, FeatureType::hole);
 }
 
+TEST(FeaturesOfAStrip, ThatIsNarrow_AreAmbiguousButAnOuterBoundary) {
+    // n × 1 squares: area n, length 2 n + 2; their ratio falls below a thousandth from n = 248 on.
+    EXPECT_EQ(features_of(grid(240, 1)).counts.ambiguous, 0u);
+    const FeatureLines narrow = features_of(grid(256, 1));
+    EXPECT_EQ(narrow.counts.ambiguous, 1u);
+    EXPECT_EQ(narrow.counts.boundaries, 1u);
+}
+
 TEST(FeaturesOfASphere, AreNone) {
     const FeatureLines lines = features_of(geodesic_sphere(1, 8));
     EXPECT_THAT(lines.graph.polylines, IsEmpty());
@@ -236,6 +244,21 @@ TEST(FeaturesOfADroplet, AreACreaseThatIsClosedAtItsOnlyCorner) {
     const std::vector<Vec3> places = places_of(lines.graph, lines.graph.polylines[0]);
     EXPECT_EQ(places[0], Vec3(2, 0, 0)) << "begins at its corner, not at its lowest place";
     EXPECT_LT(places[1].x() * 1e3 + places[1].y(), places.back().x() * 1e3 + places.back().y());
+}
+
+TEST(FeaturesOfADroplet, ThatIsFlat_AreALoopThatBeginsAtItsCorner) {
+    MeshBuilder builder;
+    const std::vector<Vec3> round{{2, 0, 0},       {0.5, 0.85, 0},   {-0.3, 0.95, 0}, {-0.9, 0.4, 0},
+                                  {-0.9, -0.4, 0}, {-0.3, -0.95, 0}, {0.5, -0.85, 0}};
+    for (std::size_t i = 0; i < round.size(); ++i)
+        builder.triangle(Vec3::Zero(), round[i], round[(i + 1) % round.size()]);
+    FeatureParams params;
+    params.corner_angle = Angle::degrees(60);
+    const FeatureLines lines = features_of(builder.mesh(), params);
+    ASSERT_EQ(lines.graph.polylines.size(), 1u);
+    EXPECT_THAT(places_of(lines.graph, lines.graph.polylines[0]), testing::ElementsAreArray(round));
+    ASSERT_EQ(lines.graph.corners.size(), 1u);
+    EXPECT_EQ(lines.graph.positions[lines.graph.corners[0]], Vec3(2, 0, 0));
 }
 
 TEST(FeaturesOfTwoFansThatTouch, KeepALoopEach_AndACornerBetweenThem) {
@@ -337,6 +360,21 @@ TEST(FeaturesOfAHingeWithANeedle, FollowTheShortSides) {
                 ElementsAre(Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(2, 2, 0)));
 }
 
+TEST(FeaturesOfAHingeWithNeedlesAmongNeedles, FollowTheShortSides) {
+    // Six vertices on the bend, filled with four triangles without area; the middle one has no other neighbours.
+    std::vector<Vec3> positions;
+    for (int i = 0; i < 6; ++i) positions.emplace_back(i, 0, 0);
+    positions.emplace_back(2.5, 2, 0);
+    positions.emplace_back(2.5, 0, -3);
+    std::vector<Triangle> triangles{{0, 5, 6}, {0, 2, 4}, {4, 5, 0}, {0, 1, 2}, {2, 3, 4}};
+    for (u32 i = 0; i < 5; ++i) triangles.push_back({i + 1, i, 7});
+    const FeatureLines lines = features_of(mesh_of(positions, triangles));
+    EXPECT_EQ(lines.counts.without_area, 4u);
+    ASSERT_EQ(lines.counts.creases, 1u);
+    EXPECT_THAT(places_of(lines.graph, polylines_of(lines.graph, FeatureType::crease)[0]),
+                ElementsAre(Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(4, 0, 0), Vec3(5, 0, 0)));
+}
+
 TEST(FeaturesOfAMeshWithDoubledVertices, PassOverTrianglesThatNameAVertexTwice) {
     TriangleMesh mesh = cube();
     std::vector<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
@@ -354,7 +392,7 @@ TEST(Features, TellTheirCountsAndTheirDoubts) {
     options.on_warning = [&](std::string_view text) { warnings.emplace_back(text); };
     Context context(options);
     features(frustum(1, 1, 3, 40, false), {}, context);
-    EXPECT_THAT(warnings, ElementsAre(testing::HasSubstr("2 boundary loops cannot be told")));
+    EXPECT_THAT(warnings, ElementsAre(testing::HasSubstr("2 boundary loops whose area does not tell")));
     for (const auto& [name, count] : std::map<std::string, double>{{"creases", 0},
                                                                    {"holes", 1},
                                                                    {"boundaries", 1},

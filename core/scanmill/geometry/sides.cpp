@@ -89,6 +89,9 @@ SidesOfVertices sides_of_vertices(const TriangleMesh& mesh) {
 
 Array<u32> oriented_twins(const TriangleMesh& mesh) {
     require_consistent(mesh);
+    constexpr std::size_t most = boundary / 3 - 1;  // sides are numbered with 32 bits
+    if (mesh.triangles.size() > most)
+        throw Error("the mesh has {} triangles; at most {} are possible", mesh.triangles.size(), most);
     const SidesOfVertices by_vertex = sides_of_vertices(mesh);
     const std::span<const Side> all = by_vertex.sides;
     Array<u32> twins(3 * mesh.triangles.size(), no_side);

@@ -37,9 +37,9 @@ inline constexpr u32 boundary = ~u32(0), no_side = ~u32(0) - 1;
 
 /// Of every side the one that passes its edge in the other direction, or `boundary`, or `no_side`.
 ///
-/// Throws Error for an index out of range, for an edge in three or more triangles and for an edge that two triangles
-/// pass in the same direction, naming the first such edge (lowest vertices) with its place, and how many there are.
-/// Cost: as above and 12 bytes per triangle.
+/// Throws Error for an index out of range, for more triangles than 32 bits number sides of, for an edge in three or
+/// more triangles and for an edge that two triangles pass in the same direction, naming the first such edge (lowest
+/// vertices) with its place, and how many there are. Cost: as above and 12 bytes per triangle.
 Array<u32> oriented_twins(const TriangleMesh& mesh);
 
 }  // namespace scanmill::sides
