@@ -39,23 +39,6 @@ TEST(PointTree, Within_IsOpenAtItsBorder) {
     EXPECT_THAT(tree.within(0, 1e300), ElementsAre(1, 2, 3));
 }
 
-TEST(PointTree, RandomPointsAndALattice_AreAnsweredAsByLookingAtAll) {
-    for (const PointCloud& cloud : {test::random_cube(400, 1), test::lattice_cube(6)}) {
-        const PointTree tree(cloud.positions.span());
-        ASSERT_EQ(tree.places().size(), cloud.size());
-        for (u32 place = 0; place < cloud.size(); place += 7) {
-            std::vector<double> squares;
-            for (const Vec3& other : tree.places()) squares.push_back((other - tree.places()[place]).squaredNorm());
-            std::vector<u32> near;
-            for (u32 other = 0; other < squares.size(); ++other)
-                if (other != place && squares[other] < squares[17]) near.push_back(other);
-            EXPECT_EQ(tree.within(place, squares[17]), near);
-            std::ranges::sort(squares);
-            EXPECT_EQ(tree.nearest(place, 8), std::vector<double>(squares.begin() + 1, squares.begin() + 9));
-        }
-    }
-}
-
 TEST(PointTree, TinyAndHugeClouds_AreAnsweredAlike) {
     for (double factor : {0x1p-100, 0x1p100}) {
         const PointCloud cloud = test::moved(test::lattice_cube(3), factor);

@@ -1,82 +1,146 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/point_tree.hpp"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
-#include <cmath>
-#include <flann/flann.hpp>
-#include <limits>
-#include <numeric>
+
+#include "scanmill/filter/parallel.hpp"
+#include "scanmill/geometry/neighbour_search.hpp"
 
 namespace scanmill {
 
 namespace {
 
-bool comes_before(const Vec3& a, const Vec3& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-}
+/// A batch's answers should stay in a processor's own cache; a chunk's searches share their memory.
+constexpr u64 leaves_per_batch = 32, leaves_per_chunk = 512;
 
-/// The least float that is not below `value`.
-float float_above(double value) {
-    const float nearest = static_cast<float>(std::min<double>(value, std::numeric_limits<float>::max()));
-    return static_cast<double>(nearest) < value ? std::nextafterf(nearest, std::numeric_limits<float>::infinity())
-                                                : nearest;
+struct Row {
+    double x;
+    u32 row;
+};
+
+/// The rows in ascending order of their positions, equal ones by row.
+Array<Row> sorted_rows(std::span<const Vec3> positions, unsigned threads) {
+    Array<Row> rows(positions.size());
+    for (u32 row = 0; row < positions.size(); ++row) rows[row] = {positions[row].x(), row};
+    const auto comes_before = [&](const Row& a, const Row& b) {
+        if (a.x != b.x) return a.x < b.x;
+        const Vec3 &p = positions[a.row], &q = positions[b.row];
+        if (p.y() != q.y()) return p.y() < q.y();
+        return p.z() != q.z() ? p.z() < q.z() : a.row < b.row;
+    };
+    if (threads > 1)
+        within_thread_budget(threads, [&] { tbb::parallel_sort(rows.begin(), rows.end(), comes_before); });
+    else
+        std::ranges::sort(rows, comes_before);
+    return rows;
 }
 
 }  // namespace
 
+void NeighbourBuffer::make_room(std::size_t size) {
+    room = size;
+    x.resize(size), y.resize(size), z.resize(size), squares.resize(size);
+    numbers.resize(size), piles.resize(size);
+    found.resize(size + 1), dealt.resize(size);
+}
+
 struct PointTree::Tree {
-    explicit Tree(std::span<const Vec3> positions) : place_of_row(positions.size()) {
-        Array<u32> order(positions.size());
-        std::iota(order.begin(), order.end(), 0);
-        std::ranges::sort(order, [&](u32 a, u32 b) { return comes_before(positions[a], positions[b]); });
-        places.reserve(positions.size());
-        for (u32 row : order) {
-            if (places.empty() || places.back() != positions[row]) places.push_back(positions[row]);
-            place_of_row[row] = static_cast<u32>(places.size() - 1);
+    Tree(std::span<const Vec3> positions, unsigned threads)
+        : place_of_row(positions.size()),
+          places(distinct(positions, sorted_rows(positions, threads))),
+          boxes(places, threads),
+          index_of_place(places.size()) {
+        for (u32 index = 0; index < index_of_place.size(); ++index)
+            index_of_place[boxes.points()[index].number] = index;
+    }
+
+    Array<Vec3> distinct(std::span<const Vec3> positions, const Array<Row>& sorted) {
+        Array<Vec3> found;
+        found.reserve(positions.size());
+        for (const Row& row : sorted) {
+            if (found.empty() || found.back() != positions[row.row]) found.push_back(positions[row.row]);
+            place_of_row[row.row] = static_cast<u32>(found.size() - 1);
         }
-        index = std::make_unique<Index>(flann::Matrix<double>(places.front().data(), places.size(), 3),
-                                        flann::KDTreeSingleIndexParams(10, true));
-        index->buildIndex();
+        return found;
     }
 
-    flann::Matrix<double> query(u32 place) const {
-        return {const_cast<double*>(places[place].data()), 1, 3};  // FLANN only reads it
-    }
-
-    using Index = flann::Index<flann::L2_3D<double>>;
-    Array<Vec3> places;
     Array<u32> place_of_row;
-    std::unique_ptr<Index> index;
+    Array<Vec3> places;
+    BoxTree boxes;
+    /// Where the tree keeps each place.
+    Array<u32> index_of_place;
 };
 
-PointTree::PointTree(std::span<const Vec3> positions) : tree_(std::make_unique<Tree>(positions)) {}
+PointTree::PointTree(std::span<const Vec3> positions, unsigned threads)
+    : tree_(std::make_unique<Tree>(positions, threads)) {}
 PointTree::~PointTree() = default;
+PointTree::PointTree(PointTree&&) noexcept = default;
+PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 
 std::span<const Vec3> PointTree::places() const { return tree_->places; }
 std::span<const u32> PointTree::place_of_row() const { return tree_->place_of_row; }
 
+std::span<const Neighbour> PointTree::nearest(u32 place, std::size_t count, NeighbourBuffer& buffer) const {
+    buffer.neighbours.resize(std::min(count, tree_->places.size() - 1));
+    if (!buffer.neighbours.empty())
+        NeighbourSearch(tree_->boxes, buffer.neighbours.size(), buffer)
+            .nearest(tree_->index_of_place[place], buffer.neighbours.data());
+    return buffer.neighbours;
+}
+
 std::vector<double> PointTree::nearest(u32 place, std::size_t count) const {
-    const std::size_t asked = std::min(count + 1, tree_->places.size());  // the first is the place itself
-    std::vector<std::size_t> numbers(asked);
-    std::vector<double> squares(asked);
-    flann::Matrix<std::size_t> found(numbers.data(), 1, asked);
-    flann::Matrix<double> found_squares(squares.data(), 1, asked);
-    tree_->index->knnSearch(tree_->query(place), found, found_squares, asked,
-                            flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED, 0.0f));
-    squares.erase(squares.begin());
+    NeighbourBuffer buffer;
+    std::vector<double> squares;
+    for (const Neighbour& neighbour : nearest(place, count, buffer)) squares.push_back(neighbour.squared);
     return squares;
 }
 
+void PointTree::for_each_nearest(std::size_t count, unsigned threads,
+                                 const std::function<void(const NeighbourBatch&)>& answer) const {
+    const BoxTree& boxes = tree_->boxes;
+    const std::size_t each = std::min(count, tree_->places.size() - 1);
+    for_each_chunk(threads, boxes.leaves(), leaves_per_chunk, [&](std::size_t begin, std::size_t end) {
+        NeighbourBuffer buffer;
+        NeighbourSearch search(boxes, each, buffer);
+        Array<u32> places;
+        for (u64 leaf = begin; leaf < end; leaf += leaves_per_batch) {
+            places.clear();
+            buffer.neighbours.resize(0);
+            for (u64 next = leaf; next < std::min<u64>(end, leaf + leaves_per_batch); ++next) {
+                const std::span<const BoxTree::Point> points = boxes.points_of(boxes.leaf(next));
+                for (const BoxTree::Point& point : points) places.push_back(point.number);
+                buffer.neighbours.resize(places.size() * each);
+                if (each > 0)
+                    search.nearest_of_leaf(boxes.leaf(next),
+                                           &buffer.neighbours[(places.size() - points.size()) * each]);
+            }
+            answer({places, buffer.neighbours, each});
+        }
+    });
+}
+
+std::span<const Neighbour> PointTree::within(u32 place, double squared, NeighbourBuffer& buffer) const {
+    Array<Neighbour>& found = buffer.neighbours;
+    found.clear();
+    const Vec3& from = tree_->places[place];
+    tree_->boxes.near({from, from}, squared, [&](std::span<const BoxTree::Point> points) {
+        for (const BoxTree::Point& point : points) {
+            const double distance = squared_distance(point.position, from);
+            if (distance < squared && point.number != place) found.push_back({distance, point.number});
+        }
+    });
+    std::ranges::sort(found, ComesBefore());
+    return found;
+}
+
 std::vector<u32> PointTree::within(u32 place, double squared) const {
-    std::vector<std::vector<std::size_t>> found;
-    std::vector<std::vector<double>> squares;
-    flann::SearchParams exact(flann::FLANN_CHECKS_UNLIMITED, 0.0f, false);
-    tree_->index->radiusSearch(tree_->query(place), found, squares, float_above(squared), exact);
-    std::vector<u32> result;
-    for (std::size_t i = 0; i < found[0].size(); ++i)
-        if (found[0][i] != place && squares[0][i] < squared) result.push_back(static_cast<u32>(found[0][i]));
-    std::ranges::sort(result);
-    return result;
+    NeighbourBuffer buffer;
+    std::vector<u32> numbers;
+    for (const Neighbour& neighbour : within(place, squared, buffer)) numbers.push_back(neighbour.place);
+    std::ranges::sort(numbers);
+    return numbers;
 }
 
 }  // namespace scanmill
