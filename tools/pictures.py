@@ -11,21 +11,40 @@ from plane_geometry import delaunay, nearest_on_profile, scattered, spread_over
 
 
 def voxel_thin():
-    picture = Picture(8, 4)
-    points = scattered(random.Random(4), 110, 0.12, 8, 4)
-    bins = {}
-    for p in points:
-        bins.setdefault((math.floor(p[0]), math.floor(p[1])), []).append(p)
-    for x in range(9):
-        picture.line((x, 0), (x, 4), PALE)
-    for y in range(5):
-        picture.line((0, y), (8, y), PALE)
-    for (x, y), members in bins.items():
-        centre = (x + 0.5, y + 0.5)
-        picture.cross(centre, colour=INK)
+    """One profile twice: above with bins of one size, below with leaves as large as the curvature in them allows."""
+    picture = Picture(8, 4.4)
+    rng = random.Random(4)
+    height = lambda x: 0.3 + 1.2 * math.exp(-(((x - 5.6) / 0.6) ** 2))
+
+    def allowed(x, step=1e-3):
+        slope = (height(x + step) - height(x - step)) / (2 * step)
+        second = (height(x + step) - 2 * height(x) + height(x - step)) / step**2
+        return min(1, math.sqrt(0.25 * (1 + slope * slope) ** 1.5 / max(abs(second), 1e-9)))
+
+    points = [(x, height(x) + rng.uniform(-0.03, 0.03)) for x in (rng.uniform(0, 8) for _ in range(420))]
+
+    def draw(cell, size, members, up):
+        corners = [(cell[0] + u, cell[1] + v + up) for u, v in ((0, 0), (size, 0), (size, size), (0, size))]
+        picture.polygon(corners, "none", INK)
+        centre = (cell[0] + size / 2, cell[1] + size / 2)
         kept = min(members, key=lambda p: math.dist(p, centre))
         for p in members:
-            picture.dot(p, BRIGHT if p == kept else PALE, 5 if p == kept else 3)
+            picture.dot((p[0], p[1] + up), BRIGHT if p == kept else PALE, 5 if p == kept else 2)
+
+    def cut(cell, size, members, up, limit):
+        if not members:
+            return
+        if size <= min(limit(p[0]) for p in members):
+            draw(cell, size, members, up)
+            return
+        half = size / 2
+        for u, v in itertools.product((0, half), repeat=2):
+            low = (cell[0] + u, cell[1] + v)
+            inside = [p for p in members if all(low[k] <= p[k] < low[k] + half for k in (0, 1))]
+            cut(low, half, inside, up, limit)
+
+    cut((0, 0), 8, points, 2.4, lambda x: 0.25)
+    cut((0, 0), 8, points, 0.1, allowed)
     return picture
 
 

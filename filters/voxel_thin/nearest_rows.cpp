@@ -79,9 +79,12 @@ std::vector<BinTable<Bin>> winners_by_partition(const PointPieces& points, const
 }
 
 template <class Bin>
-NearestRows choose(const PointPieces& points, const BinGrid& grid, u32 min_points, Context& context) {
-    const std::vector<BinTable<Bin>> tables = winners_by_partition<Bin>(points, grid, min_points > 1, context);
+NearestRows choose(const PointPieces& points, const BinGrid& grid, u32 min_points, bool count_members,
+                   Context& context) {
+    const std::vector<BinTable<Bin>> tables =
+        winners_by_partition<Bin>(points, grid, min_points > 1 || count_members, context);
     NearestRows result;
+    Array<u32> members_of_row(count_members ? points.points() : 0);
     Array<u64> is_kept(points.points() / 64 + 1, 0);
     std::size_t kept = 0;
     for (const BinTable<Bin>& table : tables) {
@@ -92,6 +95,7 @@ NearestRows choose(const PointPieces& points, const BinGrid& grid, u32 min_point
             } else {
                 is_kept[row / 64] |= u64(1) << row % 64;
                 ++kept;
+                if (count_members) members_of_row[row] = count;
             }
         });
     }
@@ -100,15 +104,18 @@ NearestRows choose(const PointPieces& points, const BinGrid& grid, u32 min_point
         for (u64 bits = is_kept[word]; bits; bits &= bits - 1)
             result.kept.push_back(static_cast<u32>(word * 64 + static_cast<std::size_t>(std::countr_zero(bits))));
     assert(result.kept.size() == kept);
+    if (count_members)
+        for (const u32 row : result.kept) result.members.push_back(members_of_row[row]);
     return result;
 }
 
 }  // namespace
 
-NearestRows nearest_rows(const PointPieces& points, const BinGrid& grid, u32 min_points, Context& context) {
+NearestRows nearest_rows(const PointPieces& points, const BinGrid& grid, u32 min_points, Context& context,
+                         bool count_members) {
     // Memory touched at random is what thinning costs, and most grids number their bins in 32 bits.
-    return grid.size_in_bins() >> 32 == 0 ? choose<u32>(points, grid, min_points, context)
-                                          : choose<u64>(points, grid, min_points, context);
+    return grid.size_in_bins() >> 32 == 0 ? choose<u32>(points, grid, min_points, count_members, context)
+                                          : choose<u64>(points, grid, min_points, count_members, context);
 }
 
 }  // namespace scanmill::voxel

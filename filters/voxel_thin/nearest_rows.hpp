@@ -26,14 +26,17 @@ struct PointPieces {
 struct NearestRows {
     /// Ascending.
     Array<u32> kept;
+    /// How many points share the bin of each of these; empty unless asked for.
+    Array<u32> members;
     std::size_t noise = 0;  ///< points in bins with fewer than min_points
     std::size_t bins = 0;  ///< occupied
 };
 
 /// Pre: at least one point, all in the grid's box; fewer than 2^32.
 /// Post: of equally near points the first; the same for any cut into pieces and any number of threads.
-/// Cost: O(n) time; 24 to 72 bytes per occupied bin, an eighth of a byte per point, 32 to 56 bytes per point of 16
-/// pieces.
-NearestRows nearest_rows(const PointPieces& points, const BinGrid& grid, u32 min_points, Context& context);
+/// Cost: O(n) time; 24 to 72 bytes per occupied bin, an eighth of a byte per point (4 bytes more to count members), 32
+/// to 56 bytes per point of 16 pieces.
+NearestRows nearest_rows(const PointPieces& points, const BinGrid& grid, u32 min_points, Context& context,
+                         bool count_members = false);
 
 }  // namespace scanmill::voxel

@@ -6,6 +6,7 @@
 
 #include "scanmill/filter/parallel.hpp"
 #include "voxel_thin/thin_pieces.hpp"
+#include "voxel_thin/tolerance_thin.hpp"
 
 namespace scanmill {
 
@@ -55,9 +56,11 @@ voxel::PointPieces pieces_of(std::span<const Vec3> positions) {
 VoxelThinResult voxel_thin(const PointCloud& cloud, const VoxelThinParams& params, Context& context) {
     voxel::require_sound(cloud.size(), params);
     const std::span<const Vec3> positions = cloud.positions.span();
+    const BoundingBox box = finite_bounds(positions, context);
+    const voxel::PointPieces pieces = pieces_of(positions);
+    if (!params.bin_size) return voxel::thin_within_tolerance(cloud, pieces, box, params, context);
     return voxel::thin(
-        pieces_of(positions), finite_bounds(positions, context), params,
-        [&](std::span<const u32> rows) { return gather(cloud, rows); }, context);
+        pieces, box, params, [&](std::span<const u32> rows) { return gather(cloud, rows); }, context);
 }
 
 }  // namespace scanmill

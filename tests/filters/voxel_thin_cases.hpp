@@ -12,11 +12,24 @@ inline VoxelThinParams bins_of(double size) {
     return params;
 }
 
+/// The bin size derived from a tolerance in the scan's unit.
+inline VoxelThinParams within(double tolerance, VoxelThinParams::Rule rule = VoxelThinParams::Rule::quantile) {
+    VoxelThinParams params;
+    params.tolerance = tolerance;
+    params.rule = rule;
+    return params;
+}
+
 inline VoxelThinResult thin(const PointCloud& cloud, const VoxelThinParams& params, unsigned threads = 1) {
     ContextOptions options;
     options.threads = threads;
     Context context(options);
     return voxel_thin(cloud, params, context);
+}
+
+template <class T>
+std::span<const T> column(const VoxelThinResult& result, std::string_view name) {
+    return result.points.columns.find(name)->values<T>();
 }
 
 }  // namespace scanmill::test

@@ -6,6 +6,7 @@
 
 #include "filters/voxel_thin_cases.hpp"
 #include "scanmill/filter/error.hpp"
+#include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill::test {
@@ -39,7 +40,7 @@ TEST(VoxelThinRefusals, InfinityOfEitherSign_IsRefused) {
 
 TEST(VoxelThinRefusals, BinSizeNotAboveZero_IsRefused) {
     const PointCloud cloud = cloud_of({{0, 0, 0}});
-    EXPECT_THAT(refusal(cloud, VoxelThinParams{}), HasSubstr("bin size is 0"));
+    EXPECT_THAT(refusal(cloud, bins_of(0)), HasSubstr("bin size is 0"));
     EXPECT_THAT(refusal(cloud, bins_of(-1)), HasSubstr("bin size is -1"));
     EXPECT_THAT(refusal(cloud, bins_of(std::numeric_limits<double>::quiet_NaN())), HasSubstr("above 0"));
     EXPECT_THAT(refusal(cloud, bins_of(std::numeric_limits<double>::infinity())), HasSubstr("above 0"));
@@ -94,6 +95,63 @@ TEST(VoxelThinRefusals, NothingButNoise_IsRefused) {
     VoxelThinParams params = bins_of(1);
     params.min_points = 2;
     EXPECT_THAT(refusal(cloud_of({{0, 0, 0}, {5, 0, 0}}), params), HasSubstr("all 2 points lie in 2 bins"));
+}
+
+TEST(VoxelThinRefusals, ToleranceNotAboveZero_IsRefused) {
+    const PointCloud sphere = random_sphere(100, 1);
+    EXPECT_THAT(refusal(sphere, within(0)), HasSubstr("tolerance is 0 u; it must be above 0"));
+    EXPECT_THAT(refusal(sphere, within(std::numeric_limits<double>::quiet_NaN())), HasSubstr("above 0"));
+    EXPECT_THAT(refusal(sphere, VoxelThinParams{}), HasSubstr("not resolved"));
+}
+
+TEST(VoxelThinRefusals, ToleranceLargerThanTheObject_IsRefusedWithItsSize) {
+    const PointCloud cloud = joined(random_sphere(100, 1, 0.5), cloud_of({{0, 0, -4}, {0, 3, 4}}));
+    EXPECT_THAT(refusal(cloud, within(20)), HasSubstr("tolerance is 20 u, and the whole cloud's diagonal is 8.7"));
+}
+
+TEST(VoxelThinRefusals, FewerPlacesThanNeighbours_IsRefusedWithAWayOut) {
+    const PointCloud few = random_sphere(25, 1);
+    EXPECT_THAT(refusal(few, within(0.1)),
+                HasSubstr("25 distinct places; curvature from 25 neighbours needs at least 26"));
+    EXPECT_THAT(refusal(joined(few, few), within(0.1)), HasSubstr("25 distinct places"));
+    EXPECT_THAT(refusal(few, within(0.1)), HasSubstr("hint: give a bin-size, or fewer neighbours"));
+    VoxelThinParams fewer = within(0.1);
+    fewer.neighbours = 24;
+    EXPECT_EQ(refusal(few, fewer), "no refusal");
+    EXPECT_EQ(refusal(random_sphere(26, 1), within(0.1)), "no refusal");
+    EXPECT_THAT(refusal(cloud_of({{1, 2, 3}}), within(1e-3)), HasSubstr("diagonal is 0 u"));
+}
+
+TEST(VoxelThinRefusals, FewerThanSixNeighboursOrThousands_AreRefused) {
+    VoxelThinParams params = within(0.1);
+    params.neighbours = 5;
+    EXPECT_THAT(refusal(random_sphere(100, 1), params), HasSubstr("neighbours is 5; a quadric needs at least 6"));
+    params.neighbours = 1001;
+    EXPECT_THAT(refusal(random_sphere(2000, 1), params), HasSubstr("neighbours is 1001; at most 1000"));
+}
+
+TEST(VoxelThinRefusals, QuantileThatIsNone_IsRefused) {
+    VoxelThinParams params = within(0.1);
+    params.quantile = Ratio::percent(101);
+    EXPECT_THAT(refusal(random_sphere(100, 1), params), HasSubstr("quantile is 1.01"));
+    params.quantile = Ratio::fraction(-0.5);
+    EXPECT_THAT(refusal(random_sphere(100, 1), params), HasSubstr("quantile is -0.5"));
+}
+
+TEST(VoxelThinRefusals, PointsOnOneLine_ShowNoSurface) {
+    Array<Vec3> line;
+    for (int i = 0; i < 100; ++i) line.push_back(Vec3(i, 2 * i, -i));
+    EXPECT_THAT(refusal({{}, std::move(line), {}}, within(1)), HasSubstr("nowhere do 25 neighbours show a surface"));
+}
+
+TEST(VoxelThinRefusals, AdaptiveRuleWithSomethingFixed_IsRefused) {
+    VoxelThinParams params = within(0.1, VoxelThinParams::Rule::adaptive);
+    params.bin_size = 0.5;
+    EXPECT_THAT(refusal(random_sphere(100, 1), params),
+                HasSubstr("adaptive rule was asked for beside a bin size of 0.5"));
+    params.bin_size.reset();
+    params.grid_origin = Vec3::Zero();
+    EXPECT_THAT(refusal(random_sphere(100, 1), params), HasSubstr("no use for a grid's origin"));
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ TEST(VoxelThin, RandomClouds_AgreeWithTheDefinition) {
         params.min_points = 1 + static_cast<u32>(seed % 4);
         const VoxelThinResult result = thin(cloud, params);
         EXPECT_THAT(result.kept, ::testing::ElementsAreArray(nearest_by_definition(
-                                     cloud, result.grid_origin, params.bin_size.value(), params.min_points)))
+                                     cloud, result.grid_origin, params.bin_size->value(), params.min_points)))
             << seed;
         EXPECT_EQ(result.kept.size() + result.removed, cloud.size());
     }

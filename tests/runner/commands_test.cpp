@@ -129,10 +129,10 @@ TEST(Command, ShowExample_IsAWorkflowThatPassesCheck) {
 
 TEST(Command, ShowExample_OfFiltersThatLeadFromPointsToAMesh_Runs) {
     const TemporaryFolder folder;
-    std::string corners;
-    for (int i = 0; i < 8; ++i)
-        corners += std::to_string(i % 2) + " " + std::to_string(i / 2 % 2) + " " + std::to_string(i / 4) + "\n";
-    const auto scan = folder.write("cube.xyz", corners);
+    std::string lattice;
+    for (int i = 0; i < 64; ++i)
+        lattice += std::to_string(i % 4) + " " + std::to_string(i / 4 % 4) + " " + std::to_string(i / 16) + "\n";
+    const auto scan = folder.write("cube.xyz", lattice);
     for (const std::string filter : {"voxel-thin", "delaunay", "alpha-solid", "sculpt"}) {
         const auto example = folder.write(filter + ".yaml", scanmill_program({"show", filter, "--example"}).out);
         const ProgramResult ran =

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// PCL's grids, as its tutorials call them: points of 16 bytes, float, one thread.
+/// PCL's grids and normals, as its tutorials call them: points of 16 bytes, float; grids in one thread.
 
+#include <pcl/features/normal_3d_omp.h>
 #include <pcl/filters/uniform_sampling.h>
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/pcl_config.h>
 #include <pcl/point_types.h>
+
+#include <cmath>
 
 #include "answer.hpp"
 
@@ -46,12 +49,31 @@ Json average(const Cloud::Ptr& cloud, const Json& request) {
     return {{"seconds", seconds}, {"kept", left.size()}};
 }
 
+/// A normal and the share of the least variance from every point's nearest points, itself counted. How many of the
+/// normals point along x more than along y and z, told as a share: what others must agree on.
+Json estimate_normals(const Cloud::Ptr& cloud, const Json& request) {
+    pcl::PointCloud<pcl::Normal> normals;
+    const double seconds = peers::seconds_of([&] {
+        pcl::NormalEstimationOMP<pcl::PointXYZ, pcl::Normal> estimation(peers::threads_of(request));
+        estimation.setInputCloud(cloud);
+        estimation.setKSearch(request.at("neighbours").get<int>() + 1);
+        estimation.compute(normals);
+    });
+    std::size_t along_x = 0;
+    for (const pcl::Normal& n : normals) {
+        const float x = std::abs(n.normal_x);
+        along_x += x > std::abs(n.normal_y) && x > std::abs(n.normal_z);
+    }
+    return {{"seconds", seconds}, {"along_x", static_cast<double>(along_x) / static_cast<double>(normals.size())}};
+}
+
 }  // namespace
 
 int main() {
     const auto cloud = pcl::make_shared<Cloud>();
     return peers::answer({{"load", [&](const Json& request) { return load(*cloud, request); }},
                           {"uniform-sampling", [&](const Json& request) { return sample_uniformly(cloud, request); }},
-                          {"voxel-grid", [&](const Json& request) { return average(cloud, request); }}},
+                          {"voxel-grid", [&](const Json& request) { return average(cloud, request); }},
+                          {"normals", [&](const Json& request) { return estimate_normals(cloud, request); }}},
                          {{"PCL", PCL_VERSION_PRETTY}});
 }

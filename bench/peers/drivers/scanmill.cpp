@@ -11,6 +11,7 @@
 #include "delaunay/delaunay.hpp"
 #include "measure/nearest_distances.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/local_surface.hpp"
 #include "sculpt/sculpt.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
@@ -80,6 +81,26 @@ Json thin(Held& held, const Json& request) {
     VoxelThinResult result;
     const double seconds = peers::seconds_of([&] { result = voxel_thin(held.cloud, params, context); });
     return {{"seconds", seconds}, {"kept", result.points.size()}};
+}
+
+/// Planes, quadrics and principal curvatures, the tree and the search for neighbours included.
+Json curvature(Held& held, const Json& request) {
+    LocalSurfaceParams params;
+    params.neighbours = request.at("neighbours").get<u32>();
+    Context context = context_for(request);
+    Array<LocalSurface> surfaces;
+    std::vector<u32> place_of_row;
+    const double seconds = peers::seconds_of([&] {
+        const PointTree tree(held.cloud.positions.span(), context.threads());
+        surfaces = local_surfaces(tree, params, context);
+        place_of_row.assign(tree.place_of_row().begin(), tree.place_of_row().end());
+    });
+    std::size_t along_x = 0;
+    for (const u32 place : place_of_row) {
+        const Vec3 n = surfaces[place].normal.cwiseAbs();
+        along_x += n.x() > n.y() && n.x() > n.z();
+    }
+    return {{"seconds", seconds}, {"along_x", static_cast<double>(along_x) / static_cast<double>(place_of_row.size())}};
 }
 
 Json tetrahedralise(Held& held, const Json& request) {
@@ -163,6 +184,7 @@ int main() {
                           {"read", with_held(read)},
                           {"write", with_held(write)},
                           {"voxel-thin", with_held(thin)},
+                          {"curvature", with_held(curvature)},
                           {"delaunay", with_held(tetrahedralise)},
                           {"alpha-solid", with_held(solid)},
                           {"sculpt", with_held(sculpted)},

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What surface the nearest neighbours of every point show."""
+from harness.row import Contender, Row
+
+NEIGHBOURS = 25
+
+
+def rows(inputs, large):
+    return [
+        row("curvature-torus", "bumpy torus", inputs.torus(350_000)),
+        row("curvature-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply")),
+    ]
+
+
+def row(name, shape, cloud):
+    load, work = cloud.load(), {"neighbours": NEIGHBOURS}
+    contenders = []
+    for threads in (1, 2):
+        contenders.append(
+            Contender("scanmill", {"do": "curvature", **work}, threads=threads, prepare=load)
+        )
+        contenders.append(
+            Contender("pcl", {"do": "normals", **work}, "NormalEstimationOMP", threads=threads, prepare=load)
+        )
+    return Row(
+        name=name,
+        title=f"Surfaces from {NEIGHBOURS} neighbours, {shape}",
+        inputs=[cloud],
+        contenders=contenders,
+        equal="the points in memory, the number of neighbours, a tree and a search for all points included. We also fit a "
+        "quadric to every neighbourhood and give its principal curvatures; PCL gives normals alone. Our normals are "
+        "those of the quadric. We hold doubles, PCL floats.",
+        agree={"along_x": 1e-2},
+    )

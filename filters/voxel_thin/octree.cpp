@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "voxel_thin/octree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace scanmill::voxel {
+
+namespace {
+
+constexpr int most_levels = 21;
+
+/// Where a point lies in the finest cells: three bits a level, those of the first halving highest.
+struct Located {
+    u64 code;
+    u32 row;
+    bool operator<(const Located& other) const { return code != other.code ? code < other.code : row < other.row; }
+};
+
+u64 code_of(const Vec3& p, const Vec3& origin, double finest) {
+    constexpr double last = (1 << most_levels) - 1;
+    std::array<u64, 3> cell;
+    for (int axis = 0; axis < 3; ++axis)
+        cell[static_cast<std::size_t>(axis)] =
+            static_cast<u64>(std::clamp(std::floor((p[axis] - origin[axis]) / finest), 0.0, last));
+    u64 code = 0;
+    for (int bit = most_levels - 1; bit >= 0; --bit)
+        for (const u64 coordinate : cell) code = code << 1 | (coordinate >> bit & 1);
+    return code;
+}
+
+/// The low corner of the cell of this level that the code lies in, in such cells.
+Vec3 cell_of(u64 code, int level) {
+    Vec3 cell = Vec3::Zero();
+    for (int i = 0; i < level; ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            cell[axis] = 2 * cell[axis] + static_cast<double>(code >> (3 * (most_levels - i) - 1 - axis) & 1);
+    return cell;
+}
+
+class Octree {
+public:
+    Octree(std::span<const Vec3> positions, std::span<const u32> size_of_row, std::span<const double> sizes,
+           const Vec3& origin, double edge, u32 min_points)
+        : positions_(positions),
+          size_of_row_(size_of_row),
+          sizes_(sizes),
+          origin_(origin),
+          edge_(edge),
+          min_points_(min_points) {}
+
+    /// `points` are those of one cell of this level, by code.
+    void thin(std::span<const Located> points, int level) {
+        if (points.size() > 1 && level < most_levels && std::ldexp(edge_, -level) > least_size(points)) {
+            const int shift = 3 * (most_levels - 1 - level);
+            while (!points.empty()) {
+                const u64 child = points.front().code >> shift;
+                const auto end = std::ranges::partition_point(
+                    points, [&](const Located& point) { return point.code >> shift == child; });
+                const auto count = static_cast<std::size_t>(end - points.begin());
+                thin(points.first(count), level + 1);
+                points = points.subspan(count);
+            }
+            return;
+        }
+        keep_one(points, level);
+    }
+
+    OctreeChoice choice;
+
+private:
+    double least_size(std::span<const Located> points) const {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Located& point : points) least = std::min(least, sizes_[size_of_row_[point.row]]);
+        return least;
+    }
+
+    void keep_one(std::span<const Located> points, int level) {
+        ++choice.leaves;
+        if (points.size() < min_points_) {
+            choice.noise += points.size();
+            return;
+        }
+        const double edge = std::ldexp(edge_, -level);
+        const Vec3 centre = origin_ + (cell_of(points.front().code, level) + Vec3::Constant(0.5)) * edge;
+        u32 best = ~u32(0);
+        double best_squared = std::numeric_limits<double>::infinity();
+        for (const Located& point : points) {
+            const double squared = (positions_[point.row] - centre).squaredNorm();
+            if (squared > best_squared || (squared == best_squared && point.row > best)) continue;
+            best = point.row;
+            best_squared = squared;
+        }
+        choice.kept.push_back(best);
+        choice.members.push_back(static_cast<u32>(points.size()));
+        if (points.size() == 1) return;
+        choice.smallest = choice.smallest > 0 ? std::min(choice.smallest, edge) : edge;
+        choice.largest = std::max(choice.largest, edge);
+    }
+
+    std::span<const Vec3> positions_;
+    std::span<const u32> size_of_row_;
+    std::span<const double> sizes_;
+    Vec3 origin_;
+    double edge_;
+    u32 min_points_;
+};
+
+void sort_by_row(OctreeChoice& choice) {
+    Array<std::pair<u32, u32>> pairs(choice.kept.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {choice.kept[i], choice.members[i]};
+    std::ranges::sort(pairs);
+    for (std::size_t i = 0; i < pairs.size(); ++i) std::tie(choice.kept[i], choice.members[i]) = pairs[i];
+}
+
+}  // namespace
+
+OctreeChoice choose_in_octree(std::span<const Vec3> positions, std::span<const u32> size_of_row,
+                              std::span<const double> sizes, const Vec3& origin, double base, u32 min_points,
+                              Context& context) {
+    const double extent = (bounding_box(positions).high - origin).maxCoeff();
+    double edge = base;
+    while (!(edge > extent)) edge *= 2;
+    const double finest = std::ldexp(edge, -most_levels);
+    Array<Located> points(positions.size());
+    for (u32 row = 0; row < points.size(); ++row) points[row] = {code_of(positions[row], origin, finest), row};
+    std::ranges::sort(points, std::less());
+    context.check_cancelled();
+
+    Octree octree(positions, size_of_row, sizes, origin, edge, min_points);
+    octree.thin(points, 0);
+    OctreeChoice choice = std::move(octree.choice);
+    if (choice.largest == 0) choice.smallest = choice.largest = base;
+    sort_by_row(choice);
+    return choice;
+}
+
+}  // namespace scanmill::voxel

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The octree: beside its definition, and on shapes that are flat in one place and curved in another.
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cmath>
+
+#include "filters/voxel_thin_cases.hpp"
+#include "support/point_sets.hpp"
+#include "support/shapes.hpp"
+#include "voxel_thin/octree.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using ::testing::ElementsAre;
+using voxel::OctreeChoice;
+
+OctreeChoice chosen(const PointCloud& cloud, std::span<const double> sizes, double base, u32 min_points = 1) {
+    std::vector<u32> rows(cloud.size());
+    for (u32 row = 0; row < rows.size(); ++row) rows[row] = row;
+    Context context;
+    return voxel::choose_in_octree(cloud.positions.span(), rows, sizes, bounding_box(cloud.positions.span()).low, base,
+                                   min_points, context);
+}
+
+/// The definition, cell by cell and without codes.
+struct ByDefinition {
+    const PointCloud& cloud;
+    std::span<const double> sizes;
+    std::vector<u32> kept = {};
+
+    void cut(const std::vector<u32>& rows, const Vec3& low, double edge) {
+        double least = 1e300;
+        for (const u32 row : rows) least = std::min(least, sizes[row]);
+        if (rows.size() <= 1 || edge <= least) {
+            const Vec3 centre = low + Vec3::Constant(edge / 2);
+            const auto distance = [&](u32 row) { return (cloud.positions[row] - centre).squaredNorm(); };
+            if (!rows.empty()) kept.push_back(*std::ranges::min_element(rows, {}, distance));
+            return;
+        }
+        std::array<std::vector<u32>, 8> children;
+        for (const u32 row : rows) {
+            const Vec3 offset = cloud.positions[row] - low;
+            children[(offset.x() >= edge / 2) * 4u + (offset.y() >= edge / 2) * 2u + (offset.z() >= edge / 2)]
+                .push_back(row);
+        }
+        for (u32 child = 0; child < 8; ++child)
+            cut(children[child], low + edge / 2 * Vec3(child >> 2 & 1, child >> 1 & 1, child & 1), edge / 2);
+    }
+};
+
+TEST(VoxelThinAdaptive, FourPointsByHand_AreCutAsEachAllows) {
+    // Root of edge 4: the left half may stay whole below x = 2, the right one is cut to edges of 1.
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {1, 1, 1}, {2.25, 0, 0}, {3.25, 0, 0}});
+    const std::vector<double> sizes{2, 2, 1, 1};
+    const OctreeChoice choice = chosen(cloud, sizes, 1);
+    EXPECT_THAT(choice.kept, ElementsAre(1u, 2u, 3u));
+    EXPECT_THAT(choice.members, ElementsAre(2u, 1u, 1u));
+    EXPECT_EQ(choice.largest, 2);
+    EXPECT_EQ(choice.smallest, 2);
+    const OctreeChoice without_poor = chosen(cloud, sizes, 1, 2);
+    EXPECT_THAT(without_poor.kept, ElementsAre(1u));
+    EXPECT_EQ(without_poor.noise, 2u);
+}
+
+TEST(VoxelThinAdaptive, TwoEquallyNear_KeepsTheLowerRow) {
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {1.25, 1, 1}, {0.75, 1, 1}, {1, 1.25, 1}});
+    EXPECT_THAT(chosen(cloud, std::vector<double>(4, 2), 2).kept, ElementsAre(1u));
+}
+
+TEST(VoxelThinAdaptive, Duplicates_AreNeverCutApart) {
+    const PointCloud cloud = cloud_of({{1, 1, 1}, {0, 0, 0}, {1, 1, 1}});
+    const OctreeChoice choice = chosen(cloud, std::vector<double>(3, 1e-300), 1);
+    EXPECT_THAT(choice.kept, ElementsAre(0u, 1u));
+    EXPECT_THAT(choice.members, ElementsAre(2u, 1u));
+}
+
+TEST(VoxelThinAdaptive, RandomSizes_AgreeWithTheDefinition) {
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        const PointCloud cloud = random_cube(3000, seed);
+        std::vector<double> sizes;
+        for (const Vec3& p : cloud.positions) sizes.push_back(0.02 + 0.3 * p.x() * p.x());
+        const OctreeChoice choice = chosen(cloud, sizes, 0.04);
+        ByDefinition expected{cloud, sizes};
+        std::vector<u32> rows(cloud.size());
+        for (u32 row = 0; row < rows.size(); ++row) rows[row] = row;
+        expected.cut(rows, bounding_box(cloud.positions.span()).low, 0.04 * 32);
+        std::ranges::sort(expected.kept);
+        EXPECT_THAT(choice.kept, ::testing::ElementsAreArray(expected.kept)) << seed;
+        EXPECT_GT(choice.largest, 2 * choice.smallest);
+    }
+}
+
+TEST(VoxelThinAdaptive, OnASphere_ThinsAboutAsTheQuantileDoes) {
+    const PointCloud sphere = fibonacci_sphere(50'000);
+    const auto adaptive = thin(sphere, within(0.01, VoxelThinParams::Rule::adaptive)).kept.size();
+    const auto quantile = thin(sphere, within(0.01)).kept.size();
+    EXPECT_NEAR(static_cast<double>(adaptive) / static_cast<double>(quantile), 1, 0.15);
+}
+
+TEST(VoxelThinAdaptive, WhereTheScanIsFlat_FarFewerPointsStay) {
+    // A plate with a hemisphere of radius 1 on it: the plate allows the largest bins, the hemisphere small ones.
+    Array<Vec3> points;
+    for (int i = -100; i <= 100; ++i)
+        for (int j = -100; j <= 100; ++j)
+            if (const Vec3 p(0.05 * i, 0.05 * j, 0); p.norm() > 1) points.push_back(p);
+    for (const Vec3& p : fibonacci_sphere(8000).positions)
+        if (p.z() > 0) points.push_back(p);
+    const PointCloud cloud{{}, std::move(points), {}};
+    const VoxelThinResult adaptive = thin(cloud, within(0.01, VoxelThinParams::Rule::adaptive));
+    const VoxelThinResult quantile = thin(cloud, within(0.01));
+    const auto counts = [](const VoxelThinResult& result) {
+        std::array<double, 2> plate_and_ball{};
+        for (const Vec3& p : result.points.positions) ++plate_and_ball[p.z() > 0.2];
+        return plate_and_ball;
+    };
+    EXPECT_LT(counts(adaptive)[0], 0.3 * counts(quantile)[0]);
+    // Two thirds of 0.01 over 2, rooted: the sphere's own bins, which no leaf there exceeds.
+    EXPECT_GT(counts(adaptive)[1], 0.95 * counts(thin(cloud, bins_of(std::sqrt(0.01 / 3))))[1]);
+}
+
+}  // namespace
+}  // namespace scanmill::test
