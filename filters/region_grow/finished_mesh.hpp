@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// From places to the mesh that leaves the filter.
+
+#include "region_grow/surface.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/quantity.hpp"
+
+namespace scanmill::growing {
+
+struct FinishedMesh {
+    TriangleMesh mesh;
+    /// Per vertex its row in the cloud.
+    Array<u32> rows;
+};
+
+/// The used points in input order with all their columns, triangles as they were formed, lowest vertex first; sharp
+/// edges: those that bend by more than `sharp_angle`, and the patches' edges. Cost: linear.
+FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const Edge> patch_edges,
+                         Angle sharp_angle, unsigned threads);
+
+}  // namespace scanmill::growing

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Normals that came with the points.
+
+#include "region_grow/point_normals.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/context.hpp"
+
+namespace scanmill::growing {
+
+/// Replaces the principal normals by those of the column `normal`, where there is one; whether there is. A row whose
+/// normal is zero or not finite keeps its principal one, turned to its neighbours' given ones; how many such rows there
+/// were is warned of. Throws Error when the column is not three numbers per row.
+bool take_given_normals(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
+                        PointNormals& normals, Context& context);
+
+}  // namespace scanmill::growing

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "region_grow/growth.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "region_grow/sectors.hpp"
+
+namespace scanmill::growing {
+
+Growth::Growth(Surface& surface, Score score, std::vector<Limits> limits, Context& context)
+    : surface_(surface),
+      chooser_(surface, score),
+      limits_(std::move(limits)),
+      context_(context) {}
+
+void Growth::add(const Triangle& triangle, Pass pass) {
+    surface_.add(triangle, pass);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const u32 from = triangle[i], to = triangle[(i + 1) % 3];
+        if (surface_.fans.right_of(from, to) == nobody) waiting_[0].push_back({from, to});
+    }
+    if (surface_.triangles.size() < next_check_) return;
+    next_check_ = surface_.triangles.size() + (1 << 14);
+    context_.check_cancelled();
+    context_.progress(0.4 + 0.5 * std::min(1.0, static_cast<double>(surface_.triangles.size()) /
+                                                    (2.0 * static_cast<double>(surface_.samples.size()))));
+}
+
+void Growth::continue_at(DirectedEdge edge, std::size_t line, const Limits& limits) {
+    if (surface_.fans.right_of(edge.from, edge.to) != nobody) return;  // continued from the other side
+    const SuitablePoint found = chooser_.choose(edge.from, edge.to, limits, line == 2);
+    if (line < 2 && found.uncovered)
+        waiting_[2].push_back(edge);
+    else if (found.point == nobody)
+        parked_.push_back({edge, line == 2 ? std::size_t(1) : std::size_t(0)});
+    else if (line == 0 && !found.plain)
+        waiting_[1].push_back(edge);
+    else
+        add({edge.from, found.point, edge.to}, limits.pass);
+}
+
+void Growth::grow(const Limits& limits) {
+    for (;;) {
+        const auto line = std::ranges::find_if(waiting_, [](const auto& edges) { return !edges.empty(); });
+        if (line == waiting_.end()) return;
+        const DirectedEdge edge = line->front();
+        line->pop_front();
+        continue_at(edge, static_cast<std::size_t>(line - waiting_.begin()), limits);
+    }
+}
+
+void Growth::retry(std::size_t round) {
+    std::vector<ParkedEdge> left;
+    for (std::size_t i = 0; i < parked_.size(); ++i) {  // grows on the way
+        auto [edge, tried] = parked_[i];
+        for (; tried <= round; ++tried) {
+            if (surface_.fans.right_of(edge.from, edge.to) != nobody) break;
+            const SuitablePoint found = chooser_.choose(edge.from, edge.to, limits_[tried], true);
+            if (found.point == nobody) continue;
+            add({edge.from, found.point, edge.to}, limits_[tried].pass);
+            grow(limits_.front());
+            break;
+        }
+        if (tried > round) left.push_back({edge, tried});
+    }
+    parked_ = std::move(left);
+}
+
+bool Growth::start(u32 place) {
+    if (!form_seed(place)) return false;
+    parked_.clear();
+    grow(limits_.front());
+    for (std::size_t round = 1; round < limits_.size(); ++round) retry(round);
+    parked_count_ += parked_.size();
+    return true;
+}
+
+bool Growth::is_covered(u32 place, const Vec3& normal) const {
+    const auto& p = surface_.positions;
+    for (u32 other : surface_.neighbourhoods.of(place)) {
+        if (surface_.states[other] == PlaceState::unused) continue;
+        const bool covered = surface_.fans.any(other, [&](const Fans::Pair& pair) {
+            const Triangle triangle{other, pair.first, pair.last};
+            const Vec3 facet = surface_.facet_normal(other, pair.first, pair.last);
+            const double height = std::abs(facet.dot(p[place] - p[other]));
+            return std::abs(facet.dot(normal)) > 0.5 && height < (p[pair.first] - p[pair.last]).norm() &&
+                   lies_over(surface_, triangle, facet, place);
+        });
+        if (covered) return true;
+    }
+    return false;
+}
+
+bool Growth::form_seed(u32 place) {
+    if (surface_.states[place] != PlaceState::unused || is_covered(place, surface_.normals[place])) return false;
+    const Vec3& normal = surface_.normals[place];
+    u32 second = nobody;
+    for (u32 other : surface_.neighbourhoods.of(place))
+        if (surface_.states[other] == PlaceState::unused) {
+            second = other;
+            break;
+        }
+    if (second == nobody || is_covered(second, normal)) return false;
+    const u32 third = chooser_.choose_third(place, second, limits_.front());
+    if (third == nobody || is_covered(third, normal)) return false;
+    const Vec3 up = surface_.facet_normal(place, second, third);
+    add(up.dot(normal) > 0 ? Triangle{place, second, third} : Triangle{place, third, second}, 0);
+    return true;
+}
+
+}  // namespace scanmill::growing

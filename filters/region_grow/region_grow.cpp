@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "region_grow/region_grow.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+#include "region_grow/finished_mesh.hpp"
+#include "region_grow/given_normals.hpp"
+#include "region_grow/patch_edges.hpp"
+#include "region_grow/pieces.hpp"
+#include "region_grow/pinches.hpp"
+#include "region_grow/search_radii.hpp"
+#include "region_grow/seeds.hpp"
+#include "region_grow/small_holes.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/geometry/feature_lines.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using namespace growing;
+
+void require_in_range(const RegionGrowParams& params, std::size_t points) {
+    const double least = params.min_angle.in_degrees(), bend = params.max_normal_angle.in_degrees();
+    if (!(least >= 0 && least < 60))
+        throw Error("min-angle is {} degrees; it must be at least 0 and below 60, what no triangle exceeds", least);
+    if (!(bend > 0 && bend <= 180)) throw Error("max-normal-angle is {} degrees; it must be above 0 and at most 180", bend);
+    if (params.search_radius) {
+        const double radius = params.search_radius->value();
+        if (!(radius > 0 && std::isfinite(radius))) throw Error("search-radius is {}; it must be above 0", radius);
+    }
+    if (params.close_holes > 100) throw Error("close-holes is {}; at most 100 edges are closed", params.close_holes);
+    if (params.start && *params.start >= points)
+        throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points);
+}
+
+/// Three places off one line, by the two farthest from the first and from the line.
+void require_area(const Samples& samples, std::size_t points) {
+    if (samples.size() < 3)
+        throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", samples.size(), points);
+    const auto& p = samples.positions;
+    const auto farthest = [&](const auto& distance) {
+        return *std::ranges::max_element(p, {}, distance);
+    };
+    const Vec3 end = farthest([&](const Vec3& x) { return (x - p[0]).squaredNorm(); });
+    const Vec3 along = (end - p[0]).normalized();
+    const auto off_line = [&](const Vec3& x) { return (x - p[0]).cross(along).norm(); };
+    const double off = off_line(farthest(off_line));
+    if (off <= 1e-9 * (end - p[0]).norm())
+        throw Error("all {} distinct points lie on one line, to within {:.2g} u; a surface needs some off it",
+                    samples.size(), off / samples.scale)
+            .hint("scan more than a single profile, or check that the columns x, y and z are read as such");
+}
+
+/// The given limits and those that parked edges are retried under.
+std::vector<Limits> limits_of(const RegionGrowParams& params) {
+    struct Round {
+        double angle, bend, point, rough, reach;
+    };
+    // Angles shrink and bends grow by these factors. The limits to the points' own normals keep sheets apart and
+    // ends open.
+    constexpr std::array<Round, 4> rounds{
+        {{1, 1, 60, 75, 1}, {2.0 / 3, 7.0 / 6, 75, 85, 1.15}, {1.0 / 3, 4.0 / 3, 80, 85, 1.3}, {1.0 / 30, 4.0 / 3, 80, 85, 1.3}}};
+    constexpr double degree = 3.14159265358979323846 / 180;
+    std::vector<Limits> limits;
+    for (const Round& round : rounds) {
+        const double bend = std::min(180 * degree, params.max_normal_angle.in_radians() * round.bend);
+        limits.push_back({std::sin(params.min_angle.in_radians() * round.angle) * (1 - 1e-12), std::cos(bend) - 1e-9,
+                          std::cos(round.point * degree), std::cos(round.rough * degree), round.reach, static_cast<Pass>(limits.size())});
+    }
+    return limits;
+}
+
+Array<double> search_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, const RegionGrowParams& params,
+                           unsigned threads) {
+    if (!params.search_radius) return density_radii(samples, neighbourhoods, threads);
+    Array<double> radii(samples.size());
+    std::ranges::fill(radii, params.search_radius->value() * samples.scale);
+    return radii;
+}
+
+std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std::optional<u32> row) {
+    if (!row) return std::nullopt;
+    const Vec3 wanted = cloud.positions[*row] * samples.scale;
+    return static_cast<u32>(std::ranges::find(samples.positions, wanted) - samples.positions.begin());
+}
+
+[[noreturn]] void refuse_start(u32 row) {
+    throw Error("no triangle can start at row {}: no two other points near it make one within the limits", row)
+        .hint("start at another point, on a flat and evenly sampled part, or leave start to `auto`");
+}
+
+[[noreturn]] void refuse_all(const Samples& samples, const RegionGrowParams& params) {
+    const std::string radius = params.search_radius
+                                   ? fmt::format("search-radius {} u", params.search_radius->value())
+                                   : std::string("the automatic search-radius");
+    throw Error("no three of the {} distinct points make a triangle with angles of at least {} and {}", samples.size(),
+                params.min_angle.text(), radius)
+        .hint("enlarge search-radius, or lessen min-angle");
+}
+
+void report(const RegionGrowResult& result, std::size_t places, Context& context) {
+    const auto count = [&](std::string_view name, std::size_t value) {
+        context.metric(name, static_cast<double>(value));
+    };
+    count("triangles", result.mesh.triangles.size());
+    count("components", result.components);
+    count("loops", result.loops);
+    count("holes", result.holes);
+    count("unused-points", result.unused_points);
+    count("duplicates", result.duplicates);
+    count("patch-edges", result.patch_edges);
+    count("creases", result.creases);
+    count("corners", result.corners);
+    count("closed-holes", result.closed_holes);
+    count("relaxed-triangles", static_cast<std::size_t>(std::ranges::count_if(
+                                   result.passes, [](u8 pass) { return pass > 0 && pass < closing_pass; })));
+    if (200 * result.unused_points > places)
+        context.warn(fmt::format("{} of {} distinct points are in no triangle; thin the scan, or remove its noise first",
+                                 result.unused_points, places));
+}
+
+}  // namespace
+
+RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context) {
+    require_finite(cloud.positions.span());
+    require_in_range(params, cloud.size());
+    if (cloud.size() == 0) throw Error("needs at least 3 distinct points; the cloud has none");
+    const Samples samples = distinct_samples(cloud.positions.span());
+    require_area(samples, cloud.size());
+    context.progress(0.05);
+    const Neighbourhoods neighbourhoods(samples, context.threads());
+    context.check_cancelled();
+    context.progress(0.3);
+    PointNormals normals = principal_normals(samples, neighbourhoods, context.threads());
+    const bool oriented = take_given_normals(cloud, samples, neighbourhoods, normals, context);
+    Surface surface(samples, neighbourhoods, std::move(normals),
+                    search_radii(samples, neighbourhoods, params, context.threads()), oriented);
+    context.progress(0.4);
+
+    const std::vector<Limits> limits = limits_of(params);
+    const Score score = params.score == RegionGrowParams::Score::midpoint ? Score::midpoint : Score::circumradius;
+    Growth growth(surface, score, limits, context);
+    Array<u32> groups;
+    if (!grow_all_pieces(surface, growth, place_of(samples, cloud, params.start), groups)) refuse_start(*params.start);
+    if (surface.triangles.empty()) refuse_all(samples, params);
+    context.progress(0.9);
+
+    RegionGrowResult result;
+    result.closed_holes = close_small_holes(surface, params.close_holes);
+    result.removed_triangles = remove_pinches(surface);
+    // What was removed may have left a small hole; at single fans closing makes no new pinch.
+    result.closed_holes += close_small_holes(surface, params.close_holes);
+    PointChooser chooser(surface, score);
+    const std::vector<Edge> patch_edges = find_patch_edges(surface, chooser, limits.front());
+    const Pieces pieces = find_pieces(surface);
+    if (!oriented) face_outwards(surface, pieces, groups);
+
+    FinishedMesh finished = finish_mesh(cloud, surface, patch_edges, params.sharp_angle, context.threads());
+    result.mesh = std::move(finished.mesh);
+    result.rows = std::move(finished.rows);
+    result.passes = std::move(surface.passes);
+    FeatureParams feature_params;
+    feature_params.sharp_angle = params.sharp_angle;
+    const FeatureLines lines = find_features(result.mesh, feature_params, context.threads());
+    result.features = lines.graph;
+    result.loops = lines.counts.holes + lines.counts.boundaries;
+    result.holes = lines.counts.holes;
+    result.creases = lines.counts.creases;
+    result.corners = lines.counts.corners;
+    result.patch_edges = patch_edges.size();
+    result.components = pieces.count;
+    result.duplicates = samples.duplicates;
+    result.unused_points = samples.size() - result.rows.size();
+    report(result, samples.size(), context);
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill

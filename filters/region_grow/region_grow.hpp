@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A surface grown over thinned points, triangle by triangle from a seed, that ends where the points end: at borders,
+/// holes and sharp edges, which it tells.
+///
+/// Every edge of the front looks for its *suitable point*: one in the search radius, for which no angle of the new
+/// triangle is below `min_angle` and its normal differs from that of every joined triangle by at most
+/// `max_normal_angle`; of these the one that leaves no other in the circle through the three.
+
+#include <optional>
+
+#include "scanmill/data/features.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/context.hpp"
+#include "scanmill/filter/quantity.hpp"
+
+namespace scanmill {
+
+struct RegionGrowParams {
+    enum class Score {
+        circumradius,  ///< no other point in the circle through the three: as in a Delaunay triangulation
+        midpoint       ///< the thesis: the point nearest the edge's middle
+    };
+    /// Of every triangle of the first pass; 0 or more, below 60 degrees.
+    Angle min_angle = Angle::degrees(10);
+    /// Between the normals of a new triangle and each one it joins; above 0, at most 180 degrees.
+    Angle max_normal_angle = Angle::degrees(90);
+    /// The suitable point is no farther from an end of the edge, and the circle through the triangle has at most a third
+    /// of this as radius: larger empty circles are holes. Above 0; nothing: 2 √3 B, B being the bin size that thinning to
+    /// the local density would have had.
+    std::optional<Length> search_radius;
+    /// Edges whose triangles' normals differ by more are creases. 0 to 180 degrees.
+    Angle sharp_angle = Angle::degrees(40);
+    /// Loops of at most this many edges are closed; 0 (as 1 and 2) closes none, at most 100.
+    u32 close_holes = 4;
+    Score score = Score::circumradius;
+    /// The row of the point that the seed triangle starts at; nothing: the flattest place.
+    std::optional<u32> start;
+};
+
+struct RegionGrowResult {
+    /// Over the points used, in input order with their columns. Its sharp edges are the creases, and the border edges
+    /// beyond which the surface goes on in another patch.
+    TriangleMesh mesh;
+    /// Its borders, holes and creases, with the normals on both sides.
+    FeatureGraph features;
+    /// Per vertex its row in the cloud, ascending.
+    Array<u32> rows;
+    /// Per triangle: 0 formed under the given limits, 1 to 3 under relaxed ones, 4 closing a small hole.
+    Array<u8> passes;
+    std::size_t components = 0;
+    /// Boundary loops, and those of them that are holes.
+    std::size_t loops = 0, holes = 0;
+    /// Rows without a vertex of their own: repeats of an earlier row, and places that no triangle reached.
+    std::size_t duplicates = 0, unused_points = 0;
+    /// Border edges beyond which points were turned down for the angle to the triangle there alone.
+    std::size_t patch_edges = 0;
+    std::size_t creases = 0, corners = 0, closed_holes = 0, removed_triangles = 0;
+};
+
+/// Grows a surface over the cloud, as many pieces as it takes.
+///
+/// Points should be thinned: of even density, at least locally. A column `normal` (three numbers per row) is used as it
+/// is, sign and all; a normal that is zero or not finite is replaced by the principal one. Without the column normals
+/// are principal directions of the 16 nearest neighbours.
+///
+/// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
+/// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, a
+/// search radius too small for any triangle.
+///
+/// Post: an oriented manifold: every edge in one triangle or in two that pass it in opposite directions, every vertex's
+/// triangles one fan. No vertex twice in one place. Triangles round a vertex do not overlap as seen along its normal.
+/// Angles of triangles of pass 0 keep the limits; later passes relax them (see the page). Pieces that enclose a volume
+/// face outwards; so do open ones that bulge, flat ones face up. With a normal column they face as it says.
+/// Ties: equal scores (to 1e-9) by place, along a space-filling curve through the cloud's box. So the mesh depends neither
+/// on the order of the points, up to numbering, nor on the number of threads.
+/// Cost: O(n log n) time, about 400 bytes per point beside the result.
+/// Metrics: see plugin.cpp. Warns when more than half a percent of the places stay unused.
+/// Source: Wang 2006, chapter 4, made robust; the choice by empty circles after Delaunay.
+RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
+
+}  // namespace scanmill

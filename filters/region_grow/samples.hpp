@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The places that a surface grows over: each once, numbered so that neighbours in space are neighbours in memory.
+
+#include <span>
+
+#include "scanmill/data/array.hpp"
+#include "scanmill/data/frame.hpp"
+
+namespace scanmill::growing {
+
+struct Samples {
+    /// Distinct, along the Morton curve through their box, equal codes by x, y, z: the order depends on the places
+    /// alone, so whatever is decided by number is decided by place.
+    Array<Vec3> positions;
+    /// Per place the lowest row of the cloud that lies there.
+    Array<u32> rows;
+    /// What the cloud's positions were multiplied with: a power of two that brings the box's extent near 1, so that
+    /// products of coordinates neither overflow nor vanish.
+    double scale = 1;
+    std::size_t duplicates = 0;
+
+    std::size_t size() const { return positions.size(); }
+};
+
+/// Pre: finite positions, at least one, fewer than 2^32. Cost: O(n log n) at most, 60 bytes per point.
+Samples distinct_samples(std::span<const Vec3> positions);
+
+}  // namespace scanmill::growing

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "region_grow/suitable_point.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "region_grow/sectors.hpp"
+
+namespace scanmill::growing {
+
+namespace {
+
+/// Scores no farther apart than this, relative to 1 or to themselves, are equal: what rounding does to points of a grid.
+constexpr double same_score = 1e-9;
+/// Of the search radius: how large an empty circle may be before it is a hole of the surface. Points thinned with bins of
+/// edge B leave circles of 1.1 B at most; the search radius is 2 √3 B.
+constexpr double largest_circle = 1.0 / 3;
+
+/// Of the neighbours' variance, across their plane: above the first a point's normal tells less, at an edge; above the
+/// second nothing, at a tip. At an edge of 90 degrees it is a tenth; noise of 0.3 spacings makes 0.03.
+constexpr float rough = 0.04f, shapeless = 0.18f;
+/// A triangle that bends back by more than 150 degrees lies on its neighbour.
+constexpr double least_bend_cosine = -0.8660254037844387;
+
+}  // namespace
+
+double PointChooser::search_radius(u32 from, u32 to) const {
+    return std::max(surface_.search_radius[from], surface_.search_radius[to]);
+}
+
+void PointChooser::collect(u32 from, u32 to, double reach, bool far) {
+    near_.clear();
+    if (far) {
+        // In a circle through the edge's ends no two points are farther apart than its diameter.
+        const double radius = score_ == Score::midpoint ? reach : 2 * largest_circle * reach;
+        surface_.neighbourhoods.within(from, radius * radius, buffer_, near_);
+        if (score_ == Score::midpoint) {
+            surface_.neighbourhoods.within(to, radius * radius, buffer_, near_);
+            std::ranges::sort(near_);
+            near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+        }
+        return;
+    }
+    const auto first = surface_.neighbourhoods.of(from);
+    near_.assign(first.begin(), first.end());
+    for (u32 other : surface_.neighbourhoods.of(to))
+        if (std::ranges::find(first, other) == first.end()) near_.push_back(other);
+}
+
+void PointChooser::rate(u32 from, u32 to, const Vec3& joined, const Limits& limits) {
+    const Vec3 &a = surface_.positions[from], &b = surface_.positions[to];
+    const Vec3 middle = (a + b) / 2;
+    const double half_squared = (b - a).squaredNorm() / 4;
+    const double reach = search_radius(from, to) * limits.reach;
+    const double largest = largest_circle * reach;
+    const double largest_cotangent =
+        score_ == Score::midpoint ? std::numeric_limits<double>::infinity()
+                                  : std::sqrt(std::max(0.0, largest * largest / half_squared - 1));
+    candidates_.clear();
+    fronts_.clear();
+    for (u32 point : near_) {
+        if (point == from || point == to) continue;
+        if (surface_.states[point] == PlaceState::front) fronts_.push_back(point);
+        const Vec3 &d = surface_.positions[point], to_a = a - d, to_b = b - d;
+        const Vec3 normal = to_b.cross(to_a);
+        const double twice_area = normal.norm();
+        if (!(twice_area > 0)) continue;
+        // The circumcentre lies this many halves of the edge beyond its middle.
+        const double cotangent = to_a.dot(to_b) / twice_area;
+        if (std::abs(cotangent) > largest_cotangent) continue;
+        if (joined.dot(normal) < limits.normal_cosine * twice_area) continue;
+        if (score_ == Score::midpoint &&
+            std::min(to_a.squaredNorm(), to_b.squaredNorm()) > reach * reach)
+            continue;
+        const double score = score_ == Score::midpoint ? (d - middle).squaredNorm() / half_squared : cotangent;
+        candidates_.push_back({score, point, normal / twice_area});
+    }
+}
+
+bool PointChooser::agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const {
+    return std::ranges::all_of(triangle, [&](u32 corner) {
+        const double cosine = surface_.normals[corner].dot(normal);
+        const bool sign_counts = surface_.oriented || surface_.states[corner] != PlaceState::unused;
+        const float roughness = surface_.roughness[corner];
+        if (roughness > shapeless) return true;
+        const double least = roughness > rough ? limits.rough_cosine : limits.point_cosine;
+        return (sign_counts ? cosine : std::abs(cosine)) >= least;
+    });
+}
+
+bool PointChooser::agrees_with_joined(u32 from, u32 to, const Vec3& normal, double least) const {
+    const u32 third = surface_.fans.left_of(to, from);
+    return third == nobody || surface_.facet_normal(to, from, third).dot(normal) >= least;
+}
+
+Vec3 PointChooser::fan_axis(u32 vertex, const Vec3& normal) const {
+    Vec3 sum = normal;
+    surface_.fans.any(vertex, [&](const Fans::Pair& pair) {
+        sum += surface_.facet_normal(vertex, pair.first, pair.last);
+        return false;
+    });
+    return sum.normalized();
+}
+
+bool PointChooser::sectors_are_free(const Triangle& triangle, const Vec3& normal, Pass pass) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const u32 corner = triangle[i];
+        if (surface_.fans.empty(corner)) continue;
+        const Vec3 axis = pass == 0 ? surface_.normals[corner] : fan_axis(corner, normal);
+        if (!sector_is_free(surface_, corner, triangle[(i + 1) % 3], triangle[(i + 2) % 3], axis)) return false;
+    }
+    return true;
+}
+
+bool PointChooser::lies_over_others(const Triangle& triangle, const Vec3& normal) {
+    const auto& p = surface_.positions;
+    double longest = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        longest = std::max(longest, (p[triangle[(i + 1) % 3]] - p[triangle[i]]).norm());
+    const double height = longest / 2;
+    const auto on_this_sheet = [&](u32 x) {
+        return (surface_.states[x] == PlaceState::unused && !surface_.oriented) || surface_.normals[x].dot(normal) > 0;
+    };
+    for (const Candidate& other : turned_down_)
+        if (on_this_sheet(other.point) && std::abs(normal.dot(p[other.point] - p[triangle[0]])) < height &&
+            lies_over(surface_, triangle, normal, other.point))
+            return true;
+    for (u32 x : fronts_) {
+        if (x == triangle[1] || !on_this_sheet(x)) continue;
+        if (border_crosses(surface_, x, triangle[0], triangle[1], triangle[2], normal, height)) return true;
+    }
+    return false;
+}
+
+bool PointChooser::has_good_angles(u32 from, u32 to, u32 point, const Limits& limits) const {
+    const auto& p = surface_.positions;
+    const double a = (p[point] - p[to]).norm(), b = (p[point] - p[from]).norm(), c = (p[to] - p[from]).norm();
+    // The smallest angle is opposite the shortest side; its sine is that side over the diameter of the circumcircle.
+    const double twice_area = (p[point] - p[from]).cross(p[to] - p[from]).norm();
+    return std::min({a, b, c}) * twice_area >= limits.least_sine * a * b * c;
+}
+
+bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits,
+                               bool new_surface) {
+    const u32 point = candidate.point;
+    if (surface_.states[point] == PlaceState::interior || !has_good_angles(from, to, point, limits)) return false;
+    const Triangle triangle{from, point, to};
+    if (!agrees_with_points(triangle, candidate.normal, limits)) return false;
+    if (new_surface) return true;
+    const Fans& fans = surface_.fans;
+    if (fans.left_of(from, point) != nobody || fans.left_of(point, to) != nobody) return false;
+    if (!agrees_with_joined(from, point, candidate.normal, limits.normal_cosine) ||
+        !agrees_with_joined(point, to, candidate.normal, limits.normal_cosine))
+        return false;
+    return sectors_are_free(triangle, candidate.normal, limits.pass) && !lies_over_others(triangle, candidate.normal);
+}
+
+SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool far) {
+    const Vec3 joined = surface_.facet_normal(from, to, surface_.fans.left_of(from, to));
+    collect(from, to, search_radius(from, to) * limits.reach, far);
+    rate(from, to, joined, limits);
+    turned_down_.clear();
+    const double half = (surface_.positions[to] - surface_.positions[from]).norm() / 2;
+    while (!candidates_.empty()) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Candidate& candidate : candidates_) least = std::min(least, candidate.score);
+        const double equal = least + same_score * (1 + std::abs(least));
+        auto best = candidates_.end();
+        for (auto it = candidates_.begin(); it != candidates_.end(); ++it)
+            if (it->score <= equal && (best == candidates_.end() || it->point < best->point)) best = it;
+        const Candidate candidate = *best;
+        *best = candidates_.back();
+        candidates_.pop_back();
+        if (!is_suitable(from, to, candidate, limits, false)) {
+            turned_down_.push_back(candidate);
+            continue;
+        }
+        SuitablePoint result{candidate.point, false, false};
+        if (!far) {
+            const double reach =
+                std::min(surface_.neighbourhoods.squared_reach(from), surface_.neighbourhoods.squared_reach(to));
+            const double s = candidate.score;
+            // How far from the edge's ends the nearest of them lets a better point be: the top of the circle's arc, or
+            // the circle round the middle.
+            const double top = score_ == Score::midpoint ? half * (1 + std::sqrt(s))
+                                                         : half * std::hypot(1.0, s + std::sqrt(1 + s * s));
+            result.uncovered = top * top > reach;
+        }
+        const double largest = largest_circle * search_radius(from, to);
+        const double radius = half * std::sqrt(1 + candidate.score * candidate.score);
+        result.plain = joined.dot(candidate.normal) > 0.75 && radius < 0.6 * largest && turned_down_.empty();
+        return result;
+    }
+    return {nobody, false, !far};
+}
+
+bool PointChooser::ends_at_other_patch(u32 from, u32 to, const Limits& limits) {
+    const Vec3 joined = surface_.facet_normal(from, to, surface_.fans.left_of(from, to));
+    collect(from, to, search_radius(from, to) * limits.reach, true);
+    Limits bent = limits;
+    bent.normal_cosine = least_bend_cosine;
+    rate(from, to, joined, bent);
+    return std::ranges::any_of(candidates_, [&](const Candidate& candidate) {
+        return joined.dot(candidate.normal) < limits.normal_cosine && surface_.states[candidate.point] != PlaceState::unused &&
+               has_good_angles(from, to, candidate.point, limits);
+    });
+}
+
+u32 PointChooser::choose_third(u32 from, u32 to, const Limits& limits) {
+    collect(from, to, search_radius(from, to) * limits.reach, true);
+    Limits any_side = limits;
+    any_side.normal_cosine = -1;
+    rate(from, to, Vec3::Zero(), any_side);
+    u32 best = nobody;
+    double least = std::numeric_limits<double>::infinity();
+    for (Candidate& candidate : candidates_) {
+        if (surface_.states[candidate.point] != PlaceState::unused) continue;
+        if (surface_.normals[from].dot(candidate.normal) < 0) candidate.normal = -candidate.normal;
+        if (!is_suitable(from, to, candidate, limits, true)) continue;
+        const double margin = same_score * (1 + std::abs(least));
+        if (best != nobody && (candidate.score > least + margin ||
+                               (candidate.score >= least - margin && candidate.point > best)))
+            continue;
+        best = candidate.point;
+        least = std::min(least, candidate.score);
+    }
+    return best;
+}
+
+}  // namespace scanmill::growing

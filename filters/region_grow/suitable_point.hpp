@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The rules by which an edge of the front chooses the point of its next triangle.
+
+#include <optional>
+#include <vector>
+
+#include "region_grow/surface.hpp"
+
+namespace scanmill::growing {
+
+enum class Score : u8 { circumradius, midpoint };
+
+/// What a new triangle must keep to. Angles as what is compared.
+struct Limits {
+    double least_sine;          ///< of the triangle's smallest angle
+    double normal_cosine;       ///< between the triangle's normal and that of every joined one: at least
+    double point_cosine;        ///< between the triangle's normal and that of each of its points: at least
+    double rough_cosine;        ///< the same for points that do not lie in a plane with their neighbours
+    double reach;               ///< the search radius counts this many times
+    Pass pass;                  ///< 0: the given limits; later ones judge sectors by the triangles there, not by points
+};
+
+struct SuitablePoint {
+    u32 point = nobody;
+    /// Nothing about the choice is in doubt: the surface bends little here.
+    bool plain = false;
+    /// The neighbour lists did not hold all points that could have been better.
+    bool uncovered = false;
+};
+
+class PointChooser {
+public:
+    PointChooser(const Surface& surface, Score score) : surface_(surface), score_(score) {}
+
+    /// The point D for which triangle (from, D, to) continues the surface over its border edge from → to; none when no
+    /// point keeps to the limits. `far`: look at all points in the search radius, not only at the nearest ones.
+    ///
+    /// circumradius: the point that sees the edge under the largest angle, so that no other one lies in the circle
+    /// through the three; midpoint: the one nearest the edge's midpoint. Equal ones (within rounding) by number.
+    SuitablePoint choose(u32 from, u32 to, const Limits& limits, bool far);
+    /// The point with which two unused ones begin a surface, on whichever side.
+    u32 choose_third(u32 from, u32 to, const Limits& limits);
+    /// Whether a place within reach of a border edge would do, were it not for the angle to the triangle there, and the
+    /// angle is no fold back onto it.
+    bool ends_at_other_patch(u32 from, u32 to, const Limits& limits);
+
+private:
+    struct Candidate {
+        double score;
+        u32 point;
+        Vec3 normal;
+    };
+
+    void collect(u32 from, u32 to, double reach, bool far);
+    void rate(u32 from, u32 to, const Vec3& joined, const Limits& limits);
+    bool is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool new_surface);
+    bool has_good_angles(u32 from, u32 to, u32 point, const Limits& limits) const;
+    bool agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const;
+    bool agrees_with_joined(u32 from, u32 to, const Vec3& normal, double least) const;
+    bool sectors_are_free(const Triangle& triangle, const Vec3& normal, Pass pass) const;
+    Vec3 fan_axis(u32 vertex, const Vec3& normal) const;
+    bool lies_over_others(const Triangle& triangle, const Vec3& normal);
+    double search_radius(u32 from, u32 to) const;
+
+    const Surface& surface_;
+    Score score_;
+    NeighbourBuffer buffer_;
+    std::vector<u32> near_;
+    std::vector<u32> fronts_;
+    std::vector<Candidate> candidates_;
+    std::vector<Candidate> turned_down_;
+};
+
+}  // namespace scanmill::growing

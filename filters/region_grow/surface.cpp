@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "region_grow/surface.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+
+namespace scanmill::growing {
+
+Surface::Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radii,
+                 bool are_oriented)
+    : samples(from),
+      neighbourhoods(near),
+      positions(from.positions),
+      normals(std::move(facing.directions)),
+      roughness(std::move(facing.roughness)),
+      search_radius(std::move(search_radii)),
+      oriented(are_oriented),
+      fans(from.size()),
+      states(from.size()) {
+    std::ranges::fill(states, PlaceState::unused);
+    triangles.reserve(2 * from.size());
+    passes.reserve(2 * from.size());
+}
+
+Vec3 Surface::facet_normal(u32 a, u32 b, u32 c) const {
+    return (positions[b] - positions[a]).cross(positions[c] - positions[a]).normalized();
+}
+
+void Surface::add(const Triangle& triangle, Pass pass) {
+    const auto& [a, b, c] = triangle;
+    assert(fans.left_of(a, b) == nobody && fans.left_of(b, c) == nobody && fans.left_of(c, a) == nobody);
+    const Vec3 normal = facet_normal(a, b, c);
+    fans.add(triangle);
+    triangles.push_back(triangle);
+    passes.push_back(pass);
+    for (u32 corner : triangle) {
+        if (states[corner] == PlaceState::unused && !oriented && normals[corner].dot(normal) < 0)
+            normals[corner] = -normals[corner];
+        states[corner] = fans.closed(corner) ? PlaceState::interior : PlaceState::front;
+    }
+}
+
+}  // namespace scanmill::growing

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The surface while it grows: its triangles, what every place is to it, and which way it faces there.
+
+#include "region_grow/fans.hpp"
+#include "region_grow/neighbourhoods.hpp"
+#include "region_grow/point_normals.hpp"
+
+namespace scanmill::growing {
+
+enum class PlaceState : u8 { unused, front, interior };
+
+/// Which limits a triangle was formed under: 0 the given ones, 1 and 2 relaxed ones, 3 none (it closed a small hole).
+using Pass = u8;
+
+struct Surface {
+    Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radius,
+            bool oriented);
+
+    const Samples& samples;
+    const Neighbourhoods& neighbourhoods;
+    const Array<Vec3>& positions;
+    /// Of places on the surface they point to its upside; of others so when `oriented`.
+    Array<Vec3> normals;
+    Array<float> roughness;
+    /// Per place, in the samples' scale.
+    Array<double> search_radius;
+    /// Normals came with the cloud: a triangle must agree with their sign.
+    bool oriented;
+
+    Fans fans;
+    Array<PlaceState> states;
+    Array<Triangle> triangles;
+    Array<Pass> passes;
+
+    /// Whether from → to bounds the surface: a triangle on its left and none on its right.
+    bool is_border(u32 from, u32 to) const {
+        return fans.left_of(from, to) != nobody && fans.right_of(from, to) == nobody;
+    }
+    /// The unit normal of the triangle left of a → b whose third corner is c.
+    Vec3 facet_normal(u32 a, u32 b, u32 c) const;
+
+    /// Adds a → b → c. Pre: none of its three directed edges has a triangle.
+    void add(const Triangle& triangle, Pass pass);
+};
+
+}  // namespace scanmill::growing
