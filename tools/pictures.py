@@ -10,6 +10,33 @@ from drawing import BRIGHT, INK, PALE, SOLID, Picture
 from plane_geometry import delaunay, nearest_on_profile, scattered, spread_over
 
 
+def region_grow():
+    picture = Picture(8, 4)
+    hole = (5.3, 2.1)
+    points = scattered(random.Random(11), 120, 0.37, 8, 4, lambda p: math.dist(p, hole) > 0.85)
+    triangles = [(corners, circle) for corners, circle in delaunay(points) if circle[1] < 0.6]
+    grown = [t for t, circle in triangles if sum(p[0] + 0.3 * math.sin(2 * p[1]) for p in t) < 3 * 4.1]
+    sides = {}
+    for t in grown:
+        picture.polygon(t, SOLID)
+        for edge in itertools.combinations(t, 2):
+            sides.setdefault(frozenset(edge), []).append(t)
+    ends = {edge: len([t for t, _ in triangles if edge <= set(t)]) for edge in sides}
+    front = [edge for edge, its in sides.items() if len(its) == 1 and ends[edge] == 2]
+    for edge, its in sides.items():
+        if len(its) == 1:
+            picture.line(*edge, BRIGHT if edge in front else INK, 2.5)
+    edge = min(front, key=lambda e: abs(sum(p[1] for p in e) / 2 - 2.9))
+    corners, (centre, radius) = next((t, c) for t, c in triangles if edge <= set(t) and t not in grown)
+    picture.polygon(corners, "none", BRIGHT, 1.5)
+    picture.circle(centre, radius, BRIGHT, dash="4 3")
+    picture.circle(hole, 0.85, PALE, dash="4 3")
+    for p in points:
+        picture.dot(p, radius=3)
+    picture.dot(next(p for p in corners if p not in edge), BRIGHT, 6)
+    return picture
+
+
 def voxel_thin():
     """One profile twice: above with bins of one size, below with leaves as large as the curvature in them allows."""
     picture = Picture(8, 4.4)
@@ -239,6 +266,7 @@ def main():
         ("features", features),
         ("measure", measure),
         ("merge", merge),
+        ("region_grow", region_grow),
         ("sculpt", sculpt),
         ("virtual_scan", virtual_scan),
         ("voxel_thin", voxel_thin),

@@ -2,9 +2,9 @@
 #pragma once
 /// The triangles round every vertex, in a cache line each.
 ///
-/// Triangle (v, a, b), counter-clockwise, is stored at v as the pair a → b: an edge of v's link. The directed edge v → x
-/// has a triangle on its left when a pair begins with x, x → v when a pair ends with it. So all there is to know of an
-/// edge stands at either of its ends.
+/// Triangle (v, a, b), counter-clockwise, is stored at v as the pair a → b: an edge of v's link. The directed edge v →
+/// x has a triangle on its left when a pair begins with x, x → v when a pair ends with it. So all there is to know of
+/// an edge stands at either of its ends.
 
 #include <array>
 

@@ -2,9 +2,9 @@
 #include "region_grow/finished_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scanmill/geometry/facet_normals.hpp"
-#include "scanmill/geometry/sides.hpp"
 
 namespace scanmill::growing {
 
@@ -13,22 +13,31 @@ namespace {
 /// As feature_lines.hpp counts angles as equal.
 constexpr double angle_tie = 1e-9;
 
-Array<Edge> bent_edges(const TriangleMesh& mesh, double limit, unsigned threads) {
-    const Array<u32> twins = sides::oriented_twins(mesh);
-    const FacetNormals normals = facet_normals(mesh, twins, threads);
-    Array<Edge> edges;
-    for (u32 side = 0; side < twins.size(); ++side) {
-        if (twins[side] >= sides::no_side || twins[side] < side) continue;
-        if (angle_between(normals.unit[side / 3], normals.unit[twins[side] / 3]) > limit)
-            edges.push_back(make_edge(sides::start(mesh, side), sides::end(mesh, side)));
-    }
+/// The third corner of the triangle beyond the edge. Triangles may have been turned over since they were stored.
+u32 opposite(const Surface& surface, u32 from, u32 to, u32 third) {
+    const u32 left = surface.fans.left_of(from, to), right = surface.fans.right_of(from, to);
+    return left == third ? right : left;
+}
+
+/// By places. Each edge is asked from its triangle whose third corner is the lower.
+std::vector<Edge> bent_edges(const Surface& surface, double limit) {
+    const double surely_below = std::cos(limit) + 1e-6;
+    std::vector<Edge> edges;
+    for (const Triangle& triangle : surface.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const u32 from = triangle[i], to = triangle[(i + 1) % 3], third = triangle[(i + 2) % 3];
+            const u32 other = opposite(surface, from, to, third);
+            if (other == nobody || other < third) continue;
+            const Vec3 one = surface.facet_normal(from, to, third), two = surface.facet_normal(to, from, other);
+            if (one.dot(two) < surely_below && angle_between(one, two) > limit) edges.push_back(make_edge(from, to));
+        }
     return edges;
 }
 
 }  // namespace
 
 FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const Edge> patch_edges,
-                         Angle sharp_angle, unsigned threads) {
+                         Angle sharp_angle) {
     const auto& rows = surface.samples.rows;
     FinishedMesh finished;
     Array<u32> vertex_of_row(cloud.size());
@@ -53,7 +62,9 @@ FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::s
         std::ranges::rotate(triangles[row], std::ranges::min_element(triangles[row]));
     }
     mesh.triangles = std::move(triangles);
-    Array<Edge> sharp = bent_edges(mesh, sharp_angle.in_radians() + angle_tie, threads);
+    Array<Edge> sharp;
+    for (const auto& [a, b] : bent_edges(surface, sharp_angle.in_radians() + angle_tie))
+        sharp.push_back(make_edge(vertex(a), vertex(b)));
     for (const auto& [a, b] : patch_edges) sharp.push_back(make_edge(vertex(a), vertex(b)));
     std::ranges::sort(sharp);
     mesh.sharp_edges = std::move(sharp);

@@ -17,6 +17,6 @@ struct FinishedMesh {
 /// The used points in input order with all their columns, triangles as they were formed, lowest vertex first; sharp
 /// edges: those that bend by more than `sharp_angle`, and the patches' edges. Cost: linear.
 FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const Edge> patch_edges,
-                         Angle sharp_angle, unsigned threads);
+                         Angle sharp_angle);
 
 }  // namespace scanmill::growing

@@ -48,7 +48,8 @@ bool take_given_normals(const PointCloud& cloud, const Samples& samples, const N
         given[place] = true;
     }
     if (missing == samples.size()) {
-        context.warn(fmt::format("none of the {} normals has a direction; they are taken from the neighbours", missing));
+        context.warn(
+            fmt::format("none of the {} normals has a direction; they are taken from the neighbours", missing));
         return false;
     }
     for (u32 place = 0; place < samples.size(); ++place)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Who is near whom: every place's nearest others, found once, and a search for the few edges that need to look farther.
+/// Who is near whom: every place's nearest others, found once, and a search for the few edges that need to look
+/// farther.
 
 #include <vector>
 

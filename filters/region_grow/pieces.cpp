@@ -53,9 +53,7 @@ void face_outwards(Surface& surface, const Pieces& pieces, std::span<const u32> 
     for (u32 place = 0; place < groups.size(); ++place)
         if (surface.states[place] == PlaceState::front) open[pieces.of_place[place]] = true;
     DisjointSets sets(groups.size() + pieces.count);  // groups by their number, then pieces
-    const auto set_of = [&](u32 place) {
-        return sets.find(static_cast<u32>(groups.size()) + pieces.of_place[place]);
-    };
+    const auto set_of = [&](u32 place) { return sets.find(static_cast<u32>(groups.size()) + pieces.of_place[place]); };
     for (u32 place = 0; place < groups.size(); ++place)
         if (pieces.of_place[place] != nobody && open[pieces.of_place[place]] && groups[place] != nobody)
             sets.unite(groups[place], static_cast<u32>(groups.size()) + pieces.of_place[place]);

@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "region_grow/region_grow.hpp"
 #include "scanmill/filter/plugin.hpp"
+#include "region_grow/region_grow.hpp"
 
 using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = RegionGrowParams;
     return Declare<P>("region-grow", 1)
-        .summary("Grows a surface over thinned points from a seed triangle, and tells its borders, holes and sharp edges.")
+        .summary(
+            "Grows a surface over thinned points from a seed triangle, and tells its borders, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
         .ties("Of equally good points the one that comes first along a curve through the box; of duplicates the first.")
         .not_finite("Refused, with their number and the first of them; normals are replaced instead.")
         .in<PointCloud>("points", "Thinned: of even density, at least locally. A column `normal` is used.")
         .made_by("voxel-thin")
         .out<TriangleMesh>("mesh", "An oriented manifold over the points used, with its sharp edges.")
-        .out<FeatureGraph>("features", "Outer boundaries, holes and creases with the normals on both sides, and corners.")
+        .out<FeatureGraph>("features",
+                           "Outer boundaries, holes and creases with the normals on both sides, and corners.")
         .param("min-angle", &P::min_angle, "No triangle of the first pass has a smaller angle.", at_least(0), below(60))
         .param("max-normal-angle", &P::max_normal_angle,
                "Between a triangle's normal and that of each one it joins; smaller values end patches at sharp edges.",
                above(0), at_most(180))
         .param("search-radius", &P::search_radius,
-               "How far an edge looks for its next point; holes wider than two thirds of it stay open. `auto` is 2 sqrt(3) "
+               "How far an edge looks for its next point; holes wider than two thirds of it stay open. `auto` is 2 "
+               "sqrt(3) "
                "times the bin size that the local density tells.",
                above(0), word("auto"))
         .param("sharp-angle", &P::sharp_angle, "Edges that bend by more are creases.", at_least(0), at_most(180))
@@ -30,8 +33,8 @@ SCANMILL_FILTER() {
                 {{"circumradius", P::Score::circumradius, "The point whose circle with the edge holds no other point."},
                  {"midpoint", P::Score::midpoint, "The point nearest the edge's middle: the thesis's rule."}},
                 "Which of the suitable points an edge takes.")
-        .param("start", &P::start, "Row of the point that the seed triangle starts at; `auto` takes the flattest place.",
-               word("auto"))
+        .param("start", &P::start,
+               "Row of the point that the seed triangle starts at; `auto` takes the flattest place.", word("auto"))
         .metric("triangles", Unit::count, "Triangles of the mesh.", headline)
         .metric("components", Unit::count, "Connected pieces.")
         .metric("loops", Unit::count, "Boundary loops.", headline)

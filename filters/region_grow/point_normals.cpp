@@ -2,6 +2,7 @@
 #include "region_grow/point_normals.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "scanmill/filter/parallel.hpp"
@@ -9,6 +10,9 @@
 namespace scanmill::growing {
 
 namespace {
+
+/// So few that at a border, where they lie on one side, they still are of the same sheet.
+constexpr std::size_t counted_neighbours = 12;
 
 /// A symmetric matrix: xx, yy, zz, xy, xz, yz.
 struct Covariance {
@@ -36,14 +40,13 @@ Covariance covariance(const Samples& samples, u32 place, std::span<const u32> ne
             sum.xz / count - mean.x() * mean.z(), sum.yz / count - mean.y() * mean.z()};
 }
 
-/// The least eigenvalue. Left of it the characteristic polynomial has one sign and bends one way, so Newton's steps from
-/// 0 rise to it and never pass it.
+/// The least eigenvalue. Left of it the characteristic polynomial has one sign and bends one way, so Newton's steps
+/// from 0 rise to it and never pass it.
 double least_eigenvalue(const Covariance& c) {
     const double trace = c.xx + c.yy + c.zz;
-    const double minors =
-        c.xx * c.yy - c.xy * c.xy + (c.xx * c.zz - c.xz * c.xz) + (c.yy * c.zz - c.yz * c.yz);
-    const double determinant = c.xx * (c.yy * c.zz - c.yz * c.yz) - c.xy * (c.xy * c.zz - c.yz * c.xz) +
-                               c.xz * (c.xy * c.yz - c.yy * c.xz);
+    const double minors = c.xx * c.yy - c.xy * c.xy + (c.xx * c.zz - c.xz * c.xz) + (c.yy * c.zz - c.yz * c.yz);
+    const double determinant =
+        c.xx * (c.yy * c.zz - c.yz * c.yz) - c.xy * (c.xy * c.zz - c.yz * c.xz) + c.xz * (c.xy * c.yz - c.yy * c.xz);
     double value = 0;
     for (int step = 0; step < 30; ++step) {
         const double polynomial = ((trace - value) * value - minors) * value + determinant;
@@ -71,7 +74,8 @@ PointNormals principal_normals(const Samples& samples, const Neighbourhoods& nei
     normals.roughness.resize(samples.size());
     for_each_chunk(threads, samples.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
         for (std::size_t place = begin; place < end; ++place) {
-            const auto neighbours = neighbourhoods.of(static_cast<u32>(place));
+            const auto near = neighbourhoods.of(static_cast<u32>(place));
+            const auto neighbours = near.first(std::min(counted_neighbours, near.size()));
             Covariance c = covariance(samples, static_cast<u32>(place), neighbours);
             const double trace = c.xx + c.yy + c.zz;
             const double least = least_eigenvalue(c);

@@ -29,7 +29,8 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
     const double least = params.min_angle.in_degrees(), bend = params.max_normal_angle.in_degrees();
     if (!(least >= 0 && least < 60))
         throw Error("min-angle is {} degrees; it must be at least 0 and below 60, what no triangle exceeds", least);
-    if (!(bend > 0 && bend <= 180)) throw Error("max-normal-angle is {} degrees; it must be above 0 and at most 180", bend);
+    if (!(bend > 0 && bend <= 180))
+        throw Error("max-normal-angle is {} degrees; it must be above 0 and at most 180", bend);
     if (params.search_radius) {
         const double radius = params.search_radius->value();
         if (!(radius > 0 && std::isfinite(radius))) throw Error("search-radius is {}; it must be above 0", radius);
@@ -44,9 +45,7 @@ void require_area(const Samples& samples, std::size_t points) {
     if (samples.size() < 3)
         throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", samples.size(), points);
     const auto& p = samples.positions;
-    const auto farthest = [&](const auto& distance) {
-        return *std::ranges::max_element(p, {}, distance);
-    };
+    const auto farthest = [&](const auto& distance) { return *std::ranges::max_element(p, {}, distance); };
     const Vec3 end = farthest([&](const Vec3& x) { return (x - p[0]).squaredNorm(); });
     const Vec3 along = (end - p[0]).normalized();
     const auto off_line = [&](const Vec3& x) { return (x - p[0]).cross(along).norm(); };
@@ -64,14 +63,19 @@ std::vector<Limits> limits_of(const RegionGrowParams& params) {
     };
     // Angles shrink and bends grow by these factors. The limits to the points' own normals keep sheets apart and
     // ends open.
-    constexpr std::array<Round, 4> rounds{
-        {{1, 1, 60, 75, 1}, {2.0 / 3, 7.0 / 6, 75, 85, 1.15}, {1.0 / 3, 4.0 / 3, 80, 85, 1.3}, {1.0 / 30, 4.0 / 3, 80, 85, 1.3}}};
+    constexpr std::array<Round, 4> rounds{{{1, 1, 60, 85, 1},
+                                           {2.0 / 3, 7.0 / 6, 75, 110, 1.1},
+                                           {1.0 / 3, 4.0 / 3, 80, 180, 1.15},
+                                           {1.0 / 30, 4.0 / 3, 80, 180, 1.15}}};
     constexpr double degree = 3.14159265358979323846 / 180;
     std::vector<Limits> limits;
+    const auto bend_cosine = [&](const Round& round) {
+        return std::cos(std::min(180 * degree, params.max_normal_angle.in_radians() * round.bend)) - 1e-9;
+    };
     for (const Round& round : rounds) {
-        const double bend = std::min(180 * degree, params.max_normal_angle.in_radians() * round.bend);
-        limits.push_back({std::sin(params.min_angle.in_radians() * round.angle) * (1 - 1e-12), std::cos(bend) - 1e-9,
-                          std::cos(round.point * degree), std::cos(round.rough * degree), round.reach, static_cast<Pass>(limits.size())});
+        limits.push_back({std::sin(params.min_angle.in_radians() * round.angle) * (1 - 1e-12), bend_cosine(round),
+                          bend_cosine(rounds.back()), std::cos(round.point * degree), std::cos(round.rough * degree),
+                          round.reach, static_cast<Pass>(limits.size())});
     }
     return limits;
 }
@@ -96,9 +100,8 @@ std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std
 }
 
 [[noreturn]] void refuse_all(const Samples& samples, const RegionGrowParams& params) {
-    const std::string radius = params.search_radius
-                                   ? fmt::format("search-radius {} u", params.search_radius->value())
-                                   : std::string("the automatic search-radius");
+    const std::string radius = params.search_radius ? fmt::format("search-radius {} u", params.search_radius->value())
+                                                    : std::string("the automatic search-radius");
     throw Error("no three of the {} distinct points make a triangle with angles of at least {} and {}", samples.size(),
                 params.min_angle.text(), radius)
         .hint("enlarge search-radius, or lessen min-angle");
@@ -121,8 +124,9 @@ void report(const RegionGrowResult& result, std::size_t places, Context& context
     count("relaxed-triangles", static_cast<std::size_t>(std::ranges::count_if(
                                    result.passes, [](u8 pass) { return pass > 0 && pass < closing_pass; })));
     if (200 * result.unused_points > places)
-        context.warn(fmt::format("{} of {} distinct points are in no triangle; thin the scan, or remove its noise first",
-                                 result.unused_points, places));
+        context.warn(
+            fmt::format("{} of {} distinct points are in no triangle; thin the scan, or remove its noise first",
+                        result.unused_points, places));
 }
 
 }  // namespace
@@ -161,7 +165,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     const Pieces pieces = find_pieces(surface);
     if (!oriented) face_outwards(surface, pieces, groups);
 
-    FinishedMesh finished = finish_mesh(cloud, surface, patch_edges, params.sharp_angle, context.threads());
+    FinishedMesh finished = finish_mesh(cloud, surface, patch_edges, params.sharp_angle);
     result.mesh = std::move(finished.mesh);
     result.rows = std::move(finished.rows);
     result.passes = std::move(surface.passes);

@@ -26,9 +26,9 @@ struct RegionGrowParams {
     Angle min_angle = Angle::degrees(10);
     /// Between the normals of a new triangle and each one it joins; above 0, at most 180 degrees.
     Angle max_normal_angle = Angle::degrees(90);
-    /// The suitable point is no farther from an end of the edge, and the circle through the triangle has at most a third
-    /// of this as radius: larger empty circles are holes. Above 0; nothing: 2 √3 B, B being the bin size that thinning to
-    /// the local density would have had.
+    /// The suitable point is no farther from an end of the edge, and the circle through the triangle has at most a
+    /// third of this as radius: larger empty circles are holes. Above 0; nothing: 2 √3 B, B being the bin size that
+    /// thinning to the local density would have had.
     std::optional<Length> search_radius;
     /// Edges whose triangles' normals differ by more are creases. 0 to 180 degrees.
     Angle sharp_angle = Angle::degrees(40);
@@ -67,17 +67,16 @@ struct RegionGrowResult {
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, a
-/// search radius too small for any triangle.
+/// search radius too small for any triangle, a cloud beyond 1e-100 to 1e100 u in size.
 ///
 /// Post: an oriented manifold: every edge in one triangle or in two that pass it in opposite directions, every vertex's
 /// triangles one fan. No vertex twice in one place. Triangles round a vertex do not overlap as seen along its normal.
 /// Angles of triangles of pass 0 keep the limits; later passes relax them (see the page). Pieces that enclose a volume
 /// face outwards; so do open ones that bulge, flat ones face up. With a normal column they face as it says.
-/// Ties: equal scores (to 1e-9) by place, along a space-filling curve through the cloud's box. So the mesh depends neither
-/// on the order of the points, up to numbering, nor on the number of threads.
-/// Cost: O(n log n) time, about 400 bytes per point beside the result.
-/// Metrics: see plugin.cpp. Warns when more than half a percent of the places stay unused.
-/// Source: Wang 2006, chapter 4, made robust; the choice by empty circles after Delaunay.
+/// Ties: equal scores (to 1e-9) by place, along a space-filling curve through the cloud's box. So the mesh depends
+/// neither on the order of the points, up to numbering, nor on the number of threads. Cost: O(n log n) time, about 400
+/// bytes per point beside the result. Metrics: see plugin.cpp. Warns when more than half a percent of the places stay
+/// unused. Source: Wang 2006, chapter 4, made robust; the choice by empty circles after Delaunay.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill

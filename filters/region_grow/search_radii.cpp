@@ -39,7 +39,7 @@ Array<double> density_radii(const Samples& samples, const Neighbourhoods& neighb
             for (u32 other : neighbourhoods.of(static_cast<u32>(place))) near.push_back(bins[other]);
             const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
             std::nth_element(near.begin(), middle, near.end());
-            radii[place] = 2 * std::numbers::sqrt3 * std::min(bins[place], 1.3 * *middle);
+            radii[place] = 2 * std::numbers::sqrt3 * std::min(bins[place], 1.15 * *middle);
         }
     });
     return radii;

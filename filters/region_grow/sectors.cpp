@@ -13,12 +13,6 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-int exact_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& axis) {
-    const Vec3 above = a + axis;
-    const auto point = [](const Vec3& p) { return Kernel::Point_3(p.x(), p.y(), p.z()); };
-    return static_cast<int>(CGAL::orientation(point(a), point(b), point(c), point(above)));
-}
-
 /// Pre: the sector first → last is narrower than a half turn.
 bool inside(const Vec3& centre, const Vec3& first, const Vec3& last, const Vec3& p, const Vec3& axis) {
     return side_of(centre, first, p, axis) >= 0 && side_of(centre, p, last, axis) >= 0;
@@ -26,14 +20,10 @@ bool inside(const Vec3& centre, const Vec3& first, const Vec3& last, const Vec3&
 
 }  // namespace
 
-int side_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& axis) {
-    const Vec3 u = b - a, w = c - a;
-    const double volume = axis.dot(u.cross(w));
-    // Far above what rounding of these dozen operations can amount to.
-    const double doubt = 1e-14 * (u.cwiseAbs().sum() * w.cwiseAbs().sum());
-    if (volume > doubt) return 1;
-    if (volume < -doubt) return -1;
-    return exact_side(a, b, c, axis);
+int exact_side_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& axis) {
+    const Vec3 above = a + axis;
+    const auto point = [](const Vec3& p) { return Kernel::Point_3(p.x(), p.y(), p.z()); };
+    return static_cast<int>(CGAL::orientation(point(a), point(b), point(c), point(above)));
 }
 
 bool sector_is_free(const Surface& surface, u32 vertex, u32 first, u32 last, const Vec3& axis) {

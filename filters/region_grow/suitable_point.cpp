@@ -12,10 +12,11 @@ namespace scanmill::growing {
 
 namespace {
 
-/// Scores no farther apart than this, relative to 1 or to themselves, are equal: what rounding does to points of a grid.
+/// Scores no farther apart than this, relative to 1 or to themselves, are equal: what rounding does to points of a
+/// grid.
 constexpr double same_score = 1e-9;
-/// Of the search radius: how large an empty circle may be before it is a hole of the surface. Points thinned with bins of
-/// edge B leave circles of 1.1 B at most; the search radius is 2 √3 B.
+/// Of the search radius: how large an empty circle may be before it is a hole of the surface. Points thinned with bins
+/// of edge B leave circles of 1.1 B at most; the search radius is 2 √3 B.
 constexpr double largest_circle = 1.0 / 3;
 
 /// Of the neighbours' variance, across their plane: above the first a point's normal tells less, at an edge; above the
@@ -55,9 +56,9 @@ void PointChooser::rate(u32 from, u32 to, const Vec3& joined, const Limits& limi
     const double half_squared = (b - a).squaredNorm() / 4;
     const double reach = search_radius(from, to) * limits.reach;
     const double largest = largest_circle * reach;
-    const double largest_cotangent =
-        score_ == Score::midpoint ? std::numeric_limits<double>::infinity()
-                                  : std::sqrt(std::max(0.0, largest * largest / half_squared - 1));
+    const double cotangent_squared = score_ == Score::midpoint ? std::numeric_limits<double>::infinity()
+                                                               : std::max(0.0, largest * largest / half_squared - 1);
+    const double least_bend = limits.normal_cosine * std::abs(limits.normal_cosine);
     candidates_.clear();
     fronts_.clear();
     for (u32 point : near_) {
@@ -65,15 +66,14 @@ void PointChooser::rate(u32 from, u32 to, const Vec3& joined, const Limits& limi
         if (surface_.states[point] == PlaceState::front) fronts_.push_back(point);
         const Vec3 &d = surface_.positions[point], to_a = a - d, to_b = b - d;
         const Vec3 normal = to_b.cross(to_a);
-        const double twice_area = normal.norm();
-        if (!(twice_area > 0)) continue;
+        // Most places fall here, so roots and quotients come later.
+        const double area_squared = normal.squaredNorm(), along = to_a.dot(to_b), bend = joined.dot(normal);
+        if (!(area_squared > 0) || along * along > cotangent_squared * area_squared) continue;
+        if (bend * std::abs(bend) < least_bend * area_squared) continue;
+        const double twice_area = std::sqrt(area_squared);
         // The circumcentre lies this many halves of the edge beyond its middle.
-        const double cotangent = to_a.dot(to_b) / twice_area;
-        if (std::abs(cotangent) > largest_cotangent) continue;
-        if (joined.dot(normal) < limits.normal_cosine * twice_area) continue;
-        if (score_ == Score::midpoint &&
-            std::min(to_a.squaredNorm(), to_b.squaredNorm()) > reach * reach)
-            continue;
+        const double cotangent = along / twice_area;
+        if (score_ == Score::midpoint && std::min(to_a.squaredNorm(), to_b.squaredNorm()) > reach * reach) continue;
         const double score = score_ == Score::midpoint ? (d - middle).squaredNorm() / half_squared : cotangent;
         candidates_.push_back({score, point, normal / twice_area});
     }
@@ -95,8 +95,8 @@ bool PointChooser::agrees_with_joined(u32 from, u32 to, const Vec3& normal, doub
     return third == nobody || surface_.facet_normal(to, from, third).dot(normal) >= least;
 }
 
-Vec3 PointChooser::fan_axis(u32 vertex, const Vec3& normal) const {
-    Vec3 sum = normal;
+Vec3 PointChooser::fan_axis(u32 vertex, const Vec3& more) const {
+    Vec3 sum = more;
     surface_.fans.any(vertex, [&](const Fans::Pair& pair) {
         sum += surface_.facet_normal(vertex, pair.first, pair.last);
         return false;
@@ -117,8 +117,7 @@ bool PointChooser::sectors_are_free(const Triangle& triangle, const Vec3& normal
 bool PointChooser::lies_over_others(const Triangle& triangle, const Vec3& normal) {
     const auto& p = surface_.positions;
     double longest = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-        longest = std::max(longest, (p[triangle[(i + 1) % 3]] - p[triangle[i]]).norm());
+    for (std::size_t i = 0; i < 3; ++i) longest = std::max(longest, (p[triangle[(i + 1) % 3]] - p[triangle[i]]).norm());
     const double height = longest / 2;
     const auto on_this_sheet = [&](u32 x) {
         return (surface_.states[x] == PlaceState::unused && !surface_.oriented) || surface_.normals[x].dot(normal) > 0;
@@ -142,8 +141,7 @@ bool PointChooser::has_good_angles(u32 from, u32 to, u32 point, const Limits& li
     return std::min({a, b, c}) * twice_area >= limits.least_sine * a * b * c;
 }
 
-bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits,
-                               bool new_surface) {
+bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool new_surface) {
     const u32 point = candidate.point;
     if (surface_.states[point] == PlaceState::interior || !has_good_angles(from, to, point, limits)) return false;
     const Triangle triangle{from, point, to};
@@ -154,6 +152,9 @@ bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, con
     if (!agrees_with_joined(from, point, candidate.normal, limits.normal_cosine) ||
         !agrees_with_joined(point, to, candidate.normal, limits.normal_cosine))
         return false;
+    // A triangle that joins those at the point in nothing but the point: the next ones will join them at edges.
+    const bool touches = !fans.empty(point) && fans.left_of(point, from) == nobody && fans.left_of(to, point) == nobody;
+    if (touches && fan_axis(point, Vec3::Zero()).dot(candidate.normal) < limits.touch_cosine) return false;
     return sectors_are_free(triangle, candidate.normal, limits.pass) && !lies_over_others(triangle, candidate.normal);
 }
 
@@ -203,7 +204,8 @@ bool PointChooser::ends_at_other_patch(u32 from, u32 to, const Limits& limits) {
     bent.normal_cosine = least_bend_cosine;
     rate(from, to, joined, bent);
     return std::ranges::any_of(candidates_, [&](const Candidate& candidate) {
-        return joined.dot(candidate.normal) < limits.normal_cosine && surface_.states[candidate.point] != PlaceState::unused &&
+        return joined.dot(candidate.normal) < limits.normal_cosine &&
+               surface_.states[candidate.point] != PlaceState::unused &&
                has_good_angles(from, to, candidate.point, limits);
     });
 }
@@ -220,8 +222,8 @@ u32 PointChooser::choose_third(u32 from, u32 to, const Limits& limits) {
         if (surface_.normals[from].dot(candidate.normal) < 0) candidate.normal = -candidate.normal;
         if (!is_suitable(from, to, candidate, limits, true)) continue;
         const double margin = same_score * (1 + std::abs(least));
-        if (best != nobody && (candidate.score > least + margin ||
-                               (candidate.score >= least - margin && candidate.point > best)))
+        if (best != nobody &&
+            (candidate.score > least + margin || (candidate.score >= least - margin && candidate.point > best)))
             continue;
         best = candidate.point;
         least = std::min(least, candidate.score);

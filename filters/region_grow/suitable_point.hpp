@@ -15,10 +15,11 @@ enum class Score : u8 { circumradius, midpoint };
 struct Limits {
     double least_sine;          ///< of the triangle's smallest angle
     double normal_cosine;       ///< between the triangle's normal and that of every joined one: at least
+    double touch_cosine;        ///< the same to the triangles that it meets in nothing but its new point, on average
     double point_cosine;        ///< between the triangle's normal and that of each of its points: at least
     double rough_cosine;        ///< the same for points that do not lie in a plane with their neighbours
     double reach;               ///< the search radius counts this many times
-    Pass pass;                  ///< 0: the given limits; later ones judge sectors by the triangles there, not by points
+    Pass pass;  ///< 0: the given limits; later ones judge sectors by the triangles there, not by points
 };
 
 struct SuitablePoint {
@@ -59,7 +60,8 @@ private:
     bool agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const;
     bool agrees_with_joined(u32 from, u32 to, const Vec3& normal, double least) const;
     bool sectors_are_free(const Triangle& triangle, const Vec3& normal, Pass pass) const;
-    Vec3 fan_axis(u32 vertex, const Vec3& normal) const;
+    /// The direction of the summed normals of the vertex's triangles and one more.
+    Vec3 fan_axis(u32 vertex, const Vec3& more) const;
     bool lies_over_others(const Triangle& triangle, const Vec3& normal);
     double search_radius(u32 from, u32 to) const;
 

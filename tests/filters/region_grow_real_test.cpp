@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+
+#include "filters/region_grow_cases.hpp"
+#include "measure/measure.hpp"
+#include "scanmill/formats/files.hpp"
+#include "support/real_data.hpp"
+#include "voxel_thin/voxel_thin.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace test;
+
+PointCloud positions_of(const std::filesystem::path& path, double bin = 0) {
+    PointCloud cloud;
+    cloud.positions = read_points(path)->positions;
+    if (bin == 0) return cloud;
+    VoxelThinParams params;
+    params.bin_size = Length(bin);
+    Context context;
+    return voxel_thin(cloud, params, context).points;
+}
+
+std::size_t self_intersections(const TriangleMesh& mesh) {
+    MeasureParams params;
+    params.samples = 1000;
+    Context context;
+    return measure(mesh, mesh, params, context).self_intersections.value_or(0);
+}
+
+/// A model whose vertices are dense enough for a surface through all of them, and how that must be.
+struct Model {
+    const char* file;
+    long genus;
+    std::size_t loops;
+};
+
+void PrintTo(const Model& model, std::ostream* stream) { *stream << model.file; }
+
+class RegionGrowOfAModel : public testing::TestWithParam<Model> {};
+
+TEST_P(RegionGrowOfAModel, IsTheModelsSurface) {
+    SCANMILL_REAL_SCAN(path, fetched_data, GetParam().file);
+    const PointCloud cloud = positions_of(path);
+    const RegionGrowResult result = grown(cloud, {}, 2);
+    expect_consistent(result);
+    EXPECT_EQ(result.loops, GetParam().loops);
+    EXPECT_EQ(topology(result.mesh).genus, GetParam().genus);
+    EXPECT_EQ(result.unused_points, 0u);
+    EXPECT_EQ(result.components, 1u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, RegionGrowOfAModel,
+                         testing::Values(Model{"points_3/kitten.xyz", 1, 0}, Model{"meshes/fandisk_large.off", 0, 0},
+                                         Model{"meshes/cube-meshed.off", 0, 0}, Model{"meshes/bear.off", 0, 0},
+                                         Model{"meshes/knot1.off", 1, 0}, Model{"meshes/eight.off", 2, 0},
+                                         Model{"meshes/refined_elephant.off", 3, 0}, Model{"meshes/holes.off", 0, 7}));
+
+struct Scan {
+    const char* file;
+    double bin;
+    /// At most so many loops; the scan's own holes among them.
+    std::size_t loops;
+};
+
+void PrintTo(const Scan& scan, std::ostream* stream) { *stream << scan.file; }
+
+class RegionGrowOfAThinnedScan : public testing::TestWithParam<Scan> {};
+
+TEST_P(RegionGrowOfAThinnedScan, UsesNearlyEveryPoint) {
+    SCANMILL_REAL_SCAN(path, fetched_data, GetParam().file);
+    const PointCloud cloud = positions_of(path, GetParam().bin);
+    const RegionGrowResult result = grown(cloud, {}, 2);
+    expect_consistent(result);
+    EXPECT_LE(1000 * result.unused_points, 5 * cloud.size());
+    EXPECT_LE(result.loops, GetParam().loops);
+    // Few triangles where folds meet.
+    EXPECT_LE(1000 * self_intersections(result.mesh), result.mesh.triangles.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Scans, RegionGrowOfAThinnedScan,
+                         testing::Values(Scan{"meshes/bunny00.off", 0, 5}, Scan{"meshes/hand.off", 0, 6},
+                                         Scan{"dragon/dragon_vrip_res2.ply", 0.001, 40},
+                                         Scan{"meshes/armadillo.off", 0, 2}));
+
+}  // namespace
+}  // namespace scanmill
