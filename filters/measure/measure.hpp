@@ -23,6 +23,7 @@ namespace scanmill {
 constexpr u32 fewest_samples = 32;
 
 struct MeasureParams {
+    enum class Borders { include, exclude };
     /// Points on each mesh, at least fewest_samples.
     u32 samples = 100'000;
     /// Distances that count as near for precision and recall; each above 0. Relative ones refer to the mesh.
@@ -35,6 +36,10 @@ struct MeasureParams {
     bool certify = false;
     /// The bounds are refined until upper - lower is at most this share of upper; in (0, 1).
     Ratio gap = Ratio::percent(1);
+    /// Whether points of a cloud count whose nearest point on the mesh lies on a border of it: on an edge in one
+    /// triangle, or a vertex of such an edge. How far they are says where the mesh ends, not how well it fits.
+    /// Excluding needs points as truth.
+    Borders borders = Borders::include;
     /// Pieces of triangles cut before the refinement ends with the bounds that it has.
     u64 most_cuts = 10'000'000;
 };
@@ -58,6 +63,8 @@ struct Measurement {
     std::optional<DistanceNumbers> to_points;
     /// From the truth, its area or its points, to the mesh's triangles.
     DistanceNumbers from_truth;
+    /// Points of a cloud left out of from_truth and all that follows from it; absent unless they were to be.
+    std::optional<std::size_t> beyond_borders;
     /// Both sides with equal weight; for a cloud, from_truth again.
     DistanceNumbers both;
     /// Larger of the two sides' max; absent for a cloud. Not above the true Hausdorff distance.

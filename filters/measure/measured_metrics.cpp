@@ -75,6 +75,8 @@ Metrics metrics_of(const Measurement& measured) {
     if (measured.to_truth) add_distances(metrics, *measured.to_truth, "-to-truth");
     if (measured.to_points) add_distances(metrics, *measured.to_points, "-to-points");
     add_distances(metrics, measured.from_truth, "-from-truth");
+    if (measured.beyond_borders)
+        metrics.set("beyond-borders", static_cast<double>(*measured.beyond_borders), Unit::count);
     if (measured.hausdorff) metrics.set("hausdorff", *measured.hausdorff, Unit::length);
     if (measured.chamfer) metrics.set("chamfer", *measured.chamfer, Unit::length);
     for (std::size_t i = 0; i < measured.near.size(); ++i)

@@ -14,6 +14,7 @@ namespace scanmill {
 ///
 ///   mean, mean-spread, rms, p50, p90, p95, p99, max     over both sides (for a cloud as truth: from the truth)
 ///   the same with -to-truth, -from-truth, -to-points    one side
+///   beyond-borders                                      where the points there are left out
 ///   hausdorff, chamfer
 ///   threshold, f-score, precision, recall               at the first threshold
 ///   the same with @2, @3, …                             at the others, in their order

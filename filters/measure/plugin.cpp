@@ -68,6 +68,10 @@ Filter declaration() {
         .param("self-intersections", &P::self_intersections, "Whether pairs of intersecting triangles are counted.")
         .param("same-frame", &P::same_frame,
                "Whether unit and frame are known to be equal: sizes and places that say otherwise only warn then.")
+        .choice("borders", &P::borders,
+                {{"include", P::Borders::include, "They count like all others."},
+                 {"exclude", P::Borders::exclude, "They are left out and counted: the mesh ends before them."}},
+                "Points of a cloud whose nearest point on the mesh lies on a border of it.")
         .param("certify", &P::certify,
                "Whether the Hausdorff distance is bounded from both sides; truth is a mesh then.")
         .param("gap", &P::gap, "The bounds are brought this close: their difference over the upper one.", above(0),
@@ -85,7 +89,10 @@ Filter declaration() {
     declare_distances(filter, "-to-truth", "from the mesh to the truth");
     declare_distances(filter, "-from-truth", "from the truth to the mesh");
     declare_distances(filter, "-to-points", "from the mesh to the nearest point, where the truth is points");
-    filter.metric("normal-consistency", Unit::number, "Mean cosine between normals at samples and at what is nearest.")
+    filter
+        .metric("beyond-borders", Unit::count,
+                "Points left out because what is nearest to them is a border of the mesh.")
+        .metric("normal-consistency", Unit::number, "Mean cosine between normals at samples and at what is nearest.")
         .metric("normal-consistency-unsigned", Unit::number, "Mean of the same cosines without their signs.")
         .metric("without-normal", Unit::count, "Samples left out of these, nearest to triangles without a normal.")
         .metric("hausdorff-lower", Unit::length, "The Hausdorff distance is not smaller, when it is certified.")
