@@ -19,7 +19,11 @@ SCANMILL_FILTER() {
                  {"torus", P::Shape::torus, "Around the z axis; size: radius of the ring, radius of its tube."},
                  {"box", P::Shape::box, "Around the origin; size: x, y, z."},
                  {"cylinder", P::Shape::cylinder, "Around the z axis; size: radius, height."},
-                 {"l-block", P::Shape::l_block, "Three squares in an L; size: edge of a square, thickness."}},
+                 {"l-block", P::Shape::l_block, "Three squares in an L; size: edge of a square, thickness."},
+                 {"block-with-holes", P::Shape::holed_block,
+                  "A box with a large hole through its middle and four small ones; size: x, y, z, the two radii."},
+                 {"hyperboloid", P::Shape::hyperboloid,
+                  "A saddle above a disc, part of a hyperboloid of one sheet; size: radius, height in the middle."}},
                 "What is scanned when there is no mesh, by formula and not through triangles.")
         .param("size", &P::size, "The shape's dimensions in the scan's own unit; empty takes those around 1 u.",
                above(0))

@@ -9,6 +9,9 @@
 
 #include "scanmill/filter/error.hpp"
 #include "virtual_scan/first_root.hpp"
+#include "virtual_scan/holed_block.hpp"
+#include "virtual_scan/hyperboloid.hpp"
+#include "virtual_scan/ray.hpp"
 #include "virtual_scan/scene.hpp"
 
 namespace scanmill::scan {
@@ -17,10 +20,6 @@ namespace {
 
 using Shape = VirtualScanParams::Shape;
 
-struct Ray {
-    Vec3 start, direction;  // a whole line: it enters shapes before `start` too
-    Vec3 at(double depth) const { return start + depth * direction; }
-};
 using FirstHit = std::function<std::optional<Hit>(const Ray&)>;
 
 std::optional<Hit> meet_sphere(const Ray& ray, double radius) {
@@ -67,41 +66,14 @@ std::optional<Hit> meet_torus(const Ray& ray, double major, double minor) {
     return Hit{position, normal_at(position)};
 }
 
-/// By slabs (Kay, Kajiya 1986); of faces met together, the lowest axis counts.
-std::optional<std::pair<double, Vec3>> enter_box(const Ray& ray, const Vec3& low, const Vec3& high) {
-    double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
-    Vec3 normal = Vec3::Zero();
-    for (int axis = 0; axis < 3; ++axis) {
-        const double speed = ray.direction[axis];
-        if (speed == 0) {
-            if (ray.start[axis] < low[axis] || ray.start[axis] > high[axis]) return {};
-            continue;
-        }
-        const double near = ((speed > 0 ? low : high)[axis] - ray.start[axis]) / speed;
-        const double far = ((speed > 0 ? high : low)[axis] - ray.start[axis]) / speed;
-        if (near > enter) {
-            enter = near;
-            normal = Vec3::Zero();
-            normal[axis] = speed > 0 ? -1 : 1;
-        }
-        leave = std::min(leave, far);
-    }
-    if (!(enter <= leave)) return {};
-    return std::pair(enter, normal);
-}
-
 /// The union of boxes: a ray from outside enters it where it first enters one of them.
 std::optional<Hit> meet_boxes(const Ray& ray, std::span<const BoundingBox> boxes) {
     double first = std::numeric_limits<double>::infinity();
     std::optional<Hit> hit;
     for (const BoundingBox& box : boxes)
-        if (const auto entry = enter_box(ray, box.low, box.high); entry && entry->first < first) {
-            first = entry->first;
-            // On the face's plane exactly, whatever the rounding along the ray.
-            Vec3 position = ray.at(first);
-            position =
-                (entry->second.array() > 0).select(box.high, (entry->second.array() < 0).select(box.low, position));
-            hit = Hit{position, entry->second};
+        if (const auto passage = passage_through(ray, box); passage && passage->enter < first) {
+            first = passage->enter;
+            hit = entry_of(ray, box, *passage);
         }
     return hit;
 }
@@ -147,6 +119,11 @@ Kind kind_of(Shape shape) {
         case Shape::box: return {"box", {"x", "y", "z"}, {1, 1, 1}};
         case Shape::cylinder: return {"cylinder", {"radius", "height"}, {0.5, 1}};
         case Shape::l_block: return {"l-block", {"size", "thickness"}, {1, 1}};
+        case Shape::holed_block:
+            return {"block-with-holes",
+                    {"x", "y", "z", "large hole's radius", "small holes' radius"},
+                    {0.88, 0.95, 0.41, 0.21, 0.05}};
+        case Shape::hyperboloid: return {"hyperboloid", {"radius", "height"}, {1, 0.75}};
     }
     return {"none", {}, {}};
 }
@@ -195,6 +172,14 @@ std::pair<FirstHit, BoundingBox> surface_of(Shape shape, const std::vector<doubl
             const std::array<BoundingBox, 2> arms{
                 {{Vec3::Zero(), Vec3(2 * s, s, t)}, {Vec3::Zero(), Vec3(s, 2 * s, t)}}};
             return {[arms](const Ray& ray) { return meet_boxes(ray, arms); }, {Vec3::Zero(), Vec3(2 * s, 2 * s, t)}};
+        }
+        case Shape::holed_block: {
+            const HoledBlock block = holed_block({size[0], size[1], size[2]}, size[3], size[4]);
+            return {[block](const Ray& ray) { return first_hit(ray, block); }, block.box};
+        }
+        case Shape::hyperboloid: {
+            const Hyperboloid surface{size[0], size[1]};
+            return {[surface](const Ray& ray) { return first_hit(ray, surface); }, bounds_of(surface)};
         }
     }
     return {};

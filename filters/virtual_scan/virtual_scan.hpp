@@ -15,13 +15,16 @@
 namespace scanmill {
 
 struct VirtualScanParams {
-    enum class Shape { none, sphere, torus, box, cylinder, l_block };
+    enum class Shape { none, sphere, torus, box, cylinder, l_block, holed_block, hyperboloid };
     /// What is scanned when no mesh is; intersected by formula, not through a mesh.
     Shape shape = Shape::none;
     /// The shape's dimensions in the scan's own unit; empty means those in brackets. sphere: radius [1], around 0.
     /// torus: from the z axis to the tube's centre, tube's radius [1, 0.4], around 0. box: x, y, z [1, 1, 1], around 0.
     /// cylinder: radius, height along z [0.5, 1], around 0. l_block: size s, thickness t [1, 1]: [0, 2 s]² × [0, t]
-    /// without the quadrant above s in x and y.
+    /// without the quadrant above s in x and y. holed_block: x, y, z, radius of the large hole, radius of the small
+    /// ones [0.88, 0.95, 0.41, 0.21, 0.05]: a box around 0 with five holes through it along z, the large one in the
+    /// middle, four small ones at (± 0.35 x, ± 0.35 y). hyperboloid: radius r, height h [1, 0.75]: the open surface
+    /// z = h / r √(x² − y² + r²) above the disc of radius r around 0.
     std::vector<Length> size;
     /// One whole number n: n directions spread evenly over the sphere (1 looks along the x axis). Else three numbers
     /// per view: the direction from the object to the sensor, of any length.
