@@ -47,6 +47,12 @@ TEST(FeaturesJson, WithoutUnitAndFrame_HasNullThere) {
     EXPECT_TRUE(document.at("frame").is_null());
 }
 
+TEST(FeaturesJson, WithoutALine_SayThatThereIsNone) {
+    const json document = json::parse(text_of(FeatureGraph()));
+    EXPECT_EQ(document.at("polylines"), json::array());
+    EXPECT_EQ(document.at("corners"), json::array());
+}
+
 TEST(FeaturesJson, FrameNameThatIsNoUtf8_IsStillJson) {
     FeatureGraph graph = crease_and_hole();
     graph.frame.name = "a\xff";

@@ -63,6 +63,13 @@ TEST(VtpFeatures, CornersAlone_AreWritten) {
     EXPECT_THAT(cells_in(data->GetVerts()), ElementsAre(ElementsAre(0)));
 }
 
+TEST(VtpFeatures, WithoutALine_AreAFileWithoutAPoint) {
+    const auto data = through_vtp(FeatureGraph());
+    EXPECT_EQ(data->GetNumberOfPoints(), 0);
+    EXPECT_EQ(data->GetNumberOfCells(), 0);
+    EXPECT_EQ(texts_in(data->GetFieldData(), "type_names").size(), 4u);
+}
+
 TetMesh two_cells() {
     TetMesh tets;
     tets.frame = {LengthUnit::millimetre, Vec3(1e6, 0, 0), "rig"};

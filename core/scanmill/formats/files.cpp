@@ -37,10 +37,11 @@ LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
     return format_of(file).read(file, {naming(file.path, options.on_warning), options.unit});
 }
 
+/// Whether nothing is there that should be. A closed, smooth mesh has no features, and that is worth writing.
 bool is_empty(const Value& value) {
     return std::visit(
         []<class T>(const std::shared_ptr<const T>& object) {
-            if constexpr (requires { object->positions; })
+            if constexpr (requires { object->positions; } && !std::is_same_v<T, FeatureGraph>)
                 return object->positions.empty();
             else
                 return false;

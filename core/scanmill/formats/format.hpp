@@ -30,7 +30,7 @@ constexpr std::size_t head_size = 4096;
 struct Format {
     using Recognise = std::function<Recognition(std::string_view head, u64 file_size)>;
     using Read = std::function<LoadedFile(const FileBytes& file, const ReadOptions& options)>;
-    /// Pre: the value is of the kind that the writer is listed for, and has points.
+    /// Pre: the value is of the kind that the writer is listed for, and has points; features may have none.
     using Write = std::function<void(const Value& value, OutputBuffer& out, const WriteOptions& options)>;
 
     std::string name;
