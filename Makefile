@@ -48,14 +48,17 @@ bench-peers: deps ## measure beside CGAL, PCL, Open3D, VTK and others: ROWS=dela
 
 # What makes a mesh of points, and measures it.
 reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculpt scanmill-measure
+# What thins a scan, makes an open mesh of it and finds its lines.
+hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features
 
-bench-quality: deps ## compare `scanmill measure` with trimesh and Open3D; a paper's table beside ours
+bench-quality: deps ## compare `scanmill measure` with trimesh and Open3D; papers' tables beside ours
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
-	cmake --build --preset bench -j $(jobs) --target $(reconstruction)
+	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid)
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
+	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
 
 bench-robustness: deps ## how much noise, and how few points, the way from points to a mesh bears
 	tools/deps.sh bench

@@ -8,13 +8,16 @@ class Broken(Exception):
     """The program gave no report. One sentence."""
 
 
-def run(program, workflow, scans, folder, limit, threads=0, jobs=1, inputs=None):
-    """The report of `scanmill run --json`; nothing comes from a cache. Scans that fail are in the report. Raises Broken
-    when there is none: bad arguments, a fault of the program, or no end within `limit` seconds."""
+def run(program, workflow, scans, folder, limit, threads=0, jobs=1, inputs=None, settings=None):
+    """The report of `scanmill run --json`; nothing comes from a cache. `inputs` and `settings` (of parameters) are by
+    name. Scans that fail are in the report. Raises Broken when there is none: bad arguments, a fault of the program, or
+    no end within `limit` seconds."""
     command = [program, "run", workflow, *scans, "-o", folder, "--threads", threads, "--jobs", jobs]
     command += ["--no-cache", "--quiet", "--json"]
     for name, file in (inputs or {}).items():
         command += ["--in", f"{name}={file}"]
+    for name, value in (settings or {}).items():
+        command += ["--set", f"{name}={value}"]
     return report([str(word) for word in command], limit)
 
 
@@ -69,3 +72,12 @@ def mesh(cell):
     if len(meshes) != 1:
         raise Broken(f"{cell['scan']}: the workflow wrote {len(meshes)} meshes, and one is to be judged")
     return meshes[0]
+
+
+def features(cell):
+    """The features that the cell wrote as JSON. Raises Broken when there are none."""
+    for output in cell["outputs"]:
+        if output["kind"] == "features" and output["outcome"] == "done" and output["file"].endswith(".json"):
+            with open(output["file"]) as file:
+                return json.load(file)
+    raise Broken(f"{cell['scan']}: the workflow wrote no features as JSON")

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The cases of section 4.4 of Wang 2006, or what stands for them, taken through the workflow to features."""
+import math
+import pathlib
+
+import paper_wang as paper
+from tables import scanmill
+
+WORKFLOWS = pathlib.Path(__file__).resolve().parents[2] / "workflows"
+FILTERS = ("voxel-thin", "region-grow", "features")
+
+
+def begun(case, file, what, bin_size, path, fetched=True):
+    """The entry of a case as far as it is known before the run. `bin_size`: as a workflow says it."""
+    entry = {"case": case, "file": file, "what": what, "bin": bin_size, "failure": "", "skipped": ""}
+    if path and not path.exists() and fetched:
+        entry["failure"] = f"{file} is not there; `make data` fetches it"
+    elif path and not path.exists():
+        entry["skipped"] = f"{file} is not there, and `make data` does not fetch it"
+    return entry
+
+
+def round_holes(features):
+    """Of every hole its middle and radii: the mean along the loop, the least and the largest at a vertex."""
+    holes = []
+    for line in features["polylines"]:
+        if line["type"] != "hole":
+            continue
+        points = line["points"]
+        segments = list(zip(points, points[1:] + points[:1]))
+        lengths = [math.dist(a, b) for a, b in segments]
+        whole = math.fsum(lengths)
+        middle = [math.fsum(length * (a[axis] + b[axis]) / 2 for length, (a, b) in zip(lengths, segments)) / whole
+                  for axis in range(3)]
+        radii = [math.dist(middle, point) for point in points]
+        mean = math.fsum(length * (math.dist(middle, a) + math.dist(middle, b)) / 2
+                         for length, (a, b) in zip(lengths, segments)) / whole
+        holes.append({"middle": middle, "mean": mean, "least": min(radii), "largest": max(radii)})
+    return sorted(holes, key=lambda hole: -hole["mean"])
+
+
+def judged(report, cell):
+    """What the report says of one run: counts, topology, distances, and the seconds of the three filters together."""
+    if cell["outcome"] != "done":
+        return {"failure": cell.get("error", cell["outcome"])}
+    steps = scanmill.steps(report, cell)
+    missing = [name for name in (*FILTERS, "measure") if name not in steps]
+    if missing:
+        raise scanmill.Broken(f"the workflow has no step {' and no '.join(missing)}")
+    thin, grown, lines, mesh = (steps[name]["metrics"] for name in (*FILTERS, "measure"))
+    first = steps["read"]["facts"] if "read" in steps else steps["virtual-scan"]["metrics"]
+    return {
+        "points": int(first["points"]),
+        "bin_size": thin["bin-size"],
+        "kept": int(thin["kept"]),
+        "unused": int(grown["unused-points"]),
+        "vertices": int(mesh["vertices"]),
+        "triangles": int(mesh["triangles"]),
+        "components": int(mesh["components"]),
+        "euler": int(mesh["euler"]),
+        "genus": int(mesh["genus"]) if "genus" in mesh else None,
+        "boundary_edges": int(mesh["boundary-edges"]),
+        "loops": int(mesh["boundary-loops"]),
+        "manifold": mesh["nonmanifold-edges"] + mesh["nonmanifold-vertices"] + mesh["misoriented-edges"] == 0,
+        "self_intersections": int(mesh["self-intersections"]),
+        "holes": int(lines["holes"]),
+        "boundaries": int(lines["boundaries"]),
+        "creases": int(lines["creases"]),
+        "deviation_p95": mesh["p95"],
+        "deviation_max": mesh["max"],
+        "beyond_borders": int(mesh["beyond-borders"]),
+        "diagonal": mesh["diagonal"],
+        "seconds": math.fsum(steps[name]["seconds"] for name in FILTERS),
+    }
+
+
+def its_model(options, path):
+    """For a scan that is the corners of a mesh, that mesh's own topology."""
+    said = scanmill.info(options.program, path)
+    if said["kind"] != "mesh":
+        return None
+    return {"loops": said["boundary-loops"], "genus": said.get("genus"), "components": said["components"]}
+
+
+def take(entry, judgement, threads):
+    """Adds one run. Only seconds may differ between runs."""
+    if judgement.get("failure"):
+        entry["failure"] = judgement["failure"]
+        return
+    judgement = dict(judgement)
+    seconds = judgement.pop("seconds")
+    different = [name for name, value in judgement.items() if "seconds" in entry and entry[name] != value]
+    if different:
+        raise scanmill.Broken(f"{entry['file']}: two runs came to different {', '.join(different)}")
+    entry.update(judgement)
+    entry.setdefault("seconds", {}).setdefault(threads, []).append(seconds)
+
+
+def cases_of(options, hyperboloid):
+    """Entry, workflow and scan (None: the workflow makes its own) of everything that is run."""
+    whole = WORKFLOWS / "wang-2006.yaml"
+    cases = [(begun("hyperboloid", "hyperboloid", "the thesis's own points, by its formula",
+                    f"{paper.HYPERBOLOID.bin_size} u", hyperboloid), whole, hyperboloid),
+             (begun("block", "block", "a virtual scan of such a block; where the thesis's small holes are, and whether "
+                    "its holes have floors, is not printed", f"{paper.CASES['block'].bin_size} u", None),
+              WORKFLOWS / "wang-2006-block.yaml", None)]
+    for one in paper.STAND_INS:
+        path = (options.data if one.fetched else options.more_data) / one.file
+        share = f"{100 * paper.CASES[one.case].bin_share:.3f} %diag"
+        cases.append((begun(one.case, one.file, one.what, share, path, one.fetched), whole, path))
+    return cases
+
+
+def run(options, hyperboloid, folder):
+    """An entry for each, in this order: the hyperboloid, the block, STAND_INS."""
+    cases = cases_of(options, hyperboloid)
+    for number in range(options.rounds):
+        for threads in ("1", "all"):
+            for place, (entry, workflow, path) in enumerate(cases):
+                if entry["failure"] or entry["skipped"]:
+                    continue
+                report = scanmill.run(options.program, workflow, [path] if path else [],
+                                      folder / f"case-{place}-{threads}-{number}", options.limit,
+                                      threads=1 if threads == "1" else 0, settings={"bin-size": entry["bin"]})
+                take(entry, judged(report, report["cells"][0]), threads)
+                if path and not entry["failure"] and "model" not in entry:
+                    entry["model"] = its_model(options, path)
+                if entry["case"] == "block" and not entry["failure"] and "radii" not in entry:
+                    entry["radii"] = round_holes(scanmill.features(report["cells"][0]))
+    return [entry for entry, _, _ in cases]
