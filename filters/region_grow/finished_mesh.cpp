@@ -36,7 +36,7 @@ std::vector<Edge> bent_edges(const Surface& surface, double limit) {
 
 }  // namespace
 
-FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const Edge> patch_edges,
+FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const PatchEdge> patch_edges,
                          Angle sharp_angle) {
     const auto& rows = surface.samples.rows;
     FinishedMesh finished;
@@ -65,7 +65,7 @@ FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::s
     Array<Edge> sharp;
     for (const auto& [a, b] : bent_edges(surface, sharp_angle.in_radians() + angle_tie))
         sharp.push_back(make_edge(vertex(a), vertex(b)));
-    for (const auto& [a, b] : patch_edges) sharp.push_back(make_edge(vertex(a), vertex(b)));
+    for (const PatchEdge& edge : patch_edges) sharp.push_back(make_edge(vertex(edge.from), vertex(edge.to)));
     std::ranges::sort(sharp);
     mesh.sharp_edges = std::move(sharp);
     return finished;

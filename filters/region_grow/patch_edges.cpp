@@ -3,15 +3,16 @@
 
 namespace scanmill::growing {
 
-std::vector<Edge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits) {
-    std::vector<Edge> edges;
+std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits) {
+    std::vector<PatchEdge> edges;
     for (const Triangle& triangle : surface.triangles)
         for (std::size_t i = 0; i < 3; ++i) {
             const u32 from = triangle[i], to = triangle[(i + 1) % 3];
             if (surface.states[from] != PlaceState::front || surface.states[to] != PlaceState::front ||
                 surface.fans.right_of(from, to) != nobody)
                 continue;
-            if (chooser.ends_at_other_patch(from, to, limits)) edges.push_back(make_edge(from, to));
+            const u32 beyond = chooser.beyond_sharp_edge(from, to, limits);
+            if (beyond != nobody) edges.push_back({from, to, beyond});
         }
     return edges;
 }

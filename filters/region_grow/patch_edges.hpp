@@ -6,9 +6,15 @@
 
 namespace scanmill::growing {
 
-/// Border edges at which points of the surface could have made a triangle but for the angle to the triangle there, with
-/// none on the free side that bends less: where nothing but the rule of the largest angle between facets ended the
-/// patch. In the order of the triangles. Cost: linear in the border.
-std::vector<Edge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits);
+struct PatchEdge {
+    u32 from, to;
+    /// The place of the other patch that the edge would have taken first.
+    u32 beyond;
+};
+
+/// Border edges for which a place of the surface keeps to all limits but the one of the angle to the triangle there:
+/// where nothing else ended the patch. In the order of the triangles, facing as they were grown. Cost: linear in the
+/// border.
+std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits);
 
 }  // namespace scanmill::growing

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "region_grow/far_sides.hpp"
 #include "region_grow/finished_mesh.hpp"
 #include "region_grow/given_normals.hpp"
-#include "region_grow/patch_edges.hpp"
 #include "region_grow/pieces.hpp"
 #include "region_grow/pinches.hpp"
 #include "region_grow/search_radii.hpp"
@@ -161,18 +161,19 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     // What was removed may have left a small hole; at single fans closing makes no new pinch.
     result.closed_holes += close_small_holes(surface, params.close_holes);
     PointChooser chooser(surface, score);
-    const std::vector<Edge> patch_edges = find_patch_edges(surface, chooser, limits.front());
+    const std::vector<PatchEdge> patch_edges = find_patch_edges(surface, chooser, limits.front());
     const Pieces pieces = find_pieces(surface);
     if (!oriented) face_outwards(surface, pieces, groups);
 
     FinishedMesh finished = finish_mesh(cloud, surface, patch_edges, params.sharp_angle);
+    FeatureParams feature_params;
+    feature_params.sharp_angle = params.sharp_angle;
+    FeatureLines lines = find_features(finished.mesh, feature_params, context.threads());
+    tell_far_sides(lines.graph, finished, samples, patch_edges);
     result.mesh = std::move(finished.mesh);
     result.rows = std::move(finished.rows);
     result.passes = std::move(surface.passes);
-    FeatureParams feature_params;
-    feature_params.sharp_angle = params.sharp_angle;
-    const FeatureLines lines = find_features(result.mesh, feature_params, context.threads());
-    result.features = lines.graph;
+    result.features = std::move(lines.graph);
     result.loops = lines.counts.holes + lines.counts.boundaries;
     result.holes = lines.counts.holes;
     result.creases = lines.counts.creases;

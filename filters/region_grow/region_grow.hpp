@@ -43,7 +43,8 @@ struct RegionGrowResult {
     /// Over the points used, in input order with their columns. Its sharp edges are the creases, and the border edges
     /// beyond which the surface goes on in another patch.
     TriangleMesh mesh;
-    /// Its borders, holes and creases, with the normals on both sides.
+    /// Its borders, holes and creases, with the normals on both sides: beyond a border that is a sharp edge those of
+    /// the other patch.
     FeatureGraph features;
     /// Per vertex its row in the cloud, ascending.
     Array<u32> rows;

@@ -197,17 +197,22 @@ SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool 
     return {nobody, false, !far};
 }
 
-bool PointChooser::ends_at_other_patch(u32 from, u32 to, const Limits& limits) {
+u32 PointChooser::beyond_sharp_edge(u32 from, u32 to, const Limits& limits) {
     const Vec3 joined = surface_.facet_normal(from, to, surface_.fans.left_of(from, to));
     collect(from, to, search_radius(from, to) * limits.reach, true);
     Limits bent = limits;
     bent.normal_cosine = least_bend_cosine;
     rate(from, to, joined, bent);
-    return std::ranges::any_of(candidates_, [&](const Candidate& candidate) {
-        return joined.dot(candidate.normal) < limits.normal_cosine &&
-               surface_.states[candidate.point] != PlaceState::unused &&
-               has_good_angles(from, to, candidate.point, limits);
-    });
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : candidates_) {
+        if (joined.dot(candidate.normal) >= limits.normal_cosine ||
+            surface_.states[candidate.point] == PlaceState::unused ||
+            !has_good_angles(from, to, candidate.point, limits))
+            continue;
+        if (!best || candidate.score < best->score || (candidate.score == best->score && candidate.point < best->point))
+            best = &candidate;
+    }
+    return best ? best->point : nobody;
 }
 
 u32 PointChooser::choose_third(u32 from, u32 to, const Limits& limits) {

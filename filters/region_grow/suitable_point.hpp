@@ -42,9 +42,9 @@ public:
     SuitablePoint choose(u32 from, u32 to, const Limits& limits, bool far);
     /// The point with which two unused ones begin a surface, on whichever side.
     u32 choose_third(u32 from, u32 to, const Limits& limits);
-    /// Whether a place within reach of a border edge would do, were it not for the angle to the triangle there, and the
-    /// angle is no fold back onto it.
-    bool ends_at_other_patch(u32 from, u32 to, const Limits& limits);
+    /// The place of the surface that a border edge would take, were it not for the angle to the triangle there; it is
+    /// no fold back onto that. nobody when there is none.
+    u32 beyond_sharp_edge(u32 from, u32 to, const Limits& limits);
 
 private:
     struct Candidate {

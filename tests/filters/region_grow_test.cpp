@@ -130,6 +130,18 @@ TEST(RegionGrow_TwoPlanesAt90Degrees, BelowIsTwoPatchesAndASharpEdge) {
     }
     EXPECT_GT(sum.x(), 100);
     EXPECT_GT(sum.z(), 100);
+    // A line along the edge knows the normals of both patches: all far sides are across.
+    std::size_t far_sides = 0;
+    const FeatureGraph& lines = result.features;
+    for (std::size_t i = 0; i < lines.vertices.size(); ++i) {
+        EXPECT_NEAR(lines.left_normals[i].norm(), 1, 1e-9);
+        if (lines.right_normals[i].isZero()) continue;
+        ++far_sides;
+        EXPECT_NEAR(lines.right_normals[i].norm(), 1, 1e-9);
+        EXPECT_NEAR(lines.left_normals[i].dot(lines.right_normals[i]), 0, 1e-9);
+        EXPECT_GE(lines.right_normals[i].minCoeff(), -1e-9);
+    }
+    EXPECT_EQ(far_sides, result.patch_edges);
     // Those of the patch that ends next to the edge tell that the surface goes on.
     EXPECT_GE(result.mesh.sharp_edges.size(), 12u);
 }

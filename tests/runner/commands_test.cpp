@@ -18,8 +18,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-const std::vector<std::string> filters{"alpha-solid", "delaunay",     "features",  "merge",
-                                       "sculpt",      "virtual-scan", "voxel-thin"};
+const std::vector<std::string> filters{"alpha-solid", "delaunay", "features",     "merge",
+                                       "region-grow", "sculpt",   "virtual-scan", "voxel-thin"};
 
 std::string quickstart() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml"; }
 
