@@ -35,9 +35,24 @@ struct Descriptor {
     throw Error("cannot be opened: {}", std::generic_category().message(reason));
 }
 
+/// Pages of a mapping.
+struct Pages {
+    enum Which { touched, covered };
+    char* begin;
+    std::size_t size;
+};
+
+Pages pages_of(std::string_view part, const char* mapping, Pages::Which which) {
+    static const std::size_t page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    std::size_t begin = static_cast<std::size_t>(part.data() - mapping), end = begin + part.size();
+    begin = (which == Pages::covered ? begin + page - 1 : begin) / page * page;
+    if (which == Pages::covered) end = end / page * page;
+    return {const_cast<char*>(mapping) + begin, end > begin ? end - begin : 0};
+}
+
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path) {
+MappedFile::MappedFile(const std::filesystem::path& path, bool whole) {
     // Without O_NONBLOCK, opening a named pipe would wait for its writer forever.
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     if (file.number < 0) throw_unopened(errno);
@@ -48,10 +63,22 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     if (!S_ISREG(facts.st_mode)) throw_irregular();
     if (facts.st_size == 0) throw Error("is empty (0 bytes)");
     size_ = static_cast<std::size_t>(facts.st_size);
-    // Everything will be read, once: one call that maps all pages beats a fault for every few of them.
-    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | MAP_POPULATE, file.number, 0);
+    // One call that maps all pages beats a fault for every few of them.
+    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | (whole ? MAP_POPULATE : 0), file.number, 0);
     if (data_ == MAP_FAILED)
         throw Error("its {} bytes cannot be mapped: {}", size_, std::generic_category().message(errno));
+}
+
+void MappedFile::fetch(std::string_view part) const noexcept {
+#ifdef MADV_POPULATE_READ
+    const Pages pages = pages_of(part, static_cast<const char*>(data_), Pages::touched);
+    if (pages.size > 0) ::madvise(pages.begin, pages.size, MADV_POPULATE_READ);  // an older kernel refuses: no harm
+#endif
+}
+
+void MappedFile::release(std::string_view part) const noexcept {
+    const Pages pages = pages_of(part, static_cast<const char*>(data_), Pages::covered);
+    if (pages.size > 0) ::madvise(pages.begin, pages.size, MADV_DONTNEED);
 }
 
 MappedFile::~MappedFile() { ::munmap(data_, size_); }

@@ -12,12 +12,19 @@ namespace scanmill {
 /// SIGBUS: scans are written once and read afterwards.
 class MappedFile {
 public:
-    explicit MappedFile(const std::filesystem::path& path);
+    /// `whole`: everything will be read, so all of it is fetched at once. Else what is not touched costs no memory.
+    explicit MappedFile(const std::filesystem::path& path, bool whole = true);
     ~MappedFile();
     MappedFile(const MappedFile&) = delete;
     MappedFile& operator=(const MappedFile&) = delete;
 
     std::string_view bytes() const { return {static_cast<const char*>(data_), size_}; }
+
+    /// These bytes will be read next: their pages are mapped in one call. `part` is a part of bytes().
+    void fetch(std::string_view part) const noexcept;
+    /// These bytes are not needed for now: pages that lie in them as a whole no longer count as memory of this process.
+    /// Reading them again is allowed.
+    void release(std::string_view part) const noexcept;
 
 private:
     void* data_ = nullptr;

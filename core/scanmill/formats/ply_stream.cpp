@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "scanmill/filter/parallel.hpp"
+#include "scanmill/formats/ply_positions.hpp"
+#include "scanmill/formats/ply_table.hpp"
+#include "scanmill/formats/point_stream_kinds.hpp"
+#include "scanmill/formats/reading.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+constexpr std::size_t rows_per_piece = std::size_t(1) << 16;
+
+class PlyStream : public PointStream {
+public:
+    PlyStream(std::unique_ptr<MappedFile> file, PlyHeader header)
+        : file_(std::move(file)),
+          header_(std::move(header)),
+          vertex_(header_.elements.front()) {
+        for (const PlyProperty& property : vertex_.properties) row_size_ += size_of(property.type);
+        rows_ = file_->bytes().substr(header_.size, vertex_.count * row_size_);
+        for (std::size_t row = 0; row < vertex_.count; row += rows_per_piece) pieces_.push_back(row);
+        pieces_.push_back(vertex_.count);
+    }
+
+    bool open(const ReadOptions& options, unsigned threads) {
+        if (!look_over(threads)) return false;
+        const Vec3 origin = frame_.origin;
+        frame_ = declared_frame(header_.comments, options);
+        frame_.origin = origin;
+        return true;
+    }
+
+private:
+    std::string_view bytes_of(std::size_t first, std::size_t count) const {
+        return rows_.substr(first * row_size_, count * row_size_);
+    }
+
+    /// Slots of x, y and z that store doubles from `positions` on.
+    static void place_axes(std::span<PlySlot> slots, Vec3* positions) {
+        for (PlySlot& slot : slots) {
+            const auto axis = std::ranges::find(axes, slot.property->name);
+            if (axis == axes.end()) continue;
+            slot.widened = true;
+            slot.stride = sizeof(Vec3);
+            slot.place = reinterpret_cast<std::byte*>(positions) + (axis - axes.begin()) * sizeof(double);
+        }
+    }
+
+    void decode(std::string_view rows, std::span<const PlySlot> slots) const {
+        PlyElement part = vertex_;
+        part.count = rows.size() / row_size_;
+        decode_ply_binary(rows, header_.size, part, header_.encoding == PlyEncoding::binary_big_endian, slots);
+    }
+
+    void read_world(std::size_t piece, Array<Vec3>& room) const override {
+        const std::size_t first = pieces_[piece], count = pieces_[piece + 1] - first;
+        const std::string_view rows = bytes_of(first, count);
+        file_->fetch(rows);
+        room.resize(count);
+        if (!widen_packed_positions(rows, vertex_, header_.encoding, room)) {
+            std::vector<PlySlot> slots;
+            for (const PlyProperty& property : vertex_.properties) slots.push_back({.property = &property});
+            place_axes(slots, room.data());
+            decode(rows, slots);
+        }
+        file_->release(rows);
+    }
+
+    PointCloud gather_world(std::span<const u32> rows, unsigned threads) const override {
+        PlyElement kept = vertex_;
+        kept.count = rows.size();
+        PlyTable table(kept, header_.comments, axes);
+        Array<Vec3> positions(rows.size());
+        place_axes(table.slots(), positions.data());
+        constexpr std::size_t block = 1 << 14;
+        for_each_chunk(threads, rows.size(), block, [&](std::size_t begin, std::size_t end) {
+            std::vector<PlySlot> slots(table.slots().begin(), table.slots().end());
+            for (PlySlot& slot : slots)
+                if (slot.place) slot.place += begin * slot.stride;
+            Array<char> picked((end - begin) * row_size_);
+            for (std::size_t i = begin; i < end; ++i)
+                std::ranges::copy(bytes_of(rows[i], 1), picked.begin() + static_cast<long>((i - begin) * row_size_));
+            file_->release(bytes_of(rows[begin], rows[end - 1] - rows[begin] + 1));
+            decode({picked.data(), picked.size()}, slots);
+        });
+        PointCloud cloud;
+        cloud.positions = std::move(positions);
+        cloud.columns = table.columns();
+        return cloud;
+    }
+
+    std::unique_ptr<MappedFile> file_;
+    PlyHeader header_;
+    const PlyElement& vertex_;
+    std::size_t row_size_ = 0;
+    std::string_view rows_;
+};
+
+/// Whether the file holds vertices and nothing else, and all of them, so that nothing is left to be said of it.
+bool holds_only_vertices(std::string_view file, const PlyHeader& header) {
+    if (header.encoding == PlyEncoding::ascii || header.elements.empty()) return false;
+    const PlyElement& vertex = header.elements.front();
+    if (vertex.name != "vertex" || vertex.count == 0 || vertex.count > ~u32(0) || vertex.has_lists()) return false;
+    const auto is_missing = [&](std::string_view axis) { return !vertex.find(axis); };
+    if (std::ranges::any_of(axes, is_missing)) return false;
+    const auto has_rows = [](const PlyElement& element) { return element.count > 0; };
+    if (std::any_of(header.elements.begin() + 1, header.elements.end(), has_rows)) return false;
+    std::size_t row_size = 0;
+    for (const PlyProperty& property : vertex.properties) row_size += size_of(property.type);
+    const std::size_t body = file.size() - header.size;
+    return body % row_size == 0 && body / row_size == vertex.count;
+}
+
+}  // namespace
+
+std::unique_ptr<PointStream> open_ply_stream(std::unique_ptr<MappedFile> file, const ReadOptions& options,
+                                             unsigned threads) {
+    PlyHeader header = parse_ply_header(file->bytes());
+    if (!holds_only_vertices(file->bytes(), header)) return nullptr;
+    auto stream = std::make_unique<PlyStream>(std::move(file), std::move(header));
+    if (!stream->open(options, threads)) return nullptr;
+    return stream;
+}
+
+}  // namespace scanmill

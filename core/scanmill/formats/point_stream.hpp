@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A point file that is read piece by piece, as often as needed, for what looks at every point and keeps few: the scan
+/// never is in memory as a whole.
+///
+/// What comes out is, bit for bit, what read_points() gives: the same frame, the same positions relative to it, the
+/// same columns. Binary PLY and texts of three columns can be read so; the page on open_point_stream() says which.
+
+#include <memory>
+#include <span>
+
+#include "scanmill/formats/files.hpp"
+
+namespace scanmill {
+
+class PointStream {
+public:
+    virtual ~PointStream();
+    PointStream(const PointStream&) = delete;
+    PointStream& operator=(const PointStream&) = delete;
+
+    const Frame& frame() const { return frame_; }
+    /// Of all points, relative to frame().origin.
+    const BoundingBox& bounds() const { return bounds_; }
+    /// Where the pieces begin, and one more: the number of points. A piece may be empty.
+    const std::vector<std::size_t>& pieces() const { return pieces_; }
+    std::size_t size() const { return pieces_.back(); }
+
+    /// The positions of a piece, in `room`. From several threads at once, each with room of its own.
+    void read(std::size_t piece, Array<Vec3>& room) const;
+    /// These points with all their columns. Pre: `rows` ascending.
+    PointCloud gather(std::span<const u32> rows, unsigned threads) const;
+
+protected:
+    PointStream() = default;
+    /// World positions of a piece, `room` sized to fit.
+    virtual void read_world(std::size_t piece, Array<Vec3>& room) const = 0;
+    virtual PointCloud gather_world(std::span<const u32> rows, unsigned threads) const = 0;
+    /// Sets the bounds, and the frame's origin to what readers choose. False when a coordinate is not finite.
+    bool look_over(unsigned threads);
+
+    Frame frame_;
+    BoundingBox bounds_;
+    std::vector<std::size_t> pieces_;
+};
+
+/// Looks over the whole file once, on up to `threads` threads, so that bounds and origin are known.
+///
+/// Nothing when the file cannot be read so, or when there is something to be said of it: the caller then reads it
+/// whole, and read_points() says it. Read so are: PLY, binary, whose first element is `vertex` without lists and whose
+/// other elements are empty; XYZ and CSV text of three columns in lines that end with LF. All coordinates must be
+/// finite. Warnings are those of read_points(). Throws Error for a file that cannot be opened. It must not change
+/// meanwhile. Cost: binary, as fast as the file is read; text, its numbers are parsed. Memory: pieces of about 1.5 MB
+/// for each thread, 8 bytes per piece; pages of the file are given back piece by piece.
+std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path, const ReadOptions& options,
+                                               unsigned threads);
+
+}  // namespace scanmill

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/parallel.hpp"
+#include "scanmill/formats/point_stream_kinds.hpp"
+#include "scanmill/formats/reading.hpp"
+#include "scanmill/formats/tagged_points.hpp"
+#include "scanmill/formats/text_layout.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t piece_size = std::size_t(1) << 20;
+/// A text whose lines end otherwise than with LF is one long line to us.
+constexpr std::size_t longest_piece = 4 * piece_size;
+constexpr std::size_t most_comments = 1000;
+
+/// Thrown and caught here: something in the text needs a word, which whoever reads it whole has.
+struct Unusual {};
+
+/// Appends the points of some lines. Throws Unusual for a row of other than three numbers, separated alike.
+void parse_rows(TextCursor& text, const std::array<std::size_t, 3>& axes, Array<Vec3>& points) {
+    std::array<double, 3> row;
+    while (text.next_row()) {
+        for (double& number : row)
+            if (!text.more() || !text.number(number)) throw Unusual{};
+        if (text.more() || text.has_empty_field() || text.mixes_separators()) throw Unusual{};
+        points.emplace_back(row[axes[0]], row[axes[1]], row[axes[2]]);
+    }
+}
+
+class TextStream : public PointStream {
+public:
+    explicit TextStream(std::unique_ptr<MappedFile> file) : file_(std::move(file)) {}
+
+    bool open(const ReadOptions& options, unsigned threads) {
+        const std::string_view text = without_byte_order_mark(file_->bytes());
+        if (are_tagged_points(text)) return false;
+        TextCursor cursor(text, text_rules);
+        const TextLayout layout = read_text_layout(cursor);
+        if (layout.width != 3 || layout.promised || !layout.passed_over.empty()) return false;
+        axes_ = layout.axes;
+        comments_ = cursor.comments();
+        std::size_t first_row = static_cast<std::size_t>(TextCursor(cursor).token().data() - text.data());
+        while (first_row > 0 && text[first_row - 1] != '\n' && text[first_row - 1] != '\r') --first_row;
+        if (!cut(text.substr(first_row))) return false;
+        if (!count_rows(threads)) return false;
+        const Vec3 origin = frame_.origin;
+        frame_ = declared_frame(comments_, options);
+        frame_.origin = origin;
+        return true;
+    }
+
+private:
+    bool cut(std::string_view text) {
+        while (!text.empty()) {
+            const std::size_t line_end = text.size() > piece_size ? text.find('\n', piece_size) : text.npos;
+            const std::size_t size = line_end == text.npos ? text.size() : line_end + 1;
+            if (size > longest_piece) return false;
+            texts_.push_back(text.substr(0, size));
+            text.remove_prefix(size);
+        }
+        return true;
+    }
+
+    struct Piece {
+        PieceBounds bounds{{}};
+        std::size_t rows = 0;
+        std::vector<std::string> comments;
+    };
+
+    bool count_rows(unsigned threads) {
+        std::vector<Piece> found(texts_.size());
+        for_each_chunk(threads, texts_.size(), pieces_at_once, [&](std::size_t begin, std::size_t end) {
+            Array<Vec3> room;
+            for (std::size_t i = begin; i < end; ++i) {
+                TextCursor cursor = parse(i, room);
+                found[i] = {PieceBounds(room), room.size(), cursor.comments()};
+            }
+        });
+        std::size_t rows = 0;
+        for (Piece& piece : found) {
+            if (!piece.bounds.finite) return false;
+            bounds_.low = bounds_.low.cwiseMin(piece.bounds.box.low);
+            bounds_.high = bounds_.high.cwiseMax(piece.bounds.box.high);
+            pieces_.push_back(rows);
+            rows += piece.rows;
+            for (std::string& comment : piece.comments)
+                if (comments_.size() < most_comments) comments_.push_back(std::move(comment));
+        }
+        pieces_.push_back(rows);
+        frame_.origin = distant_origin(bounds_);
+        bounds_.low -= frame_.origin;
+        bounds_.high -= frame_.origin;
+        return rows <= ~u32(0);
+    }
+
+    TextCursor parse(std::size_t piece, Array<Vec3>& room) const {
+        room.clear();
+        file_->fetch(texts_[piece]);
+        TextCursor cursor(texts_[piece], text_rules);
+        parse_rows(cursor, axes_, room);
+        file_->release(texts_[piece]);
+        return cursor;
+    }
+
+    void read_world(std::size_t piece, Array<Vec3>& room) const override { parse(piece, room); }
+
+    PointCloud gather_world(std::span<const u32> rows, unsigned threads) const override {
+        Array<Vec3> positions(rows.size());
+        for_each_chunk(threads, texts_.size(), pieces_at_once, [&](std::size_t begin, std::size_t end) {
+            Array<Vec3> room;
+            for (std::size_t piece = begin; piece < end; ++piece) {
+                const auto first = std::ranges::lower_bound(rows, pieces_[piece]);
+                const auto last = std::ranges::lower_bound(rows, pieces_[piece + 1]);
+                if (first == last) continue;
+                parse(piece, room);
+                for (auto row = first; row != last; ++row)
+                    positions[static_cast<std::size_t>(row - rows.begin())] = room[*row - pieces_[piece]];
+            }
+        });
+        PointCloud cloud;
+        cloud.positions = std::move(positions);
+        return cloud;
+    }
+
+    std::unique_ptr<MappedFile> file_;
+    std::array<std::size_t, 3> axes_{0, 1, 2};
+    std::vector<std::string_view> texts_;  // of the pieces
+    std::vector<std::string> comments_;
+};
+
+}  // namespace
+
+std::unique_ptr<PointStream> open_text_stream(std::unique_ptr<MappedFile> file, const ReadOptions& options,
+                                              unsigned threads) {
+    try {
+        auto stream = std::make_unique<TextStream>(std::move(file));
+        if (stream->open(options, threads)) return stream;
+    } catch (const Unusual&) {
+    }
+    return nullptr;
+}
+
+}  // namespace scanmill
