@@ -20,15 +20,13 @@ constexpr std::size_t most_comments = 1000;
 /// Thrown and caught here: something in the text needs a word, which whoever reads it whole has.
 struct Unusual {};
 
-/// Appends the points of some lines. Throws Unusual for a row of other than three numbers, separated alike.
-void parse_rows(TextCursor& text, const std::array<std::size_t, 3>& axes, Array<Vec3>& points) {
+/// The point of the cursor's row. Throws Unusual for a row of other than three numbers, separated alike.
+Vec3 parse_row(TextCursor& text, const std::array<std::size_t, 3>& axes) {
     std::array<double, 3> row;
-    while (text.next_row()) {
-        for (double& number : row)
-            if (!text.more() || !text.number(number)) throw Unusual{};
-        if (text.more() || text.has_empty_field() || text.mixes_separators()) throw Unusual{};
-        points.emplace_back(row[axes[0]], row[axes[1]], row[axes[2]]);
-    }
+    for (double& number : row)
+        if (!text.more() || !text.number(number)) throw Unusual{};
+    if (text.more() || text.has_empty_field() || text.mixes_separators()) throw Unusual{};
+    return {row[axes[0]], row[axes[1]], row[axes[2]]};
 }
 
 class TextStream : public PointStream {
@@ -101,7 +99,7 @@ private:
         room.clear();
         file_->fetch(texts_[piece]);
         TextCursor cursor(texts_[piece], text_rules);
-        parse_rows(cursor, axes_, room);
+        while (cursor.next_row()) room.push_back(parse_row(cursor, axes_));
         file_->release(texts_[piece]);
         return cursor;
     }
@@ -110,16 +108,18 @@ private:
 
     PointCloud gather_world(std::span<const u32> rows, unsigned threads) const override {
         Array<Vec3> positions(rows.size());
-        for_each_chunk(threads, texts_.size(), pieces_at_once, [&](std::size_t begin, std::size_t end) {
-            Array<Vec3> room;
-            for (std::size_t piece = begin; piece < end; ++piece) {
-                const auto first = std::ranges::lower_bound(rows, pieces_[piece]);
-                const auto last = std::ranges::lower_bound(rows, pieces_[piece + 1]);
-                if (first == last) continue;
-                parse(piece, room);
-                for (auto row = first; row != last; ++row)
-                    positions[static_cast<std::size_t>(row - rows.begin())] = room[*row - pieces_[piece]];
+        for_each_chunk(threads, texts_.size(), 1, [&](std::size_t piece, std::size_t) {
+            const auto begin = std::ranges::lower_bound(rows, pieces_[piece]);
+            const auto end = std::ranges::lower_bound(rows, pieces_[piece + 1]);
+            if (begin == end) return;
+            file_->fetch(texts_[piece]);
+            TextCursor cursor(texts_[piece], text_rules);
+            std::size_t row = pieces_[piece];
+            for (auto kept = begin; kept != end; ++row) {
+                cursor.next_row();
+                if (*kept == row) positions[static_cast<std::size_t>(kept++ - rows.begin())] = parse_row(cursor, axes_);
             }
+            file_->release(texts_[piece]);
         });
         PointCloud cloud;
         cloud.positions = std::move(positions);
