@@ -12,8 +12,8 @@ VoxelThinResult voxel_thin(const PointStream& scan, const VoxelThinParams& param
                                   return room;
                               }};
     return voxel::thin(
-        pieces, scan.bounds(), params,
-        [&](std::span<const u32> rows) { return scan.gather(rows, context.threads()); }, context);
+        pieces, scan.bounds(), params, [&](std::span<const u32> rows) { return scan.gather(rows, context.threads()); },
+        context);
 }
 
 }  // namespace scanmill
