@@ -4,7 +4,7 @@
 /// never is in memory as a whole.
 ///
 /// What comes out is, bit for bit, what read_points() gives: the same frame, the same positions relative to it, the
-/// same columns. Binary PLY and texts of three columns can be read so; the page on open_point_stream() says which.
+/// same columns. Binary PLY and texts of three columns can be read so; open_point_stream() says which.
 
 #include <memory>
 #include <span>
@@ -46,12 +46,12 @@ protected:
 
 /// Looks over the whole file once, on up to `threads` threads, so that bounds and origin are known.
 ///
-/// Nothing when the file cannot be read so, or when there is something to be said of it: the caller then reads it
-/// whole, and read_points() says it. Read so are: PLY, binary, whose first element is `vertex` without lists and whose
-/// other elements are empty; XYZ and CSV text of three columns in lines that end with LF. All coordinates must be
-/// finite. Warnings are those of read_points(). Throws Error for a file that cannot be opened. It must not change
-/// meanwhile. Cost: binary, as fast as the file is read; text, its numbers are parsed. Memory: pieces of about 1.5 MB
-/// for each thread, 8 bytes per piece; pages of the file are given back piece by piece.
+/// Nothing when the file cannot be read so, or not at all, or when there is something to be said of it: the caller then
+/// reads it whole, and read_points() says it. Read so are: PLY, binary, whose first element is `vertex` without lists
+/// and whose other elements are empty; XYZ and CSV text of three columns in lines that end with LF. All coordinates
+/// must be finite. What declared units and frames give cause to say goes to options.on_warning. The file must not
+/// change meanwhile. Cost: binary, as fast as the file is read; text, its numbers are parsed. Memory: pieces of
+/// about 1.5 MB for each thread, 8 bytes per piece; pages of the file are given back piece by piece.
 std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path, const ReadOptions& options,
                                                unsigned threads);
 
