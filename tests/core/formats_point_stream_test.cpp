@@ -142,6 +142,7 @@ TEST(PointStream, IsNotHadOfFilesThatHoldMore) {
     expect_not_read_so(ply<float>(3, "float", 0, false, face) + std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13),
                        "mesh.ply");
     expect_not_read_so(ply<float>(3, "float", 0, false, "property list uchar int more\n"), "list.ply");
+    expect_not_read_so(ply<float>(3, "float", 0, false, "element thing 2\n"), "things_without_bytes.ply");
     expect_not_read_so(ply<float>(3, "float") + "more", "trailing.ply");
     const std::string whole = ply<float>(3, "float");
     expect_not_read_so(whole.substr(0, whole.size() - 1), "truncated.ply");

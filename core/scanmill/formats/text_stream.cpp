@@ -5,7 +5,6 @@
 #include "scanmill/filter/parallel.hpp"
 #include "scanmill/formats/point_stream_kinds.hpp"
 #include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/tagged_points.hpp"
 #include "scanmill/formats/text_layout.hpp"
 
 namespace scanmill {
@@ -35,7 +34,6 @@ public:
 
     bool open(const ReadOptions& options, unsigned threads) {
         const std::string_view text = without_byte_order_mark(file_->bytes());
-        if (are_tagged_points(text)) return false;
         TextCursor cursor(text, text_rules);
         const TextLayout layout = read_text_layout(cursor);
         if (layout.width != 3 || layout.promised || !layout.passed_over.empty()) return false;
