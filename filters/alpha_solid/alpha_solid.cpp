@@ -48,6 +48,19 @@ double radius(double squared) {
     return root * root < squared ? std::nextafter(root, std::numeric_limits<double>::infinity()) : root;
 }
 
+/// The shortest decimal that is no smaller and, unless that takes many digits, little larger: told, it works.
+std::string text_from(double squared) {
+    return alpha::text_within({radius(squared), std::numeric_limits<double>::max()}, 0);
+}
+
+[[noreturn]] void refuse_without_cells(const Flood& flood, const Length& alpha, const Frame& frame) {
+    const std::string_view unit = symbol(frame.unit);
+    throw Error("alpha {} leaves no cell inside; from {} {} there is one, from {} {} cells reach {} of {} points",
+                alpha.text(), text_from(flood.values.back()), unit, text_from(flood.cover), unit, flood.needed,
+                flood.points)
+        .hint("'alpha: auto' finds the least alpha with a closed manifold boundary");
+}
+
 /// The largest radius whose square is below `squared`.
 double radius_below(double squared) {
     double root = std::sqrt(squared);
@@ -127,10 +140,7 @@ AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params
     }
     context.progress(0.75);
     if (params.alpha && flood.outside_above(limits.value) == tets.cells.size())
-        throw Error(
-            "alpha {} leaves no cell inside; the least that gives one is {:.6g}, and {:.6g} covers {} of {} points",
-            params.alpha->text(), radius(flood.values.back()), radius(flood.cover), flood.needed, flood.points)
-            .hint("'alpha: auto' finds the least alpha with a closed manifold boundary");
+        refuse_without_cells(flood, *params.alpha, tets.frame);
 
     const Selector selector(tets, flood, params, context);
     Selection selection = params.alpha                           ? selector.given(limits.value)

@@ -101,8 +101,9 @@ struct AlphaSolidResult {
 ///       and 1e100, weights from 0 to 1e200. Throws Error with numbers, also when the given alpha leaves no cell
 ///       inside, or when alpha would have to be so large that its square is no number.
 /// Post: see AlphaSolidResult. Facet values are computed from corners sorted by coordinates and compared exactly; equal
-///       values enter together. So the solid depends neither on the order of the points nor on the number of threads.
-///       A point exactly on a facet's smallest circumsphere does not attach the facet.
+///       values enter together. Facets that are congruent but lie differently may differ in the last bits, and then
+///       enter one after the other. So the solid depends neither on the order of the points nor on the number of
+///       threads. A point exactly on a facet's smallest circumsphere does not attach the facet.
 /// Cost: O(n log n) in the worst case, about linear in the cells outside the solid for surface scans; about 80 bytes
 ///       per cell beside the result, and 50 more for `single` with coverage below 100 %.
 /// With weights (TetMesh::weights) the radii are those of spheres orthogonal to weighted points, all weights lowered by

@@ -12,7 +12,8 @@ SCANMILL_FILTER() {
             "outside.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
         .ties(
-            "Facets that open at equal alpha open together; of pieces with equally many points the one with the lowest "
+            "Facets that open at equal alpha, as doubles round it, open together; of pieces with equally many points "
+            "the one with the lowest "
             "point stays.")
         .in<TetMesh>("tets", "A Delaunay tetrahedralisation.")
         .out<TriangleMesh>("mesh", "The solid's boundary, closed and outward.")

@@ -2,6 +2,7 @@
 #include "sculpt/bending.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -158,7 +159,8 @@ double Gains::squared_radius(u32 cell, int facet) const {
     const Vec3 a = place(corners[i]), b = place(corners[j]), c = place(corners[k]);
     std::array<double, 3> sides{(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()};
     std::ranges::sort(sides);
-    return sides[0] * sides[1] * sides[2] / (4 * normal(cell, facet).squaredNorm());
+    const double squared_area = 4 * normal(cell, facet).squaredNorm();
+    return squared_area > 0 ? sides[0] * sides[1] * sides[2] / squared_area : std::numeric_limits<double>::infinity();
 }
 
 double Gains::volume(u32 cell) const {

@@ -11,6 +11,7 @@
 namespace scanmill {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -106,8 +107,8 @@ TEST(Expectation, AnAbsoluteVolumeOnAScanOfUnknownUnit_IsRefusedWithAHint) {
         require_met({*planned}, metrics, {});
         FAIL() << "accepted";
     } catch (const Error& error) {
-        EXPECT_THAT(error.sentence(), HasSubstr("needs a scan of known unit"));
-        EXPECT_THAT(error.hint(), HasSubstr("--unit mm"));
+        EXPECT_THAT(error.sentence(), HasSubstr("1 mm3 needs a scan of known unit"));
+        EXPECT_THAT(error.hint(), AllOf(HasSubstr("--unit mm"), HasSubstr("as 0.5 u3")));
     }
 }
 

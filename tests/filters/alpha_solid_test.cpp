@@ -35,7 +35,7 @@ TEST(AlphaSolid, RegularTetrahedron_AppearsAtItsFacetsCircumradius) {
     EXPECT_EQ(result.spectrum, 1u);
     expect_closed(result, 4, 2);
     EXPECT_EQ(refusal(tets, at_alpha(0.57)),
-              "alpha 0.57 u leaves no cell inside; the least that gives one is 0.57735, and 0.57735 covers 4 of 4 "
+              "alpha 0.57 u leaves no cell inside; from 0.5774 u there is one, from 0.5774 u cells reach 4 of 4 "
               "points\nhint: 'alpha: auto' finds the least alpha with a closed manifold boundary");
 }
 

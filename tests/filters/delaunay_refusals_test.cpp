@@ -18,6 +18,7 @@ namespace scanmill {
 namespace {
 
 using namespace test;
+using testing::AllOf;
 using testing::HasSubstr;
 
 DelaunayResult triangulated(const PointCloud& cloud, unsigned threads = 1) {
@@ -98,6 +99,12 @@ TEST(Delaunay, PlaneFarFromTheWorldsOrigin_CountsTheRoundingThere) {
     EXPECT_EQ(refusal(cloud), "accepted");
     cloud.frame.origin = Vec3(1e6, 0, 0);
     EXPECT_THAT(refusal(cloud), HasSubstr("less than their coordinates can express"));
+}
+
+TEST(Delaunay, ScanThatLostItsDigitsFarAway_IsToldToStayNearTheOrigin) {
+    PointCloud cloud = random_cube(50, 1);
+    cloud.frame.origin = Vec3(1e16, 0, 0);
+    EXPECT_THAT(refusal(cloud), AllOf(HasSubstr("of one place"), HasSubstr("hint: move the scan near the origin")));
 }
 
 }  // namespace

@@ -67,11 +67,6 @@ bool is_met(const PlannedExpectation& expectation, double found, const LengthSca
     return false;
 }
 
-bool is_absolute(const Length& length) {
-    return length.in() != Length::In::scan_unit && length.in() != Length::In::percent_of_diagonal &&
-           length.in() != Length::In::spacing;
-}
-
 /// Whether nothing lies between the ends, whatever the scan. Only absolute lengths in different units can be compared
 /// without it.
 bool is_backwards(const PlannedExpectation& expectation) {

@@ -41,8 +41,18 @@ Length parse_length_power(std::string_view text, int power) {
                 length_power_examples(power));
 }
 
+bool is_absolute(const Length& length) {
+    return length.in() != Length::In::scan_unit && length.in() != Length::In::percent_of_diagonal &&
+           length.in() != Length::In::spacing;
+}
+
 double resolved_length_power(const Length& written, int power, const LengthScale& scale) {
     // The unit is resolved, not the amount, which may be 0 or below it.
+    if (scale.unit == LengthUnit::unknown && is_absolute(written))
+        throw Error("{}{} needs a scan of known unit; this scan's unit is not declared", written.text(), power)
+            .hint(fmt::format("say `--unit mm`, or `inputs: {{scan: {{kind: points, unit: mm}}}}` in the workflow, or "
+                              "write it in the scan's own unit, as 0.5 u{}",
+                              power));
     const double unit = Length(1, written.in()).resolved(scale).value();
     return written.amount() * std::pow(unit, power);
 }

@@ -20,6 +20,9 @@ int power_of_length(Unit unit);
 /// power is 2 or 3.
 Length parse_length_power(std::string_view text, int power);
 
+/// Whether it is in a unit of the world, and so means the same on every scan.
+bool is_absolute(const Length& length);
+
 /// Such a number in the scan's unit, raised. Throws Error as Length::resolved() does.
 double resolved_length_power(const Length& written, int power, const LengthScale& scale);
 
