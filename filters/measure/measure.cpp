@@ -179,7 +179,7 @@ Measurement measure(const TriangleMesh& mesh, const TriangleMesh& given_truth, c
     if (params.borders == MeasureParams::Borders::exclude)
         throw Error("borders are excluded for points as truth, and the truth is a mesh of {} triangles",
                     given_truth.triangles.size())
-            .hint("leave borders at include, or give the points that the mesh was made of as truth");
+            .hint("say borders: include, or give the scan as truth");
     const std::vector<double> thresholds = thresholds_for(mesh, params);
     TriangleMesh truth = given_truth;
     truth.positions = in_frame_of(mesh.frame, given_truth.frame, given_truth.positions);
@@ -231,18 +231,16 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
     const TriangleTree mesh_tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
     context.progress(0.1);
     NearestDistances from = nearest_distances(points.span(), mesh_tree, rounding, context);
-    std::optional<std::size_t> beyond_borders;
+    Measurement result;
     if (params.borders == MeasureParams::Borders::exclude)
-        beyond_borders = leave_out_borders(from, points.span(), mesh, rounding);
+        result.beyond_borders = leave_out_borders(from, points.span(), mesh, rounding);
     context.progress(0.3);
     const Side to = measured_side(mesh, tree_of_points(points.span(), context.threads()), params, 0, rounding, context);
     context.progress(0.5);
 
-    Measurement result;
     result.to_points = to.numbers;
     result.from_truth = numbers_of(from.distances, {});
     result.from_truth.mean_spread.reset();
-    result.beyond_borders = beyond_borders;
     result.both = result.from_truth;
     for (const double threshold : thresholds)
         result.near.push_back({threshold, {}, share_within(from.distances, threshold), {}});
