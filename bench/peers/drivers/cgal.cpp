@@ -21,6 +21,7 @@ int main() {
                    {"regular", of_input(regular)},
                    {"fixed-alpha-shape", of_input(fixed_alpha_shape)},
                    {"optimal-alpha-shape", of_input(optimal_alpha_shape)},
+                   {"advancing-front", of_input(advancing_front)},
                    {"distances", [&](const Json& request) { return distances(input, points, request); }}},
                   {{"CGAL", CGAL_VERSION_STR}});
 }

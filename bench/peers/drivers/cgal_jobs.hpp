@@ -14,6 +14,8 @@ Json regular(const RawInput& input, const Json& request);
 Json fixed_alpha_shape(const RawInput& input, const Json& request);
 /// Alpha_shape_3 and find_optimal_alpha(1).
 Json optimal_alpha_shape(const RawInput& input, const Json& request);
+/// advancing_front_surface_reconstruction, its tetrahedralisation included.
+Json advancing_front(const RawInput& input, const Json& request);
 /// AABB_tree of the triangles of `mesh`, asked for every point's distance.
 Json distances(const RawInput& mesh, const RawInput& points, const Json& request);
 

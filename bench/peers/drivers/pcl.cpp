@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// PCL's grids and normals, as its tutorials call them: points of 16 bytes, float; grids in one thread.
+/// PCL's grids, normals and greedy triangulation, as its tutorials call them: points of 16 bytes, float; all but
+/// normals in one thread.
 
+#include <pcl/features/normal_3d.h>
 #include <pcl/features/normal_3d_omp.h>
 #include <pcl/filters/uniform_sampling.h>
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/pcl_config.h>
 #include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/surface/gp3.h>
+
+#include <algorithm>
 
 #include <cmath>
 
@@ -67,6 +73,40 @@ Json estimate_normals(const Cloud::Ptr& cloud, const Json& request) {
     return {{"seconds", seconds}, {"along_x", static_cast<double>(along_x) / static_cast<double>(normals.size())}};
 }
 
+/// Normals of 20 neighbours, then the triangulation with the tutorial's angles; its radius is given, the tutorial's
+/// fits the tutorial's scan only.
+Json project_greedily(const Cloud::Ptr& cloud, const Json& request) {
+    pcl::PolygonMesh mesh;
+    const double seconds = peers::seconds_of([&] {
+        pcl::NormalEstimation<pcl::PointXYZ, pcl::Normal> estimation;
+        const auto tree = pcl::make_shared<pcl::search::KdTree<pcl::PointXYZ>>();
+        estimation.setInputCloud(cloud);
+        estimation.setSearchMethod(tree);
+        estimation.setKSearch(20);
+        pcl::PointCloud<pcl::Normal> normals;
+        estimation.compute(normals);
+        const auto both = pcl::make_shared<pcl::PointCloud<pcl::PointNormal>>();
+        pcl::concatenateFields(*cloud, normals, *both);
+        pcl::GreedyProjectionTriangulation<pcl::PointNormal> triangulation;
+        triangulation.setSearchRadius(request.at("radius").get<double>());
+        triangulation.setMu(2.5);
+        triangulation.setMaximumNearestNeighbors(100);
+        triangulation.setMaximumSurfaceAngle(M_PI / 4);
+        triangulation.setMinimumAngle(M_PI / 18);
+        triangulation.setMaximumAngle(2 * M_PI / 3);
+        triangulation.setNormalConsistency(false);
+        triangulation.setInputCloud(both);
+        triangulation.setSearchMethod(pcl::make_shared<pcl::search::KdTree<pcl::PointNormal>>());
+        triangulation.reconstruct(mesh);
+    });
+    std::vector<bool> used(cloud->size(), false);
+    for (const pcl::Vertices& polygon : mesh.polygons)
+        for (const auto corner : polygon.vertices) used[static_cast<std::size_t>(corner)] = true;
+    return {{"seconds", seconds},
+            {"triangles", mesh.polygons.size()},
+            {"unused", std::count(used.begin(), used.end(), false)}};
+}
+
 }  // namespace
 
 int main() {
@@ -74,6 +114,7 @@ int main() {
     return peers::answer({{"load", [&](const Json& request) { return load(*cloud, request); }},
                           {"uniform-sampling", [&](const Json& request) { return sample_uniformly(cloud, request); }},
                           {"voxel-grid", [&](const Json& request) { return average(cloud, request); }},
-                          {"normals", [&](const Json& request) { return estimate_normals(cloud, request); }}},
+                          {"normals", [&](const Json& request) { return estimate_normals(cloud, request); }},
+                          {"greedy-projection", [&](const Json& request) { return project_greedily(cloud, request); }}},
                          {{"PCL", PCL_VERSION_PRETTY}});
 }

@@ -10,6 +10,7 @@
 #include "answer.hpp"
 #include "delaunay/delaunay.hpp"
 #include "measure/nearest_distances.hpp"
+#include "region_grow/region_grow.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/local_surface.hpp"
 #include "sculpt/sculpt.hpp"
@@ -155,6 +156,16 @@ Json sculpted(Held& held, const Json& request) {
             {"triangles", result.mesh.triangles.size()}};
 }
 
+Json grown(Held& held, const Json& request) {
+    Context context = context_for(request);
+    RegionGrowResult result;
+    const double seconds = peers::seconds_of([&] { result = region_grow(held.cloud, {}, context); });
+    return {{"seconds", seconds},
+            {"triangles", result.mesh.triangles.size()},
+            {"loops", result.loops},
+            {"unused", result.unused_points}};
+}
+
 Json distances(Held& held, const Json& request) {
     Context context = context_for(request);
     std::optional<TriangleTree> tree;
@@ -188,6 +199,7 @@ int main() {
                           {"delaunay", with_held(tetrahedralise)},
                           {"alpha-solid", with_held(solid)},
                           {"sculpt", with_held(sculpted)},
+                          {"region-grow", with_held(grown)},
                           {"distances", with_held(distances)}},
                          {{"Scanmill", SCANMILL_VERSION}});
 }

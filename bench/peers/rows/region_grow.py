@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A surface through the points that may end: region growing beside the other two that grow one."""
+from harness.row import Contender, Row, in_threads
+
+#: How far PCL looks: five spacings.
+RADII = {"torus": 0.026, "dragon": 0.0012, "large-torus": 0.0082}
+
+
+def rows(inputs, large):
+    found = [
+        row("region-grow-torus", "bumpy torus", inputs.torus(350_000), RADII["torus"]),
+        row("region-grow-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply"), RADII["dragon"]),
+    ]
+    if large:
+        torus = inputs.torus(3_500_000)
+        more = {"warm_up": False, "rounds": 2, "grows_from": "region-grow-torus"}
+        found.append(row("region-grow-large-torus", "large bumpy torus", torus, RADII["large-torus"], **more))
+    return found
+
+
+def row(name, shape, cloud, radius, **more):
+    load = cloud.load()
+    greedy = {"do": "greedy-projection", "radius": radius}
+    return Row(
+        name=name,
+        title=f"A surface grown over points, {shape}",
+        inputs=[cloud],
+        contenders=[
+            *in_threads([1, 2], "scanmill", {"do": "region-grow"}, prepare=load),
+            Contender("pcl", greedy, "GreedyProjectionTriangulation", prepare=load),
+            Contender("cgal", {"do": "advancing-front"}, "advancing_front_surface_reconstruction", prepare=load),
+        ],
+        equal="the points in memory, no normals. Ours and PCL's take theirs from the neighbours, PCL looks five spacings far "
+        "for its triangles; CGAL tetrahedralises. Each makes a surface of its own, so triangles and points in none "
+        "are told, not compared.",
+        agree={},
+        peak_per="triangles",
+        **more,
+    )
