@@ -85,9 +85,14 @@ TEST(RegionGrow_RandomPointsOfAPlane, DoNotOverlap) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         std::vector<Vec3> points;
         for (const Vec3& p : random_cube(250, seed).positions) points.push_back(Vec3(p.x(), p.y(), 0));
-        const RegionGrowResult result = grown(cloud_from(std::move(points)));
-        expect_consistent(result);
-        EXPECT_EQ(overlapping_pairs(result.mesh), 0u) << seed;
+        const PointCloud cloud = cloud_from(std::move(points));
+        for (const auto score : {RegionGrowParams::Score::circumradius, RegionGrowParams::Score::midpoint}) {
+            RegionGrowParams params;
+            params.score = score;
+            const RegionGrowResult result = grown(cloud, params);
+            expect_consistent(result);
+            EXPECT_EQ(overlapping_pairs(result.mesh), 0u) << seed;
+        }
     }
 }
 
