@@ -99,7 +99,7 @@ const std::vector<HostileWorkflow> hostile_workflows{
          return head + "steps:\n- voxel-thin:\n" +
                 repeated(200'000, [](const std::string& i) { return "    k" + i + ": 1\n"; });
      },
-     "200001 errors"},
+     "200000 errors"},
     {"ManyOutputs",
      [] {
          return head + "steps: [{voxel-thin: {bin-size: 1 u}}]\noutputs:\n" +

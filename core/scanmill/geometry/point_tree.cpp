@@ -66,6 +66,18 @@ struct PointTree::Tree {
         return found;
     }
 
+    /// Calls action(Neighbour) for the others nearer than that, in the tree's order.
+    template <class Action>
+    void visit_within(u32 place, double squared, Action&& action) const {
+        const Vec3& from = places[place];
+        boxes.near({from, from}, squared, [&](std::span<const BoxTree::Point> points) {
+            for (const BoxTree::Point& point : points) {
+                const double distance = squared_distance(point.position, from);
+                if (distance < squared && point.number != place) action(Neighbour{distance, point.number});
+            }
+        });
+    }
+
     Array<u32> place_of_row;
     Array<Vec3> places;
     BoxTree boxes;
@@ -91,9 +103,28 @@ std::span<const Neighbour> PointTree::nearest(u32 place, std::size_t count, Neig
 }
 
 std::vector<double> PointTree::nearest(u32 place, std::size_t count) const {
-    NeighbourBuffer buffer;
+    const BoxTree& boxes = tree_->boxes;
+    const Vec3& from = tree_->places[place];
+    const std::size_t size = std::min(count, tree_->places.size() - 1);
+    // As NeighbourSearch does, without telling equals apart. The place itself is the first, at distance 0.
+    const u64 around = boxes.ancestor_with(size + 1, boxes.leaf_of(tree_->index_of_place[place]));
     std::vector<double> squares;
-    for (const Neighbour& neighbour : nearest(place, count, buffer)) squares.push_back(neighbour.squared);
+    squares.reserve(4 * boxes.points_of(around).size());
+    for (const BoxTree::Point& point : boxes.points_of(around))
+        squares.push_back(squared_distance(point.position, from));
+    const auto last = static_cast<std::ptrdiff_t>(size);
+    std::nth_element(squares.begin(), squares.begin() + last, squares.end());
+    const double enough = squares[size];
+    squares.clear();
+    boxes.near({from, from}, enough, [&](std::span<const BoxTree::Point> points) {
+        for (const BoxTree::Point& point : points) {
+            const double squared = squared_distance(point.position, from);
+            if (squared <= enough && point.number != place) squares.push_back(squared);
+        }
+    });
+    std::nth_element(squares.begin(), squares.begin() + last, squares.end());
+    std::sort(squares.begin(), squares.begin() + last);
+    squares.resize(size);
     return squares;
 }
 
@@ -122,23 +153,15 @@ void PointTree::for_each_nearest(std::size_t count, unsigned threads,
 }
 
 std::span<const Neighbour> PointTree::within(u32 place, double squared, NeighbourBuffer& buffer) const {
-    Array<Neighbour>& found = buffer.neighbours;
-    found.clear();
-    const Vec3& from = tree_->places[place];
-    tree_->boxes.near({from, from}, squared, [&](std::span<const BoxTree::Point> points) {
-        for (const BoxTree::Point& point : points) {
-            const double distance = squared_distance(point.position, from);
-            if (distance < squared && point.number != place) found.push_back({distance, point.number});
-        }
-    });
-    std::ranges::sort(found, ComesBefore());
-    return found;
+    buffer.neighbours.clear();
+    tree_->visit_within(place, squared, [&](const Neighbour& other) { buffer.neighbours.push_back(other); });
+    std::ranges::sort(buffer.neighbours, ComesBefore());
+    return buffer.neighbours;
 }
 
 std::vector<u32> PointTree::within(u32 place, double squared) const {
-    NeighbourBuffer buffer;
     std::vector<u32> numbers;
-    for (const Neighbour& neighbour : within(place, squared, buffer)) numbers.push_back(neighbour.place);
+    tree_->visit_within(place, squared, [&](const Neighbour& other) { numbers.push_back(other.place); });
     std::ranges::sort(numbers);
     return numbers;
 }
