@@ -26,7 +26,9 @@ void warn_of_doubts(const FeatureCounts& counts, const FeatureParams& params, Co
 }  // namespace
 
 FeatureLines features(const TriangleMesh& mesh, const FeatureParams& params, Context& context) {
-    if (mesh.triangles.empty()) throw Error("the mesh has no triangles; features need at least one");
+    if (mesh.triangles.empty())
+        throw Error("the mesh has no triangles; features need at least one")
+            .hint("`scanmill info` tells what a file holds");
     context.check_cancelled();
     FeatureLines lines = find_features(mesh, params, context.threads());
     warn_of_doubts(lines.counts, params, context);

@@ -29,7 +29,7 @@ BinGrid grid_over(const BoundingBox& box, const Vec3& origin, double size) {
             throw Error(
                 "the grid's origin lies {:.6g} bins of {} u away from the cloud along {}; at most {} are possible",
                 std::max(std::abs(first), std::abs(last)), size, "xyz"[axis], farthest_bin)
-                .hint("choose a grid origin nearer the cloud");
+                .hint("lessen the margin, or choose a grid origin nearer the cloud");
         grid.first[axis] = first;
         grid.bins[axis] = static_cast<u64>(last - first) + 1;
     }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scanmill/filter/error.hpp"
+
 namespace scanmill::voxel {
 
 namespace {
@@ -65,6 +67,7 @@ public:
             }
             return;
         }
+        require_fine_enough(points, level);
         keep_one(points, level);
     }
 
@@ -75,6 +78,19 @@ private:
         double least = std::numeric_limits<double>::infinity();
         for (const Located& point : points) least = std::min(least, sizes_[size_of_row_[point.row]]);
         return least;
+    }
+
+    /// Only at the last level can a leaf be larger than its points allow. Duplicates need no leaves of their own.
+    void require_fine_enough(std::span<const Located> points, int level) const {
+        const double edge = std::ldexp(edge_, -level), least = least_size(points);
+        const auto is_elsewhere = [&](const Located& point) {
+            return positions_[point.row] != positions_[points.front().row];
+        };
+        if (level < most_levels || edge <= least || std::ranges::none_of(points, is_elsewhere)) return;
+        throw Error(
+            "the octree's finest leaves have edges of {:.3g} u, a {}th of the scan, and a point asks for {:.3g} u",
+            edge, u64(1) << most_levels, least)
+            .hint("remove what lies far away, or ask for a larger tolerance");
     }
 
     void keep_one(std::span<const Located> points, int level) {
@@ -108,6 +124,23 @@ private:
     u32 min_points_;
 };
 
+struct Root {
+    Vec3 low;
+    double edge;
+};
+
+/// The smallest cell of the grids from `origin`, of edges `base` times a power of two, that holds the box: how far the
+/// origin is takes no level away from it.
+Root root_over(const BoundingBox& box, const Vec3& origin, double base) {
+    for (double edge = base; std::isfinite(edge); edge *= 2) {
+        const Vec3 low = origin.array() + ((box.low - origin).array() / edge).floor() * edge;
+        if ((box.high.array() < low.array() + edge).all()) return {low, edge};
+    }
+    throw Error("the scan goes from {:.3g} to {:.3g} u, and differences between such numbers are none",
+                box.low.minCoeff(), box.high.maxCoeff())
+        .hint("give it in a larger unit");
+}
+
 void sort_by_row(OctreeChoice& choice) {
     Array<std::pair<u32, u32>> pairs(choice.kept.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {choice.kept[i], choice.members[i]};
@@ -120,16 +153,14 @@ void sort_by_row(OctreeChoice& choice) {
 OctreeChoice choose_in_octree(std::span<const Vec3> positions, std::span<const u32> size_of_row,
                               std::span<const double> sizes, const Vec3& origin, double base, u32 min_points,
                               Context& context) {
-    const double extent = (bounding_box(positions).high - origin).maxCoeff();
-    double edge = base;
-    while (!(edge > extent)) edge *= 2;
-    const double finest = std::ldexp(edge, -most_levels);
+    const Root root = root_over(bounding_box(positions), origin, base);
+    const double finest = std::ldexp(root.edge, -most_levels);
     Array<Located> points(positions.size());
-    for (u32 row = 0; row < points.size(); ++row) points[row] = {code_of(positions[row], origin, finest), row};
+    for (u32 row = 0; row < points.size(); ++row) points[row] = {code_of(positions[row], root.low, finest), row};
     std::ranges::sort(points, std::less());
     context.check_cancelled();
 
-    Octree octree(positions, size_of_row, sizes, origin, edge, min_points);
+    Octree octree(positions, size_of_row, sizes, root.low, root.edge, min_points);
     octree.thin(points, 0);
     OctreeChoice choice = std::move(octree.choice);
     if (choice.largest == 0) choice.smallest = choice.largest = base;

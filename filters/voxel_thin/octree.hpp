@@ -18,9 +18,10 @@ struct OctreeChoice {
     double smallest = 0, largest = 0;  ///< edges of leaves with more than one point, or `base` when there are none
 };
 
-/// The root begins at `origin`, its edge is `base` times a power of two. A cell is cut into eight while it holds more
-/// than one point and its edge is larger than the least of its points' sizes, at most 21 times. Of the points in a leaf
-/// the nearest to the leaf's centre stays, ties by row.
+/// The root is the smallest cell that holds all points of the grids that begin at `origin` and whose edges are `base`
+/// times a power of two. A cell is cut into eight while it holds more than one point and its edge is larger than the
+/// least of its points' sizes, at most 21 times; throws Error when that does not suffice. Of the points in a leaf the
+/// nearest to the leaf's centre stays, ties by row.
 /// Pre: sizes[size_of_row[row]] is what a row allows, above 0; no position below `origin`.
 /// Cost: a sort, and the depth of the tree in passes over the points; 16 bytes per point.
 OctreeChoice choose_in_octree(std::span<const Vec3> positions, std::span<const u32> size_of_row,

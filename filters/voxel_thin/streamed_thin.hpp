@@ -7,9 +7,10 @@
 
 namespace scanmill {
 
-/// voxel_thin() of a scan that is read piece by piece and never in memory as a whole: the same result, bit for bit, the
-/// same metrics and refusals. The grid begins at the bounding box's low corner, so the file is passed over once for its
-/// bounds (when the stream is opened), once for the bins, and once more at the rows that are kept.
+/// voxel_thin() with a given bin size, of a scan that is read piece by piece and never in memory as a whole: the same
+/// result, bit for bit, the same metrics and refusals. A bin size that follows from a tolerance is refused. The grid
+/// begins at the bounding box's low corner, so the file is passed over once for its bounds (when the stream is opened),
+/// once for the bins, and once more at the rows that are kept.
 ///
 /// Lengths are resolved against scan.bounds(). Cost: beside the result 24 to 72 bytes per occupied bin, an eighth of a
 /// byte per point and at most 60 MB.

@@ -8,7 +8,9 @@
 namespace scanmill::voxel {
 
 void require_sound(std::size_t points, const VoxelThinParams& params) {
-    if (points == 0) throw Error("the cloud has no points; thinning needs at least one");
+    if (points == 0)
+        throw Error("the cloud has no points; thinning needs at least one")
+            .hint("`scanmill info` tells what a file holds");
     if (points > ~u32(0)) throw Error("the cloud has {} points; at most {} can be numbered", points, ~u32(0));
     if (params.bin_size) {
         const double size = params.bin_size->value();

@@ -8,12 +8,14 @@
 #include "filters/voxel_thin_cases.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
+#include "support/thrown.hpp"
 #include "voxel_thin/octree.hpp"
 
 namespace scanmill::test {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using voxel::OctreeChoice;
 
 OctreeChoice chosen(const PointCloud& cloud, std::span<const double> sizes, double base, u32 min_points = 1) {
@@ -90,6 +92,25 @@ TEST(VoxelThinAdaptive, RandomSizes_AgreeWithTheDefinition) {
         EXPECT_THAT(choice.kept, ::testing::ElementsAreArray(expected.kept)) << seed;
         EXPECT_GT(choice.largest, 2 * choice.smallest);
     }
+}
+
+TEST(VoxelThinAdaptive, AGridThatBeginsFarAway_CutsLeavesAsSmall) {
+    const PointCloud sphere = fibonacci_sphere(5000);
+    VoxelThinParams params = within(0.01, VoxelThinParams::Rule::adaptive);
+    const auto near = static_cast<double>(thin(sphere, params).kept.size());
+    for (const double margin : {10.0, 1e3, 1e6}) {
+        params.margin = Length(margin);
+        EXPECT_NEAR(static_cast<double>(thin(sphere, params).kept.size()) / near, 1, 0.1) << margin;
+    }
+}
+
+TEST(VoxelThinAdaptive, LeavesThatCannotBeAsSmallAsAsked_AreRefused) {
+    // The close pair asks for leaves of 1e-8, where 21 halvings of a root over 10 give 5e-6.
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {1e-7, 0, 0}, {10, 10, 10}});
+    const Array<double> sizes{1e-8, 1e-8, 1};
+    EXPECT_THAT(sentence_of([&] { chosen(cloud, sizes, 1); }), HasSubstr("a point asks for 1e-08 u"));
+    const PointCloud twice = cloud_of({{0, 0, 0}, {0, 0, 0}, {10, 10, 10}});
+    EXPECT_THAT(chosen(twice, sizes, 1).kept, ElementsAre(0u, 2u));
 }
 
 TEST(VoxelThinAdaptive, OnASphere_ThinsAboutAsTheQuantileDoes) {

@@ -43,7 +43,8 @@ void require_measurable(const TriangleMesh& mesh) {
     if (size != 0 && !(size > 1e-100 && size < 1e100))
         throw Error(
             "needs a mesh between 1e-100 and 1e100 u in size, so that squares of lengths are numbers; it is {:.3g}",
-            size);
+            size)
+            .hint("give it in another unit");
 }
 
 /// Marks both sides of the mesh's own sharp edges; those on the boundary are feature lines anyhow.
