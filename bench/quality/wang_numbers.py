@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The numbers of chapter 3 and of the clouds given by formulas: the thesis's, those of closed forms, and ours."""
+"""The numbers of chapter 3 and of the clouds given by formulas: the thesis's, those of formulas, and ours."""
 import math
 
 import paper_wang as paper
 import wang_clouds as clouds
 
-HEADER = ["section", "what", "thesis", "closed form", "Scanmill", "why they differ"]
+HEADER = ["section", "what", "thesis", "by formula", "Scanmill", "why they differ"]
 
 
 def sampling_rows(results):
@@ -55,7 +55,7 @@ def cone_rows(results):
     ours = clouds.bending_of(thinning["exact, nearest"]["bin_size"], line.tolerance)
     yield [line.section, "cone, radius and height 1, step 0.05: points", f"{paper.COUNTS['cone']:,}",
            f"{results['points']['cone']:,}", "",
-           f"the closed form counts the rim; without it there are {within:,}, and rounding decides between"]
+           f"the formula counts the rim; without it there are {within:,}, and rounding decides between"]
     yield ["", "largest curvature", paper.CONE_CURVATURE, "∞", f"{ours:.2f}",
            "at the apex there is none: what a fit finds there depends on the neighbours and on weights; ours is the "
            "sum of the second derivatives behind the bin size"]

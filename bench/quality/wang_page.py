@@ -11,7 +11,7 @@ HEADER = ["object", "points", "bin size", "kept", "of the points", "triangles", 
           "loops", "holes", "handles", "95 % of the scan within, largest (bins)", "beyond borders", "seconds"]
 
 NUMBERS = """\
-What the thesis prints of thinning, what closed forms say, and what voxel-thin finds with `rule: minimum` and
+What the thesis prints of thinning, what formulas say, and what voxel-thin finds with `rule: minimum` and
 `guarantee: centres`, which is the thesis's rule: the least bin size that any point's fit of 25 neighbours gives. In
 brackets with the origin of the fit at the neighbours' centroid, the thesis's improved rule."""
 
