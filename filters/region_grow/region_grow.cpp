@@ -16,6 +16,8 @@
 #include "region_grow/search_radii.hpp"
 #include "region_grow/seeds.hpp"
 #include "region_grow/small_holes.hpp"
+#include "scanmill/data/frame.hpp"
+#include "scanmill/data/points.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/feature_lines.hpp"
 
@@ -24,6 +26,9 @@ namespace scanmill {
 namespace {
 
 using namespace growing;
+
+constexpr const char* few_points_hint =
+    "look at the file with `scanmill info`; thin less coarsely if the scan was thinned";
 
 void require_in_range(const RegionGrowParams& params, std::size_t points) {
     const double least = params.min_angle.in_degrees(), bend = params.max_normal_angle.in_degrees();
@@ -40,10 +45,21 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
         throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points);
 }
 
+void require_size(const PointCloud& cloud) {
+    const double size = bounding_box(cloud.positions.span()).diagonal();
+    if (size == 0 || (size > 1e-100 && size < 1e100)) return;
+    const std::string actual =
+        std::isfinite(size) ? fmt::format("{:.3g} {}", size, symbol(cloud.frame.unit)) : std::string("beyond 1.7e308");
+    throw Error("needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {}",
+                actual)
+        .hint("remove stray points, or check that the columns x, y and z are read as such; scale the scan if they are");
+}
+
 /// Three places off one line, by the two farthest from the first and from the line.
 void require_area(const Samples& samples, std::size_t points) {
     if (samples.size() < 3)
-        throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", samples.size(), points);
+        throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", samples.size(), points)
+            .hint(few_points_hint);
     const auto& p = samples.positions;
     const auto farthest = [&](const auto& distance) { return *std::ranges::max_element(p, {}, distance); };
     const Vec3 end = farthest([&](const Vec3& x) { return (x - p[0]).squaredNorm(); });
@@ -134,7 +150,8 @@ void report(const RegionGrowResult& result, std::size_t places, Context& context
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context) {
     require_finite(cloud.positions.span());
     require_in_range(params, cloud.size());
-    if (cloud.size() == 0) throw Error("needs at least 3 distinct points; the cloud has none");
+    if (cloud.size() == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(few_points_hint);
+    require_size(cloud);
     const Samples samples = distinct_samples(cloud.positions.span());
     require_area(samples, cloud.size());
     context.progress(0.05);

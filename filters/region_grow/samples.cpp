@@ -43,19 +43,22 @@ void order_within_cells(std::span<const Vec3> positions, const BoundingBox& box,
 }  // namespace
 
 Samples distinct_samples(std::span<const Vec3> positions) {
-    const BoundingBox box = bounding_box(positions);
-    Array<u32> order = spatial_order(positions);
-    order_within_cells(positions, box, order);
-
     Samples samples;
     int exponent = 0;
+    const BoundingBox box = bounding_box(positions);
     std::frexp((box.high - box.low).maxCoeff(), &exponent);
     samples.scale = std::ldexp(1.0, -exponent);
+    // Scaled first: what scaling takes for one place must be one sample.
+    Array<Vec3> scaled(positions.size());
+    std::ranges::transform(positions, scaled.begin(), [&](const Vec3& p) { return Vec3(p * samples.scale); });
+    Array<u32> order = spatial_order(scaled);
+    order_within_cells(scaled, bounding_box(scaled), order);
+
     samples.positions.reserve(order.size());
     samples.rows.reserve(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i > 0 && positions[order[i]] == positions[order[i - 1]]) continue;
-        samples.positions.push_back(positions[order[i]] * samples.scale);
+        if (i > 0 && scaled[order[i]] == scaled[order[i - 1]]) continue;
+        samples.positions.push_back(scaled[order[i]]);
         samples.rows.push_back(order[i]);
     }
     samples.duplicates = order.size() - samples.size();

@@ -10,8 +10,9 @@
 namespace scanmill::growing {
 
 struct Samples {
-    /// Distinct, along the Morton curve through their box, equal codes by x, y, z: the order depends on the places
-    /// alone, so whatever is decided by number is decided by place.
+    /// Distinct as they are here (next to a large extent scaling takes the very least coordinates for 0), along the
+    /// Morton curve through their box, equal codes by x, y, z: the order depends on the places alone, so whatever is
+    /// decided by number is decided by place.
     Array<Vec3> positions;
     /// Per place the lowest row of the cloud that lies there.
     Array<u32> rows;
@@ -23,7 +24,8 @@ struct Samples {
     std::size_t size() const { return positions.size(); }
 };
 
-/// Pre: finite positions, at least one, fewer than 2^32. Cost: O(n log n) at most, 60 bytes per point.
+/// Pre: finite positions, at least one, fewer than 2^32, all one place or in a box between 1e-100 and 1e100 in size.
+/// Cost: O(n log n) at most, 85 bytes per point.
 Samples distinct_samples(std::span<const Vec3> positions);
 
 }  // namespace scanmill::growing
