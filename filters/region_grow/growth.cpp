@@ -21,16 +21,21 @@ void Growth::add(const Triangle& triangle, Pass pass) {
         const u32 from = triangle[i], to = triangle[(i + 1) % 3];
         if (surface_.fans.right_of(from, to) == nobody) waiting_[0].push_back({from, to});
     }
-    if (surface_.triangles.size() < next_check_) return;
-    next_check_ = surface_.triangles.size() + (1 << 14);
-    context_.check_cancelled();
+    if (surface_.triangles.size() < next_report_) return;
+    next_report_ = surface_.triangles.size() + (1 << 14);
     context_.progress(0.4 + 0.5 * std::min(1.0, static_cast<double>(surface_.triangles.size()) /
                                                     (2.0 * static_cast<double>(surface_.samples.size()))));
 }
 
+SuitablePoint Growth::look(DirectedEdge edge, const Limits& limits, bool far) {
+    // Also where edges find nothing and no triangle comes of it. With a generous search radius a look takes long.
+    if (looks_++ % 64 == 0) context_.check_cancelled();
+    return chooser_.choose(edge.from, edge.to, limits, far);
+}
+
 void Growth::continue_at(DirectedEdge edge, std::size_t line, const Limits& limits) {
     if (surface_.fans.right_of(edge.from, edge.to) != nobody) return;  // continued from the other side
-    const SuitablePoint found = chooser_.choose(edge.from, edge.to, limits, line == 2);
+    const SuitablePoint found = look(edge, limits, line == 2);
     if (line < 2 && found.uncovered)
         waiting_[2].push_back(edge);
     else if (found.point == nobody)
@@ -57,7 +62,7 @@ void Growth::retry(std::size_t round) {
         auto [edge, tried] = parked_[i];
         for (; tried <= round; ++tried) {
             if (surface_.fans.right_of(edge.from, edge.to) != nobody) break;
-            const SuitablePoint found = chooser_.choose(edge.from, edge.to, limits_[tried], true);
+            const SuitablePoint found = look(edge, limits_[tried], true);
             if (found.point == nobody) continue;
             add({edge.from, found.point, edge.to}, limits_[tried].pass);
             grow(limits_.front());
@@ -73,7 +78,6 @@ bool Growth::start(u32 place) {
     parked_.clear();
     grow(limits_.front());
     for (std::size_t round = 1; round < limits_.size(); ++round) retry(round);
-    parked_count_ += parked_.size();
     return true;
 }
 

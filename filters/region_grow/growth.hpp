@@ -21,8 +21,6 @@ public:
 
     /// Forms the seed triangle at the place and grows from it to the end; false when there is none.
     bool start(u32 place);
-    /// Edges of the front that were parked for good, all in all.
-    std::size_t parked() const { return parked_count_; }
 
 private:
     struct DirectedEdge {
@@ -39,6 +37,8 @@ private:
     bool is_covered(u32 place, const Vec3& normal) const;
     void add(const Triangle& triangle, Pass pass);
     void grow(const Limits& limits);
+    /// What the edge would take; now and then asks whether to go on at all.
+    SuitablePoint look(DirectedEdge edge, const Limits& limits, bool far);
     /// Looks at one edge; adds a triangle when it may be added in this line.
     void continue_at(DirectedEdge edge, std::size_t line, const Limits& limits);
     /// Tries the parked edges, and those parked meanwhile, up to limits_[round].
@@ -51,8 +51,7 @@ private:
     Context& context_;
     std::array<std::deque<DirectedEdge>, lines> waiting_;
     std::vector<ParkedEdge> parked_;
-    std::size_t parked_count_ = 0;
-    std::size_t next_check_ = 0;
+    std::size_t next_report_ = 0, looks_ = 0;
 };
 
 }  // namespace scanmill::growing

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "region_grow/sectors.hpp"
@@ -158,22 +159,37 @@ bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, con
     return sectors_are_free(triangle, candidate.normal, limits.pass) && !lies_over_others(triangle, candidate.normal);
 }
 
+PointChooser::Candidate PointChooser::take_best() {
+    double least = std::numeric_limits<double>::infinity();
+    if (equal_.empty()) least = candidates_.front().score;
+    for (const Candidate& candidate : equal_) least = std::min(least, candidate.score);
+    const double most = least + same_score * (1 + std::abs(least));
+    while (!candidates_.empty() && candidates_.front().score <= most) {
+        std::ranges::pop_heap(candidates_, std::greater(), &Candidate::score);
+        equal_.push_back(candidates_.back());
+        candidates_.pop_back();
+    }
+    const auto best = std::ranges::min_element(equal_, {}, &Candidate::point);
+    const Candidate taken = *best;
+    *best = equal_.back();
+    equal_.pop_back();
+    return taken;
+}
+
+void PointChooser::put_in_order() {
+    equal_.clear();
+    turned_down_.clear();
+    std::ranges::make_heap(candidates_, std::greater(), &Candidate::score);
+}
+
 SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool far) {
     const Vec3 joined = surface_.facet_normal(from, to, surface_.fans.left_of(from, to));
     collect(from, to, search_radius(from, to) * limits.reach, far);
     rate(from, to, joined, limits);
-    turned_down_.clear();
+    put_in_order();
     const double half = (surface_.positions[to] - surface_.positions[from]).norm() / 2;
-    while (!candidates_.empty()) {
-        double least = std::numeric_limits<double>::infinity();
-        for (const Candidate& candidate : candidates_) least = std::min(least, candidate.score);
-        const double equal = least + same_score * (1 + std::abs(least));
-        auto best = candidates_.end();
-        for (auto it = candidates_.begin(); it != candidates_.end(); ++it)
-            if (it->score <= equal && (best == candidates_.end() || it->point < best->point)) best = it;
-        const Candidate candidate = *best;
-        *best = candidates_.back();
-        candidates_.pop_back();
+    while (has_candidates()) {
+        const Candidate candidate = take_best();
         if (!is_suitable(from, to, candidate, limits, false)) {
             turned_down_.push_back(candidate);
             continue;
@@ -203,16 +219,20 @@ u32 PointChooser::beyond_sharp_edge(u32 from, u32 to, const Limits& limits) {
     Limits bent = limits;
     bent.normal_cosine = least_bend_cosine;
     rate(from, to, joined, bent);
-    const Candidate* best = nullptr;
-    for (const Candidate& candidate : candidates_) {
-        if (joined.dot(candidate.normal) >= limits.normal_cosine ||
-            surface_.states[candidate.point] == PlaceState::unused ||
-            !has_good_angles(from, to, candidate.point, limits))
-            continue;
-        if (!best || candidate.score < best->score || (candidate.score == best->score && candidate.point < best->point))
-            best = &candidate;
+    put_in_order();
+    while (has_candidates()) {
+        const Candidate candidate = take_best();
+        if (joined.dot(candidate.normal) < limits.normal_cosine &&
+            surface_.states[candidate.point] == PlaceState::front && !is_neighbour(candidate.point, from) &&
+            !is_neighbour(candidate.point, to) && is_suitable(from, to, candidate, limits, false))
+            return candidate.point;
+        turned_down_.push_back(candidate);
     }
-    return best ? best->point : nobody;
+    return nobody;
+}
+
+bool PointChooser::is_neighbour(u32 point, u32 vertex) const {
+    return surface_.fans.any(vertex, [&](const Fans::Pair& pair) { return pair.first == point || pair.last == point; });
 }
 
 u32 PointChooser::choose_third(u32 from, u32 to, const Limits& limits) {

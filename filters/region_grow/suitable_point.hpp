@@ -42,8 +42,8 @@ public:
     SuitablePoint choose(u32 from, u32 to, const Limits& limits, bool far);
     /// The point with which two unused ones begin a surface, on whichever side.
     u32 choose_third(u32 from, u32 to, const Limits& limits);
-    /// The place of the surface that a border edge would take, were it not for the angle to the triangle there; it is
-    /// no fold back onto that. nobody when there is none.
+    /// The place on the front that a border edge would take, were it not for the angle to the triangle there: none of
+    /// the ends' neighbours, suitable in all else, and no fold back onto that triangle. nobody when there is none.
     u32 beyond_sharp_edge(u32 from, u32 to, const Limits& limits);
 
 private:
@@ -54,6 +54,12 @@ private:
     };
 
     void collect(u32 from, u32 to, double reach, bool far);
+    /// Between rate() and take_best(): begins a new order, with nothing turned down.
+    void put_in_order();
+    bool has_candidates() const { return !candidates_.empty() || !equal_.empty(); }
+    /// Takes out the candidate of the least score, of equal ones that of the lowest number. Pre: has_candidates().
+    Candidate take_best();
+    bool is_neighbour(u32 point, u32 vertex) const;
     void rate(u32 from, u32 to, const Vec3& joined, const Limits& limits);
     bool is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool new_surface);
     bool has_good_angles(u32 from, u32 to, u32 point, const Limits& limits) const;
@@ -70,7 +76,8 @@ private:
     NeighbourBuffer buffer_;
     std::vector<u32> near_;
     std::vector<u32> fronts_;
-    std::vector<Candidate> candidates_;
+    /// A heap by score, the least first, and those taken from it because their scores are equal to the least.
+    std::vector<Candidate> candidates_, equal_;
     std::vector<Candidate> turned_down_;
 };
 
