@@ -12,9 +12,9 @@ struct PatchEdge {
     u32 beyond;
 };
 
-/// Border edges for which a place of the surface keeps to all limits but the one of the angle to the triangle there:
-/// where nothing else ended the patch. In the order of the triangles, facing as they were grown. Cost: linear in the
-/// border.
+/// Border edges for which a place on the front, no neighbour of theirs, keeps to all limits but the one of the angle to
+/// the triangle there: where nothing else ended the patch. In the order of the triangles, facing as they were grown.
+/// Cost: linear in the border.
 std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits);
 
 }  // namespace scanmill::growing

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = RegionGrowParams;
-    return Declare<P>("region-grow", 1)
+    return Declare<P>("region-grow", 2)
         .summary(
             "Grows a surface over thinned points from a seed triangle, and tells its borders, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
@@ -45,6 +45,9 @@ SCANMILL_FILTER() {
         .metric("creases", Unit::count, "Chains of sharp edges.")
         .metric("corners", Unit::count, "Vertices where feature lines meet or turn.")
         .metric("closed-holes", Unit::count, "Small loops that were closed.")
+        .metric("removed-triangles", Unit::count, "Triangles taken off again where a vertex had several fans.")
+        .metric("ambiguous", Unit::count, "Loops told apart by their length, as their area does not tell.")
+        .metric("without-area", Unit::count, "Triangles without area, counted to a neighbour's plane.")
         .metric("relaxed-triangles", Unit::count, "Triangles formed under relaxed limits.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             RegionGrowResult result = region_grow(inputs.get<PointCloud>("points"), params, context);

@@ -137,12 +137,23 @@ void report(const RegionGrowResult& result, std::size_t places, Context& context
     count("creases", result.creases);
     count("corners", result.corners);
     count("closed-holes", result.closed_holes);
+    count("removed-triangles", result.removed_triangles);
+    count("ambiguous", result.ambiguous_loops);
+    count("without-area", result.triangles_without_area);
     count("relaxed-triangles", static_cast<std::size_t>(std::ranges::count_if(
                                    result.passes, [](u8 pass) { return pass > 0 && pass < closing_pass; })));
     if (200 * result.unused_points > places)
         context.warn(
             fmt::format("{} of {} distinct points are in no triangle; thin the scan, or remove its noise first",
                         result.unused_points, places));
+    if (result.ambiguous_loops > 0)
+        context.warn(
+            fmt::format("{} of {} boundary loops have no area that tells outer boundaries from holes: the longest of a "
+                        "piece was taken for its outer boundary",
+                        result.ambiguous_loops, result.loops));
+    if (result.triangles_without_area > 0)
+        context.warn(fmt::format("{} of {} triangles are without area: counted to a neighbour's plane",
+                                 result.triangles_without_area, result.mesh.triangles.size()));
 }
 
 }  // namespace
@@ -195,6 +206,8 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.holes = lines.counts.holes;
     result.creases = lines.counts.creases;
     result.corners = lines.counts.corners;
+    result.ambiguous_loops = lines.counts.ambiguous;
+    result.triangles_without_area = lines.counts.without_area;
     result.patch_edges = patch_edges.size();
     result.components = pieces.count;
     result.duplicates = samples.duplicates;

@@ -55,16 +55,20 @@ struct RegionGrowResult {
     std::size_t loops = 0, holes = 0;
     /// Rows without a vertex of their own: repeats of an earlier row, and places that no triangle reached.
     std::size_t duplicates = 0, unused_points = 0;
-    /// Border edges beyond which points were turned down for the angle to the triangle there alone.
+    /// Border edges beyond which a place of the front was turned down for the angle to the triangle there alone.
     std::size_t patch_edges = 0;
-    std::size_t creases = 0, corners = 0, closed_holes = 0, removed_triangles = 0;
+    std::size_t creases = 0, corners = 0, closed_holes = 0;
+    /// Of these triangles, grown and taken off again, vertices would have had several fans.
+    std::size_t removed_triangles = 0;
+    /// Loops whose area does not tell boundaries from holes, and triangles without area, as find_features() counts.
+    std::size_t ambiguous_loops = 0, triangles_without_area = 0;
 };
 
 /// Grows a surface over the cloud, as many pieces as it takes.
 ///
 /// Points should be thinned: of even density, at least locally. A column `normal` (three numbers per row) is used as it
 /// is, sign and all; a normal that is zero or not finite is replaced by the principal one. Without the column normals
-/// are principal directions of the 16 nearest neighbours.
+/// are principal directions of the 12 nearest neighbours.
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, a
@@ -75,9 +79,14 @@ struct RegionGrowResult {
 /// Angles of triangles of pass 0 keep the limits; later passes relax them (see the page). Pieces that enclose a volume
 /// face outwards; so do open ones that bulge, flat ones face up. With a normal column they face as it says.
 /// Ties: equal scores (to 1e-9) by place, along a space-filling curve through the cloud's box. So the mesh depends
-/// neither on the order of the points, up to numbering, nor on the number of threads. Cost: O(n log n) time, about 400
-/// bytes per point beside the result. Metrics: see plugin.cpp. Warns when more than half a percent of the places stay
-/// unused. Source: Wang 2006, chapter 4, made robust; the choice by empty circles after Delaunay.
+/// neither on the order of the points, up to numbering, nor on the number of threads.
+///
+/// Cost: O(n log n) time where the nearest 16 places decide, about 425 bytes per point beside the result. An edge where
+/// they do not, or that finds nothing, looks at all m places within its search radius, up to four times: O(m log m)
+/// each, and as often again as places are turned down for what the front or other places do there. So a search radius
+/// of many spacings costs O(n m log m) on noisy scans; leave it to `auto` there. Metrics: see plugin.cpp. Warns when
+/// more than half a percent of the places stay unused, and of what find_features() could not tell. Source: Wang 2006,
+/// chapter 4, made robust; the choice by empty circles after Delaunay.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill

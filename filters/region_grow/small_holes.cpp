@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace scanmill::growing {
 
@@ -121,6 +122,9 @@ std::vector<u32> hole_at(const Surface& surface, u32 from, u32 to, std::size_t m
 std::size_t close_small_holes(Surface& surface, std::size_t most_edges) {
     if (most_edges < 3) return 0;
     std::size_t closed = 0;
+    // Each from its lowest corner. Filling others leaves them as impossible as they were: their border edges keep their
+    // triangles, and edges across them can only be taken.
+    std::set<std::vector<u32>> impossible_loops;
     const std::size_t count = surface.triangles.size();
     for (std::size_t row = 0; row < count; ++row) {
         const Triangle triangle = surface.triangles[row];
@@ -131,8 +135,14 @@ std::size_t close_small_holes(Surface& surface, std::size_t most_edges) {
                 continue;
             std::vector<u32> hole = hole_at(surface, from, to, most_edges);
             if (hole.size() < 3) continue;
+            std::vector<u32> from_lowest = hole;
+            std::ranges::rotate(from_lowest, std::ranges::min_element(from_lowest));
+            if (impossible_loops.contains(from_lowest)) continue;
             Filling filling(surface, std::move(hole));
-            if (!filling.find()) continue;
+            if (!filling.find()) {
+                impossible_loops.insert(std::move(from_lowest));
+                continue;
+            }
             filling.fill(surface);
             ++closed;
         }

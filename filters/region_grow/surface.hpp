@@ -10,7 +10,8 @@ namespace scanmill::growing {
 
 enum class PlaceState : u8 { unused, front, interior };
 
-/// Which limits a triangle was formed under: 0 the given ones, 1 and 2 relaxed ones, 3 none (it closed a small hole).
+/// Which limits a triangle was formed under: 0 the given ones, 1 to 3 relaxed ones, 4 none (it closed a
+/// small hole).
 using Pass = u8;
 
 struct Surface {

@@ -26,7 +26,7 @@ std::size_t self_intersections(const TriangleMesh& mesh) {
     MeasureParams params;
     params.samples = 1000;
     Context context;
-    return measure(mesh, mesh, params, context).self_intersections.value_or(0);
+    return measure(mesh, mesh, params, context).self_intersections.value();
 }
 
 /// A model whose vertices are dense enough for a surface through all of them, and how that must be.

@@ -91,6 +91,16 @@ TEST(RegionGrow_OpenCylinder, HasTwoLoops) {
     EXPECT_EQ(result.mesh.triangles.size(), 2 * 60u * 19);
 }
 
+TEST(RegionGrow_OpenCylinder, SaysThatItsLoopsAreOnlyGuessed) {
+    // Two equal rims: neither by its area nor by its length is one the outer boundary of the other.
+    ContextOptions options;
+    Context context(options);
+    const RegionGrowResult result = region_grow(cylinder(60, 20), {}, context);
+    EXPECT_EQ(result.ambiguous_loops, 2u);
+    EXPECT_EQ(result.triangles_without_area, 0u);
+    EXPECT_THAT(context.warnings(), ElementsAre(testing::HasSubstr("2 of 2 boundary loops have no area that tells")));
+}
+
 TEST(RegionGrow_RegularCylinder, BreaksItsTiesWithoutGaps) {
     std::vector<Vec3> points;
     for (u32 ring = 0; ring < 15; ++ring)
