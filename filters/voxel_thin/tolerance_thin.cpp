@@ -40,6 +40,12 @@ VoxelThinResult thin_within_tolerance(const PointCloud& cloud, const PointPieces
         throw Error("the adaptive rule makes an octree over the cloud, and has no use for a grid's origin")
             .hint("leave the grid's origin out, or take the rule quantile");
     const std::span<const Vec3> positions = cloud.positions.span();
+    if (const double size = box.diagonal(); size != 0 && !(size > 1e-100 && size < 1e100))
+        throw Error(
+            "curvature needs a scan between 1e-100 and 1e100 u in size, so that squares of lengths are "
+            "numbers; it is {:.3g} u",
+            size)
+            .hint("give it in another unit, or give a bin-size");
     const LocalBins local = local_bins(positions, box, params, context);
 
     VoxelThinResult result;

@@ -144,6 +144,16 @@ TEST(VoxelThinRefusals, PointsOnOneLine_ShowNoSurface) {
     EXPECT_THAT(refusal({{}, std::move(line), {}}, within(1)), HasSubstr("nowhere do 25 neighbours show a surface"));
 }
 
+TEST(VoxelThinRefusals, SizesWhoseSquaresAreNoNumbers_AreRefusedWhereCurvatureCounts) {
+    for (const double size : {1e-200, 1e200}) {
+        Array<Vec3> positions;
+        for (const Vec3& p : random_sphere(100, 1).positions) positions.push_back(size * p);
+        const PointCloud cloud{{}, std::move(positions), {}};
+        EXPECT_THAT(refusal(cloud, within(0.1 * size)), HasSubstr("between 1e-100 and 1e100 u in size")) << size;
+        EXPECT_GT(thin(cloud, bins_of(0.5 * size)).kept.size(), 8u) << size;
+    }
+}
+
 TEST(VoxelThinRefusals, AdaptiveRuleWithSomethingFixed_IsRefused) {
     VoxelThinParams params = within(0.1, VoxelThinParams::Rule::adaptive);
     params.bin_size = 0.5;
