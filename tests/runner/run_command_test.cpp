@@ -51,6 +51,23 @@ TEST(RunCommand, TheShippedBatch_PassesCheckWhereItsScansAre) {
     EXPECT_THAT(found.out, HasSubstr("ok, 4 scans, 1 workflow, 6 variants, 14 cells"));
 }
 
+TEST(RunCommand, OnePoint_IsThinnedByABinSizeThatNeedsNoTolerance) {
+    const TemporaryFolder folder;
+    folder.write("one.xyz", "1 2 3\n");
+    folder.write("thin.yaml",
+                 "scanmill: 1\ninputs: {scan: points}\nparameters: {size: 1 u}\nsteps: [{voxel-thin: {bin-size: "
+                 "$size}}]\noutputs: {'{scan}.xyz': voxel-thin}\n");
+    const std::vector<std::string> arguments{"run", "thin.yaml", "one.xyz", "-o", "out", "--no-cache"};
+    EXPECT_EQ(scanmill_program(arguments, {.folder = folder.path()}).exit_code, 0);
+    EXPECT_EQ(content_of(folder / "out/one.xyz"), "1 2 3\n");
+    std::vector<std::string> derived = arguments;
+    derived.insert(derived.end(), {"--set", "size=auto"});
+    const ProgramResult refused = scanmill_program(derived, {.folder = folder.path()});
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.err, HasSubstr("the scan has no size: its only point is at one place"));
+    EXPECT_THAT(refused.err, HasSubstr("in the parameter 'tolerance'"));
+}
+
 TEST(RunCommand, WorkflowOfThePaper_LeadsToAClosedMeshThroughAllPoints) {
     const TemporaryFolder folder;
     write_sphere(folder, "ball");

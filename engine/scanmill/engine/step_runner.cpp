@@ -57,7 +57,15 @@ Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, Context
     return result;
 }
 
-ParameterSet resolved_parameters(const PlannedStep& step, const Value* scale_of) {
+/// A default that the scan has no measure for, as `0.1 %diag` where all points are at one place, and why.
+struct Unresolved {
+    ParameterValue value;
+    Error reason;
+};
+
+/// Lengths in the scan's unit. What somebody chose must resolve; a default that does not stays as it is declared and
+/// goes to `unresolved`: the filter may do without it.
+ParameterSet resolved_parameters(const PlannedStep& step, const Value* scale_of, std::vector<Unresolved>& unresolved) {
     if (!scale_of) return step.parameters;  // nothing to measure against: the filter resolves against what it makes
     const LengthScale scale = length_scale(*scale_of);
     ParameterSet set;
@@ -66,10 +74,42 @@ ParameterSet resolved_parameters(const PlannedStep& step, const Value* scale_of)
             set.values.emplace_back(name, resolved(value, scale));
         } catch (Error& error) {
             error.add_frame(fmt::format("in the parameter '{}'", name));
-            throw;
+            const ParameterSpec* spec = step.spec.parameter(name);
+            if (!spec || spec->default_value != value) throw;
+            unresolved.push_back({value, error});
+            set.values.emplace_back(name, value);
         }
     }
     return set;
+}
+
+/// Whether the error is the one that a filter meets when it reads a length of this value.
+bool comes_of_reading(const ParameterValue& value, const Error& error) {
+    const auto is_refused_alike = [&](const ParameterScalar& item) {
+        const auto* length = std::get_if<Length>(&item);
+        if (!length) return false;
+        try {
+            length->value();
+        } catch (const Error& own) {
+            return own.sentence() == error.sentence();
+        }
+        return false;
+    };
+    if (const auto* one = std::get_if<ParameterScalar>(&value)) return is_refused_alike(*one);
+    const auto* list = std::get_if<std::vector<ParameterScalar>>(&value);
+    return list && std::ranges::any_of(*list, is_refused_alike);
+}
+
+/// Runs the filter; one that stumbles over an unresolved default fails for the reason that left it so.
+Outputs run_filter(const FilterDeclaration& filter, const Inputs& ports, const ParameterSet& parameters,
+                   const std::vector<Unresolved>& unresolved, Context& context) {
+    try {
+        return filter.run(ports, parameters, context);
+    } catch (const Error& error) {
+        for (const Unresolved& left : unresolved)
+            if (comes_of_reading(left.value, error)) throw left.reason;
+        throw;
+    }
 }
 
 void require_whole(const Outputs& outputs, const FilterSpec& spec) {
@@ -133,9 +173,10 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
     };
     try {
         const Inputs ports = rebased(inputs, first, context);
-        report.resolved = resolved_parameters(step, first);
+        std::vector<Unresolved> unresolved;
+        report.resolved = resolved_parameters(step, first, unresolved);
         if (std::optional<Outputs> known = recall(report.resolved, report)) return std::move(*known);
-        Outputs outputs = filter().run(ports, report.resolved, context);
+        Outputs outputs = run_filter(filter(), ports, report.resolved, unresolved, context);
         require_whole(outputs, step.spec);
         keep_findings();
         return outputs;

@@ -21,8 +21,10 @@ struct StepInput {
 /// them goes to the report; nothing makes the filter run.
 using Recall = std::function<std::optional<Outputs>(const ParameterSet& resolved, NodeReport& report)>;
 
-/// Runs the filter unless `recall` knows better: inputs brought to one origin, lengths resolved, outputs checked.
-/// What it learned goes to `report` even when it throws (Error or Cancelled). `filter` is called for when it runs.
+/// Runs the filter unless `recall` knows better: inputs brought to one origin, lengths resolved, outputs checked. A
+/// default that the scan has no measure for (`0.1 %diag` of points at one place) is left to the filter as it is
+/// declared, and fails the step only when it is read; a length that was chosen fails it before the filter runs. What it
+/// learned goes to `report` even when it throws (Error or Cancelled). `filter` is called for when it runs.
 Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
                  const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
                  NodeReport& report);
