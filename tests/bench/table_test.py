@@ -135,6 +135,12 @@ class PageTest(unittest.TestCase):
         self.assertIn("- scanmill: nothing of its result could be checked", page)
         self.assertIn("- pcl: not the same in every round: cells", page)
 
+    def test_row_that_compares_nothing_does_not_say_so_of_everybody(self):
+        both = results([entry("scanmill", [1.0], checked=0), entry("pcl", [2.0], checked=0)])
+        self.assertEqual(table.page(both).count("could be checked"), 2)
+        both["rows"][0]["compares"] = False
+        self.assertEqual(table.page(both).count("could be checked"), 0)
+
     def test_memory_per_element_stands_below_when_the_row_asks_for_it(self):
         cloud = results([entry("scanmill", [1.0], facts={"cells": 9 * 2**20})])
         cloud["rows"][0]["peak_per"] = "cells"

@@ -84,14 +84,15 @@ def memory(row):
 
 
 def remarks(row, smaller=None):
-    """What a reader of the table must know besides."""
+    """What a reader of the table must know besides. A row that compares nothing says why in its `equal`."""
+    compares = row.get("compares", True) and len(row["contenders"]) > 1
     for entry in row["contenders"]:
         who = called(entry)
         if entry["differs"]:
             yield f"† {who}: {entry['differs']}"
         if entry["unequal"]:
             yield f"‡ {who}: {entry['unequal']}"
-        if not entry["failure"] and not entry["differs"] and not entry["checked"] and len(row["contenders"]) > 1:
+        if compares and not entry["failure"] and not entry["differs"] and not entry["checked"]:
             yield f"{who}: nothing of its result could be checked against another's"
         if entry["varied"]:
             yield f"{who}: not the same in every round: {', '.join(entry['varied'])}"

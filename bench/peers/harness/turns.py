@@ -94,6 +94,7 @@ class Turn:
 def run(row, command_of, options):
     """The row's record. command_of(program) gives the command line that starts it."""
     record = {"name": row.name, "title": row.title, "equal": row.equal, "rounds": options.rounds or row.rounds}
+    record["compares"] = bool(row.agree)
     record.update(peak_per=row.peak_per, grows_from=row.grows_from)
     record.update(failure="", inputs=[], contenders=[])
     try:
