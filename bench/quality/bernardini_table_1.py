@@ -8,29 +8,22 @@ bernardini-table-1.md and .json. Ends with 1 when a run failed, or a fetched fil
 """
 import pathlib
 import sys
-import tempfile
 
 BENCH = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(BENCH), str(BENCH / "peers")]
 
 import table_1_page  # noqa: E402
-from harness import machine  # noqa: E402
 from paper_table_1 import STAND_INS  # noqa: E402
 from tables import options as options_of  # noqa: E402
-from tables import page, scanmill  # noqa: E402
+from tables import paper, scanmill  # noqa: E402
 
 ROOT = BENCH.parent
 FILTERS = ("delaunay", "alpha-solid", "sculpt")
 
 
 def arguments():
-    parser = options_of.of_a_table("The paper's Table 1 beside ours.", ROOT / "workflows" / "bernardini-1997.yaml", 600,
-                                   "quality")
-    parser.add_argument("--more-data", type=pathlib.Path, default=ROOT.parent / "shared" / "data",
-                        help="files that may be there or not (default: %(default)s)")
-    parser.add_argument("--rounds", type=options_of.at_least_one, default=5,
-                        help="runs for each number of threads (default: %(default)s)")
-    return parser.parse_args()
+    return options_of.of_a_paper("The paper's Table 1 beside ours.",
+                                 ROOT / "workflows" / "bernardini-1997.yaml").parse_args()
 
 
 def begun(one, options):
@@ -99,7 +92,7 @@ def take(entry, judgement, threads):
 
 
 def run(options, folder):
-    """Entries in the order of STAND_INS."""
+    """Entries, called objects, in the order of STAND_INS."""
     pairs = [begun(one, options) for one in STAND_INS]
     there = {str(path): (entry, path) for entry, path in pairs if not entry["failure"] and not entry["skipped"]}
     for number in range(options.rounds):
@@ -112,26 +105,11 @@ def run(options, folder):
                 take(entry, judged(report, cell), threads)
                 if not entry["failure"] and "spacing" not in entry:
                     entry.update(beside_its_model(options, path, scanmill.mesh(cell)["file"]))
-    return [entry for entry, _ in pairs]
+    return {"objects": [entry for entry, _ in pairs]}
 
 
 def main():
-    options = arguments()
-    load = machine.Load()
-    try:
-        with tempfile.TemporaryDirectory() as folder:
-            entries = run(options, pathlib.Path(folder))
-    except scanmill.Broken as broken:
-        sys.exit(f"error: {broken}")
-    results = {**page.described("make bench-quality"), "rounds": options.rounds, "load": load.described(),
-               "objects": entries}
-    lines = table_1_page.lines(results)
-    print("\n".join(lines))
-    page.write(options.into, "bernardini-table-1", results, lines)
-    failed = [entry for entry in entries if entry["failure"]]
-    for entry in failed:
-        print(f"error: {entry['file']}: {entry['failure']}", file=sys.stderr)
-    return 1 if failed else 0
+    return paper.write("bernardini-table-1", arguments(), run, table_1_page.lines, tried="objects")
 
 
 if __name__ == "__main__":

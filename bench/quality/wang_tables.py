@@ -7,37 +7,24 @@ section 4.4, or what stands for it, through the workflow to features, ROUNDS tim
 without a cache. Every number is from the program's own JSON (metrics and seconds of the steps, features as they were
 written) or a closed form. Writes wang-tables.md and .json. Ends with 1 when a run failed, or a fetched file is missing.
 """
-import argparse
 import pathlib
 import sys
-import tempfile
 
 BENCH = pathlib.Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(BENCH), str(BENCH / "peers")]
 
-import paper_wang as paper  # noqa: E402
+import paper_wang as thesis  # noqa: E402
 import wang_cases  # noqa: E402
 import wang_clouds  # noqa: E402
 import wang_page  # noqa: E402
-from harness import machine  # noqa: E402
-from tables import page, scanmill  # noqa: E402
+from tables import options as options_of  # noqa: E402
+from tables import paper, scanmill  # noqa: E402
 
 ROOT = BENCH.parent
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description="The thesis's numbers beside ours.")
-    parser.add_argument("program", type=pathlib.Path, help="scanmill, with its filters")
-    parser.add_argument("--data", type=pathlib.Path, default=ROOT / "build" / "data", help="what `make data` fetched")
-    parser.add_argument("--more-data", type=pathlib.Path, default=ROOT.parent / "shared" / "data",
-                        help="files that may be there or not (default: %(default)s)")
-    parser.add_argument("--rounds", type=int, default=5, help="runs for each number of threads (default: %(default)s)")
-    parser.add_argument("--limit", type=float, default=600, help="seconds for one run (default: %(default)s)")
-    parser.add_argument("--into", type=pathlib.Path, default=BENCH / "quality", help="folder of the results")
-    options = parser.parse_args()
-    if options.rounds < 1:
-        parser.error(f"--rounds must be at least 1, not {options.rounds}")
-    return options
+    return options_of.of_a_paper("The thesis's numbers beside ours.", None).parse_args()
 
 
 def thinned(report):
@@ -64,7 +51,7 @@ def clouds_in(folder):
 
 def measured_thinning(options, files, folder):
     found = {}
-    for line in (paper.HEMISPHERE, paper.CONE, paper.HYPERBOLOID):
+    for line in (thesis.HEMISPHERE, thesis.CONE, thesis.HYPERBOLOID):
         report = scanmill.run(options.program, BENCH / "quality" / "wang-thinning.yaml", [files[line.cloud]],
                               folder / f"thinned-{line.cloud}", options.limit,
                               settings={"tolerance": f"{line.tolerance} u"})
@@ -103,27 +90,13 @@ def run(options, folder):
         "points": {name: len(make()) for name, make in wang_clouds.CLOUDS.items()},
         "thinning": measured_thinning(options, files, folder),
         "binning": {line.cloud: kept_by_bins(options, files[line.cloud], line, folder)
-                    for line in (paper.HEMISPHERE, paper.HYPERBOLOID)},
+                    for line in (thesis.HEMISPHERE, thesis.HYPERBOLOID)},
         "cases": wang_cases.run(options, files["hyperboloid"], folder),
     }
 
 
 def main():
-    options = arguments()
-    load = machine.Load()
-    try:
-        with tempfile.TemporaryDirectory() as folder:
-            found = run(options, pathlib.Path(folder))
-    except scanmill.Broken as broken:
-        sys.exit(f"error: {broken}")
-    results = {**page.described("make bench-quality"), "rounds": options.rounds, "load": load.described(), **found}
-    lines = wang_page.lines(results)
-    print("\n".join(lines))
-    page.write(options.into, "wang-tables", results, lines)
-    failed = [entry for entry in found["cases"] if entry["failure"]]
-    for entry in failed:
-        print(f"error: {entry['file']}: {entry['failure']}", file=sys.stderr)
-    return 1 if failed else 0
+    return paper.write("wang-tables", arguments(), run, wang_page.lines, tried="cases")
 
 
 if __name__ == "__main__":

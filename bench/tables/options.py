@@ -22,13 +22,24 @@ def limit(parser, seconds, what):
 
 
 def of_a_table(description, workflow, seconds, folder):
-    """A parser for a bench that runs a workflow over scans, each run within so many seconds, and writes a page into a
-    folder of bench/."""
+    """A parser for a bench that runs a workflow (None: its own) over scans, each run within so many seconds, and writes a
+    page into a folder of bench/."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("program", type=pathlib.Path, help="scanmill, with its filters")
-    parser.add_argument("--workflow", type=pathlib.Path, default=workflow)
+    if workflow:
+        parser.add_argument("--workflow", type=pathlib.Path, default=workflow)
     parser.add_argument("--data", type=pathlib.Path, default=BENCH.parent / "build" / "data",
                         help="what `make data` fetched")
     limit(parser, seconds, "one run")
     parser.add_argument("--into", type=pathlib.Path, default=BENCH / folder, help="folder of the results")
+    return parser
+
+
+def of_a_paper(description, workflow):
+    """A parser for a bench that sets a paper's numbers beside ours: see paper.py."""
+    parser = of_a_table(description, workflow, 600, "quality")
+    parser.add_argument("--more-data", type=pathlib.Path, default=BENCH.parents[1] / "shared" / "data",
+                        help="files that may be there or not (default: %(default)s)")
+    parser.add_argument("--rounds", type=at_least_one, default=5,
+                        help="runs for each number of threads (default: %(default)s)")
     return parser
