@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pictures of filters that give points."""
+import itertools
+import math
+import random
+
+from drawing import BRIGHT, INK, PALE, SOLID, Picture
+
+
+def voxel_thin():
+    """One profile twice: above with bins of one size, below with leaves as large as the curvature in them allows."""
+    picture = Picture(8, 4.4)
+    rng = random.Random(4)
+    height = lambda x: 0.3 + 1.2 * math.exp(-(((x - 5.6) / 0.6) ** 2))
+
+    def allowed(x, step=1e-3):
+        slope = (height(x + step) - height(x - step)) / (2 * step)
+        second = (height(x + step) - 2 * height(x) + height(x - step)) / step**2
+        return min(1, math.sqrt(0.25 * (1 + slope * slope) ** 1.5 / max(abs(second), 1e-9)))
+
+    points = [(x, height(x) + rng.uniform(-0.03, 0.03)) for x in (rng.uniform(0, 8) for _ in range(420))]
+
+    def draw(cell, size, members, up):
+        corners = [(cell[0] + u, cell[1] + v + up) for u, v in ((0, 0), (size, 0), (size, size), (0, size))]
+        picture.polygon(corners, "none", INK)
+        centre = (cell[0] + size / 2, cell[1] + size / 2)
+        kept = min(members, key=lambda p: math.dist(p, centre))
+        for p in members:
+            picture.dot((p[0], p[1] + up), BRIGHT if p == kept else PALE, 5 if p == kept else 2)
+
+    def cut(cell, size, members, up, limit):
+        if not members:
+            return
+        if size <= min(limit(p[0]) for p in members):
+            draw(cell, size, members, up)
+            return
+        half = size / 2
+        for u, v in itertools.product((0, half), repeat=2):
+            low = (cell[0] + u, cell[1] + v)
+            inside = [p for p in members if all(low[k] <= p[k] < low[k] + half for k in (0, 1))]
+            cut(low, half, inside, up, limit)
+
+    cut((0, 0), 8, points, 2.4, lambda x: 0.25)
+    cut((0, 0), 8, points, 0.1, allowed)
+    return picture
+
+
+def merge():
+    picture = Picture(9, 4)
+    source = random.Random(6)
+    curve = lambda t: (t, 1.5 + 0.9 * math.sin(t))
+    first = [curve(0.4 + 0.16 * i + source.uniform(-0.02, 0.02)) for i in range(28)]
+    second = [curve(3.2 + 0.16 * i + source.uniform(-0.02, 0.02)) for i in range(28)]
+    turn, middle = 0.15, (5.4, 1.1)
+    moved = lambda p: (
+        middle[0] - 0.4 + (p[0] - middle[0]) * math.cos(turn) - (p[1] - middle[1]) * math.sin(turn),
+        middle[1] + 1.2 + (p[0] - middle[0]) * math.sin(turn) + (p[1] - middle[1]) * math.cos(turn),
+    )
+    for p in second:
+        picture.dot(moved(p), PALE, 3)
+    picture.arrow(moved(second[-6]), second[-6], INK)
+    picture.text((6.6, 2.75), "pose")
+    for p in first:
+        picture.dot(p, INK, 4)
+    for p in second:
+        near = min(math.dist(p, q) for q in first) < 0.13
+        picture.dot(p, BRIGHT, 4, hollow=near)
+    return picture
+
+
+def virtual_scan():
+    picture = Picture(9, 4.4)
+    centre, radius = (5.6, 2.2), 1.5
+    picture.circle(centre, radius, PALE, SOLID)
+    source = random.Random(8)
+    for i in range(22):
+        y = 0.2 + 0.19 * i
+        across = radius**2 - (y - centre[1]) ** 2
+        end = centre[0] - math.sqrt(across) if across > 0 else 8.8
+        picture.line((1.0, y), (end, y), PALE, 0.8)
+        if across > 0.25:
+            picture.dot((end + source.gauss(0, 0.05), y), BRIGHT, 4)
+    picture.dot((3.1, 3.6), BRIGHT, 4, hollow=True)
+    picture.text((2.0, 3.72), "outlier")
+    picture.polygon(((0.2, 1.7), (0.8, 1.7), (0.8, 2.7), (0.2, 2.7)), "white", INK, 1.5)
+    picture.text((0.2, 1.4), "sensor")
+    picture.text((7.25, 2.1), "hidden")
+    return picture

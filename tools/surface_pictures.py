@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pictures of filters that make a surface or look at one."""
+import itertools
+import math
+import random
+
+from drawing import BRIGHT, INK, PALE, SOLID, Picture
+from plane_geometry import delaunay, nearest_on_profile, scattered, spread_over
+
+
+def region_grow():
+    picture = Picture(8, 4)
+    hole = (5.3, 2.1)
+    points = scattered(random.Random(11), 120, 0.37, 8, 4, lambda p: math.dist(p, hole) > 0.85)
+    triangles = [(corners, circle) for corners, circle in delaunay(points) if circle[1] < 0.6]
+    grown = [t for t, circle in triangles if sum(p[0] + 0.3 * math.sin(2 * p[1]) for p in t) < 3 * 4.1]
+    sides = {}
+    for t in grown:
+        picture.polygon(t, SOLID)
+        for edge in itertools.combinations(t, 2):
+            sides.setdefault(frozenset(edge), []).append(t)
+    ends = {edge: len([t for t, _ in triangles if edge <= set(t)]) for edge in sides}
+    front = [edge for edge, its in sides.items() if len(its) == 1 and ends[edge] == 2]
+    for edge, its in sides.items():
+        if len(its) == 1:
+            picture.line(*edge, BRIGHT if edge in front else INK, 2.5)
+    edge = min(front, key=lambda e: abs(sum(p[1] for p in e) / 2 - 2.9))
+    corners, (centre, radius) = next((t, c) for t, c in triangles if edge <= set(t) and t not in grown)
+    picture.polygon(corners, "none", BRIGHT, 1.5)
+    picture.circle(centre, radius, BRIGHT, dash="4 3")
+    picture.circle(hole, 0.85, PALE, dash="4 3")
+    for p in points:
+        picture.dot(p, radius=3)
+    picture.dot(next(p for p in corners if p not in edge), BRIGHT, 6)
+    return picture
+
+
+def delaunay_filter():
+    picture = Picture(8, 4)
+    points = scattered(random.Random(9), 26, 0.6, 8, 4)
+    triangles = delaunay(points)
+    for corners, _ in triangles:
+        picture.polygon(corners, "none", INK)
+    whole = [t for t in triangles if all(r < v < s - r for v, s, r in zip(t[1][0], (8, 4), (t[1][1], t[1][1])))]
+    corners, (centre, radius) = max(whole, key=lambda t: t[1][1])
+    picture.polygon(corners, SOLID, INK)
+    picture.circle(centre, radius, BRIGHT)
+    for p in points:
+        picture.dot(p)
+    return picture
+
+
+def alpha_solid():
+    picture = Picture(8, 5)
+    body = lambda p: 1.1 < math.dist(p, (3.6, 2.5)) < 2.2 and not (p[0] > 3.6 and abs(p[1] - 2.5) < 0.75)
+    points = scattered(random.Random(2), 150, 0.22, 8, 5, body)
+    triangles = delaunay(points)
+    alpha = 0.45
+    edges = {}
+    for index, (corners, _) in enumerate(triangles):
+        for edge in itertools.combinations(sorted(corners), 2):
+            edges.setdefault(edge, []).append(index)
+    open_edge = lambda edge: math.dist(*edge) > 2 * alpha
+    outside, queue = set(), []
+    for edge, sides in edges.items():
+        if len(sides) == 1 and open_edge(edge):
+            queue.append(sides[0])
+    while queue:
+        index = queue.pop()
+        if index in outside or triangles[index][1][1] <= alpha:
+            continue
+        outside.add(index)
+        for edge in itertools.combinations(sorted(triangles[index][0]), 2):
+            queue.extend(side for side in edges[edge] if side != index and open_edge(edge))
+    for index, (corners, _) in enumerate(triangles):
+        picture.polygon(corners, "none" if index in outside else SOLID, PALE, 0.7)
+    for edge, sides in edges.items():
+        if sum(side not in outside for side in sides) == 1:
+            picture.line(*edge, INK, 2)
+    for p in points:
+        picture.dot(p, INK, 2.5)
+    for centre in ((6.4, 2.5), (4.4, 2.5)):
+        picture.circle(centre, alpha, BRIGHT)
+    picture.line((6.4, 2.5), (6.4 + alpha, 2.5), BRIGHT, 1.5)
+    picture.text((6.9, 2.4), "alpha", BRIGHT)
+    return picture
+
+
+def sculpt():
+    picture = Picture(9.4, 3.4)
+    profile = [(0.4, 2.8), (0.8, 2.6), (1.2, 2.3), (1.5, 1.9), (1.7, 1.45), (2.0, 1.2), (2.35, 1.15), (2.7, 1.4)]
+    profile += [(2.9, 1.85), (3.2, 2.3), (3.6, 2.6), (4.0, 2.8)]
+    ground = [(0.4 + 0.6 * i, 0.5) for i in range(7)]
+    # Solid under the profile; before, a lid closes the valley at the height where the ball does not enter.
+    lid = (2, 9)
+    for shift, carved in ((0, False), (5, True)):
+        moved = lambda p: (p[0] + shift, p[1])
+        points = profile + ground
+        middle = lambda corners: tuple(sum(p[i] for p in corners) / 3 for i in (0, 1))
+        for corners, _ in delaunay(points):
+            x, y = middle(corners)
+            left = max(i for i, p in enumerate(profile) if p[0] <= x)
+            a, b = profile[left], profile[left + 1]
+            under = y < a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0])
+            in_valley = not under and all(p in profile[lid[0] : lid[1] + 2] for p in corners) and y < 2.3
+            fill = SOLID if under or (in_valley and not carved) else "none"
+            picture.polygon([moved(p) for p in corners], fill, BRIGHT if in_valley and not carved else PALE, 1)
+        surface = profile if carved else profile[: lid[0] + 1] + profile[lid[1] :]
+        for a, b in itertools.pairwise(surface):
+            picture.line(moved(a), moved(b), INK, 2)
+        for p in points:
+            hidden = p in profile[lid[0] + 1 : lid[1]] and not carved
+            picture.dot(moved(p), BRIGHT if hidden else INK, 4)
+    picture.arrow((4.35, 1.6), (5.05, 1.6))
+    return picture
+
+
+def features():
+    picture = Picture(10.6, 4.6)
+    bend, centre, radius = math.radians(55), (-1.7, 1.5), 0.75
+    bent = lambda p: (p[0], p[1], 0) if p[0] <= 0 else (p[0] * math.cos(bend), p[1], -p[0] * math.sin(bend))
+    seen = lambda p: (3.6 + p[0] + 0.45 * p[1], 2.1 + 0.75 * p[1] + 0.9 * p[2])
+    ring = [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in (2 * math.pi * i / 14 for i in range(14))]
+    grid = [(0.65 * i, 0.75 * j) for i in range(-5, 4) for j in range(5)]
+    # The cross-grained grid would have four cocircular points in every cell.
+    nudged = [(x + 0.02 * math.sin(7 * y) if x not in (0, -3.25, 1.95) else x, y) for x, y in grid]
+    for half in (lambda p: p[0] <= 0, lambda p: p[0] >= 0):
+        points = [p for p in nudged if half(p) and math.dist(p, centre) > 1.2 * radius]
+        points += [p for p in ring if half(p)]
+        for corners, _ in delaunay(points):
+            middle = [sum(p[i] for p in corners) / 3 for i in (0, 1)]
+            if math.dist(middle, centre) > radius:
+                picture.polygon([seen(bent(p)) for p in corners], SOLID, PALE)
+    border = [(-3.25, 0), (0, 0), (1.95, 0), (1.95, 3), (0, 3), (-3.25, 3)]
+    for a, b in zip(border, border[1:] + border[:1]):
+        picture.line(seen(bent(a)), seen(bent(b)), INK, 2.5)
+    for a, b in zip(ring, ring[1:] + ring[:1]):
+        picture.line(seen(bent(a)), seen(bent(b)), INK, 2.5, "5 3")
+    picture.line(seen((0, 0, 0)), seen((0, 3, 0)), BRIGHT, 3)
+    for p in border:
+        picture.dot(seen(bent(p)), BRIGHT, 5)
+    picture.text((0.1, 1.1), "outer boundary")
+    picture.text((2.3, 3.15), "hole")
+    picture.text((2.55, 1.75), "crease", BRIGHT)
+    # Across the crease: the angle between the two normals.
+    foot, left, right = (8.3, 2.2), (6.5, 2.2), (8.3 + 1.8 * math.cos(bend), 2.2 - 1.8 * math.sin(bend))
+    picture.line(left, foot, INK, 2.5)
+    picture.line(foot, right, INK, 2.5)
+    picture.arrow(foot, (8.3, 3.6), BRIGHT)
+    picture.arrow(foot, (8.3 + 1.4 * math.sin(bend), 2.2 + 1.4 * math.cos(bend)), BRIGHT)
+    arc = [(8.3 + 0.8 * math.sin(bend * i / 12), 2.2 + 0.8 * math.cos(bend * i / 12)) for i in range(13)]
+    for a, b in itertools.pairwise(arc):
+        picture.line(a, b, INK, 1)
+    picture.text((8.55, 3.15), "angle")
+    picture.dot(foot, BRIGHT, 5)
+    return picture
+
+
+def measure():
+    picture = Picture(9, 4.2)
+    truth = [(0.3, 0.8), (2.6, 0.8), (3.4, 3.2), (4.2, 0.8), (8.6, 0.8)]
+    mesh = [(0.3, 1.1), (2.4, 1.2), (3.4, 1.9), (4.4, 1.2), (5.8, 1.0), (6.6, 2.3), (7.4, 1.0), (8.6, 1.1)]
+    for one, other, colour in ((mesh, truth, INK), (truth, mesh, BRIGHT)):
+        found = [(p, nearest_on_profile(p, other)) for p in [*spread_over(one, 0.3), *one]]
+        farthest = max(found, key=lambda pair: math.dist(*pair))
+        for p, q in found:
+            picture.line(p, q, colour, 3 if (p, q) == farthest else 1, "" if (p, q) == farthest else "3 3")
+    for profile, colour in ((truth, BRIGHT), (mesh, INK)):
+        for a, b in itertools.pairwise(profile):
+            picture.line(a, b, colour, 2)
+        for p in spread_over(profile, 0.3):
+            picture.dot(p, colour, 3)
+    picture.text((6.85, 2.15), "mesh: too much")
+    picture.text((0.9, 2.9), "truth: missing", BRIGHT)
+    return picture
