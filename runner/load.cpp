@@ -40,7 +40,7 @@ Settings parse_settings(const std::vector<std::string>& pairs) {
         ValueExpression value = parse_value_expression(pair.substr(equals + 1), diagnostics);
         if (value.values.empty() && !diagnostics.has_errors()) diagnostics.error({}, "has no value");
         for (const WrittenValue& written : value.values)
-            if (!written.reference.empty()) diagnostics.error({}, "cannot refer to another parameter");
+            if (!written.uses.empty()) diagnostics.error({}, "cannot refer to another parameter");
         if (diagnostics.has_errors()) throw Error("--set {}: {}", pair, diagnostics.sorted().front().message);
         if (!settings.emplace(pair.substr(0, equals), std::move(value)).second)
             throw Error("--set {} is given twice", pair.substr(0, equals));

@@ -46,7 +46,8 @@ std::string with_n(const std::string& text) { return "parameters: {n: 3}\n" + st
 TEST_F(WorkflowSchema, WhatCheckAccepts_IsAccepted) {
     for (const std::string& workflow :
          {with_n("  - thin: {count: $n}\n"), with_n("  - thin: {size: 0.1 %diag, axis: [1, 0, 0], count: $n}\n"),
-          with_n("  - thin: {size: +1e-3 mm, rule: random, count: $n}\n"),
+          with_n("  - thin: {size: +1e-3 mm, rule: random, count: $n}\n"), with_n("  - thin: {axis: [$n, 0, $n]}\n"),
+          with_n("  - thin: {axis: {sweep: [[$n, 0, 1], [1, 0, 0]]}}\n"),
           with_n("  - thin: {count: {sweep: [1, $n, 9]}}\n    expect: {kept: '> 3', points: [1, 9]}\n"),
           with_n("  - thin: {count: $n}\n  - tetrahedralise:\n  - solid: {alpha: auto, coverage: 0.5, angle: 0 deg}\n"
                  "    expect: {closed: true, alpha: < 3 %diag, bending: < 40 deg, volume: [-2 mm3, 3 cm³], skin: 2 "
@@ -107,6 +108,10 @@ const std::vector<Mistake> mistakes{
      "'farthest' is not one of"},
     {steps("  - thin: {axis: [1, 2]}\n"), "steps 0 thin axis: Array should contain no fewer than 3",
      "axis: has 2 values"},
+    {with_n("  - thin: {axis: [1, $n]}\n"), "steps 0 thin axis: Array should contain no fewer than 3",
+     "axis: has 2 values"},
+    {steps("  - thin: {axis: [1, $, 0]}\n"), "steps 0 thin axis: ", "'$' names no parameter"},
+    {"parameters: {n: [1, $m]}\n" + steps("  - thin: {axis: $n}\n"), "parameters n: ", "cannot refer to another"},
     {steps("  - thin: {axis: 1}\n"), "steps 0 thin axis: Value type not permitted", "axis: has 1 values"},
     {steps("  - thin: {count: {sweep: []}}\n"), "steps 0 thin count sweep: Array should contain no fewer than 1",
      "a sweep over no values"},

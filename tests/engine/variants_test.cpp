@@ -149,7 +149,7 @@ TEST_F(Variants, DollarDollar_IsATextThatBeginsWithADollar) {
     const ValueExpression value = parse_value_expression("$$x", none);
     ASSERT_EQ(value.values.size(), 1u);
     EXPECT_EQ(value.values[0].literal.items[0], "$x");
-    EXPECT_TRUE(value.values[0].reference.empty());
+    EXPECT_TRUE(value.values[0].uses.empty());
 }
 
 TEST_F(Variants, Wiring_TakesTheNearestEarlierValueOfTheKind) {

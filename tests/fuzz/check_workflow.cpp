@@ -91,7 +91,7 @@ bool check_setting(std::string_view bytes) {
     Diagnostics diagnostics("--set");
     const ValueExpression value = parse_value_expression(std::string(bytes), diagnostics);
     require_sound(diagnostics);
-    const auto refers = [](const WrittenValue& written) { return !written.reference.empty(); };
+    const auto refers = [](const WrittenValue& written) { return !written.uses.empty(); };
     if (diagnostics.has_errors() || value.values.empty() || std::ranges::any_of(value.values, refers)) return false;
     for (const std::string& filter : declared_library().names())
         for (const ParameterSpec& parameter : declared_library().find(filter)->parameters)

@@ -14,11 +14,13 @@ namespace scanmill::test {
 class DeclaredFilters {
 public:
     DeclaredFilters();
+    /// One more, for libraries that are asked for afterwards.
+    void add(const FilterSpec& spec);
+
     FilterLibrary library() const { return FilterLibrary({folder_.path()}); }
     const TemporaryFolder& folder() const { return folder_; }
 
 private:
-    void add(const FilterSpec& spec);
     TemporaryFolder folder_;
 };
 

@@ -13,9 +13,10 @@ Settings parse_settings(const YamlNode& node, Diagnostics& diagnostics) {
         if (!require_name(entry.key, entry.position, "a parameter", diagnostics)) continue;
         ValueExpression value = value_expression(entry.value, diagnostics);
         std::erase_if(value.values, [&](const WrittenValue& written) {
-            if (!written.reference.empty())
-                diagnostics.error(written.position, "a setting cannot refer to a parameter; write the value");
-            return !written.reference.empty();
+            if (!written.uses.empty())
+                diagnostics.error(written.uses.front().position,
+                                  "a setting cannot refer to a parameter; write the value");
+            return !written.uses.empty();
         });
         if (value.values.empty()) continue;  // and that is reported
         value.position = entry.position;

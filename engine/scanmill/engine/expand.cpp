@@ -129,12 +129,29 @@ private:
             if (values.empty()) continue;  // its text was wrong
             const WrittenValue& written = values[choices_.choose(&values, values.size())];
             const std::size_t told = name_parts_.size();
-            const WrittenValue* value = written.reference.empty() ? &written : referenced(step, written.reference);
-            if (!value) continue;  // an unknown parameter, or one whose text was wrong
-            if (parameter.value.sweep && name_parts_.size() == told) tell_swept(step, parameter.name, *value);
-            all.push_back({&parameter, value, &written});
+            std::optional<ChosenArgument> argument = replaced(step, parameter, written);
+            if (!argument) continue;  // an unknown parameter, or one whose text was wrong
+            const bool is_told =
+                !written.literal.list && name_parts_.size() > told;  // by the name of what it stands for
+            if (parameter.value.sweep && !is_told) tell_swept(step, parameter.name, argument->value);
+            all.push_back(std::move(*argument));
         }
         return all;
+    }
+
+    std::optional<ChosenArgument> replaced(const StepSyntax& step, const NamedExpression& parameter,
+                                           const WrittenValue& written) {
+        ChosenArgument argument{&parameter, &written, written.literal, {}};
+        for (const NameUse& use : written.uses) {
+            const WrittenValue* value = referenced(step, use.name);
+            if (!value || (written.literal.list && value->literal.list)) return std::nullopt;
+            argument.replaced.push_back({&use, value});
+            if (written.literal.list)
+                argument.value.items[use.item] = value->literal.items.front();
+            else
+                argument.value = value->literal;
+        }
+        return argument;
     }
 
     /// What `$name` stands for; a swept parameter keeps the value that was chosen where it is first used.
@@ -149,16 +166,16 @@ private:
         const WrittenValue* chosen = &values[choices_.choose(&values, values.size())];
         if (values.size() > 1) {
             bound_.emplace(name, chosen);
-            tell_swept(step, name, *chosen);
+            tell_swept(step, name, chosen->literal);
         }
         return chosen;
     }
 
-    void tell_swept(const StepSyntax& step, const std::string& name, const WrittenValue& value) {
+    void tell_swept(const StepSyntax& step, const std::string& name, const WrittenParameter& value) {
         // A second sweep of the same name tells whose it is.
         const std::string label = swept_.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
         swept_.insert(name);
-        name_parts_.push_back(file_safe(label + "=" + written_text(value.literal)));
+        name_parts_.push_back(file_safe(label + "=" + written_text(value)));
     }
 
     const Workflow& workflow_;
@@ -170,11 +187,18 @@ private:
     std::map<std::string, const WrittenValue*> bound_;  // swept workflow parameters, once chosen
 };
 
-/// Every `$name` of the file must be declared, and every declared one should be used.
+/// Every `$name` of the file must be declared, in a list be a single value, and every declared one should be used.
 class References {
 public:
-    References(const Workflow& workflow, Diagnostics& diagnostics) : diagnostics_(diagnostics) {
-        for (const WorkflowParameter& parameter : workflow.parameters) names_.push_back(parameter.name);
+    References(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
+        : diagnostics_(diagnostics) {
+        for (const WorkflowParameter& parameter : workflow.parameters) {
+            names_.push_back(parameter.name);
+            const auto setting = settings.find(parameter.name);
+            const ValueExpression& given = setting != settings.end() ? setting->second : parameter.value;
+            const auto is_list = [](const WrittenValue& value) { return value.literal.list; };
+            if (std::ranges::any_of(given.values, is_list)) lists_.insert(parameter.name);
+        }
         look_at(workflow.steps);
         for (const WorkflowParameter& parameter : workflow.parameters)
             if (!used_.contains(parameter.name))
@@ -197,17 +221,25 @@ private:
                 continue;
             }
             for (const NamedExpression& parameter : std::get<StepSyntax>(item.item).parameters)
-                for (const WrittenValue& written : parameter.value.values) {
-                    if (written.reference.empty()) continue;
-                    require_known(written.reference, written.position);
-                    used_.insert(written.reference);
-                }
+                for (const WrittenValue& written : parameter.value.values)
+                    for (const NameUse& use : written.uses) {
+                        require_known(use.name, use.position);
+                        if (written.literal.list) require_single(use, parameter.name);
+                        used_.insert(use.name);
+                    }
         }
+    }
+
+    void require_single(const NameUse& use, const std::string& parameter) const {
+        if (lists_.contains(use.name))
+            diagnostics_.error(use.position, fmt::format("${0} is a list, which cannot stand within a list; expected a "
+                                                         "single value, or the whole list as `{1}: ${0}`",
+                                                         use.name, parameter));
     }
 
     Diagnostics& diagnostics_;
     std::vector<std::string> names_;
-    std::set<std::string> used_;
+    std::set<std::string> used_, lists_;
 };
 
 /// What there is too many of, as "more than 7 variants"; empty when there is not.
@@ -245,7 +277,7 @@ std::vector<std::string> undeclared(const Settings& settings, const Workflow& wo
 
 void expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics,
             const std::function<void(const Variant&)>& visit) {
-    const References references(workflow, diagnostics);
+    const References references(workflow, settings, diagnostics);
     for (const auto& [name, value] : settings) references.require_known(name, {});
     if (const std::string too_much = excess(workflow, settings); !too_much.empty()) {
         diagnostics.error({}, "has " + too_much + "; sweep over fewer values");

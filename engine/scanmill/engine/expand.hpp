@@ -18,11 +18,18 @@ using Settings = std::map<std::string, ValueExpression>;
 /// The names in `settings` that are no parameters of the workflow.
 std::vector<std::string> undeclared(const Settings& settings, const Workflow& workflow);
 
-/// A parameter of a step and the value that this variant takes for it. Leads into the workflow or the settings.
+/// A `$name` in a step, and the value that it stands for. Both lead into the workflow or the settings.
+struct ReplacedName {
+    const NameUse* use;
+    const WrittenValue* value;
+};
+
+/// A parameter of a step and the value that this variant takes for it.
 struct ChosenArgument {
     const NamedExpression* parameter;
-    const WrittenValue* value;
-    const WrittenValue* written;  ///< what stands in the step: the value itself, or the `$name` that leads to it
+    const WrittenValue* written;  ///< what stands in the step
+    WrittenParameter value;       ///< the same with every `$name` replaced
+    std::vector<ReplacedName> replaced;
 };
 
 struct ExpandedStep {

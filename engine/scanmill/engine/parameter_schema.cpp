@@ -73,8 +73,8 @@ Json scalar_of(const ParameterSpec& parameter) {
     return {{"type", Json::array({"string", "number", "boolean"})}};
 }
 
-Json list_of(const ParameterSpec& parameter) {
-    Json list{{"type", "array"}, {"items", scalar_of(parameter)}};
+Json list_of(const ParameterSpec& parameter, Json item) {
+    Json list{{"type", "array"}, {"items", std::move(item)}};
     if (parameter.size) list["minItems"] = list["maxItems"] = *parameter.size;
     return list;
 }
@@ -87,16 +87,19 @@ std::string description_of(const ParameterSpec& parameter) {
                                : " Default: " + value + ".");
 }
 
-}  // namespace
-
-Json value_schema(const ParameterSpec& parameter) {
+/// A value or a list whose items are such.
+Json value_of(const ParameterSpec& parameter, Json item) {
     Json alternatives = Json::array();
     if (!parameter.word.empty()) alternatives.push_back({{"const", parameter.word}});
     // A single value in a list's place is the list of that value, unless the list must have another length.
     if (!parameter.list || !parameter.size || *parameter.size == 1) alternatives.push_back(scalar_of(parameter));
-    if (parameter.list) alternatives.push_back(list_of(parameter));
+    if (parameter.list) alternatives.push_back(list_of(parameter, std::move(item)));
     return alternatives.size() == 1 ? alternatives.front() : Json{{"anyOf", std::move(alternatives)}};
 }
+
+}  // namespace
+
+Json value_schema(const ParameterSpec& parameter) { return value_of(parameter, scalar_of(parameter)); }
 
 Json length_power_schema(int power) {
     const std::string exponent = power == 2 ? "(\\^?2|²)" : "(\\^?3|³)", digit = std::to_string(power);
@@ -105,8 +108,8 @@ Json length_power_schema(int power) {
 }
 
 Json parameter_schema(const ParameterSpec& parameter) {
-    const Json value = value_schema(parameter);
     const Json reference{{"type", "string"}, {"pattern", reference_pattern}};
+    const Json value = value_of(parameter, {{"anyOf", Json::array({scalar_of(parameter), reference})}});
     const Json sweep{
         {"type", "object"},
         {"description", "Runs everything from here on once for each value."},

@@ -9,31 +9,35 @@ namespace {
 
 constexpr std::string_view value_forms = "a value, a list of values, $name or {sweep: [value, …]}";
 
+/// Adds one text, as it stands or as `$name`; false when it cannot be read, which is reported.
+bool add_item(WrittenValue& value, const YamlNode& node, std::string_view forms, Diagnostics& diagnostics) {
+    const auto text = require_text(node, forms, diagnostics);
+    if (!text) return false;
+    if (*text == "$") {
+        diagnostics.error(node.position, "'$' names no parameter; expected $name, or $$ for the text '$'");
+        return false;
+    }
+    std::string item = *text;
+    if (text->starts_with("$$")) {
+        item = text->substr(1);  // a text that begins with one $
+    } else if (text->starts_with('$')) {
+        value.uses.push_back({text->substr(1), node.position, value.literal.items.size()});
+        item.clear();
+    }
+    value.literal.items.push_back(std::move(item));
+    return true;
+}
+
 std::optional<WrittenValue> written_value(const YamlNode& node, Diagnostics& diagnostics) {
     WrittenValue result;
     result.position = node.position;
-    if (node.is_sequence()) {
-        result.literal.list = true;
-        for (const YamlNode& item : node.items) {
-            const auto text = require_text(item, "a value", diagnostics);
-            if (!text) return std::nullopt;
-            result.literal.items.push_back(*text);
-        }
-        return result;
-    }
-    const auto text = require_text(node, value_forms, diagnostics);
-    if (!text) return std::nullopt;
-    if (*text == "$") {
-        diagnostics.error(node.position, "'$' names no parameter; expected $name, or $$ for the text '$'");
-        return std::nullopt;
-    }
-    if (text->starts_with("$$"))
-        result.literal.items.push_back(text->substr(1));  // a text that begins with one $
-    else if (text->starts_with('$'))
-        result.reference = text->substr(1);
-    else
-        result.literal.items.push_back(*text);
-    return result;
+    result.literal.list = node.is_sequence();
+    if (!node.is_sequence())
+        return add_item(result, node, value_forms, diagnostics) ? std::optional(result) : std::nullopt;
+    bool is_whole = true;
+    for (const YamlNode& item : node.items)
+        if (!add_item(result, item, "a value or $name", diagnostics)) is_whole = false;
+    return is_whole ? std::optional(result) : std::nullopt;
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 
 namespace scanmill {
 
-/// A value, a list of values, `$name` or `{sweep: [value, …]}`. What is wrong is reported and left out.
+/// A value, a list of values, `$name` (also within a list) or `{sweep: [value, …]}`. What is wrong is reported and left
+/// out.
 ValueExpression value_expression(const YamlNode& node, Diagnostics& diagnostics);
 
 /// "step", "step.port" or an input's name.

@@ -141,9 +141,10 @@ void WorkflowParser::parameter(const YamlEntry& entry, Workflow& workflow) {
         parameter.value = value_expression(entry.value, diagnostics_);
     }
     std::erase_if(parameter.value.values, [&](const WrittenValue& written) {
-        if (!written.reference.empty())
-            diagnostics_.error(written.position, "a default cannot refer to another parameter; write the value");
-        return !written.reference.empty();
+        if (!written.uses.empty())
+            diagnostics_.error(written.uses.front().position,
+                               "a default cannot refer to another parameter; write the value");
+        return !written.uses.empty();
     });
     workflow.parameters.push_back(std::move(parameter));
 }

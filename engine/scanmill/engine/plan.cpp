@@ -165,30 +165,67 @@ private:
                                                expectation(parameter)));
             return parameter.default_value;
         }
-        const WrittenValue& written = *argument->written;
-        const bool from_outside = settings_->contains(written.reference);
         try {
-            const ParameterValue value = parse(parameter, argument->value->literal);
-            if (parameter.type != ParameterType::path) return value;
-            if (from_outside && !settings_diagnostics_) return value;  // relative to where we are
-            const std::filesystem::path file = from_outside ? settings_diagnostics_->file() : plan_.workflow.file;
-            return with_paths_from(file.parent_path(), value);
+            return with_folders(*argument, parameter, parse(parameter, argument->value));
         } catch (const Error& error) {
-            complain_of_value(*argument, step.syntax->filter, error.sentence());
+            complain_of_value(*argument, parameter, step.syntax->filter, error.sentence());
             return parameter.default_value;
         }
     }
 
-    void complain_of_value(const ChosenArgument& argument, const std::string& filter, const std::string& sentence) {
-        const std::string& parameter = argument.parameter->name;
-        const std::string& reference = argument.written->reference;
-        if (settings_diagnostics_ && settings_->contains(reference))
-            settings_diagnostics_->error(argument.value->position, fmt::format("${} is the {} of {}: {}", reference,
-                                                                               parameter, filter, sentence));
+    /// Relative paths count from the folder of the file that they are written in.
+    ParameterValue with_folders(const ChosenArgument& argument, const ParameterSpec& parameter, ParameterValue value) {
+        if (parameter.type != ParameterType::path) return value;
+        const auto with_folder = [&](const ParameterScalar& path, std::size_t item) -> ParameterScalar {
+            const ReplacedName* source = source_of(argument, item);
+            const bool from_outside = source && settings_->contains(source->use->name);
+            if (from_outside && !settings_diagnostics_) return path;  // relative to where we are
+            const std::filesystem::path file = from_outside ? settings_diagnostics_->file() : plan_.workflow.file;
+            return std::get<ParameterScalar>(with_paths_from(file.parent_path(), path));
+        };
+        if (auto* one = std::get_if<ParameterScalar>(&value)) *one = with_folder(*one, 0);
+        if (auto* list = std::get_if<std::vector<ParameterScalar>>(&value))
+            for (std::size_t item = 0; item < list->size(); ++item) (*list)[item] = with_folder((*list)[item], item);
+        return value;
+    }
+
+    /// What an item of the value came from; nullptr when it stands in the step.
+    static const ReplacedName* source_of(const ChosenArgument& argument, std::size_t item) {
+        for (const ReplacedName& replaced : argument.replaced)
+            if (!argument.written->literal.list || replaced.use->item == item) return &replaced;
+        return nullptr;
+    }
+
+    void complain_of_value(const ChosenArgument& argument, const ParameterSpec& parameter, const std::string& filter,
+                           std::string sentence) {
+        const ReplacedName* source =
+            argument.written->literal.list ? refused_item(argument, parameter, sentence) : source_of(argument, 0);
+        if (source && settings_diagnostics_ && settings_->contains(source->use->name))
+            settings_diagnostics_->error(
+                source->value->position,
+                fmt::format("${} is {}the {} of {}: {}", source->use->name,
+                            argument.written->literal.list ? "one of " : "", parameter.name, filter, sentence));
         else
             diagnostics_.error(
-                argument.written->position,
-                fmt::format("{}{}: {}", parameter, reference.empty() ? "" : " (from $" + reference + ")", sentence));
+                source ? source->use->position : argument.written->position,
+                fmt::format("{}{}: {}", parameter.name, source ? " (from $" + source->use->name + ")" : "", sentence));
+    }
+
+    /// The first `$name` of a list whose value is no item of it, and why; nullptr when something else is wrong.
+    static const ReplacedName* refused_item(const ChosenArgument& argument, const ParameterSpec& parameter,
+                                            std::string& sentence) {
+        if (!parameter.list) return nullptr;
+        ParameterSpec item = parameter;
+        item.list = false;
+        item.size.reset();
+        item.word.clear();
+        for (const ReplacedName& replaced : argument.replaced) try {
+                parse(item, replaced.value->literal);
+            } catch (const Error& error) {
+                sentence = error.sentence();
+                return &replaced;
+            }
+        return nullptr;
     }
 
     std::string structure_key(const FilterSpec& spec, const ParameterSet& parameters,

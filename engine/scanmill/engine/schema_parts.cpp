@@ -36,7 +36,7 @@ Json any_value() {
     const Json scalar{{"type", Json::array({"string", "number", "boolean"})}};
     Json literal = scalar;  // $name would be a reference, for which there is nothing here; $$ begins a text with one $
     literal["pattern"] = R"(^(?!\$(?!\$)))";
-    const Json value{{"anyOf", Json::array({literal, Json{{"type", "array"}, {"items", scalar}}})}};
+    const Json value{{"anyOf", Json::array({literal, Json{{"type", "array"}, {"items", literal}}})}};
     Json sweep = object_of({{"sweep", {{"type", "array"}, {"minItems", 1}, {"items", value}}}});
     sweep["required"] = Json::array({"sweep"});
     return {{"anyOf", Json::array({value, std::move(sweep)})}};

@@ -15,11 +15,18 @@
 
 namespace scanmill {
 
-/// One written value: literal text(s), or a reference `$name` to a workflow parameter.
+/// `$name`: the value of a workflow parameter stands here.
+struct NameUse {
+    std::string name;  ///< without the $
+    Position position;
+    std::size_t item = 0;  ///< of `literal.items`, which holds nothing there yet
+};
+
+/// One written value: text(s), of which some may be uses of workflow parameters.
 struct WrittenValue {
     Position position;
     WrittenParameter literal;
-    std::string reference;  ///< without the $; empty: literal
+    std::vector<NameUse> uses;
 };
 
 /// A value, or `{sweep: [value, …]}`: then it has several, and everything after it runs once for each.
