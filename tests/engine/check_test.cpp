@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is wrong with a workflow is found before any scan is opened: all of it at once, each with its place.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "scanmill/engine/plan.hpp"
-#include "support/declared_filters.hpp"
+#include "engine/workflow_findings.hpp"
 
 namespace scanmill {
 namespace {
@@ -16,24 +12,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-class Check : public testing::Test {
-protected:
-    std::vector<std::string> findings(const std::string& workflow, const Settings& settings = {}) {
-        Diagnostics diagnostics("w");
-        plan_ = make_plan(parse_workflow(workflow, diagnostics), library_, settings, diagnostics);
-        std::vector<std::string> texts;
-        for (const Diagnostic& diagnostic : diagnostics.sorted()) texts.push_back(text(diagnostic, "w"));
-        return texts;
-    }
-    /// A workflow of the given steps (each line as it stands in the file, from line 4 on).
-    std::vector<std::string> steps(const std::string& lines) {
-        return findings("scanmill: 1\ninputs: {scan: points}\nsteps:\n" + lines);
-    }
-
-    test::DeclaredFilters filters_;
-    FilterLibrary library_ = filters_.library();
-    Plan plan_;
-};
+class Check : public test::WorkflowFindings {};
 
 TEST_F(Check, SevenMistakes_AreAllFoundInOneGoWithPlaceAndProposal) {
     const auto found = findings(R"(scanmill: 1
@@ -125,70 +104,6 @@ TEST_F(Check, WrongTypes_SayWhatWasExpected) {
     EXPECT_THAT(
         steps("  - tetrahedralise:\n  - solid: {alpha: atuo, angle: 40}\n"),
         ElementsAre(HasSubstr("did you mean 'auto'?"), HasSubstr("'40' has no unit; expected 40 deg or 0.7 rad")));
-}
-
-TEST_F(Check, PortWithoutAnyValue_NamesTheFiltersThatGiveOne) {
-    EXPECT_THAT(steps("  - solid:\n"),
-                ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("solid needs tets for its port 'tets'"),
-                                  HasSubstr("'tetrahedralise'"))));
-}
-
-TEST_F(Check, AfterAnUnknownFilter_MissingValuesAreNotBlamedOnTheNextStep) {
-    EXPECT_THAT(steps("  - tetrahedralize:\n  - solid:\n"), ElementsAre(HasSubstr("no filter 'tetrahedralize'")));
-}
-
-TEST_F(Check, TwoCandidatesInTheNearestStep_AskForIn) {
-    EXPECT_THAT(steps("  - pair:\n  - thin:\n"),
-                ElementsAre(AllOf(StartsWith("w:5:5: "), HasSubstr("left and right"), HasSubstr("`in: {points: …}`"))));
-    EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: {points: pair.right}\n"), IsEmpty());
-    EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: pair.right\n"), IsEmpty());
-}
-
-TEST_F(Check, TwoInputsOfOneKind_AskForIn) {
-    EXPECT_THAT(findings("scanmill: 1\ninputs: {a: points, b: points}\nsteps:\n  - thin:\n"),
-                ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("inputs a and b"))));
-}
-
-TEST_F(Check, FilterWithTwoPortsOfOneKind_AsksForBoth) {
-    const std::string head = "scanmill: 1\ninputs: {a: points, b: points}\nsteps:\n  - register:\n";
-    EXPECT_THAT(findings(head), ElementsAre(HasSubstr("in: {source: …}"), HasSubstr("in: {target: …}")));
-    EXPECT_THAT(findings(head + "    in: {source: a, target: b}\n"), IsEmpty());
-}
-
-TEST_F(Check, UnknownSourceOrPort_ProposesTheClosest) {
-    EXPECT_THAT(steps("  - thin:\n    in: {points: scam}\n"), ElementsAre(HasSubstr("did you mean 'scan'?")));
-    EXPECT_THAT(steps("  - thin:\n    in: {point: scan}\n"), ElementsAre(HasSubstr("did you mean 'points'?")));
-    EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: {points: pair.lfet}\n"),
-                ElementsAre(HasSubstr("did you mean 'left'?")));
-}
-
-TEST_F(Check, LaterStepAsSource_IsNoEarlierStep) {
-    EXPECT_THAT(steps("  - thin:\n    in: {points: later}\n  - id: later\n    pair:\n"),
-                ElementsAre(HasSubstr("'later' is neither an earlier step nor an input")));
-}
-
-TEST_F(Check, NameOfTwoSteps_StandsForNone) {
-    EXPECT_THAT(steps("  - thin: {size: 1 u}\n  - thin: {size: 2 u}\n  - pair:\n    in: {points: thin}\n"),
-                ElementsAre(HasSubstr("'thin' stands for several steps; give the one you mean an id")));
-}
-
-TEST_F(Check, SeveralValuesForASinglePort_AreAnError) {
-    EXPECT_THAT(steps("  - thin:\n    in: {points: [scan, scan]}\n"),
-                ElementsAre(HasSubstr("takes one value; found 2")));
-    EXPECT_THAT(steps("  - pair:\n  - combine:\n    in: {points: [pair.left, pair.right, scan]}\n"), IsEmpty());
-}
-
-TEST_F(Check, ListInput_FeedsOnlyListPorts) {
-    const std::string head = "scanmill: 1\ninputs: {scan: points, others: [points]}\nsteps:\n";
-    EXPECT_THAT(findings(head + "  - thin:\n"), IsEmpty());
-    EXPECT_THAT(findings(head + "  - thin:\n    in: {points: others}\n"),
-                ElementsAre(HasSubstr("is a list of points")));
-    EXPECT_THAT(findings(head + "  - combine:\n    in: {points: others}\n"), IsEmpty());
-    EXPECT_THAT(findings("scanmill: 1\ninputs: {scans: [points]}\nsteps:\n  - combine:\n"), IsEmpty());
-    EXPECT_THAT(findings("scanmill: 1\ninputs: {scans: [points]}\nsteps:\n  - combine:\noutputs: {x.ply: scans}\n"),
-                ElementsAre(AllOf(StartsWith("w:5:"), HasSubstr("'scans' is a list; a file holds one value"))));
-    EXPECT_THAT(findings("scanmill: 1\ninputs: {s: {kind: points, frame: '{scan}'}}\nsteps:\n  - thin:\n"),
-                ElementsAre(AllOf(StartsWith("w:2:"), HasSubstr("not part of {stem}"))));
 }
 
 TEST_F(Check, IdsAndInputs_HaveDifferentNames) {
