@@ -2,6 +2,7 @@
 #pragma once
 /// How the tests call voxel-thin.
 
+#include "voxel_thin/local_bins.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill::test {
@@ -30,6 +31,12 @@ inline VoxelThinResult thin(const PointCloud& cloud, const VoxelThinParams& para
 template <class T>
 std::span<const T> column(const VoxelThinResult& result, std::string_view name) {
     return result.points.columns.find(name)->values<T>();
+}
+
+/// The bin that a surface with this M1 + 2 M2 + M3 is thinned by.
+inline double bin_for(double derivatives, double tolerance,
+                      VoxelThinParams::Guarantee guarantee = VoxelThinParams::Guarantee::centres) {
+    return voxel::bin_for_edge(voxel::longest_edge(derivatives, tolerance), guarantee);
 }
 
 }  // namespace scanmill::test
