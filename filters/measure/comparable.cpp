@@ -109,7 +109,8 @@ Buffer<Vec3> in_frame_of(const Frame& mesh, const Frame& truth, const Buffer<Vec
         moved[i] = converted(positions[i]) + shift;
         if (!moved[i].allFinite())
             throw Error("the truth's point {} cannot be converted from {} to {}: a coordinate is too large", i,
-                        symbol(truth.unit), symbol(mesh.unit));
+                        symbol(truth.unit), symbol(mesh.unit))
+                .hint("is its unit the one that was declared? --unit says another");
     }
     return moved;
 }

@@ -7,11 +7,11 @@
 #include "measure/borders.hpp"
 #include "measure/comparable.hpp"
 #include "measure/compensated_sum.hpp"
+#include "measure/measurable.hpp"
 #include "measure/nearest_distances.hpp"
 #include "measure/self_intersections.hpp"
 #include "measure/surface_samples.hpp"
 #include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/length_scale.hpp"
 #include "scanmill/geometry/surface_box.hpp"
 
 namespace scanmill {
@@ -19,50 +19,6 @@ namespace scanmill {
 namespace {
 
 using namespace measuring;
-
-void require_sound(const MeasureParams& params) {
-    if (params.samples < fewest_samples)
-        throw Error("samples is {}; at least {} are needed for a spread of the mean", params.samples, fewest_samples);
-    const double gap = params.gap.value();
-    if (!(gap > 0 && gap < 1)) throw Error("gap is {}; it must be above 0 % and below 100 %", params.gap.text());
-}
-
-/// The thresholds in the mesh's unit.
-std::vector<double> thresholds_for(const TriangleMesh& mesh, const MeasureParams& params) {
-    const LengthScale scale{mesh.frame.unit, [&] { return surface_box(mesh).diagonal(); },
-                            [&] { return edge_spacing(mesh); }};
-    std::vector<double> thresholds;
-    for (const Length& threshold : params.thresholds) {
-        thresholds.push_back(threshold.resolved(scale).value());
-        if (!(thresholds.back() > 0 && std::isfinite(thresholds.back())))
-            throw Error("the threshold {} comes to {} in the unit of the mesh; thresholds must be above 0 and finite",
-                        threshold.text(), number_text(thresholds.back()));
-    }
-    return thresholds;
-}
-
-void require_squares(const BoundingBox& box, std::string_view name) {
-    const double size = box.diagonal();
-    if (!(size > 1e-60 && size < 1e60))
-        throw Error("the {} is {:.3g} in size; between 1e-60 and 1e60 is needed for its squares to be numbers", name,
-                    size);
-}
-
-/// `name`: "mesh" or "truth".
-void require_surface(const TriangleMesh& mesh, std::string_view name) {
-    if (mesh.triangles.empty())
-        throw Error("the {} has no triangles ({} vertices); there is no surface to measure", name,
-                    mesh.positions.size());
-    require_consistent(mesh);
-    require_finite(mesh.positions.span(), fmt::format("vertices of the {}", name));
-    require_squares(surface_box(mesh), name);
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const Vec3& origin = mesh.positions[a];
-        if ((mesh.positions[b] - origin).cross(mesh.positions[c] - origin).squaredNorm() > 0) return;
-    }
-    throw Error("none of the {} triangles of the {} has an area; there is no surface to measure", mesh.triangles.size(),
-                name);
-}
 
 /// Those in a triangle.
 Array<Vec3> surface_vertices(const TriangleMesh& mesh) {
@@ -218,7 +174,9 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
     require_sound(params);
     require_surface(mesh, "mesh");
     const std::vector<double> thresholds = thresholds_for(mesh, params);
-    if (truth.size() == 0) throw Error("the truth has no points; there is nothing to measure the mesh against");
+    if (truth.size() == 0)
+        throw Error("the truth has no points; there is nothing to measure the mesh against")
+            .hint("`scanmill info` tells what a file holds");
     require_finite(truth.positions.span(), "points of the truth");
     if (params.certify)
         throw Error("the Hausdorff distance of surfaces is certified, and the truth is {} points", truth.size())

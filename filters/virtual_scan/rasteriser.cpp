@@ -102,13 +102,16 @@ std::vector<Hit> hits_of(const TriangleMesh& mesh, const View& view) {
 Scene scene_of(const TriangleMesh& mesh) {
     require_consistent(mesh);
     require_finite(mesh.positions.span(), "vertices");
-    if (mesh.triangles.empty()) throw Error("the mesh has {} vertices and no triangles to scan", mesh.positions.size());
+    if (mesh.triangles.empty())
+        throw Error("the mesh has {} vertices and no triangles to scan", mesh.positions.size())
+            .hint("make a mesh of them first, or scan a shape: `shape: sphere`");
     Scene scene;
     scene.frame = mesh.frame;
     const TriangleMesh used = without_unused_vertices(mesh);
     scene.box = bounding_box(used.positions.span());
     if (!(scene.box.diagonal() > 0))
-        throw Error("the mesh has no extent: all {} triangles are one point", mesh.triangles.size());
+        throw Error("the mesh has no extent: all {} triangles are one point", mesh.triangles.size())
+            .hint("`scanmill info` tells what a file holds");
     scene.hull.assign(used.positions.begin(), used.positions.end());
     scene.scale.unit = mesh.frame.unit;
     scene.scale.diagonal = [diagonal = scene.box.diagonal()] { return diagonal; };

@@ -20,6 +20,10 @@ namespace {
 
 using Shape = VirtualScanParams::Shape;
 
+/// Between them the discriminants of the quadrics stay finite, of any proportions: they hold the fourth power of height
+/// over radius times the square of a length, ten sizes in all.
+constexpr double least_dimension = 1e-30, largest_dimension = 1e30;
+
 using FirstHit = std::function<std::optional<Hit>(const Ray&)>;
 
 std::optional<Hit> meet_sphere(const Ray& ray, double radius) {
@@ -128,18 +132,30 @@ Kind kind_of(Shape shape) {
     return {"none", {}, {}};
 }
 
+double dimension_of(const Length& length, const std::string& name) {
+    if (length.in() != Length::In::scan_unit)
+        throw Error("{} is {}; a shape has no unit, diagonal or spacing to measure by before it has its size", name,
+                    length.text())
+            .hint(fmt::format("give it in the scan's own unit, as {} u", number_text(length.amount())));
+    const double dimension = length.value();
+    if (!(dimension > 0) || !std::isfinite(dimension))
+        throw Error("{} is {} u; it must be above 0", name, dimension).hint("give it a size, as 1 u");
+    if (!(dimension >= least_dimension && dimension <= largest_dimension))
+        throw Error("{} is {:.3g} u; between {} and {} u is needed for products of lengths to be numbers", name,
+                    dimension, least_dimension, largest_dimension)
+            .hint("give all sizes in another unit, as numbers nearer 1");
+    return dimension;
+}
+
 std::vector<double> dimensions_of(const Kind& kind, std::span<const Length> size) {
     if (size.empty()) return kind.defaults;
     if (size.size() != kind.dimensions.size())
         throw Error("a {} has {} dimensions ({}); size has {}", kind.name, kind.dimensions.size(),
-                    fmt::join(kind.dimensions, ", "), size.size());
+                    fmt::join(kind.dimensions, ", "), size.size())
+            .hint(fmt::format("say `size: [{} u]`, or leave size out", fmt::join(kind.defaults, " u, ")));
     std::vector<double> dimensions;
-    for (std::size_t i = 0; i < size.size(); ++i) {
-        const double dimension = size[i].value();
-        if (!(dimension > 0) || !std::isfinite(dimension))
-            throw Error("the {} of the {} is {} u; it must be above 0", kind.dimensions[i], kind.name, dimension);
-        dimensions.push_back(dimension);
-    }
+    for (std::size_t i = 0; i < size.size(); ++i)
+        dimensions.push_back(dimension_of(size[i], fmt::format("the {} of the {}", kind.dimensions[i], kind.name)));
     return dimensions;
 }
 

@@ -57,14 +57,16 @@ std::vector<Vec3> view_directions(std::span<const double> views) {
     }
     if (views.empty() || views.size() % 3 != 0)
         throw Error("views has {} numbers; expected one (how many views) or three per view (its direction)",
-                    views.size());
+                    views.size())
+            .hint("12 looks from all around, [0, 0, 1] from above");
     std::vector<Vec3> directions;
     for (std::size_t i = 0; i < views.size(); i += 3) {
         const Vec3 direction(views[i], views[i + 1], views[i + 2]);
         const double largest = direction.cwiseAbs().maxCoeff();
         if (!direction.allFinite() || largest == 0)
             throw Error("view {} looks from ({} {} {}), which is no direction", i / 3, views[i], views[i + 1],
-                        views[i + 2]);
+                        views[i + 2])
+                .hint("three finite numbers, not all 0: [0, 0, 1] looks from above");
         directions.push_back((direction / largest).normalized());
     }
     return directions;

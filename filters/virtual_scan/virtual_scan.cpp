@@ -31,16 +31,21 @@ scan::Scene scene_of(const TriangleMesh* mesh, const VirtualScanParams& params) 
 
 void require_sound(const VirtualScanParams& params, double resolution, double noise) {
     if (!(resolution > 0) || !std::isfinite(resolution))
-        throw Error("the resolution is {} u; it must be above 0", resolution);
-    if (!(noise >= 0) || !std::isfinite(noise)) throw Error("the noise is {} u; it must be 0 or more", noise);
+        throw Error("the resolution is {} u; it must be above 0", resolution)
+            .hint("0.5 %diag puts some 200 points across the object");
+    if (!(noise >= 0) || !std::isfinite(noise))
+        throw Error("the noise is {} u; it must be 0 or more", noise).hint("say `noise: 0 u` for none");
     const double outliers = params.outliers.value(), overlap = params.overlap.value();
     if (!(outliers >= 0 && outliers <= 10))
-        throw Error("outliers is {}; it must be from 0 % to 1000 %", params.outliers.text());
+        throw Error("outliers is {}; it must be from 0 % to 1000 %", params.outliers.text())
+            .hint("it is a share of the points: 1 % adds one to a hundred");
     if (!(overlap >= 0 && overlap <= 1))
-        throw Error("overlap is {}; it must be from 0 % to 100 %", params.overlap.text());
+        throw Error("overlap is {}; it must be from 0 % to 100 %", params.overlap.text())
+            .hint("100 % keeps all that several views see, 0 % only what the first of them does");
     const double angle = params.max_angle.in_degrees();
     if (!(angle > 0 && angle <= 90))
-        throw Error("max-angle is {}; it must be above 0 deg and at most 90 deg", params.max_angle.text());
+        throw Error("max-angle is {}; it must be above 0 deg and at most 90 deg", params.max_angle.text())
+            .hint("90 deg keeps every point that is seen");
 }
 
 std::vector<scan::View> views_over(const scan::Scene& scene, const std::vector<Vec3>& directions, double resolution,

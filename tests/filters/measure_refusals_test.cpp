@@ -16,7 +16,9 @@ using ::testing::IsEmpty;
 
 template <class Truth>
 std::string refusal(const TriangleMesh& mesh, const Truth& truth, const MeasureParams& params = few_samples()) {
-    return sentence_of([&] { measured(mesh, truth, params); });
+    const Error error = error_of([&] { measured(mesh, truth, params); });
+    EXPECT_NE(error.hint(), "") << error.sentence();
+    return error.sentence();
 }
 
 std::vector<std::string> warnings_of(const TriangleMesh& mesh, const TriangleMesh& truth) {
@@ -65,7 +67,8 @@ TEST(MeasureRefusals, SizesWithoutSquares_AreRefused) {
 }
 
 TEST(MeasureRefusals, IndexOutOfRange_IsRefused) {
-    EXPECT_NE(refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}}), cube()), "");
+    const TriangleMesh broken = soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}});
+    EXPECT_EQ(sentence_of([&] { measured(broken, cube()); }), "triangle 0 names vertex 3; there are 3");
 }
 
 TEST(MeasureRefusals, FewSamples_AreRefused) {

@@ -6,12 +6,14 @@
 
 #include "scanmill/filter/error.hpp"
 #include "support/shapes.hpp"
+#include "support/thrown.hpp"
 #include "virtual_scan/virtual_scan.hpp"
 
 namespace scanmill::test {
 namespace {
 
 using Shape = VirtualScanParams::Shape;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 VirtualScanParams sphere(double resolution) {
@@ -26,6 +28,7 @@ std::string refusal(const VirtualScanParams& params, const TriangleMesh* mesh = 
         Context context;
         virtual_scan(mesh, params, context);
     } catch (const Error& error) {
+        EXPECT_NE(error.hint(), "") << error.sentence();
         return error.what();
     }
     return "no refusal";
@@ -69,7 +72,8 @@ TEST(VirtualScanRefusals, MeshWithANaN) {
 TEST(VirtualScanRefusals, MeshWithAnIndexOutOfRange) {
     TriangleMesh mesh = cube();
     mesh.triangles = {{0, 1, 8}};
-    EXPECT_THAT(refusal({}, &mesh), HasSubstr("names vertex 8"));
+    Context context;
+    EXPECT_EQ(sentence_of([&] { virtual_scan(&mesh, {}, context); }), "triangle 0 names vertex 8; there are 8");
 }
 
 TEST(VirtualScanRefusals, ResolutionNotAboveZero) {
@@ -125,6 +129,56 @@ TEST(VirtualScanRefusals, SizesThatFitNoShape) {
     params.shape = Shape::torus;
     params.size = {1.0, 1.0};
     EXPECT_THAT(refusal(params), HasSubstr("does not leave a hole"));
+}
+
+TEST(VirtualScanRefusals, SizesWithoutProducts) {
+    VirtualScanParams params = sphere(0.1);
+    params.resolution = Length::percent_of_diagonal(5);
+    for (const double extreme : {1e200, 1e-200, 1.01e30, 0.99e-30}) {
+        params.shape = Shape::hyperboloid;
+        params.size = {1.0, extreme};
+        EXPECT_THAT(refusal(params), HasSubstr(fmt::format("the height of the hyperboloid is {:.3g} u", extreme)));
+        params.size = {extreme, 1.0};
+        EXPECT_THAT(refusal(params), HasSubstr("between 1e-30 and 1e+30 u"));
+        params.shape = Shape::torus;
+        params.size = {2 * extreme, extreme};
+        EXPECT_THAT(refusal(params), HasSubstr("of the torus is"));
+    }
+}
+
+TEST(VirtualScanRefusals, SizesNearTheLimits_GiveThePointsOfAnyOther) {
+    for (const auto& [shape, second] : {std::pair(Shape::hyperboloid, 0.75), std::pair(Shape::torus, 0.4)})
+        for (const double unit : {0x1p-97, 0x1p99}) {  // powers of two, so that nothing is rounded otherwise
+            VirtualScanParams params = sphere(0.1);
+            params.shape = shape;
+            params.size = {1.0, second};
+            Context context;
+            const Buffer<Vec3> plain = virtual_scan(nullptr, params, context).points.positions;
+            params.resolution = 0.1 * unit;
+            params.size = {unit, second * unit};
+            const Buffer<Vec3> scaled = virtual_scan(nullptr, params, context).points.positions;
+            ASSERT_GT(plain.size(), 500u);
+            ASSERT_EQ(scaled.size(), plain.size());
+            for (std::size_t i = 0; i < plain.size(); ++i) ASSERT_EQ(scaled[i], Vec3(unit * plain[i]));
+        }
+    VirtualScanParams params = sphere(0.1);
+    params.shape = Shape::hyperboloid;
+    params.resolution = Length::percent_of_diagonal(2);
+    params.size = {1e30, 1e-30};
+    Context context;
+    EXPECT_NO_THROW(require_finite(virtual_scan(nullptr, params, context).points.positions.span(), "points"));
+    params.size = {1e-30, 1e30};
+    EXPECT_THAT(refusal(params), HasSubstr("none of 968 rays")) << "a line, between the rays";
+}
+
+TEST(VirtualScanRefusals, SizesThatNeedSomethingToMeasureBy) {
+    VirtualScanParams params = sphere(0.1);
+    for (const Length size : {Length::percent_of_diagonal(5), Length::spacings(5), Length(5, Length::In::millimetre)}) {
+        params.size = {size};
+        EXPECT_THAT(refusal(params),
+                    AllOf(HasSubstr("the radius of the sphere is " + size.text() + "; a shape has no unit"),
+                          HasSubstr("in the scan's own unit, as 5 u")));
+    }
 }
 
 TEST(VirtualScanRefusals, SpacingOfAShape) {

@@ -87,7 +87,8 @@ double diagonal_of(const Value& value) {
     if (diagonal > 0 || positions.empty()) return diagonal;
     require_finite(positions);
     throw Error("the scan has no size: {} at one place; at least two places are needed",
-                positions.size() == 1 ? "its only point is" : fmt::format("all {} points are", positions.size()));
+                positions.size() == 1 ? "its only point is" : fmt::format("all {} points are", positions.size()))
+        .hint("give lengths in the scan's unit, as 0.5 u, or leave this scan out");
 }
 
 double spacing_of(const Value& value) {
@@ -110,7 +111,8 @@ LengthScale scale_beside(const std::shared_ptr<const Metrics>& metrics) {
             [metrics] {
                 const Metric* diagonal = metrics->find("diagonal");
                 if (!diagonal)
-                    throw Error("%diag means nothing here: no metric `diagonal` says how large the object is");
+                    throw Error("%diag means nothing here: no metric `diagonal` says how large the object is")
+                        .hint("give the length in a unit, or in u");
                 return diagonal->value;
             },
             []() -> double {
