@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill::growing {
@@ -27,6 +29,38 @@ void turn_like_neighbours(const Neighbourhoods& neighbourhoods, const std::vecto
     if (sum < 0) directions[place] = -directions[place];
 }
 
+/// Whether a given normal lies in the surface rather than across it: far from the principal one, and its neighbours
+/// reach along it. Those of one scan line have no principal normal, but reach along no direction across the line
+/// either.
+bool lies_in_surface(const Samples& samples, const Neighbourhoods& neighbourhoods, u32 place, const Vec3& given,
+                     const Vec3& principal) {
+    constexpr double least_cosine = 0.5;  // of 60 degrees, as the sentences below say
+    constexpr double least_share = 0.25;  // of a normal tilted by that in an even neighbourhood: 3/8
+    if (std::abs(given.dot(principal)) >= least_cosine) return false;
+    double along = 0, whole = 0;
+    for (u32 other : neighbourhoods.of(place)) {
+        const Vec3 offset = samples.positions[other] - samples.positions[place];
+        along += given.dot(offset) * given.dot(offset);
+        whole += offset.squaredNorm();
+    }
+    return along > least_share * whole;
+}
+
+/// Refuses normals most of which are not the surface's, and warns when many are not. Where noise hides the surface,
+/// half of any normals are that far from the principal ones, so more than that is asked.
+void require_across(std::size_t lying, std::size_t given, Context& context) {
+    const double share = static_cast<double>(lying) / static_cast<double>(given);
+    const std::string found = fmt::format(
+        "{} of {} normals of the column 'normal' ({:.3g} %) are more than 60 deg from the normal of their neighbours, "
+        "as if they lay in the surface",
+        lying, given, 100 * share);
+    constexpr double most = 0.75, remarkable = 0.25;
+    if (share > most)
+        throw Error(found).hint(
+            "check that the column holds normals; drop or rename it, then normals are taken from the neighbours");
+    if (share > remarkable) context.warn(found + "; without the column, normals would be taken from the neighbours");
+}
+
 }  // namespace
 
 bool take_given_normals(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
@@ -35,8 +69,8 @@ bool take_given_normals(const PointCloud& cloud, const Samples& samples, const N
     if (!column) return false;
     require_vectors(*column, cloud.size());
     std::vector<bool> given(samples.size(), false);
-    std::size_t missing = 0;
-    for (std::size_t place = 0; place < samples.size(); ++place) {
+    std::size_t missing = 0, lying = 0;
+    for (u32 place = 0; place < samples.size(); ++place) {
         const u32 row = samples.rows[place];
         Vec3 normal(column->number(row, 0), column->number(row, 1), column->number(row, 2));
         const double largest = normal.cwiseAbs().maxCoeff();
@@ -44,7 +78,9 @@ bool take_given_normals(const PointCloud& cloud, const Samples& samples, const N
             ++missing;
             continue;
         }
-        normals.directions[place] = (normal / largest).normalized();
+        normal = (normal / largest).normalized();
+        if (lies_in_surface(samples, neighbourhoods, place, normal, normals.directions[place])) ++lying;
+        normals.directions[place] = normal;
         given[place] = true;
     }
     if (missing == samples.size()) {
@@ -52,6 +88,7 @@ bool take_given_normals(const PointCloud& cloud, const Samples& samples, const N
             fmt::format("none of the {} normals has a direction; they are taken from the neighbours", missing));
         return false;
     }
+    require_across(lying, samples.size() - missing, context);
     for (u32 place = 0; place < samples.size(); ++place)
         if (!given[place]) turn_like_neighbours(neighbourhoods, given, place, normals.directions);
     if (missing > 0)

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// region-grow and normals that came with the points but lie in the surface.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "filters/region_grow_cases.hpp"
+#include "support/point_sets.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace test;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+template <class NormalAt>
+PointCloud with_normals(PointCloud cloud, NormalAt&& normal_at) {
+    Array<double> numbers;
+    for (const Vec3& p : cloud.positions) {
+        const Vec3 normal = normal_at(p);
+        numbers.insert(numbers.end(), normal.begin(), normal.end());
+    }
+    cloud.columns.add(Column("normal", 3, Buffer<double>(std::move(numbers))));
+    return cloud;
+}
+
+std::vector<std::string> warnings_of(const PointCloud& cloud) {
+    Context context;
+    region_grow(cloud, {}, context);
+    return context.warnings();
+}
+
+TEST(RegionGrow_NormalsInTheSurface, AreRefusedAsSuch) {
+    const PointCloud flat = with_normals(grid(20, 20), [](const Vec3&) { return Vec3(1, 0, 0); });
+    EXPECT_THAT(growth_refusal(flat), AllOf(HasSubstr("400 of 400 normals of the column 'normal' (100 %) are more than "
+                                                      "60 deg from the normal of their neighbours"),
+                                            HasSubstr("hint: "), HasSubstr("drop or rename it")));
+    const PointCloud sphere =
+        with_normals(fibonacci_sphere(2000), [](const Vec3& p) { return Vec3(-p.y(), p.x(), 0); });
+    EXPECT_THAT(growth_refusal(sphere), HasSubstr("as if they lay in the surface"));
+}
+
+TEST(RegionGrow_NormalsInTheSurface, UpToSixtyDegreesAreNone) {
+    for (const double degrees : {0.0, 45.0, 59.0, 61.0, 90.0}) {
+        const double angle = degrees * std::numbers::pi / 180;
+        const PointCloud tilted =
+            with_normals(grid(20, 20), [&](const Vec3&) { return Vec3(std::sin(angle), 0, std::cos(angle)); });
+        EXPECT_EQ(growth_refusal(tilted).find("60 deg") != std::string::npos, degrees > 60) << degrees;
+    }
+}
+
+TEST(RegionGrow_NormalsInTheSurface, ThreeQuartersAreRefusedAQuarterIsWarnedOf) {
+    const auto lying_below = [](double x) {
+        return with_normals(grid(20, 20), [x](const Vec3& p) { return p.x() < x ? Vec3(0, 1, 0) : Vec3(0, 0, 1); });
+    };
+    EXPECT_THAT(growth_refusal(lying_below(15.5)), HasSubstr("320 of 400 normals of the column 'normal' (80 %)"));
+    Context context;
+    try {
+        region_grow(lying_below(9.5), {}, context);
+    } catch (const Error&) {
+    }
+    ASSERT_FALSE(context.warnings().empty());
+    EXPECT_THAT(context.warnings()[0], AllOf(HasSubstr("200 of 400 normals"), HasSubstr("taken from the neighbours")));
+    EXPECT_THAT(warnings_of(lying_below(4.5)), testing::Not(testing::Contains(HasSubstr("60 deg"))));
+}
+
+TEST(RegionGrow_NormalsInTheSurface, OfScanLinesFarApartTheirOwnAreNone) {
+    PointCloud lines = grid(40, 3);
+    Array<Vec3> apart(lines.positions.begin(), lines.positions.end());
+    for (Vec3& p : apart) p.y() *= 30;
+    lines.positions = std::move(apart);
+    const PointCloud cloud = with_normals(lines, [](const Vec3&) { return Vec3(0, 0, 1); });
+    EXPECT_EQ(growth_refusal(cloud).find("60 deg"), std::string::npos);
+}
+
+TEST(RegionGrow_NormalsInTheSurface, TrueOnesOfACoarseSphereAreNone) {
+    EXPECT_THAT(warnings_of(with_normals(fibonacci_sphere(60), [](const Vec3& p) { return p; })), IsEmpty());
+}
+
+}  // namespace
+}  // namespace scanmill
