@@ -135,13 +135,6 @@ LocalSurface fitted(Fit& fit, int exponent, LocalSurfaceParams::Origin origin) {
 
 }  // namespace
 
-Vec3 plane_normal(std::span<const Vec3> points) {
-    Array<Vec3> offsets;
-    take_offsets(
-        points[0], points.size() - 1, [&](std::size_t i) { return points[i + 1]; }, offsets);
-    return scatter_of(offsets).normal;
-}
-
 LocalSurface local_surface(const Vec3& point, std::span<const Vec3> neighbours, LocalSurfaceParams::Origin origin) {
     Fit fit;
     const int exponent = take_offsets(

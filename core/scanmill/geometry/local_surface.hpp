@@ -25,7 +25,9 @@ struct LocalSurfaceParams {
 };
 
 struct LocalSurface {
-    /// Unit length; its coordinate of largest size is positive (of equal ones the first).
+    /// Unit length; its coordinate of largest size is positive (of equal ones the first). Where there is no quadric,
+    /// the direction in which point and neighbours have least spread about their centroid; some direction across it
+    /// when they lie on a line, (0, 0, 1) for one place.
     Vec3 normal = Vec3::Zero();
     /// Principal curvatures at the quadric's origin, |first| >= |second|; positive where it bends towards the normal.
     double first_curvature = 0, second_curvature = 0;
@@ -39,10 +41,6 @@ struct LocalSurface {
     /// stands for it, with curvature 0.
     bool is_curved = false;
 };
-
-/// The direction in which the points have least spread about their centroid, with the sign as in LocalSurface; some
-/// direction across it when they lie on a line, (0, 0, 1) for one place. Pre: at least one point, finite.
-Vec3 plane_normal(std::span<const Vec3> points);
 
 /// Around `point`, from neighbours that ascend by distance; none of them is the point. Scaling point and neighbours by
 /// a power of two scales the result exactly.
