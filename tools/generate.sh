@@ -1,23 +1,36 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Writes schemas/ and docs/filters/ with the built program: `generate.sh build/dev`. With `check` as second argument it
-# changes nothing and fails when the committed files differ from what the filters declare.
+# changes nothing and fails when the committed files differ from what the filters declare. A filter of this tree that the
+# program does not know would lose its page: then nothing is written.
 set -euo pipefail
-program=$(realpath "$1")/bin/scanmill
+build=$1
+program=$(realpath "$build")/bin/scanmill
 cd "$(dirname "$0")/.."
-
-into=.
-if [ "${2:-}" = check ]; then
-    into=$(mktemp -d)
-    trap 'rm -rf "$into"' EXIT
-fi
-rm -rf "$into/docs/filters"
 # Only the filters of this tree: not what SCANMILL_PLUGIN_PATH adds.
 unset SCANMILL_PLUGIN_PATH
-"$program" schema -o "$into/schemas"
-"$program" docs -o "$into/docs/filters"
-[ "$into" = . ] && exit 0
-if ! diff -ru schemas "$into/schemas" || ! diff -ru docs/filters "$into/docs/filters"; then
-    echo "error: schemas/ or docs/filters/ are not what the filters declare; run: make generate" >&2
+
+known=$("$program" list | cut -d ' ' -f 1)
+missing=()
+for folder in $(sed -n 's/^ *scanmill_add_filter(\([a-z0-9_]*\).*/\1/p' filters/CMakeLists.txt); do
+    grep -qx -- "${folder//_/-}" <<<"$known" || missing+=("scanmill-${folder//_/-}")
+done
+if [ ${#missing[@]} -gt 0 ]; then
+    echo "error: '$program' lacks ${missing[*]}, whose pages would be lost" >&2
+    echo "hint: cmake --build $build --target ${missing[*]}" >&2
     exit 1
+fi
+
+made=$(mktemp -d)
+trap 'rm -rf "$made"' EXIT
+"$program" schema -o "$made/schemas"
+"$program" docs -o "$made/docs/filters"
+if [ "${2:-}" = check ]; then
+    if ! diff -ru schemas "$made/schemas" || ! diff -ru docs/filters "$made/docs/filters"; then
+        echo "error: schemas/ or docs/filters/ are not what the filters declare; run: make generate" >&2
+        exit 1
+    fi
+else
+    rm -rf docs/filters
+    cp -r "$made/schemas" "$made/docs" .
 fi
