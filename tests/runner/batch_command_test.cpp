@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches as a user meets them: what is computed and what is not, what is said of it, and what stays of it.
-
-#include <cstdlib>
+// Batches as a user meets them: what is computed and what is not, and why.
 
 #include "runner/batch_fixture.hpp"
-#include "scanmill/work/sha256.hpp"
 
 namespace scanmill::test {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::IsEmpty;
 using testing::Not;
 
 TEST_F(Batch, TwentyScansUnderFourVariants_ThreePoisoned_LoseOnlyThose) {
@@ -136,52 +132,6 @@ TEST_F(Batch, TwoWorkflows_ShareWhatIsEqual) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out/v-scan_01.ply"));
 }
 
-TEST_F(Batch, TwoCellsOfOneFile_AreRefusedBeforeAnythingRuns) {
-    write_workflow("2");
-    folder_.write("scans/one/a.xyz", "1 0 0\n");
-    folder_.write("scans/two/a.xyz", "2 0 0\n");
-    write_batch("scans/**/a.xyz");
-    const ProgramResult result = run_batch();
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, AllOf(HasSubstr("would both write"), HasSubstr("{workflow}")));
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
-}
-
-/// One of them may fail its expectation; then nobody could say what the file is.
-TEST_F(Batch, OneFileOfTwoWorkflowsThatExpectDifferentThings_IsRefused) {
-    write_scans("scan", 1);
-    const std::string head =
-        "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - test-step:\n    expect: {points: ";
-    folder_.write("strict.yaml", head + "77}\noutputs: {'{scan}.ply': test-step}\n");
-    folder_.write("lax.yaml", head + "5}\noutputs: {'{scan}.ply': test-step}\n");
-    folder_.write("b.yaml", "scanmill: 1\nbatch: b\nscans: [scans/*.xyz]\nworkflows: [strict.yaml, lax.yaml]\n");
-    const ProgramResult result = run_batch();
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("would both write"));
-}
-
-/// Reading what all scans share is the only thing that is done more than once.
-TEST_F(Batch, SharedInput_BelongsToEveryScan) {
-    folder_.write("w.yaml",
-                  "scanmill: 1\nname: w\ninputs: {scan: points, other: points}\nsteps:\n  - test-step: "
-                  "{mode: slow}\n    in: {points: scan, more: [other]}\noutputs: {'{scan}.ply': test-step}\n");
-    write_scans("scan", 6);
-    folder_.write("other.xyz", "5 5 5\n");
-    std::map<std::string, std::string> expected;
-    for (const char* jobs : {"0", "3"}) {
-        std::filesystem::remove_all(folder_ / "out");
-        std::vector<std::string> arguments{"run", "w.yaml"};
-        for (int i = 1; i <= 6; ++i) arguments.push_back(fmt::format("scans/scan_{:02}.xyz", i));
-        arguments.insert(arguments.end(), {"--in", "other=other.xyz", "-o", "out", "--no-cache", "-j", jobs});
-        const ProgramResult result = scanmill(arguments);
-        ASSERT_EQ(result.exit_code, 0) << result.err;
-        const Json run = recorded(1);
-        EXPECT_EQ(run["steps"].size(), 13u) << "seven reads, one of which is the shared one, and six steps";
-        if (expected.empty()) expected = outputs();
-        EXPECT_EQ(outputs(), expected);
-    }
-}
-
 /// What is cached stands on what it was made from: the same is written as if nothing were cached.
 TEST_F(Batch, ExpectationAddedBeforeWhatIsCached_FailsItToo) {
     write_scans("scan", 1);
@@ -198,183 +148,6 @@ TEST_F(Batch, ExpectationAddedBeforeWhatIsCached_FailsItToo) {
     workflow("    expect: {points: 77}\n");
     EXPECT_EQ(run_batch({"--keep", "always"}).exit_code, 1);
     EXPECT_EQ(outputs().size(), 0u);
-}
-
-TEST_F(Batch, TruthAndPoseFiles_AreNotReplaced) {
-    folder_.write("w.yaml",
-                  "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - test-step:\noutputs: "
-                  "{'{scan}.ply': test-step}\n");
-    folder_.write("in/p.xyz", "1 2 3\n4 5 6\n");
-    folder_.write("out/p.ply", "the truth");
-    write_batch("{path: in/p.xyz, truth: out/p.ply}");
-    EXPECT_EQ(run_batch().exit_code, 2);
-    EXPECT_EQ(content_of(folder_ / "out/p.ply"), "the truth");
-    const std::string pose = "{\"scanmill\": 1, \"poses\": [{\"rotation\": [0, 0, 0, 1], \"translation\": [1, 0, 0]}]}";
-    folder_.write("out/p.ply.json", pose);
-    write_batch("{path: in/p.xyz, pose: out/p.ply.json}");
-    const ProgramResult result = run_batch();
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("is an input"));
-    EXPECT_EQ(content_of(folder_ / "out/p.ply.json"), pose);
-}
-
-TEST_F(Batch, EqualScansOfOneName_NeedTwoFiles_WhichTheFolderGives) {
-    const auto workflow = [&](const std::string& name) {
-        folder_.write("w.yaml", "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - test-step:\noutputs: {'" +
-                                    name + "': test-step}\n");
-    };
-    folder_.write("scans/one/a.xyz", "1 2 3\n4 5 6\n");
-    folder_.write("scans/two/a.xyz", "1 2 3\n4 5 6\n");
-    write_batch("{path: scans/*/a.xyz, frame: lab, unit: mm}");
-    workflow("{scan}.ply");
-    EXPECT_EQ(run_batch().exit_code, 2);
-    workflow("{folder}/{scan}.ply");
-    ASSERT_EQ(run_batch().exit_code, 0);
-    const Json described = Json::parse(content_of(folder_ / "out/two/a.ply.json"));
-    EXPECT_EQ(described["scan"], "scans/two/a.xyz");
-    EXPECT_EQ(described["steps"][0]["file"], "scans/two/a.xyz") << "though it was read as the other one";
-    EXPECT_EQ(described["steps"][0]["frame"], "lab");
-    EXPECT_EQ(described["steps"][0]["unit"], "mm");
-    Sha256 hash;
-    hash.add(content_of(folder_ / "out/two/a.ply"));
-    EXPECT_EQ(described["file"]["sha256"], hash.text());
-}
-
-TEST_F(Batch, NobodyListening_IsNoReasonToStop) {
-    write_workflow("1");
-    write_scans("scan", 3);
-    write_batch("scans/*.xyz");
-    for (const char* where : {">/dev/full", ">&-", "2>/dev/full", "2>&-", "--json >/dev/full", "--json | head -1"}) {
-        std::filesystem::remove_all(folder_ / "out");
-        const std::string command = "cd '" + folder_.path().string() +
-                                    "' && (SCANMILL_PLUGIN_PATH='" SCANMILL_TEST_PLUGIN_DIR
-                                    "' XDG_CACHE_HOME=home '" SCANMILL_PROGRAM "' batch b.yaml -o out --no-cache " +
-                                    where + ") > /dev/null 2>&1";
-        const int status = std::system(command.c_str());
-        EXPECT_TRUE(WIFEXITED(status)) << where;
-        EXPECT_EQ(outputs().size(), 3u) << where;
-        const bool loses_results = std::string(where).starts_with(">") || std::string(where).ends_with("full");
-        if (loses_results && !std::string(where).starts_with("2")) {
-            EXPECT_EQ(WEXITSTATUS(status), 3) << where;
-        }
-    }
-}
-
-TEST_F(Batch, Json_IsALineForEverythingThatHappens) {
-    write_workflow("{sweep: [1, 2]}");
-    write_scans("scan", 2);
-    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: fail}}");
-    const ProgramResult result = run_batch({"--json", "-j", "2"});
-    EXPECT_EQ(result.exit_code, 1);
-    std::map<std::string, std::size_t> events;
-    std::vector<Json> lines;
-    std::istringstream stream(result.out);
-    for (std::string line; std::getline(stream, line);) {
-        lines.push_back(Json::parse(line));
-        ++events[lines.back()["event"]];
-    }
-    ASSERT_GE(lines.size(), 2u);
-    EXPECT_EQ(lines.front()["event"], "run-started");
-    EXPECT_EQ(lines.front()["scanmill"], 1);
-    EXPECT_EQ(lines.front()["run"], 1);
-    EXPECT_EQ(lines.back()["event"], "run-ended");
-    EXPECT_EQ(lines.back()["done"], 2);
-    EXPECT_EQ(lines.back()["failed"], 2);
-    EXPECT_EQ(events["step-started"], 8u);
-    EXPECT_EQ(events["step-ended"], 8u);
-    EXPECT_EQ(events["cell-ended"], 4u);
-    EXPECT_EQ(events["output-written"], 2u);
-    for (const Json& line : lines)
-        if (line["event"] == "step-ended" && line["outcome"] == "failed") {
-            EXPECT_EQ(line["cause"], "refused");
-            EXPECT_THAT(line["error"].get<std::string>(), HasSubstr("was asked to fail"));
-        }
-}
-
-TEST_F(Batch, PlainLines_TellEveryStepAndFailure) {
-    write_workflow("{sweep: [1, 2]}");
-    write_scans("scan", 2);
-    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: fail}}");
-    const ProgramResult result = run_batch();
-    EXPECT_THAT(result.err,
-                AllOf(HasSubstr("scan_01.xyz: last"), HasSubstr("was asked to fail"), HasSubstr("in step 'last' ("),
-                      HasSubstr("on scan '"), HasSubstr("under variant 'factor=2'"), Not(HasSubstr("\x1b"))));
-    EXPECT_THAT(result.out, HasSubstr("2 of 4 failed"));
-}
-
-TEST_F(Batch, FailFast_BeginsNothingNew) {
-    write_workflow("1");
-    write_scans("scan", 30);
-    write_batch("{path: scans/*.xyz, set: {mode: fail}}");
-    const ProgramResult result = run_batch({"-j", "1", "--fail-fast"});
-    EXPECT_EQ(result.exit_code, 1);
-    const Json run = recorded(1);
-    EXPECT_EQ(count(run["cells"], "outcome", "failed"), 1u);
-    EXPECT_EQ(count(run["cells"], "outcome", "skipped"), 29u);
-}
-
-TEST_F(Batch, NumberOfWorkers_ChangesNoByte) {
-    write_workflow();
-    write_scans("scan", 6);
-    write_batch("scans/*.xyz");
-    std::map<std::string, std::string> expected;
-    for (const char* jobs : {"0", "1", "2", "5"}) {
-        std::filesystem::remove_all(folder_ / "out");
-        ASSERT_EQ(run_batch({"-j", jobs, "--no-cache"}).exit_code, 0) << jobs;
-        ASSERT_EQ(outputs().size(), 24u);
-        if (expected.empty()) expected = outputs();
-        EXPECT_EQ(outputs(), expected) << jobs;
-    }
-}
-
-/// What one variant made and another needs passes through the cache, whoever made it, or is made by who has it.
-TEST_F(Batch, MoreWorkersThanScans_ComputeSharedStepsOnce) {
-    write_workflow();
-    write_scans("scan", 1);
-    write_batch("{path: scans/*.xyz, set: {mode: slow}}");
-    for (const char* keep : {"worth", "never"}) {
-        std::filesystem::remove_all(folder_ / "out");
-        std::filesystem::remove_all(folder_ / "home");
-        ASSERT_EQ(run_batch({"-j", "4", "--keep", keep}).exit_code, 0);
-        const Json run = recorded(1);
-        EXPECT_EQ(run["steps"].size(), 6u) << keep;
-        EXPECT_EQ(count(run["steps"], "origin", "ran"), 6u);
-    }
-}
-
-/// Two ways to the same values: what comes after them is the same step on the same inputs.
-TEST_F(Batch, StepsOnEqualValues_RunOnce_AlsoWhenTheyComeUpTogether) {
-    folder_.write("w.yaml",
-                  "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - id: a\n    test-step: {mode: "
-                  "{sweep: [slow, warn]}}\n  - id: b\n    test-step: {mode: slow, factor: 2}\n    in: {points: "
-                  "a.points}\noutputs: {'{scan}.{variant}.ply': b}\n");
-    write_scans("scan", 3);
-    write_batch("scans/*.xyz");
-    ASSERT_EQ(run_batch({"-j", "4", "--keep", "always"}).exit_code, 0);
-    const std::vector<Json> second = of_step(recorded(1), "b");
-    EXPECT_EQ(second.size(), 6u);
-    EXPECT_EQ(count(second, "origin", "ran"), 3u);
-    EXPECT_EQ(count(second, "origin", "same inputs"), 3u);
-    EXPECT_EQ(outputs().size(), 6u);
-}
-
-TEST_F(Batch, NoBatch_IsRefusedWithTheWayOut) {
-    write_workflow();
-    write_scans("scan", 1);
-    write_batch("scans/*.xyz");
-    const ProgramResult workflow = scanmill({"batch", "w.yaml"});
-    EXPECT_EQ(workflow.exit_code, 2);
-    EXPECT_THAT(workflow.err, AllOf(HasSubstr("no key `batch`"), HasSubstr("scanmill run")));
-    const ProgramResult batch = scanmill({"run", "b.yaml", "scans/scan_01.xyz"});
-    EXPECT_EQ(batch.exit_code, 2);
-    EXPECT_THAT(batch.err, HasSubstr("scanmill batch b.yaml"));
-    EXPECT_EQ(scanmill({"batch", "missing.yaml"}).exit_code, 2);
-    write_batch("scans/*.ply");
-    const ProgramResult nothing = run_batch();
-    EXPECT_EQ(nothing.exit_code, 2);
-    EXPECT_THAT(nothing.err, HasSubstr("b.yaml:3:"));
-    EXPECT_THAT(scanmill({"worker"}).err, HasSubstr("is started by scanmill itself"));
-    EXPECT_THAT(scanmill({"--help"}).out, Not(HasSubstr("worker ")));
 }
 
 }  // namespace

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runners and workers that are interrupted or killed.
+
+#include <chrono>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "runner/faults_fixture.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::HasSubstr;
+
+class Killed : public FaultyBatch {};
+
+TEST_F(Killed, Interrupt_EndsWhatWillNotEnd_AndKeepsWhatWasDone) {
+    write_workflow("1");
+    write_scans("scan", 3);
+    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: loop}}, scans/scan_03.xyz");
+    RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1"}, options());
+    while (!batch.has_ended() && batch.err().find("scan_02.xyz: shared") == std::string::npos)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    batch.signal(SIGINT);
+    const ProgramResult result = batch.wait();
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_THAT(result.err, HasSubstr("interrupted"));
+    EXPECT_EQ(outputs().size(), 2u) << "scans of equal settings come together: the first and the third";
+    const Json run = recorded(1);
+    EXPECT_EQ(run["run"]["outcome"], "interrupted");
+    EXPECT_EQ(count(run["cells"], "outcome", "done"), 2u);
+}
+
+TEST_F(Killed, Runner_KilledAtAnyMoment_LeavesARunThatIsFinishedByTheNext) {
+    write_workflow("{sweep: [1, 2]}");
+    write_scans("scan", 8);
+    write_batch("{path: scans/*.xyz, set: {mode: slow}}");
+    ASSERT_EQ(run_batch({"-j", "2", "--no-cache"}).exit_code, 0);
+    const auto expected = outputs();
+    ASSERT_EQ(expected.size(), 16u);
+    std::filesystem::remove_all(folder_ / "out");
+
+    std::mt19937 random(4);
+    std::uniform_int_distribution<int> moment(0, 250);
+    for (int kill = 0; kill < 30; ++kill) {
+        if (kill % 10 == 0) std::filesystem::remove_all(folder_ / "home");
+        if (kill % 10 == 0) std::filesystem::remove_all(folder_ / "out");
+        RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "2"}, options());
+        std::this_thread::sleep_for(std::chrono::milliseconds(moment(random)));
+        batch.signal(SIGKILL);
+        batch.wait();
+        if (std::filesystem::exists(folder_ / "out"))
+            for (const auto& [name, bytes] : outputs()) {
+                ASSERT_TRUE(expected.contains(name)) << name << " is no output";
+                EXPECT_EQ(bytes, expected.at(name)) << "outputs are whole: " << name;
+            }
+    }
+    ASSERT_EQ(run_batch({"-j", "2"}).exit_code, 0);
+    EXPECT_EQ(outputs(), expected);
+}
+
+TEST_F(Killed, RunAfterAKill_ComputesOnlyWhatWasNotFinished) {
+    write_workflow("1");
+    write_scans("scan", 6);
+    write_batch("{path: scans/*.xyz, set: {mode: slow}}");
+    {
+        RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1", "--keep", "always"}, options());
+        while (!batch.has_ended() && batch.err().find("scan_03.xyz: last") == std::string::npos)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        batch.signal(SIGKILL);
+    }
+    ASSERT_EQ(run_batch({"-j", "1", "--keep", "always"}).exit_code, 0);
+    const Json run = recorded(2);
+    for (const Json& step : run["steps"])
+        for (const char* finished : {"scan_01", "scan_02", "scan_03"})
+            if (step["scan"].get<std::string>().find(finished) != std::string::npos) {
+                EXPECT_EQ(step["origin"], "cached") << step;
+            }
+    EXPECT_GT(count(run["steps"], "origin", "ran"), 0u);
+    EXPECT_FALSE(recorded(1)["run"].contains("ended"));
+    EXPECT_EQ(Json::parse(scanmill({"runs", "out", "--json"}).out)["runs"][0]["outcome"], "unfinished");
+}
+
+/// The numbers of the processes that this one has started.
+std::vector<int> children_of(int process) {
+    std::ifstream list(fmt::format("/proc/{0}/task/{0}/children", process));
+    std::vector<int> children;
+    for (int child; list >> child;) children.push_back(child);
+    return children;
+}
+
+TEST_F(Killed, WorkerKilledFromOutside_FailsWhatItWasDoing) {
+    write_workflow("1");
+    write_scans("scan", 3);
+    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: loop}}, scans/scan_03.xyz");
+    RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1"}, options());
+    while (!batch.has_ended() && batch.err().find("scan_02.xyz: shared") == std::string::npos)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    for (const int worker : children_of(batch.process())) ::kill(worker, SIGKILL);
+    EXPECT_EQ(batch.wait().exit_code, 1);
+    const Json run = recorded(1);
+    EXPECT_EQ(count(run["cells"], "outcome", "done"), 2u);
+    EXPECT_EQ(count(run["cells"], "number", SIGKILL), 1u);
+}
+
+TEST_F(Killed, WorkerAskedToEndByOthers_IsNoInterrupt) {
+    write_workflow("1");
+    write_scans("scan", 3);
+    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: wait}}, scans/scan_03.xyz");
+    RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1"}, options());
+    while (!batch.has_ended() && batch.err().find("scan_02.xyz: shared") == std::string::npos)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    for (const int worker : children_of(batch.process())) ::kill(worker, SIGTERM);
+    EXPECT_EQ(batch.wait().exit_code, 1);
+    const Json run = recorded(1);
+    EXPECT_EQ(count(run["cells"], "outcome", "done"), 2u);
+    EXPECT_EQ(count(run["cells"], "number", SIGTERM), 1u);
+}
+
+TEST_F(Killed, Workers_EndWithTheirRunner) {
+    write_workflow("1");
+    write_scans("scan", 1);
+    write_batch("{path: scans/scan_01.xyz, set: {mode: loop}}");
+    std::vector<int> workers;
+    {
+        RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1"}, options());
+        while (!batch.has_ended() && batch.err().find("scan_01.xyz: shared") == std::string::npos)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        workers = children_of(batch.process());
+        batch.signal(SIGKILL);
+    }
+    ASSERT_EQ(workers.size(), 1u);
+    for (int tries = 0; tries < 1000 && ::kill(workers[0], 0) == 0; ++tries)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_NE(::kill(workers[0], 0), 0) << "it would loop for ever";
+}
+
+TEST_F(Killed, NoScratchFolder_IsLeftBehind) {
+    write_workflow("1");
+    write_scans("scan", 2);
+    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: crash}}");
+    std::filesystem::create_directory(folder_ / "tmp");
+    ProgramOptions own = options();
+    own.environment.push_back("TMPDIR=" + (folder_ / "tmp").string());
+    EXPECT_EQ(scanmill_program({"batch", "b.yaml", "-o", "out", "-j", "2"}, own).exit_code, 1);
+    EXPECT_TRUE(std::filesystem::is_empty(folder_ / "tmp"));
+}
+
+}  // namespace
+}  // namespace scanmill::test
