@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "delaunay/delaunay.hpp"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <gmock/gmock.h>
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
 #include <limits>
-#include <map>
 #include <numeric>
-#include <set>
 
+#include "filters/delaunay_checks.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/files.hpp"
 #include "support/point_sets.hpp"
@@ -24,88 +17,6 @@ namespace scanmill {
 namespace {
 
 using namespace test;
-using testing::HasSubstr;
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-DelaunayResult triangulated(const PointCloud& cloud, unsigned threads = 1) {
-    ContextOptions options;
-    options.threads = threads;
-    Context context(options);
-    return delaunay(cloud, {}, context);
-}
-
-Kernel::Point_3 exact(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
-
-double six_volumes(const TetMesh& tets, u32 cell) {
-    const auto& [a, b, c, d] = tets.cells[cell];
-    const Vec3 u = tets.positions[b] - tets.positions[a], v = tets.positions[c] - tets.positions[a];
-    return u.cross(v).dot(tets.positions[d] - tets.positions[a]);
-}
-
-double volume(const TetMesh& tets) {
-    double sum = 0;
-    for (u32 cell = 0; cell < tets.cells.size(); ++cell) sum += six_volumes(tets, cell);
-    return sum / 6;
-}
-
-/// Everything that tets.hpp promises, checked one by one.
-void expect_canonical(const TetMesh& tets) {
-    ASSERT_EQ(tets.neighbours.size(), tets.cells.size());
-    EXPECT_TRUE(std::ranges::is_sorted(tets.cells));
-    EXPECT_EQ(std::ranges::adjacent_find(tets.cells), tets.cells.end());
-    std::map<std::array<u32, 3>, std::vector<u32>> cells_of_facet;
-    for (u32 c = 0; c < tets.cells.size(); ++c) {
-        const Tetrahedron& cell = tets.cells[c];
-        ASSERT_EQ(*std::ranges::min_element(cell), cell[0]);
-        ASSERT_LT(cell[1], std::min(cell[2], cell[3]));
-        ASSERT_EQ(CGAL::orientation(exact(tets.positions[cell[0]]), exact(tets.positions[cell[1]]),
-                                    exact(tets.positions[cell[2]]), exact(tets.positions[cell[3]])),
-                  CGAL::POSITIVE);
-        for (int i = 0; i < 4; ++i) {
-            std::array<u32, 3> facet{cell[(i + 1) % 4], cell[(i + 2) % 4], cell[(i + 3) % 4]};
-            std::ranges::sort(facet);
-            cells_of_facet[facet].push_back(c);
-        }
-    }
-    for (u32 c = 0; c < tets.cells.size(); ++c)
-        for (int i = 0; i < 4; ++i) {
-            const Tetrahedron& cell = tets.cells[c];
-            std::array<u32, 3> facet{cell[(i + 1) % 4], cell[(i + 2) % 4], cell[(i + 3) % 4]};
-            std::ranges::sort(facet);
-            const std::vector<u32>& cells = cells_of_facet[facet];
-            ASSERT_LE(cells.size(), 2u);
-            const u32 expected = cells.size() == 1 ? TetMesh::outside_hull : cells[0] + cells[1] - c;
-            ASSERT_EQ(tets.neighbours[c][i], expected);
-        }
-}
-
-void expect_empty_spheres(const TetMesh& tets) {
-    for (const auto& [a, b, c, d] : tets.cells)
-        for (const Vec3& p : tets.positions)
-            ASSERT_NE(CGAL::side_of_bounded_sphere(exact(tets.positions[a]), exact(tets.positions[b]),
-                                                   exact(tets.positions[c]), exact(tets.positions[d]), exact(p)),
-                      CGAL::ON_BOUNDED_SIDE);
-}
-
-void expect_equal_bytes(const TetMesh& a, const TetMesh& b) {
-    ASSERT_EQ(a.cells.size(), b.cells.size());
-    EXPECT_EQ(std::memcmp(a.cells.data(), b.cells.data(), a.cells.size() * sizeof(Tetrahedron)), 0);
-    EXPECT_EQ(std::memcmp(a.neighbours.data(), b.neighbours.data(), a.cells.size() * 4 * sizeof(u32)), 0);
-}
-
-/// Cells as sets of places, whatever the vertices' numbers.
-using Places = std::set<std::array<std::array<double, 3>, 4>>;
-Places places(const TetMesh& tets) {
-    Places result;
-    for (const Tetrahedron& cell : tets.cells) {
-        std::array<std::array<double, 3>, 4> corners;
-        for (int i = 0; i < 4; ++i) std::copy_n(tets.positions[cell[i]].data(), 3, corners[i].begin());
-        std::ranges::sort(corners);
-        result.insert(corners);
-    }
-    return result;
-}
-
 TEST(Delaunay, FourPoints_GiveTheirTetrahedron) {
     const TetMesh tets = triangulated(cloud_of({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}})).tets;
     ASSERT_EQ(tets.cells.size(), 1u);
@@ -150,13 +61,6 @@ TEST(Delaunay, CosphericalPoints_GiveTheSameCellsInAnyOrder) {
     }
 }
 
-TEST(Delaunay, AnyNumberOfThreads_GivesTheSameBytes) {
-    for (const PointCloud& cloud : {random_cube(40000, 5), lattice_cube(24), fibonacci_sphere(30000, 1e-4)}) {
-        const TetMesh one = triangulated(cloud, 1).tets;
-        for (unsigned threads : {2u, 3u}) expect_equal_bytes(one, triangulated(cloud, threads).tets);
-    }
-}
-
 TEST(Delaunay, Duplicates_AreMergedIntoTheFirstAndCounted) {
     const PointCloud base = random_cube(50, 7);
     PointCloud cloud = joined(joined(base, base), base);
@@ -185,25 +89,6 @@ TEST(Delaunay, ManyDuplicates_LeaveTheTriangulationOfTheDistinctPoints) {
     EXPECT_EQ(context.metrics().find("hidden")->value, 0);
 }
 
-TEST(Delaunay, ManyDuplicates_AreTheSameForThreads) {
-    const PointCloud base = random_cube(20000, 9);
-    const PointCloud twice = shuffled(joined(base, base), 4);
-    const DelaunayResult one = triangulated(twice, 1), two = triangulated(twice, 2);
-    EXPECT_EQ(two.duplicates, 20000u);
-    expect_equal_bytes(one.tets, two.tets);
-    EXPECT_EQ(places(two.tets), places(triangulated(base).tets));
-}
-
-TEST(Delaunay, PlateUnderOnePoint_IsTheSameForThreads) {
-    PointCloud cloud = joined(random_cube(12000, 3), cloud_of({{0.5, 0.5, 1}}));
-    Array<Vec3> flat(cloud.positions.begin(), cloud.positions.end());
-    for (std::size_t i = 0; i + 1 < flat.size(); ++i) flat[i].z() = 0;
-    cloud.positions = std::move(flat);
-    const TetMesh one = triangulated(cloud, 1).tets;
-    expect_equal_bytes(one, triangulated(cloud, 2).tets);
-    expect_canonical(one);
-}
-
 TEST(Delaunay, MinusZero_IsTheSamePlaceAsZero) {
     const DelaunayResult result = triangulated(cloud_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-0.0, 0, -0.0}}));
     EXPECT_EQ(result.duplicates, 1u);
@@ -227,36 +112,6 @@ TEST(Delaunay, ThinSlab_IsAccepted_WhenItsThicknessIsMoreThanRounding) {
     expect_canonical(tets);
     EXPECT_GT(volume(tets), 0);
     EXPECT_LT(volume(tets), 1e-9);
-}
-
-TEST(Delaunay, WhenCancelled_StopsWithCancelled) {
-    int asked = 0;
-    ContextOptions options;
-    options.is_cancelled = [&] { return ++asked > 3; };
-    Context context(options);
-    EXPECT_THROW(delaunay(random_cube(50000, 1), {}, context), Cancelled);
-    EXPECT_LT(asked, 10);
-}
-
-TEST(Delaunay, WhenCancelledAmongThreads_StopsWithCancelled) {
-    std::atomic<int> asked = 0;
-    ContextOptions options;
-    options.threads = 2;
-    options.is_cancelled = [&] { return ++asked > 50; };
-    Context context(options);
-    EXPECT_THROW(delaunay(random_cube(50000, 1), {}, context), Cancelled);
-    EXPECT_LT(asked, 60);
-}
-
-TEST(Delaunay, Progress_RisesToOne) {
-    std::vector<double> fractions;
-    ContextOptions options;
-    options.on_progress = [&](double fraction) { fractions.push_back(fraction); };
-    Context context(options);
-    delaunay(random_cube(20000, 1), {}, context);
-    ASSERT_GT(fractions.size(), 4u);
-    EXPECT_TRUE(std::ranges::is_sorted(fractions));
-    EXPECT_EQ(fractions.back(), 1);
 }
 
 TEST(Delaunay, Bunny_IsCanonicalAndFillsItsHull) {
