@@ -68,12 +68,15 @@ TEST(RegionGrow_NormalsInTheSurface, ThreeQuartersAreRefusedAQuarterIsWarnedOf) 
 }
 
 TEST(RegionGrow_NormalsInTheSurface, OfScanLinesFarApartTheirOwnAreNone) {
-    PointCloud lines = grid(40, 3);
-    Array<Vec3> apart(lines.positions.begin(), lines.positions.end());
-    for (Vec3& p : apart) p.y() *= 30;
-    lines.positions = std::move(apart);
-    const PointCloud cloud = with_normals(lines, [](const Vec3&) { return Vec3(0, 0, 1); });
-    EXPECT_EQ(growth_refusal(cloud).find("60 deg"), std::string::npos);
+    // Turned about the lines, along which alone neighbours lie: their principal normal may be any direction across.
+    for (int degrees = 0; degrees < 180; degrees += 10) {
+        const double angle = degrees * std::numbers::pi / 180;
+        const Vec3 along(0, std::cos(angle), std::sin(angle)), normal(0, -std::sin(angle), std::cos(angle));
+        std::vector<Vec3> lines;
+        for (const Vec3& p : grid(40, 3).positions) lines.push_back(Vec3(p.x(), 0, 0) + 60 * p.y() * along);
+        const PointCloud cloud = with_normals(cloud_from(lines), [&](const Vec3&) { return normal; });
+        EXPECT_EQ(growth_refusal(cloud).find("60 deg"), std::string::npos) << degrees;
+    }
 }
 
 TEST(RegionGrow_NormalsInTheSurface, TrueOnesOfACoarseSphereAreNone) {
