@@ -93,13 +93,15 @@ std::string what_bars_folder(const std::string& folder) {
 constexpr unsigned most_jobs = 1024;
 
 /// As many as there is work for and cores, and as memory allows when each takes the largest scan: a file of binary
-/// coordinates becomes up to about a hundred times its size on the way to a mesh, other files less.
+/// coordinates becomes up to about a hundred times its size on the way to a mesh, other files less. What is streamed
+/// never is in memory.
 unsigned default_jobs(const RunGraph& graph) {
     constexpr u64 times_the_file = 100;
     u64 largest = 1;
     for (const RunNode& node : graph.nodes) {
         std::error_code gone;
-        const auto bytes = node.is_scan ? std::filesystem::file_size(node.leaf.file, gone) : 0;
+        const auto bytes =
+            node.is_scan && !node.leaf.is_streamed ? std::filesystem::file_size(node.leaf.file, gone) : 0;
         if (!gone) largest = std::max<u64>(largest, bytes);
     }
     const u64 held = available_memory() / times_the_file / largest;

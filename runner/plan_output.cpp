@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include "scanmill/engine/streaming.hpp"
 
 namespace scanmill::runner {
 
@@ -13,6 +16,12 @@ std::string sources_text(const Plan& plan, const PlannedInput& input) {
     std::string text;
     for (const ValueSource& source : input.sources) text += (text.empty() ? "" : ", ") + describe(plan, source);
     return text;
+}
+
+/// Whether the step gets its scan piece by piece, as far as the file allows it.
+bool streams(const Plan& plan, const PlannedInput& input) {
+    return std::ranges::any_of(
+        input.sources, [&](const ValueSource& source) { return !source.step && is_streamed(plan, source.input); });
 }
 
 std::string quoted(const std::string& text) {
@@ -44,7 +53,8 @@ std::string plan_text(const Plan& plan) {
             text += fmt::format("  {:>2}. {}{}\n", index + 1, step.label,
                                 step.label == step.spec.name ? "" : " (" + step.spec.name + ")");
             for (const PlannedInput& input : step.inputs)
-                text += fmt::format("        {} <- {}\n", input.port, sources_text(plan, input));
+                text += fmt::format("        {} <- {}{}\n", input.port, sources_text(plan, input),
+                                    streams(plan, input) ? ", as a stream" : "");
             for (const auto& [name, value] : step.parameters.values)
                 if (const std::string shown = scanmill::text(value); !shown.empty())
                     text += fmt::format("        {}: {}\n", name, shown);
@@ -65,7 +75,8 @@ std::string plan_dot(const Plan& plan) {
         dot += fmt::format("  step{} [label={}];\n", i, quoted(plan.steps[i].label));
         for (const PlannedInput& input : plan.steps[i].inputs)
             for (const ValueSource& source : input.sources)
-                dot += fmt::format("  {} -> step{} [label={}];\n", source_node(source), i, quoted(input.port));
+                dot += fmt::format("  {} -> step{} [label={}];\n", source_node(source), i,
+                                   quoted(input.port + (streams(plan, input) ? " (stream)" : "")));
     }
     std::map<std::pair<std::string, std::string>, bool> drawn;
     for (const PlannedVariant& variant : plan.variants)
@@ -84,11 +95,13 @@ std::string plan_json(const Plan& plan) {
     for (const WorkflowInput& input : plan.workflow.inputs)
         json["inputs"].push_back({{"name", input.name}, {"kind", name_of(input.kind)}, {"list", input.list}});
     for (const PlannedStep& step : plan.steps) {
-        Json entry{{"label", step.label},       {"filter", step.spec.name},    {"version", step.spec.version},
-                   {"key", step.structure_key}, {"line", step.position.line},  {"column", step.position.column},
-                   {"in", Json::object()},      {"parameters", Json::object()}};
-        for (const PlannedInput& input : step.inputs)
+        Json entry{{"label", step.label},       {"filter", step.spec.name},   {"version", step.spec.version},
+                   {"key", step.structure_key}, {"line", step.position.line}, {"column", step.position.column},
+                   {"in", Json::object()},      {"streams", Json::array()},   {"parameters", Json::object()}};
+        for (const PlannedInput& input : step.inputs) {
             for (const ValueSource& source : input.sources) entry["in"][input.port].push_back(describe(plan, source));
+            if (streams(plan, input)) entry["streams"].push_back(input.port);
+        }
         for (const auto& [name, value] : step.parameters.values)
             if (const std::string shown = text(value); !shown.empty()) entry["parameters"][name] = shown;
         for (const PlannedExpectation& expectation : step.expectations) entry["expect"].push_back(expectation.text);

@@ -73,8 +73,9 @@ std::string graph_text(const RunGraph& graph, const std::vector<NodeForesight>& 
     const bool several_workflows = has_several_workflows(graph);
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         const RunNode& node = graph.nodes[index];
-        text += fmt::format("{:>4}. {} {}{}\n", index + 1, node.key.substr(0, 8), graph.label(node),
-                            node.step ? "" : " " + node.leaf.file.string());
+        text +=
+            fmt::format("{:>4}. {} {}{}{}\n", index + 1, node.key.substr(0, 8), graph.label(node),
+                        node.step ? "" : " " + node.leaf.file.string(), node.leaf.is_streamed ? ", as a stream" : "");
         for (const NodeInput& input : node.inputs)
             text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1,
                                 input.from.empty() ? "" : "." + input.from);
@@ -97,7 +98,10 @@ std::string graph_json(const RunGraph& graph, const std::vector<NodeForesight>& 
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         const RunNode& node = graph.nodes[index];
         Json entry{{"key", node.key}, {"step", graph.label(node)}, {"in", Json::array()}};
-        if (!node.step) entry["file"] = node.leaf.file.string();
+        if (!node.step) {
+            entry["file"] = node.leaf.file.string();
+            entry["streamed"] = node.leaf.is_streamed;
+        }
         if (!node.unreadable.empty()) entry["unreadable"] = node.unreadable;
         for (const NodeInput& input : node.inputs)
             entry["in"].push_back({{"port", input.port}, {"node", input.node}, {"from", input.from}});

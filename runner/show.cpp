@@ -35,6 +35,7 @@ void print_text(const FilterSpec& spec) {
     fmt::print("{} (version {})\n  {}\n  Source: {}\n", spec.name, spec.version, spec.summary, spec.source);
     if (!spec.ties.empty()) fmt::print("  Ties: {}\n", spec.ties);
     if (!spec.not_finite.empty()) fmt::print("  NaN and infinity: {}\n", spec.not_finite);
+    if (spec.streams) fmt::print("  Large scans: {}\n", stream_text(spec));
     print_ports("Takes", spec.inputs);
     print_ports("Gives (the first is what the step's name alone means)", spec.outputs);
     if (!spec.parameters.empty()) fmt::print("\nParameters\n");

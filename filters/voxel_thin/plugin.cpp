@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/plugin.hpp"
+#include "voxel_thin/streamed_thin.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 using namespace scanmill;
@@ -59,5 +60,8 @@ SCANMILL_FILTER() {
         .metric("largest-bin", Unit::length, "Of an octree's leaves with several points the largest edge.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("points", voxel_thin(inputs.get<PointCloud>("points"), params, context).points);
+        })
+        .run_streamed({"bin-size"}, [](const PointStream& scan, const P& params, Context& context) {
+            return Outputs().set("points", voxel_thin(scan, params, context).points);
         });
 }

@@ -75,14 +75,21 @@ PointCloud streamed(const PointStream& stream, const std::vector<u32>& rows, uns
 void expect_as_read_whole(const fs::path& path) {
     Told whole_told, told;
     const auto whole = read_points(path, whole_told.reading());
+    EXPECT_TRUE(may_be_point_stream(path));
     std::vector<u32> all(whole->size()), some;
     for (u32 row = 0; row < all.size(); ++row) all[row] = row;
     std::mt19937 source(1);
     std::ranges::copy_if(all, std::back_inserter(some), [&](u32) { return source() % 7 == 0; });
     for (const unsigned threads : {1u, 4u}) {
         told.sentences.clear();
-        const auto stream = open_point_stream(path, told.reading(), threads);
+        Array<Vec3> world;
+        const auto stream = open_point_stream(path, told.reading(), threads, [&](std::span<const Vec3> positions) {
+            world.insert(world.end(), positions.begin(), positions.end());
+        });
         ASSERT_TRUE(stream);
+        ASSERT_EQ(world.size(), whole->size());
+        for (std::size_t i = 0; i < world.size(); ++i)
+            ASSERT_EQ(world[i] - stream->frame().origin, whole->positions[i]) << "what is told meanwhile";
         EXPECT_EQ(told.sentences, whole_told.sentences);
         EXPECT_EQ(stream->frame(), whole->frame);
         EXPECT_EQ(stream->size(), whole->size());
@@ -93,9 +100,12 @@ void expect_as_read_whole(const fs::path& path) {
     }
 }
 
-void expect_not_read_so(std::string_view content, const char* name) {
+/// `begins_so`: only what stands further back forbids it.
+void expect_not_read_so(std::string_view content, const char* name, bool begins_so = false) {
     const TemporaryFolder folder;
-    EXPECT_FALSE(open_point_stream(folder.write(name, content), {}, 2)) << name;
+    const fs::path path = folder.write(name, content);
+    EXPECT_FALSE(open_point_stream(path, {}, 2)) << name;
+    EXPECT_EQ(may_be_point_stream(path), begins_so) << name;
 }
 
 TEST(PointStream, OfFloats_IsTheFileReadWhole) {
@@ -133,6 +143,16 @@ TEST(PointStream, TellsWhatReadingTells) {
     expect_as_read_whole(path);
 }
 
+TEST(PointStream, Renamed_GivesPointsInTheFrameOfThatName) {
+    const TemporaryFolder folder;
+    const auto stream = open_point_stream(folder.write("a.ply", ply<float>(3, "float")), {}, 1);
+    ASSERT_TRUE(stream);
+    EXPECT_EQ(stream->frame().name, "part");
+    stream->rename_frame("other");
+    const std::vector<u32> last{2};
+    EXPECT_EQ(stream->gather(last, 1).frame, (Frame{LengthUnit::millimetre, Vec3::Zero(), "other"}));
+}
+
 TEST(PointStream, IsNotHadOfFilesThatHoldMore) {
     expect_not_read_so(
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
@@ -153,20 +173,21 @@ TEST(PointStream, IsNotHadOfFilesThatHoldMore) {
 }
 
 TEST(PointStream, IsNotHadOfFilesThatAreWrong_SoThatReadingThemSaysWhy) {
-    expect_not_read_so("1 2 3\n4 5\n", "short.xyz");
-    expect_not_read_so("1 2 3\n4 5 6 7\n", "long.xyz");
-    expect_not_read_so("1 2 3\n4 5 six\n", "word.xyz");
-    expect_not_read_so("1 2 3\n4,5 6\n", "mixed.xyz");
-    expect_not_read_so(",1,2,3\n4,5,6\n", "empty_field.csv");
-    expect_not_read_so("1 2 3\n4 5 nan\n", "nan.xyz");
+    expect_not_read_so("1 2 3\n4 5\n", "short.xyz", true);
+    expect_not_read_so("1 2 3\n4 5 6 7\n", "long.xyz", true);
+    expect_not_read_so("1 2 3\n4 5 six\n", "word.xyz", true);
+    expect_not_read_so("1 2 3\n4,5 6\n", "mixed.xyz", true);
+    expect_not_read_so(",1,2,3\n4,5,6\n", "empty_field.csv", true);
+    expect_not_read_so("1 2 3\n4 5 nan\n", "nan.xyz", true);
     std::string nan = ply<float>(3, "float");
     nan.replace(nan.size() - 24, 4, bytes_of(std::numeric_limits<float>::quiet_NaN()));
-    expect_not_read_so(nan, "nan.ply");
+    expect_not_read_so(nan, "nan.ply", true);
     EXPECT_FALSE(open_point_stream("/nowhere/at/all.ply", {}, 1));
+    EXPECT_FALSE(may_be_point_stream("/nowhere/at/all.ply"));
 }
 
 TEST(PointStream, WholeBodyOfFarRowsInText_KeepsMistakesBehindTheFirstPiece) {
-    expect_not_read_so(text(150'000) + "1 2\n", "late.xyz");
+    expect_not_read_so(text(150'000) + "1 2\n", "late.xyz", true);
 }
 
 }  // namespace

@@ -113,7 +113,24 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[11].required = false; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].headline = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].numbered = true; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.streams.emplace(); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { std::swap(spec.outputs[0], spec.outputs[1]); }));
+}
+
+TEST(Manifest, Stream_ReadsBackEqual) {
+    Manifest manifest = everything();
+    manifest.spec.inputs = {{"points", Kind::points, "Takes points.", false, false}};
+    for (const std::vector<std::string>& given : {std::vector<std::string>{}, {"alpha"}}) {
+        manifest.spec.streams = StreamSpec{given};
+        ASSERT_NO_THROW(require_sound(manifest.spec));
+        EXPECT_EQ(parse_manifest(to_json_text(manifest)), manifest);
+    }
+    const std::string text = to_json_text(manifest);
+    for (const Json& wrong : {Json(true), Json::object(), Json{{"given", "alpha"}}, Json{{"given", {1}}}}) {
+        Json json = Json::parse(text);
+        json["streams"] = wrong;
+        EXPECT_THAT(sentence_of([&] { parse_manifest(json.dump()); }), StartsWith("is no manifest")) << wrong;
+    }
 }
 
 TEST(Manifest, Text_IsIndentedAndEndsTheLine) {

@@ -184,6 +184,41 @@ TEST(RequireSound, NoDefault_IsSound) {
     EXPECT_NO_THROW(require_sound(spec));
 }
 
+TEST(RequireSound, Stream_IsOfOneCloudAndAsksForParametersThatMayLackAValue) {
+    const auto add_stream = [](FilterSpec& spec, std::vector<std::string> given) {
+        ParameterSpec optional = number_parameter("with-word"), empty = number_parameter("empty");
+        optional.word = "auto";
+        optional.default_value = ParameterScalar(Word{"auto"});
+        empty.default_value = {};
+        spec.parameters.insert(spec.parameters.end(), {optional, empty});
+        spec.streams = StreamSpec{std::move(given)};
+    };
+    const auto with_stream = [&](std::vector<std::string> given, auto&& change) {
+        return verdict([&](FilterSpec& spec) {
+            add_stream(spec, given);
+            change(spec);
+        });
+    };
+    const auto nothing = [](FilterSpec&) {};
+    for (const std::vector<std::string>& given : {std::vector<std::string>{}, {"with-word", "empty"}}) {
+        FilterSpec spec = sound_spec();
+        add_stream(spec, given);
+        EXPECT_NO_THROW(require_sound(spec));
+    }
+    EXPECT_EQ(with_stream({"size"}, nothing), "filter voxel-thin: its stream asks for 'size', which is no parameter");
+    EXPECT_EQ(with_stream({"k2"}, nothing), "filter voxel-thin: its stream asks for 'k2', which always has a value");
+    EXPECT_EQ(with_stream({"empty"}, [](FilterSpec& spec) { spec.parameters.back().required = true; }),
+              "filter voxel-thin: its stream asks for 'empty', which always has a value");
+    const std::string other =
+        "filter voxel-thin: only a filter whose one input is a cloud of points can take it as a "
+        "stream";
+    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.clear(); }), other);
+    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().kind = Kind::mesh; }), other);
+    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().list = true; }), other);
+    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().also = {Kind::mesh}; }), other);
+    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.push_back({"more", Kind::points, help}); }), other);
+}
+
 TEST(FilterSpec, Parts_AreFoundByName) {
     const FilterSpec spec = sound_spec();
     EXPECT_EQ(spec.input("points"), &spec.inputs[0]);

@@ -24,11 +24,15 @@
 
 namespace scanmill {
 
+class PointStream;
+
 /// A filter as the engine sees it.
 struct FilterDeclaration {
     FilterSpec spec;
     /// Pre: every declared parameter has a value (resolved, in range) and every non-optional input is wired.
     std::function<Outputs(const Inputs&, const ParameterSet&, Context&)> run;
+    /// The same for an input that comes as a stream. Pre: spec.streams; the parameters that it asks for have values.
+    std::function<Outputs(const PointStream&, const ParameterSet&, Context&)> run_streamed;
 };
 
 /// Port options, none, one or both: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points", "…", list)`.
@@ -140,10 +144,20 @@ public:
     Declare& run(Body body) {
         declaration_.run = [setters = setters_, body](const Inputs& inputs, const ParameterSet& values,
                                                       Context& context) {
-            Params params;
-            for (const auto& [name, set] : setters)
-                if (const ParameterValue* value = values.find(name)) set(params, *value);
-            return body(inputs, params, context);
+            return body(inputs, filled(setters, values), context);
+        };
+        return *this;
+    }
+    /// `body(scan, params, context)` returns what run() would, byte for byte, of a scan file that is read piece by
+    /// piece (scanmill/formats/point_stream.hpp): called instead of run() when all parameters of `given` have a value,
+    /// and nobody else needs the scan in memory. For filters with one input.
+    template <class Body>
+        requires std::is_invocable_r_v<Outputs, Body, const PointStream&, const Params&, Context&>
+    Declare& run_streamed(std::vector<std::string> given, Body body) {
+        declaration_.spec.streams = StreamSpec{std::move(given)};
+        declaration_.run_streamed = [setters = setters_, body](const PointStream& scan, const ParameterSet& values,
+                                                               Context& context) {
+            return body(scan, filled(setters, values), context);
         };
         return *this;
     }
@@ -151,6 +165,14 @@ public:
 
 private:
     using Setter = std::function<void(Params&, const ParameterValue&)>;
+    using Setters = std::vector<std::pair<std::string, Setter>>;
+
+    static Params filled(const Setters& setters, const ParameterSet& values) {
+        Params params;
+        for (const auto& [name, set] : setters)
+            if (const ParameterValue* value = values.find(name)) set(params, *value);
+        return params;
+    }
 
     void bind(ParameterSpec spec, std::string name, std::string help, Setter setter) {
         spec.name = name;
@@ -160,7 +182,7 @@ private:
     }
 
     FilterDeclaration declaration_;
-    std::vector<std::pair<std::string, Setter>> setters_;
+    Setters setters_;
 };
 
 }  // namespace scanmill

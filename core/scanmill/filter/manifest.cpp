@@ -110,18 +110,19 @@ MetricSpec metric_from(const Json& json) {
 
 std::string to_json_text(const Manifest& manifest) {
     const FilterSpec& spec = manifest.spec;
-    const Json json{{"scanmill-manifest", manifest_version},
-                    {"abi", manifest.abi},
-                    {"name", spec.name},
-                    {"version", spec.version},
-                    {"summary", spec.summary},
-                    {"source", spec.source},
-                    {"ties", spec.ties},
-                    {"not-finite", spec.not_finite},
-                    {"inputs", list_of(spec.inputs)},
-                    {"outputs", list_of(spec.outputs)},
-                    {"parameters", list_of(spec.parameters)},
-                    {"metrics", list_of(spec.metrics)}};
+    Json json{{"scanmill-manifest", manifest_version},
+              {"abi", manifest.abi},
+              {"name", spec.name},
+              {"version", spec.version},
+              {"summary", spec.summary},
+              {"source", spec.source},
+              {"ties", spec.ties},
+              {"not-finite", spec.not_finite},
+              {"inputs", list_of(spec.inputs)},
+              {"outputs", list_of(spec.outputs)},
+              {"parameters", list_of(spec.parameters)},
+              {"metrics", list_of(spec.metrics)}};
+    if (spec.streams) json["streams"] = {{"given", spec.streams->given}};
     return json.dump(2) + "\n";
 }
 
@@ -141,6 +142,8 @@ Manifest parse_manifest(std::string_view text) try {
     for (const Json& port : json.at("outputs")) spec.outputs.push_back(port_from(port));
     for (const Json& parameter : json.at("parameters")) spec.parameters.push_back(parameter_from(parameter));
     for (const Json& metric : json.at("metrics")) spec.metrics.push_back(metric_from(metric));
+    if (json.contains("streams"))
+        spec.streams = StreamSpec{json["streams"].at("given").get<std::vector<std::string>>()};
     return manifest;
 } catch (const Json::exception& error) {
     throw Error("is no manifest: {}", error.what());

@@ -80,6 +80,19 @@ void require_sound_parameter(std::string_view filter, const ParameterSpec& param
     }
 }
 
+void require_sound_stream(const FilterSpec& spec) {
+    if (spec.inputs.size() != 1 || spec.inputs.front().kind != Kind::points || spec.inputs.front().list ||
+        !spec.inputs.front().also.empty())
+        throw Error("filter {}: only a filter whose one input is a cloud of points can take it as a stream", spec.name);
+    for (const std::string& name : spec.streams->given) {
+        const ParameterSpec* parameter = spec.parameter(name);
+        if (!parameter) throw Error("filter {}: its stream asks for '{}', which is no parameter", spec.name, name);
+        if (parameter->required ||
+            (parameter->word.empty() && !std::holds_alternative<std::monostate>(parameter->default_value)))
+            throw Error("filter {}: its stream asks for '{}', which always has a value", spec.name, name);
+    }
+}
+
 }  // namespace
 
 const PortSpec* FilterSpec::input(std::string_view port) const { return find_named(inputs, port); }
@@ -117,6 +130,7 @@ void require_sound(const FilterSpec& spec) {
     };
     if (std::ranges::any_of(spec.inputs, has_coordinates)) require_said(spec.name, "NaN", spec.not_finite);
     for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec.name, parameter);
+    if (spec.streams) require_sound_stream(spec);
 }
 
 }  // namespace scanmill

@@ -4,6 +4,7 @@
 /// derive from it, and it can be read from a manifest without loading the filter.
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,15 @@ struct MetricSpec {
     bool operator==(const MetricSpec&) const = default;
 };
 
+/// A filter that can take its one input as a stream: a scan file that is read piece by piece and never is in memory as
+/// a whole.
+struct StreamSpec {
+    /// Parameters that must have a value for it, not be left out nor be their word.
+    std::vector<std::string> given;
+
+    bool operator==(const StreamSpec&) const = default;
+};
+
 struct FilterSpec {
     std::string name;
     int version = 1;  ///< grows when equal inputs and parameters give other bytes
@@ -50,6 +60,7 @@ struct FilterSpec {
     std::vector<PortSpec> outputs;  ///< the first is the primary one: what the step alone means
     std::vector<ParameterSpec> parameters;
     std::vector<MetricSpec> metrics;
+    std::optional<StreamSpec> streams;
 
     const PortSpec* input(std::string_view port) const;
     const PortSpec* output(std::string_view port) const;
@@ -62,7 +73,8 @@ struct FilterSpec {
 /// Throws Error when a declaration is unsound: names that repeat or are not lower-case-with-hyphens, help that is no
 /// sentence or only repeats the name, a default outside its own range, no output; nothing said of ties by a filter with
 /// inputs, or of NaN by one that takes points or meshes; a number of neighbours that leaves open whether the point
-/// itself is one of them.
+/// itself is one of them; a stream where the input is not one cloud of points, or that asks for parameters that are
+/// not there or always have a value.
 void require_sound(const FilterSpec& spec);
 
 }  // namespace scanmill

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/filter/waves.hpp"
 #include "scanmill/formats/ply_positions.hpp"
 #include "scanmill/formats/ply_table.hpp"
 #include "scanmill/formats/point_stream_kinds.hpp"
@@ -26,15 +26,35 @@ public:
         pieces_.push_back(vertex_.count);
     }
 
-    bool open(const ReadOptions& options, unsigned threads) {
-        if (!look_over(threads)) return false;
-        const Vec3 origin = frame_.origin;
+    bool open(const ReadOptions& options, unsigned threads, const OnWorldPositions& on_positions) {
+        if (!look_over(threads, on_positions)) return false;
         frame_ = declared_frame(header_.comments, options);
-        frame_.origin = origin;
+        choose_origin();
         return true;
     }
 
 private:
+    /// False when a coordinate is not finite.
+    bool look_over(unsigned threads, const OnWorldPositions& on_positions) {
+        struct Room {
+            Array<Vec3> positions;
+            PieceBounds bounds{{}};
+        };
+        bool is_finite = true;
+        for_each_in_order<Room>(
+            threads, pieces_.size() - 1,
+            [&](std::size_t piece, Room& room) {
+                read_world(piece, room.positions);
+                room.bounds = PieceBounds(room.positions);
+            },
+            [&](std::size_t, const Room& room) {
+                is_finite = is_finite && room.bounds.finite;
+                add_to_bounds(room.bounds.box);
+                if (on_positions) on_positions(room.positions);
+            });
+        return is_finite;
+    }
+
     std::string_view bytes_of(std::size_t first, std::size_t count) const {
         return rows_.substr(first * row_size_, count * row_size_);
     }
@@ -117,12 +137,14 @@ bool holds_only_vertices(std::string_view file, const PlyHeader& header) {
 
 }  // namespace
 
+bool may_be_ply_stream(std::string_view file) { return holds_only_vertices(file, parse_ply_header(file)); }
+
 std::unique_ptr<PointStream> open_ply_stream(std::unique_ptr<MappedFile> file, const ReadOptions& options,
-                                             unsigned threads) {
+                                             unsigned threads, const OnWorldPositions& on_positions) {
     PlyHeader header = parse_ply_header(file->bytes());
     if (!holds_only_vertices(file->bytes(), header)) return nullptr;
     auto stream = std::make_unique<PlyStream>(std::move(file), std::move(header));
-    if (!stream->open(options, threads)) return nullptr;
+    if (!stream->open(options, threads, on_positions)) return nullptr;
     return stream;
 }
 

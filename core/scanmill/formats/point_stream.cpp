@@ -2,13 +2,27 @@
 #include "scanmill/formats/point_stream.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
 #include "scanmill/formats/format.hpp"
 #include "scanmill/formats/point_stream_kinds.hpp"
 
 namespace scanmill {
+
+namespace {
+
+constexpr std::array<PointStreamKind, 3> kinds{{{"PLY", may_be_ply_stream, open_ply_stream},
+                                                {"XYZ", may_be_text_stream, open_text_stream},
+                                                {"CSV", may_be_text_stream, open_text_stream}}};
+
+/// nullptr when files of the format are not read piece by piece. Throws Error when it is not known.
+const PointStreamKind* kind_of(const std::filesystem::path& path, std::string_view bytes) {
+    const auto found = std::ranges::find(kinds, format_of({path, bytes}).name, &PointStreamKind::format);
+    return found == kinds.end() ? nullptr : found;
+}
+
+}  // namespace
 
 PointStream::~PointStream() = default;
 
@@ -35,40 +49,40 @@ PieceBounds::PieceBounds(std::span<const Vec3> positions) {
     finite = zero == Vec3::Zero();
 }
 
-bool PointStream::look_over(unsigned threads) {
-    const std::size_t count = pieces_.size() - 1;
-    std::vector<PieceBounds> found(count, PieceBounds({}));
-    for_each_chunk(threads, count, pieces_at_once, [&](std::size_t begin, std::size_t end) {
-        Array<Vec3> room;
-        for (std::size_t piece = begin; piece < end; ++piece) {
-            read_world(piece, room);
-            found[piece] = PieceBounds(room);
-        }
-    });
-    for (const PieceBounds& piece : found) {
-        bounds_.low = bounds_.low.cwiseMin(piece.box.low);
-        bounds_.high = bounds_.high.cwiseMax(piece.box.high);
-    }
+void PointStream::add_to_bounds(const BoundingBox& world) {
+    bounds_.low = bounds_.low.cwiseMin(world.low);
+    bounds_.high = bounds_.high.cwiseMax(world.high);
+}
+
+void PointStream::choose_origin() {
     frame_.origin = distant_origin(bounds_);
     bounds_.low -= frame_.origin;
     bounds_.high -= frame_.origin;
-    return std::ranges::all_of(found, &PieceBounds::finite);
 }
 
 std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path, const ReadOptions& options,
-                                               unsigned threads) {
+                                               unsigned threads, const OnWorldPositions& on_positions) {
     ReadOptions named = options;
     if (options.on_warning)
         named.on_warning = [&](std::string text) { options.on_warning("'" + path.string() + "': " + text); };
     try {
         auto file = std::make_unique<MappedFile>(path, false);
-        const std::string& format = format_of({path, file->bytes()}).name;
-        if (format == "PLY") return open_ply_stream(std::move(file), named, threads);
-        if (format == "XYZ" || format == "CSV") return open_text_stream(std::move(file), named, threads);
+        if (const PointStreamKind* kind = kind_of(path, file->bytes()))
+            return kind->open(std::move(file), named, threads, on_positions);
     } catch (const Error&) {
         // Whoever reads the file whole says it, with the file's name.
     }
     return nullptr;
+}
+
+bool may_be_point_stream(const std::filesystem::path& path) {
+    try {
+        const MappedFile file(path, false);
+        const PointStreamKind* kind = kind_of(path, file.bytes());
+        return kind && kind->may_be(file.bytes());
+    } catch (const Error&) {
+        return false;
+    }
 }
 
 }  // namespace scanmill

@@ -6,12 +6,16 @@
 /// What comes out is, bit for bit, what read_points() gives: the same frame, the same positions relative to it, the
 /// same columns. Binary PLY and texts of three columns can be read so; open_point_stream() says which.
 
+#include <functional>
 #include <memory>
 #include <span>
 
 #include "scanmill/formats/files.hpp"
 
 namespace scanmill {
+
+/// Told the positions of a piece as the file has them: frame().origin is not subtracted.
+using OnWorldPositions = std::function<void(std::span<const Vec3>)>;
 
 class PointStream {
 public:
@@ -31,28 +35,39 @@ public:
     /// These points with all their columns. Pre: `rows` ascending.
     PointCloud gather(std::span<const u32> rows, unsigned threads) const;
 
+    /// Calls the frame otherwise than the file does.
+    void rename_frame(std::string name) { frame_.name = std::move(name); }
+
 protected:
     PointStream() = default;
     /// World positions of a piece, `room` sized to fit.
     virtual void read_world(std::size_t piece, Array<Vec3>& room) const = 0;
     virtual PointCloud gather_world(std::span<const u32> rows, unsigned threads) const = 0;
-    /// Sets the bounds, and the frame's origin to what readers choose. False when a coordinate is not finite.
-    bool look_over(unsigned threads);
+    /// The next piece's bounds, which the frame's origin follows from once all are there.
+    void add_to_bounds(const BoundingBox& world);
+    /// Sets the frame's origin to what readers choose, and moves the bounds to it.
+    void choose_origin();
 
     Frame frame_;
     BoundingBox bounds_;
     std::vector<std::size_t> pieces_;
 };
 
-/// Looks over the whole file once, on up to `threads` threads, so that bounds and origin are known.
+/// Looks over the whole file once, on up to `threads` threads, so that bounds and origin are known. `on_positions`,
+/// when there is one, is told every piece meanwhile, in order and from this thread; also of a file that then gives
+/// nothing.
 ///
 /// Nothing when the file cannot be read so, or not at all, or when there is something to be said of it: the caller then
 /// reads it whole, and read_points() says it. Read so are: PLY, binary, whose first element is `vertex` without lists
 /// and whose other elements are empty; XYZ and CSV text of three columns in lines that end with LF. All coordinates
 /// must be finite. What declared units and frames give cause to say goes to options.on_warning. The file must not
-/// change meanwhile. Cost: binary, as fast as the file is read; text, its numbers are parsed. Memory: pieces of
+/// change meanwhile. Cost: binary, as fast as the file is read; text, its numbers are parsed. Memory: four pieces of
 /// about 1.5 MB for each thread, 8 bytes per piece; pages of the file are given back piece by piece.
 std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path, const ReadOptions& options,
-                                               unsigned threads);
+                                               unsigned threads, const OnWorldPositions& on_positions = {});
+
+/// Whether the file begins like one that open_point_stream() reads; what stands further back may still forbid it.
+/// Looks at its first bytes only.
+bool may_be_point_stream(const std::filesystem::path& path);
 
 }  // namespace scanmill

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/filter/waves.hpp"
 #include "scanmill/formats/point_stream_kinds.hpp"
 #include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/text_layout.hpp"
@@ -28,24 +28,28 @@ Vec3 parse_row(TextCursor& text, const std::array<std::size_t, 3>& axes) {
     return {row[axes[0]], row[axes[1]], row[axes[2]]};
 }
 
+/// Whether there is nothing to be said of the columns, nor any beside x, y and z.
+bool is_streamed(const TextLayout& layout) {
+    return layout.width == 3 && !layout.promised && layout.passed_over.empty();
+}
+
 class TextStream : public PointStream {
 public:
     explicit TextStream(std::unique_ptr<MappedFile> file) : file_(std::move(file)) {}
 
-    bool open(const ReadOptions& options, unsigned threads) {
+    bool open(const ReadOptions& options, unsigned threads, const OnWorldPositions& on_positions) {
         const std::string_view text = without_byte_order_mark(file_->bytes());
         TextCursor cursor(text, text_rules);
         const TextLayout layout = read_text_layout(cursor);
-        if (layout.width != 3 || layout.promised || !layout.passed_over.empty()) return false;
+        if (!is_streamed(layout)) return false;
         axes_ = layout.axes;
         comments_ = cursor.comments();
         std::size_t first_row = static_cast<std::size_t>(TextCursor(cursor).token().data() - text.data());
         while (first_row > 0 && text[first_row - 1] != '\n' && text[first_row - 1] != '\r') --first_row;
         if (!cut(text.substr(first_row))) return false;
-        if (!count_rows(threads)) return false;
-        const Vec3 origin = frame_.origin;
+        if (!look_over(threads, on_positions)) return false;
         frame_ = declared_frame(comments_, options);
-        frame_.origin = origin;
+        choose_origin();
         return true;
     }
 
@@ -61,36 +65,32 @@ private:
         return true;
     }
 
-    struct Piece {
-        PieceBounds bounds{{}};
+    /// False when a coordinate is not finite, or there are more rows than can be numbered.
+    bool look_over(unsigned threads, const OnWorldPositions& on_positions) {
+        struct Room {
+            Array<Vec3> positions;
+            PieceBounds bounds{{}};
+            std::vector<std::string> comments;
+        };
+        bool is_finite = true;
         std::size_t rows = 0;
-        std::vector<std::string> comments;
-    };
-
-    bool count_rows(unsigned threads) {
-        std::vector<Piece> found(texts_.size());
-        for_each_chunk(threads, texts_.size(), pieces_at_once, [&](std::size_t begin, std::size_t end) {
-            Array<Vec3> room;
-            for (std::size_t i = begin; i < end; ++i) {
-                TextCursor cursor = parse(i, room);
-                found[i] = {PieceBounds(room), room.size(), cursor.comments()};
-            }
-        });
-        std::size_t rows = 0;
-        for (Piece& piece : found) {
-            if (!piece.bounds.finite) return false;
-            bounds_.low = bounds_.low.cwiseMin(piece.bounds.box.low);
-            bounds_.high = bounds_.high.cwiseMax(piece.bounds.box.high);
-            pieces_.push_back(rows);
-            rows += piece.rows;
-            for (std::string& comment : piece.comments)
-                if (comments_.size() < most_comments) comments_.push_back(std::move(comment));
-        }
+        for_each_in_order<Room>(
+            threads, texts_.size(),
+            [&](std::size_t piece, Room& room) {
+                room.comments = parse(piece, room.positions).comments();
+                room.bounds = PieceBounds(room.positions);
+            },
+            [&](std::size_t, Room& room) {
+                is_finite = is_finite && room.bounds.finite;
+                add_to_bounds(room.bounds.box);
+                pieces_.push_back(rows);
+                rows += room.positions.size();
+                for (std::string& comment : room.comments)
+                    if (comments_.size() < most_comments) comments_.push_back(std::move(comment));
+                if (on_positions) on_positions(room.positions);
+            });
         pieces_.push_back(rows);
-        frame_.origin = distant_origin(bounds_);
-        bounds_.low -= frame_.origin;
-        bounds_.high -= frame_.origin;
-        return rows <= ~u32(0);
+        return is_finite && rows <= ~u32(0);
     }
 
     TextCursor parse(std::size_t piece, Array<Vec3>& room) const {
@@ -132,11 +132,16 @@ private:
 
 }  // namespace
 
+bool may_be_text_stream(std::string_view file) {
+    TextCursor cursor(without_byte_order_mark(file), text_rules);
+    return is_streamed(read_text_layout(cursor));
+}
+
 std::unique_ptr<PointStream> open_text_stream(std::unique_ptr<MappedFile> file, const ReadOptions& options,
-                                              unsigned threads) {
+                                              unsigned threads, const OnWorldPositions& on_positions) {
     try {
         auto stream = std::make_unique<TextStream>(std::move(file));
-        if (stream->open(options, threads)) return stream;
+        if (stream->open(options, threads, on_positions)) return stream;
     } catch (const Unusual&) {
     }
     return nullptr;

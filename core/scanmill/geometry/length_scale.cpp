@@ -10,6 +10,7 @@
 #include <flann/flann.hpp>
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/formats/point_stream.hpp"
 #include "scanmill/geometry/surface_box.hpp"
 
 namespace scanmill {
@@ -81,14 +82,18 @@ BoundingBox box_of(const Value& value) {
     return bounding_box(positions_of(value));
 }
 
+Error without_size(std::size_t points) {
+    return Error("the scan has no size: {} at one place; at least two places are needed",
+                 points == 1 ? "its only point is" : fmt::format("all {} points are", points))
+        .hint("give lengths in the scan's unit, as 0.5 u, or leave this scan out");
+}
+
 double diagonal_of(const Value& value) {
     const std::span<const Vec3> positions = positions_of(value);
     const double diagonal = box_of(value).diagonal();
     if (diagonal > 0 || positions.empty()) return diagonal;
     require_finite(positions);
-    throw Error("the scan has no size: {} at one place; at least two places are needed",
-                positions.size() == 1 ? "its only point is" : fmt::format("all {} points are", positions.size()))
-        .hint("give lengths in the scan's unit, as 0.5 u, or leave this scan out");
+    throw without_size(positions.size());
 }
 
 double spacing_of(const Value& value) {
@@ -159,6 +164,13 @@ double edge_spacing(const TriangleMesh& mesh) {
             if (along.allFinite()) lengths.push_back(along.norm());
         }
     return median(lengths);
+}
+
+LengthScale length_scale(const PointStream& scan) {
+    const double diagonal = scan.bounds().diagonal();
+    return {scan.frame().unit,
+            [diagonal, points = scan.size()] { return diagonal > 0 ? diagonal : throw without_size(points); },
+            []() -> double { throw Error("spacing takes all points to measure, which a stream never has"); }};
 }
 
 LengthScale length_scale(const Value& value) {

@@ -22,4 +22,8 @@ double edge_spacing(const TriangleMesh& mesh);
 /// positions. Both are computed at most once, on demand. Metrics know the diagonal that they report, no spacing.
 LengthScale length_scale(const Value& value);
 
+class PointStream;
+/// The same of a scan that is streamed. Its spacing would take all points: whoever asks gets an Error.
+LengthScale length_scale(const PointStream& scan);
+
 }  // namespace scanmill

@@ -3,9 +3,11 @@
 
 #include <xxhash.h>
 
+#include <bit>
 #include <cstring>
 #include <memory>
 
+#include "scanmill/cache/arrays_hash.hpp"
 #include "scanmill/cache/value_fields.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/atomic_file.hpp"
@@ -50,34 +52,37 @@ std::string content_text(const Preamble& preamble) {
     return fmt::format("{:016x}{:016x}", whole.high64, whole.low64);
 }
 
-/// Of all arrays as they lie in the file, zeros between them included.
-XXH128_hash_t hash_of(std::span<const std::span<const std::byte>> arrays) {
-    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
-    XXH3_128bits_reset(state.get());
-    for (const std::span<const std::byte>& array : arrays) {
-        XXH3_128bits_update(state.get(), array.data(), array.size());
-        XXH3_128bits_update(state.get(), zeros.data(), padding(array.size()).size());
-    }
-    return XXH3_128bits_digest(state.get());
-}
-
-}  // namespace
-
-EncodedValue::EncodedValue(Value value) : value_(std::move(value)) {
-    ValueFields fields = fields_of(value_);
-    arrays_ = std::move(fields.arrays);
+Preamble preamble_of(const ValueFields& fields, const ArraysHash& hash) {
     Preamble preamble{};
     std::memcpy(preamble.magic, magic.data(), magic.size());
     preamble.header_bytes = fields.header.size();
     preamble.header_hash = canonical(XXH3_128bits(fields.header.data(), fields.header.size()));
-    preamble.arrays_hash = canonical(hash_of(arrays_));
-    size_ = sizeof preamble + aligned(fields.header.size());
-    for (const std::span<const std::byte>& array : arrays_) size_ += aligned(array.size());
-    preamble.file_bytes = size_;
-    content_ = content_text(preamble);
+    preamble.arrays_hash = std::bit_cast<XXH128_canonical_t>(hash.digest());
+    preamble.file_bytes = sizeof preamble + aligned(fields.header.size());
+    for (const std::span<const std::byte>& array : fields.arrays) preamble.file_bytes += aligned(array.size());
+    return preamble;
+}
+
+}  // namespace
+
+ValueName name_of_value(const ValueFields& fields, const ArraysHash& hash) {
+    const Preamble preamble = preamble_of(fields, hash);
+    return {content_text(preamble), preamble.file_bytes};
+}
+
+EncodedValue::EncodedValue(Value value) : value_(std::move(value)) {
+    ValueFields fields = fields_of(value_);
+    ArraysHash hash;
+    for (const std::span<const std::byte>& array : fields.arrays) {
+        hash.add(array);
+        hash.end_array();
+    }
+    const Preamble preamble = preamble_of(fields, hash);
+    name_ = {content_text(preamble), preamble.file_bytes};
     head_.append(reinterpret_cast<const char*>(&preamble), sizeof preamble);
     head_ += fields.header;
     head_ += text_of(padding(fields.header.size()));
+    arrays_ = std::move(fields.arrays);
 }
 
 void EncodedValue::write(const std::filesystem::path& file) const {

@@ -19,16 +19,28 @@
 
 namespace scanmill {
 
+class ArraysHash;
+struct ValueFields;
+
+/// What a value is known by.
+struct ValueName {
+    /// 32 hexadecimal digits, of everything that the value holds: equal for equal values.
+    std::string content;
+    u64 bytes = 0;  ///< of its file
+};
+
+/// Of a value that was taken apart and whose arrays went through `hash`; of fields.arrays only the sizes are asked.
+ValueName name_of_value(const ValueFields& fields, const ArraysHash& hash);
+
 /// A value ready to be written; shares its arrays.
 class EncodedValue {
 public:
     /// Cost: one pass over every byte of the value, to hash it.
     explicit EncodedValue(Value value);
 
-    /// 32 hexadecimal digits, of everything that the value holds: equal for equal values.
-    const std::string& content() const { return content_; }
+    const std::string& content() const { return name_.content; }
     /// Bytes of the file.
-    u64 size() const { return size_; }
+    u64 size() const { return name_.bytes; }
     /// The file appears whole or not at all. It is not synced to the disk: what a power cut tears is found by its hash.
     /// Throws Error for a folder that cannot be written to and a full disk.
     void write(const std::filesystem::path& file) const;
@@ -37,8 +49,7 @@ private:
     Value value_;
     std::string head_;  ///< preamble, header and zeros
     std::vector<std::span<const std::byte>> arrays_;  ///< of value_
-    std::string content_;
-    u64 size_ = 0;
+    ValueName name_;
 };
 
 /// The value in the file, its arrays mapped as long as anybody holds them. Reads every byte once to check the hashes.

@@ -77,6 +77,7 @@ std::string remarks(const FilterSpec& spec) {
     std::string list;
     if (!spec.ties.empty()) list += fmt::format("- Ties: {}\n", spec.ties);
     if (!spec.not_finite.empty()) list += fmt::format("- NaN and infinity: {}\n", spec.not_finite);
+    if (spec.streams) list += fmt::format("- Large scans: {}\n", stream_text(spec));
     return list.empty() ? list : "\n" + list;
 }
 
@@ -161,6 +162,13 @@ std::string filter_page(const FilterSpec& spec, const FilterLibrary& library) {
            ports_table("Gives (the first is what the step's name alone means)", "port", spec.outputs) +
            parameters_table(spec.parameters) + metrics_table(spec.metrics) + "\n## Example\n\n```yaml\n" +
            example_workflow(spec, library) + "```\n";
+}
+
+std::string stream_text(const FilterSpec& spec) {
+    std::string given;
+    for (const std::string& name : spec.streams->given) given += (given.empty() ? "" : " and ") + name;
+    return fmt::format("{} a scan that no other step needs whole is read piece by piece and never in memory.",
+                       given.empty() ? "As the first step," : fmt::format("With {} given", given));
 }
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }

@@ -22,4 +22,7 @@ std::string filter_index(const std::vector<FilterSpec>& specs);
 /// Whether the text is such a page, or their list.
 bool is_filter_page(std::string_view text);
 
+/// When the filter reads its scan piece by piece, as a sentence. Pre: spec.streams.
+std::string stream_text(const FilterSpec& spec);
+
 }  // namespace scanmill

@@ -8,6 +8,7 @@
 #include "scanmill/engine/output_files.hpp"
 #include "scanmill/engine/output_template.hpp"
 #include "scanmill/engine/path_parameters.hpp"
+#include "scanmill/engine/streaming.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/module.hpp"
 #include "scanmill/formats/files.hpp"
@@ -57,6 +58,7 @@ public:
             protect_inputs(part);
         }
         for (const GraphPart& part : parts_) add_part(part);
+        mark_streams(graph_);
         return std::move(graph_);
     }
 

@@ -39,6 +39,7 @@ struct LeafSource {
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: what the file says
     std::string frame;  ///< empty: what the file says
     std::optional<RigidTransform> pose;
+    bool is_streamed = false;  ///< read piece by piece, if the file allows it; in no key: values are the same
 };
 
 /// What was declared of the file: unit, frame and pose, as far as there is something, as text.

@@ -2,9 +2,11 @@
 #include "scanmill/engine/step_runner.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "scanmill/engine/expectation.hpp"
 #include "scanmill/engine/facts.hpp"
+#include "scanmill/engine/resolved_parameters.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/length_scale.hpp"
@@ -57,61 +59,6 @@ Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, Context
     return result;
 }
 
-/// A default that the scan has no measure for, as `0.1 %diag` where all points are at one place, and why.
-struct Unresolved {
-    ParameterValue value;
-    Error reason;
-};
-
-/// Lengths in the scan's unit. What somebody chose must resolve; a default that does not stays as it is declared and
-/// goes to `unresolved`: the filter may do without it.
-ParameterSet resolved_parameters(const PlannedStep& step, const Value* scale_of, std::vector<Unresolved>& unresolved) {
-    if (!scale_of) return step.parameters;  // nothing to measure against: the filter resolves against what it makes
-    const LengthScale scale = length_scale(*scale_of);
-    ParameterSet set;
-    for (const auto& [name, value] : step.parameters.values) {
-        try {
-            set.values.emplace_back(name, resolved(value, scale));
-        } catch (Error& error) {
-            error.add_frame(fmt::format("in the parameter '{}'", name));
-            const ParameterSpec* spec = step.spec.parameter(name);
-            if (!spec || spec->default_value != value) throw;
-            unresolved.push_back({value, error});
-            set.values.emplace_back(name, value);
-        }
-    }
-    return set;
-}
-
-/// Whether the error is the one that a filter meets when it reads a length of this value.
-bool comes_of_reading(const ParameterValue& value, const Error& error) {
-    const auto is_refused_alike = [&](const ParameterScalar& item) {
-        const auto* length = std::get_if<Length>(&item);
-        if (!length) return false;
-        try {
-            length->value();
-        } catch (const Error& own) {
-            return own.sentence() == error.sentence();
-        }
-        return false;
-    };
-    if (const auto* one = std::get_if<ParameterScalar>(&value)) return is_refused_alike(*one);
-    const auto* list = std::get_if<std::vector<ParameterScalar>>(&value);
-    return list && std::ranges::any_of(*list, is_refused_alike);
-}
-
-/// Runs the filter; one that stumbles over an unresolved default fails for the reason that left it so.
-Outputs run_filter(const FilterDeclaration& filter, const Inputs& ports, const ParameterSet& parameters,
-                   const std::vector<Unresolved>& unresolved, Context& context) {
-    try {
-        return filter.run(ports, parameters, context);
-    } catch (const Error& error) {
-        for (const Unresolved& left : unresolved)
-            if (comes_of_reading(left.value, error)) throw left.reason;
-        throw;
-    }
-}
-
 void require_whole(const Outputs& outputs, const FilterSpec& spec) {
     for (const PortSpec& port : spec.outputs) {
         const Value* value = outputs.find(port.name);
@@ -129,6 +76,57 @@ void require_whole(const Outputs& outputs, const FilterSpec& spec) {
     }
 }
 
+ReadOptions reading(const LeafSource& leaf, const std::function<void(std::string)>& on_warning) {
+    ReadOptions options;
+    options.on_warning = on_warning;
+    options.unit = leaf.unit;
+    return options;
+}
+
+/// Whether the frame gets another name than the one it has.
+bool take_declared_name(const LeafSource& leaf, std::string& name, const std::function<void(std::string)>& on_warning) {
+    if (leaf.frame.empty() || name == leaf.frame) return false;
+    if (!name.empty())
+        on_warning(fmt::format("'{}': the frame '{}' of the file is called '{}' by the workflow or the batch",
+                               leaf.file.string(), name, leaf.frame));
+    name = leaf.frame;
+    return true;
+}
+
+/// A step whose inputs are in order.
+struct Ready {
+    ResolvedParameters resolved;
+    std::function<Outputs(const FilterDeclaration&, const ParameterSet&)> run;
+};
+
+/// Runs what `prepare` makes ready, unless `recall` knows better; what was learned goes to the report.
+Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
+                     ContextOptions options, const Recall& recall, NodeReport& report,
+                     const std::function<Ready(Context&)>& prepare) {
+    Context context(std::move(options));
+    const auto keep_findings = [&] {
+        report.warnings = context.warnings();
+        std::vector<std::pair<const MetricSpec*, const Metric*>> told;
+        for (const Metric& metric : context.metrics().values)
+            if (const MetricSpec* declared = step.spec.metric(metric.name)) told.emplace_back(declared, &metric);
+        std::ranges::stable_sort(told, {}, [](const auto& pair) { return pair.first; });  // as they are declared
+        for (const auto& [declared, metric] : told) report.metrics.set(metric->name, metric->value, declared->unit);
+    };
+    try {
+        const Ready ready = prepare(context);
+        report.resolved = ready.resolved.values;
+        if (std::optional<Outputs> known = recall(report.resolved, report)) return std::move(*known);
+        Outputs outputs =
+            with_reasons(ready.resolved.left, [&] { return ready.run(filter(), ready.resolved.values); });
+        require_whole(outputs, step.spec);
+        keep_findings();
+        return outputs;
+    } catch (...) {
+        keep_findings();
+        throw;
+    }
+}
+
 }  // namespace
 
 void require_expectations(const PlannedStep& step, const Value& primary, NodeReport& report) {
@@ -140,50 +138,51 @@ void require_expectations(const PlannedStep& step, const Value& primary, NodeRep
 }
 
 Value read_leaf(const LeafSource& leaf, const std::function<void(std::string)>& on_warning) {
-    ReadOptions options;
-    options.on_warning = on_warning;
-    options.unit = leaf.unit;
+    const ReadOptions options = reading(leaf, on_warning);
     Value value;
     if (leaf.kind == Kind::mesh)
         value = read_mesh(leaf.file, options);
     else
         value = read_points(leaf.file, options);
     if (leaf.pose) value = placed(value, *leaf.pose);
-    if (leaf.frame.empty() || frame_of(value)->name == leaf.frame) return value;
     Frame frame = *frame_of(value);
-    if (!frame.name.empty())
-        on_warning(fmt::format("'{}': the frame '{}' of the file is called '{}' by the workflow or the batch",
-                               leaf.file.string(), frame.name, leaf.frame));
-    frame.name = leaf.frame;
-    return reframed(value, frame);
+    return take_declared_name(leaf, frame.name, on_warning) ? reframed(value, frame) : value;
+}
+
+std::shared_ptr<const PointStream> open_leaf(const LeafSource& leaf, unsigned threads,
+                                             const std::function<void(std::string)>& on_warning,
+                                             const OnWorldPositions& on_positions) {
+    assert(leaf.is_streamed && leaf.kind == Kind::points && !leaf.pose);
+    std::shared_ptr<PointStream> scan = open_point_stream(leaf.file, reading(leaf, on_warning), threads, on_positions);
+    if (!scan) return nullptr;
+    if (std::string name = scan->frame().name; take_declared_name(leaf, name, on_warning)) scan->rename_frame(name);
+    return scan;
 }
 
 Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
                  const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
                  NodeReport& report) {
-    Context context(std::move(options));
-    const Value* first = first_geometric(inputs);
-    const auto keep_findings = [&] {
-        report.warnings = context.warnings();
-        std::vector<std::pair<const MetricSpec*, const Metric*>> told;
-        for (const Metric& metric : context.metrics().values)
-            if (const MetricSpec* declared = step.spec.metric(metric.name)) told.emplace_back(declared, &metric);
-        std::ranges::stable_sort(told, {}, [](const auto& pair) { return pair.first; });  // as they are declared
-        for (const auto& [declared, metric] : told) report.metrics.set(metric->name, metric->value, declared->unit);
-    };
-    try {
-        const Inputs ports = rebased(inputs, first, context);
-        std::vector<Unresolved> unresolved;
-        report.resolved = resolved_parameters(step, first, unresolved);
-        if (std::optional<Outputs> known = recall(report.resolved, report)) return std::move(*known);
-        Outputs outputs = run_filter(filter(), ports, report.resolved, unresolved, context);
-        require_whole(outputs, step.spec);
-        keep_findings();
-        return outputs;
-    } catch (...) {
-        keep_findings();
-        throw;
-    }
+    return run_recorded(step, filter, std::move(options), recall, report, [&](Context& context) {
+        const Value* first = first_geometric(inputs);
+        Inputs ports = rebased(inputs, first, context);
+        // Without anything to measure against, the filter resolves against what it makes.
+        ResolvedParameters resolved =
+            first ? resolved_parameters(step, length_scale(*first)) : ResolvedParameters{step.parameters, {}};
+        return Ready{std::move(resolved), [&context, ports = std::move(ports)](const FilterDeclaration& declared,
+                                                                               const ParameterSet& parameters) {
+                         return declared.run(ports, parameters, context);
+                     }};
+    });
+}
+
+Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
+                 const PointStream& scan, ContextOptions options, const Recall& recall, NodeReport& report) {
+    return run_recorded(step, filter, std::move(options), recall, report, [&](Context& context) {
+        return Ready{resolved_parameters(step, length_scale(scan)),
+                     [&](const FilterDeclaration& declared, const ParameterSet& parameters) {
+                         return declared.run_streamed(scan, parameters, context);
+                     }};
+    });
 }
 
 }  // namespace scanmill

@@ -6,11 +6,18 @@
 #include "scanmill/engine/report.hpp"
 #include "scanmill/filter/context.hpp"
 #include "scanmill/filter/ports.hpp"
+#include "scanmill/formats/point_stream.hpp"
 
 namespace scanmill {
 
 /// The file's content, in the unit, under the frame's name and in the pose that are declared. Throws Error.
 Value read_leaf(const LeafSource& leaf, const std::function<void(std::string)>& on_warning);
+
+/// The same piece by piece, in the unit and under the frame's name that are declared; what is to be said is said once
+/// it is sure. Nothing when the file cannot be read so (see open_point_stream()). Pre: leaf.is_streamed.
+std::shared_ptr<const PointStream> open_leaf(const LeafSource& leaf, unsigned threads,
+                                             const std::function<void(std::string)>& on_warning,
+                                             const OnWorldPositions& on_positions = {});
 
 struct StepInput {
     std::string port;
@@ -28,6 +35,10 @@ using Recall = std::function<std::optional<Outputs>(const ParameterSet& resolved
 Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
                  const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
                  NodeReport& report);
+
+/// The same, of a scan that is streamed. Pre: can_stream(step).
+Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
+                 const PointStream& scan, ContextOptions options, const Recall& recall, NodeReport& report);
 
 /// Puts the facts about the step's primary output into the report, when it expects something. Throws Error naming what
 /// outputs and metrics do not meet.

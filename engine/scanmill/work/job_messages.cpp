@@ -157,11 +157,8 @@ JobMemory memory_from(const Json& row) {
 }
 
 Json to_json(const LeafSource& leaf) {
-    Json json{{"file", leaf.file.native()},
-              {"content", leaf.content},
-              {"kind", static_cast<int>(leaf.kind)},
-              {"unit", static_cast<int>(leaf.unit)},
-              {"frame", leaf.frame}};
+    Json json{{"file", leaf.file.native()},          {"content", leaf.content}, {"kind", static_cast<int>(leaf.kind)},
+              {"unit", static_cast<int>(leaf.unit)}, {"frame", leaf.frame},     {"streamed", leaf.is_streamed}};
     if (leaf.pose) {
         const RigidTransform& pose = *leaf.pose;
         json["pose"] = {std::vector<double>(pose.rotation.data(), pose.rotation.data() + 9),
@@ -177,7 +174,8 @@ LeafSource leaf_from(const Json& json) {
                     static_cast<Kind>(json.at("kind").get<int>()),
                     static_cast<LengthUnit>(json.at("unit").get<int>()),
                     json.at("frame"),
-                    {}};
+                    {},
+                    json.at("streamed").get<bool>()};
     if (json.contains("pose")) {
         const Json& row = json.at("pose");
         RigidTransform pose;

@@ -28,18 +28,21 @@ UnchangedWhileRead::UnchangedWhileRead(std::filesystem::path file, std::string c
     : file_(std::move(file)),
       content_(std::move(content)),
       before_() {
-    if (!beside) return;
     constexpr std::time_t settled = 2;  // no file system's stamps are coarser
     is_settled_ = ::stat(file_.c_str(), &before_) == 0 && before_.st_ctim.tv_sec < std::time(nullptr) - settled;
-    if (is_settled_)
+    if (is_settled_ && beside)
         beside_ = std::async(std::launch::async | std::launch::deferred, scanmill::require_unchanged, file_, content_);
 }
 
 void UnchangedWhileRead::require() {
-    if (beside_.valid()) beside_.get();
+    if (beside_.valid()) {
+        beside_.get();
+        is_hashed_ = true;
+    }
     struct stat after;
-    if (!is_settled_ || ::stat(file_.c_str(), &after) != 0 || !are_equal(before_, after))
-        require_unchanged(file_, content_);
+    if (is_hashed_ && is_settled_ && ::stat(file_.c_str(), &after) == 0 && are_equal(before_, after)) return;
+    scanmill::require_unchanged(file_, content_);
+    is_hashed_ = true;
 }
 
 }  // namespace scanmill

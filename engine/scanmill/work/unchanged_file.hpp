@@ -20,8 +20,8 @@ public:
     /// `beside`: on another thread, if the system gives one; else all is done in require().
     UnchangedWhileRead(std::filesystem::path file, std::string content, bool beside);
 
-    /// After reading. Throws Error as require_unchanged(). Hashes again when the file's stamps say that it was written
-    /// to since the constructor, or so shortly before that they could not tell.
+    /// After reading; again after reading more. Throws Error as require_unchanged(). Hashes again when the file's
+    /// stamps say that it was written to since the constructor, or so shortly before that they could not tell.
     void require();
 
 private:
@@ -29,6 +29,7 @@ private:
     std::string content_;
     struct stat before_;
     bool is_settled_ = false;
+    bool is_hashed_ = false;
     std::future<void> beside_;
 };
 

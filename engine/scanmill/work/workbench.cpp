@@ -4,7 +4,6 @@
 #include <limits.h>
 
 #include <algorithm>
-#include <chrono>
 #include <new>
 #include <optional>
 
@@ -24,10 +23,6 @@ namespace scanmill {
 namespace {
 
 namespace fs = std::filesystem;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// Thrown when an input is neither here nor in the cache; the report names it.
 struct InputLost {};
@@ -95,28 +90,12 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     return report;
 }
 
-void Workbench::read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report) {
-    const auto on_warning = [&](std::string text) {
-        listener.on_warning(text);
-        report.node.warnings.push_back(std::move(text));
-    };
-    const auto start = std::chrono::steady_clock::now();
-    std::optional<UnchangedWhileRead> check;
-    if (uses_cache(work.memory)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
-    Value value = read_leaf(work.leaf, on_warning);
-    if (check) check->require();
-    if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&value))
-        report.node.facts.set("points", static_cast<double>((*points)->size()), Unit::count);
-    else if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
-        report.node.facts.set("points", static_cast<double>((*mesh)->positions.size()), Unit::count);
-    values_[job.node] = {{"", std::move(value)}};
-    remember(job, work.memory, work.memory.plan_key, said_of(work.leaf.file), seconds_since(start), report);
-}
-
 void Workbench::run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report) {
+    const std::shared_ptr<const PointStream> scan = stream_for(work, job.threads);
     std::vector<StepInput> inputs;
-    for (const JobInput& input : work.inputs)
-        if (std::optional<Value> value = fetch(input, report)) inputs.push_back({input.port, std::move(*value)});
+    if (!scan)
+        for (const JobInput& input : work.inputs)
+            if (std::optional<Value> value = fetch(input, report)) inputs.push_back({input.port, std::move(*value)});
     if (!report.lost.empty()) throw InputLost{};
 
     const PlannedStep& step = *work.step;
@@ -142,8 +121,10 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
                 .hint("run it again");
         return library_.load(step.spec.name);
     };
-    const Outputs outputs = run_step(step, filter, inputs, std::move(options), recall, report.node);
+    const Outputs outputs = scan ? run_step(step, filter, *scan, std::move(options), recall, report.node)
+                                 : run_step(step, filter, inputs, std::move(options), recall, report.node);
     const double seconds = seconds_since(start);
+    if (scan) scans_.require_unchanged(work.inputs.front().node);
     if (uses_cache(work.memory))
         for (const ParameterFile& file : work.parameter_files) require_unchanged(file.path, file.content);
     std::vector<StepInput>& values = values_[job.node] = {};
@@ -251,27 +232,6 @@ void Workbench::keep_values(std::size_t node, const JobMemory& memory, double co
     }
 }
 
-const Value* Workbench::find(std::size_t node, const std::string& port) const {
-    const auto of_node = values_.find(node);
-    if (of_node == values_.end()) return nullptr;
-    const auto found = std::ranges::find(of_node->second, port, &StepInput::port);
-    return found == of_node->second.end() ? nullptr : &found->value;
-}
-
-std::optional<Value> Workbench::fetch(const JobInput& input, JobReport& report) {
-    if (const Value* value = find(input.node, input.from)) return *value;
-    std::optional<Value> value = cache_ && !input.content.empty() ? cache_->value(input.content) : std::nullopt;
-    if (!value && input.leaf) {
-        value = read_leaf(*input.leaf, [](std::string) {});  // what there is to be said was said when it was read first
-        if (cache_) require_unchanged(input.leaf->file, input.leaf->content);
-    }
-    if (value)
-        values_[input.node].push_back({input.from, *value});
-    else
-        report.lost.push_back(input);
-    return value;
-}
-
 void adopt(const StepResult& result, const PlannedStep* step, const std::string& said_of, NodeReport& report) {
     report.metrics = result.metrics;
     report.facts = result.facts;
@@ -284,7 +244,5 @@ void adopt(const StepResult& result, const PlannedStep* step, const std::string&
     for (const auto& [name, text] : result.resolved)
         report.resolved.values.emplace_back(name, parse(*step->spec.parameter(name), text));
 }
-
-std::string said_of(const fs::path& file) { return "'" + file.string() + "': "; }
 
 }  // namespace scanmill

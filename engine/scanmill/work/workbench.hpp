@@ -3,6 +3,7 @@
 /// Where jobs are done, one after the other: files read, filters run, results written. Values stay on the bench until
 /// they are forgotten, so that the next job need not fetch them.
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "scanmill/engine/step_runner.hpp"
 #include "scanmill/filter/library.hpp"
 #include "scanmill/work/job.hpp"
+#include "scanmill/work/open_scans.hpp"
 
 namespace scanmill {
 
@@ -33,14 +35,17 @@ public:
     /// Drops the node's values.
     void forget(std::size_t node) {
         values_.erase(node);
+        scans_.forget(node);
         std::erase_if(facts_, [&](const auto& facts) { return facts.first.first == node; });
     }
-    bool is_empty() const { return values_.empty(); }
+    bool is_empty() const { return values_.empty() && scans_.empty(); }
 
 private:
     using Place = std::pair<std::size_t, std::string>;  // node and port
 
     void read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report);
+    bool read_as_stream(const Job& job, const ReadWork& work, const std::function<void(std::string)>& on_warning,
+                        JobReport& report);
     void run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report);
     void expect(const Job& job, const ExpectWork& work, JobReport& report);
     void check_expectations(const PlannedStep& step, const Value& primary, const Place& place, NodeReport& report);
@@ -52,6 +57,10 @@ private:
                   double seconds, JobReport& report);
     void keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report);
     const Value* find(std::size_t node, const std::string& port) const;
+    /// From the bench or the cache.
+    std::optional<Value> at_hand(const JobInput& input);
+    /// The step's scan, when it is to be had as a stream and not at hand as a value.
+    std::shared_ptr<const PointStream> stream_for(const StepWork& work, unsigned threads);
     /// From the bench, the cache, or its file; nothing, and a word in the report, when it is lost.
     std::optional<Value> fetch(const JobInput& input, JobReport& report);
     bool uses_cache(const JobMemory& memory) const { return cache_ && memory.is_used; }
@@ -61,8 +70,14 @@ private:
     KeepRule rule_;
     std::filesystem::path scratch_, folder_;
     std::map<std::size_t, std::vector<StepInput>> values_;  // by node
+    OpenScans scans_;
     std::map<Place, Metrics> facts_;                        // of values, where they were asked for
 };
+
+/// On a clock that only goes forward.
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// What `step` remembers of a result, in the words of this node: warnings of reading begin with `said_of`.
 void adopt(const StepResult& result, const PlannedStep* step, const std::string& said_of, NodeReport& report);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/cache/streamed_content.hpp"
+
+#include <numeric>
+#include <vector>
+
+#include "scanmill/cache/value_fields.hpp"
+#include "scanmill/filter/waves.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// The stream's cloud with every size right and nothing behind it.
+PointCloud hollow_cloud(const PointStream& stream) {
+    PointCloud cloud;
+    cloud.frame = stream.frame();
+    cloud.positions = Buffer<Vec3>(nullptr, nullptr, stream.size());
+    const PointCloud without_rows = stream.gather({}, 1);
+    for (const Column& column : without_rows.columns) {
+        const std::size_t bytes = stream.size() * column.components() * size_of(column.type());
+        cloud.columns.add(
+            Column(column.name(), column.type(), column.components(), Buffer<std::byte>(nullptr, nullptr, bytes), {}));
+    }
+    return cloud;
+}
+
+std::size_t piece_count(const PointStream& stream) { return stream.pieces().size() - 1; }
+
+void add_positions(const PointStream& stream, unsigned threads, ArraysHash& hash) {
+    for_each_in_order<Array<Vec3>>(
+        threads, piece_count(stream), [&](std::size_t piece, Array<Vec3>& room) { stream.read(piece, room); },
+        [&](std::size_t, const Array<Vec3>& positions) { hash.add(std::as_bytes(std::span(positions))); });
+}
+
+void add_column(const PointStream& stream, const std::string& name, unsigned threads, ArraysHash& hash) {
+    struct Room {
+        std::vector<u32> rows;
+        PointCloud cloud;
+    };
+    for_each_in_order<Room>(
+        threads, piece_count(stream),
+        [&](std::size_t piece, Room& room) {
+            room.rows.resize(stream.pieces()[piece + 1] - stream.pieces()[piece]);
+            std::iota(room.rows.begin(), room.rows.end(), static_cast<u32>(stream.pieces()[piece]));
+            room.cloud = stream.gather(room.rows, 1);
+        },
+        [&](std::size_t, const Room& room) { hash.add(room.cloud.columns.find(name)->bytes().span()); });
+}
+
+}  // namespace
+
+ValueName StreamedContent::of(const PointStream& stream, unsigned threads) {
+    ArraysHash hash = std::move(positions_);
+    if (stream.frame().origin != Vec3::Zero()) {
+        hash = {};
+        add_positions(stream, threads, hash);
+    }
+    hash.end_array();
+    const PointCloud hollow = hollow_cloud(stream);
+    for (const Column& column : hollow.columns) {
+        add_column(stream, column.name(), threads, hash);
+        hash.end_array();
+    }
+    return name_of_value(fields_of(std::make_shared<const PointCloud>(hollow)), hash);
+}
+
+}  // namespace scanmill

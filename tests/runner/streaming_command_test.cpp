@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the command says of scans that are streamed, and that it thins what would not fit into its memory.
+#include "runner/batch_fixture.hpp"
+#include "support/point_files.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class StreamingCommand : public Batch {
+protected:
+    void write_thinning(const std::string& bin_size, const std::string& more = "") {
+        folder_.write("w.yaml", "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: " +
+                                    bin_size + "}\noutputs: {'{scan}.out.ply': voxel-thin" + more + "}\n");
+    }
+    std::string checked(const std::string& format) {
+        const ProgramResult result = scanmill({"check", "w.yaml", "--plan", "--format", format});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return result.out;
+    }
+};
+
+TEST_F(StreamingCommand, CheckedPlan_SaysWhichStepReadsAStream) {
+    write_thinning("2 u");
+    EXPECT_THAT(checked("text"), HasSubstr("points <- scan, as a stream\n"));
+    EXPECT_THAT(checked("dot"), HasSubstr("input0 -> step0 [label=\"points (stream)\"]"));
+    EXPECT_EQ(Json::parse(checked("json"))["files"][0]["plan"]["steps"][0]["streams"], Json({"points"}));
+    write_thinning("auto");
+    EXPECT_THAT(checked("text"), HasSubstr("points <- scan\n"));
+    EXPECT_THAT(checked("dot"), HasSubstr("input0 -> step0 [label=\"points\"]"));
+    EXPECT_EQ(Json::parse(checked("json"))["files"][0]["plan"]["steps"][0]["streams"], Json::array());
+}
+
+TEST_F(StreamingCommand, DryRun_SaysWhichScanIsStreamed) {
+    written(folder_ / "a.ply", helix(10));
+    folder_.write("six.xyz", "1 2 3 4 5 6\n");
+    write_thinning("2 u");
+    const std::string text = scanmill({"run", "w.yaml", "a.ply", "six.xyz", "--dry-run"}).out;
+    EXPECT_THAT(text, HasSubstr(" read a.ply, as a stream\n"));
+    EXPECT_THAT(text, HasSubstr(" read six.xyz\n"));
+    const Json nodes = Json::parse(scanmill({"run", "w.yaml", "a.ply", "six.xyz", "--dry-run", "--json"}).out)["nodes"];
+    EXPECT_EQ(count(nodes, "streamed", true), 1u);
+    EXPECT_EQ(count(nodes, "streamed", false), 1u);
+}
+
+TEST_F(StreamingCommand, Filter_SaysThatItStreams) {
+    EXPECT_THAT(scanmill({"show", "voxel-thin"}).out, HasSubstr("With bin-size given"));
+    const Json shown = Json::parse(scanmill({"show", "voxel-thin", "--json"}).out);
+    EXPECT_EQ(shown["filter"]["streams"]["given"], Json({"bin-size"}));
+    EXPECT_THAT(scanmill({"show", "delaunay"}).out, Not(HasSubstr("piece by piece")));
+}
+
+TEST_F(StreamingCommand, ScanLargerThanTheLimit_IsThinned) {
+    written(folder_ / "large.ply", without_columns(helix(8'000'000)));  // 192 MB of coordinates
+    write_batch("large.ply", "limits: {memory: 128 MiB}\n");
+    write_thinning("1 %diag");
+    const ProgramResult result = run_batch({"-j", "1"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(recorded(1)["cells"][0]["outcome"], "done");
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    // Copied as well, it has to be read as a whole.
+    write_thinning("1 %diag", ", '{scan}.copy.ply': scan");
+    EXPECT_EQ(run_batch({"-j", "1"}).exit_code, 1);
+    EXPECT_EQ(recorded(2)["cells"][0]["cause"], "memory");
+#endif
+}
+
+}  // namespace
+}  // namespace scanmill::test
