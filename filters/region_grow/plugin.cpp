@@ -6,13 +6,14 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = RegionGrowParams;
-    return Declare<P>("region-grow", 2)
+    return Declare<P>("region-grow", 3)
         .summary(
             "Grows a surface over thinned points from a seed triangle, and tells its borders, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
         .ties("Of equally good points the one that comes first along a curve through the box; of duplicates the first.")
         .not_finite("Refused, with their number and the first of them; normals are replaced instead.")
-        .in<PointCloud>("points", "Thinned: of even density, at least locally. A column `normal` is used.")
+        .in<PointCloud>("points",
+                        "Thinned: of even density, at least locally. Columns `normal` and `bin-size` are used.")
         .made_by("voxel-thin")
         .out<TriangleMesh>("mesh", "An oriented manifold over the points used, with its sharp edges.")
         .out<FeatureGraph>("features",
@@ -21,11 +22,12 @@ SCANMILL_FILTER() {
         .param("max-normal-angle", &P::max_normal_angle,
                "Between a triangle's normal and that of each one it joins; smaller values end patches at sharp edges.",
                above(0), at_most(180))
-        .param("search-radius", &P::search_radius,
-               "How far an edge looks for its next point; holes wider than two thirds of it stay open. `auto` is 2 "
-               "sqrt(3) "
-               "times the bin size that the local density tells.",
-               above(0), word("auto"))
+        .param(
+            "search-radius", &P::search_radius,
+            "How far an edge looks for its next point; holes wider than two thirds of it stay open. `auto` is 2 "
+            "sqrt(3) times the bin size that voxel-thin left in the column `bin-size`; where there is none, or points "
+            "lie otherwise, that which the local density tells.",
+            above(0), word("auto"))
         .param("sharp-angle", &P::sharp_angle, "Edges that bend by more are creases.", at_least(0), at_most(180))
         .param("close-holes", &P::close_holes, "Loops of at most so many edges are closed; 0 closes none.", at_least(0),
                at_most(100))
@@ -41,6 +43,7 @@ SCANMILL_FILTER() {
         .metric("holes", Unit::count, "Of these, such as go round a hole.")
         .metric("unused-points", Unit::count, "Distinct points in no triangle: noise, or too near others.", headline)
         .metric("duplicates", Unit::count, "Points that repeat the place of an earlier one.")
+        .metric("known-bins", Unit::count, "Distinct points whose search radius follows from the column `bin-size`.")
         .metric("patch-edges", Unit::count, "Border edges beyond which the surface goes on at too large an angle.")
         .metric("creases", Unit::count, "Chains of sharp edges.")
         .metric("corners", Unit::count, "Vertices where feature lines meet or turn.")

@@ -16,6 +16,7 @@
 #include "region_grow/search_radii.hpp"
 #include "region_grow/seeds.hpp"
 #include "region_grow/small_holes.hpp"
+#include "region_grow/thinned_bins.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/filter/error.hpp"
@@ -96,12 +97,18 @@ std::vector<Limits> limits_of(const RegionGrowParams& params) {
     return limits;
 }
 
-Array<double> search_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, const RegionGrowParams& params,
-                           unsigned threads) {
-    if (!params.search_radius) return density_radii(samples, neighbourhoods, threads);
-    Array<double> radii(samples.size());
-    std::ranges::fill(radii, params.search_radius->value() * samples.scale);
-    return radii;
+Array<double> search_radii(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
+                           const Array<Vec3>& normals, const RegionGrowParams& params, Context& context) {
+    if (params.search_radius) {
+        Array<double> radii(samples.size());
+        std::ranges::fill(radii, params.search_radius->value() * samples.scale);
+        return radii;
+    }
+    const Array<double> thinned = thinned_bins(cloud, samples, context);
+    SearchRadii found = automatic_radii(samples, neighbourhoods, normals, thinned, context.threads());
+    tell_contradiction(samples, thinned, found, context);
+    context.metric("known-bins", static_cast<double>(found.known));
+    return std::move(found.radii);
 }
 
 std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std::optional<u32> row) {
@@ -171,8 +178,8 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     context.progress(0.3);
     PointNormals normals = principal_normals(samples, neighbourhoods, context.threads());
     const bool oriented = take_given_normals(cloud, samples, neighbourhoods, normals, context);
-    Surface surface(samples, neighbourhoods, std::move(normals),
-                    search_radii(samples, neighbourhoods, params, context.threads()), oriented);
+    Array<double> radii = search_radii(cloud, samples, neighbourhoods, normals.directions, params, context);
+    Surface surface(samples, neighbourhoods, std::move(normals), std::move(radii), oriented);
     context.progress(0.4);
 
     const std::vector<Limits> limits = limits_of(params);

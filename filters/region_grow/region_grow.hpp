@@ -27,8 +27,9 @@ struct RegionGrowParams {
     /// Between the normals of a new triangle and each one it joins; above 0, at most 180 degrees.
     Angle max_normal_angle = Angle::degrees(90);
     /// The suitable point is no farther from an end of the edge, and the circle through the triangle has at most a
-    /// third of this as radius: larger empty circles are holes. Above 0; nothing: 2 √3 B, B being the bin size that
-    /// thinning to the local density would have had.
+    /// third of this as radius: larger empty circles are holes. Above 0; nothing: 2 √3 B, B being the point's number in
+    /// the column `bin-size`, or where there is none, or the density contradicts it, the bin size that thinning to the
+    /// local density would have had (see search_radii.hpp).
     std::optional<Length> search_radius;
     /// Edges whose triangles' normals differ by more are creases. 0 to 180 degrees.
     Angle sharp_angle = Angle::degrees(40);
@@ -68,7 +69,8 @@ struct RegionGrowResult {
 ///
 /// Points should be thinned: of even density, at least locally. A column `normal` (three numbers per row) is used as it
 /// is, sign and all; a normal that is zero or not finite is replaced by the principal one. Without the column normals
-/// are principal directions of the 12 nearest neighbours.
+/// are principal directions of the 12 nearest neighbours. A column `bin-size` (a number per row, in the scan's unit;
+/// what is not above 0 or not finite counts as unknown) tells the bins of a thinning.
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, a
@@ -85,7 +87,8 @@ struct RegionGrowResult {
 /// they do not, or that finds nothing, looks at all m places within its search radius, up to four times: O(m log m)
 /// each, and as often again as places are turned down for what the front or other places do there. So a search radius
 /// of many spacings costs O(n m log m) on noisy scans; leave it to `auto` there. Metrics: see plugin.cpp. Warns when
-/// more than half a percent of the places stay unused, and of what find_features() could not tell. Source: Wang 2006,
+/// more than half a percent of the places stay unused, when most points lie too dense for their `bin-size`, and of what
+/// find_features() could not tell. Source: Wang 2006,
 /// chapter 4, made robust; the choice by empty circles after Delaunay.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 

@@ -2,7 +2,6 @@
 #include "region_grow/search_radii.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,36 +12,81 @@ namespace scanmill::growing {
 namespace {
 
 constexpr std::size_t counted_neighbours = 12;
+/// On average over all directions of a surface.
 constexpr double cubes_per_squared_bin = 1.5;
+/// What the density may come to, of the bins of a thinning, where the two agree.
+constexpr double least_share = 0.4, largest_share = 1.15;
+constexpr std::size_t chunk = 1 << 12;
 
-/// The bin whose thinning would put the place's last counted neighbour where it is.
+/// The bin whose thinning would put the place's last counted neighbour where it is, of one cube per squared bin.
 double bin_at(const Samples& samples, const Neighbourhoods& neighbourhoods, u32 place) {
     const auto neighbours = neighbourhoods.of(place);
     const std::size_t count = std::min(counted_neighbours, neighbours.size());
     const double distance = (samples.positions[neighbours[count - 1]] - samples.positions[place]).norm();
-    return distance * std::sqrt(std::numbers::pi * cubes_per_squared_bin / static_cast<double>(count));
+    return distance * std::sqrt(std::numbers::pi / static_cast<double>(count));
 }
+
+/// How many cubes per squared bin a surface of this normal meets.
+double cubes_met(const Vec3& normal) { return normal.cwiseAbs().sum(); }
+
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+class Bins {
+public:
+    Bins(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals, unsigned threads)
+        : neighbourhoods_(neighbourhoods),
+          normals_(normals),
+          bins_(samples.size()) {
+        for_each_chunk(threads, bins_.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t place = begin; place < end; ++place)
+                bins_[place] = bin_at(samples, neighbourhoods, static_cast<u32>(place));
+        });
+    }
+
+    double by_density(u32 place, std::vector<double>& room) const {
+        room.clear();
+        for (u32 other : neighbourhoods_.of(place)) room.push_back(bins_[other]);
+        return std::sqrt(cubes_per_squared_bin) * std::min(bins_[place], 1.15 * median(room));
+    }
+    /// Of a surface that lies to the cubes as the normals say.
+    double by_density_and_normals(u32 place, std::vector<double>& room) const {
+        room.clear();
+        for (u32 other : neighbourhoods_.of(place))
+            room.push_back(bins_[other] * std::sqrt(cubes_met(normals_[other])));
+        return median(room);
+    }
+
+private:
+    const Neighbourhoods& neighbourhoods_;
+    const Array<Vec3>& normals_;
+    Array<double> bins_;
+};
 
 }  // namespace
 
-Array<double> density_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, unsigned threads) {
-    constexpr std::size_t chunk = 1 << 12;
-    Array<double> bins(samples.size()), radii(samples.size());
+SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals,
+                            std::span<const double> thinned, unsigned threads) {
+    const Bins bins(samples, neighbourhoods, normals, threads);
+    SearchRadii result;
+    result.radii.resize(samples.size());
+    std::vector<std::size_t> known((samples.size() + chunk - 1) / chunk, 0);
     for_each_chunk(threads, samples.size(), chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t place = begin; place < end; ++place)
-            bins[place] = bin_at(samples, neighbourhoods, static_cast<u32>(place));
-    });
-    for_each_chunk(threads, samples.size(), chunk, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> near;
-        for (std::size_t place = begin; place < end; ++place) {
-            near.clear();
-            for (u32 other : neighbourhoods.of(static_cast<u32>(place))) near.push_back(bins[other]);
-            const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-            std::nth_element(near.begin(), middle, near.end());
-            radii[place] = 2 * std::numbers::sqrt3 * std::min(bins[place], 1.15 * *middle);
+        std::vector<double> room;
+        for (std::size_t i = begin; i < end; ++i) {
+            const u32 place = static_cast<u32>(i);
+            const double said = thinned.empty() ? 0 : thinned[i];
+            const double seen = said > 0 ? bins.by_density_and_normals(place, room) : 0;
+            const bool agree = said > 0 && seen >= least_share * said && seen <= largest_share * said;
+            known[begin / chunk] += agree;
+            result.radii[i] = 2 * std::numbers::sqrt3 * (agree ? said : bins.by_density(place, room));
         }
     });
-    return radii;
+    for (const std::size_t places : known) result.known += places;
+    return result;
 }
 
 }  // namespace scanmill::growing

@@ -28,6 +28,8 @@ struct NearestRows {
     Array<u32> kept;
     /// How many points share the bin of each of these; empty unless asked for.
     Array<u32> members;
+    /// The edge of the bin of each of these; empty where all are the grid's.
+    Array<double> edges;
     std::size_t noise = 0;  ///< points in bins with fewer than min_points
     std::size_t bins = 0;  ///< occupied
 };

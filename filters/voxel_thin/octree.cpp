@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "scanmill/filter/error.hpp"
 
@@ -111,6 +112,7 @@ private:
         }
         choice.kept.push_back(best);
         choice.members.push_back(static_cast<u32>(points.size()));
+        choice.edges.push_back(edge);
         if (points.size() == 1) return;
         choice.smallest = choice.smallest > 0 ? std::min(choice.smallest, edge) : edge;
         choice.largest = std::max(choice.largest, edge);
@@ -142,10 +144,11 @@ Root root_over(const BoundingBox& box, const Vec3& origin, double base) {
 }
 
 void sort_by_row(OctreeChoice& choice) {
-    Array<std::pair<u32, u32>> pairs(choice.kept.size());
-    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {choice.kept[i], choice.members[i]};
-    std::ranges::sort(pairs);
-    for (std::size_t i = 0; i < pairs.size(); ++i) std::tie(choice.kept[i], choice.members[i]) = pairs[i];
+    Array<std::tuple<u32, u32, double>> leaves(choice.kept.size());
+    for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i] = {choice.kept[i], choice.members[i], choice.edges[i]};
+    std::ranges::sort(leaves);
+    for (std::size_t i = 0; i < leaves.size(); ++i)
+        std::tie(choice.kept[i], choice.members[i], choice.edges[i]) = leaves[i];
 }
 
 }  // namespace

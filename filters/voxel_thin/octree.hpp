@@ -10,8 +10,9 @@
 namespace scanmill::voxel {
 
 struct OctreeChoice {
-    /// Ascending rows, and how many points the leaf of each has.
+    /// Ascending rows; how many points the leaf of each has, and its edge.
     Array<u32> kept, members;
+    Array<double> edges;
     /// Points in leaves with fewer than min_points.
     std::size_t noise = 0;
     std::size_t leaves = 0;

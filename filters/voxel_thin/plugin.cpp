@@ -7,15 +7,17 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = VoxelThinParams;
-    return Declare<P>("voxel-thin", 1)
+    return Declare<P>("voxel-thin", 2)
         .summary("Keeps, in every voxel, the one point nearest the voxel's centre.")
         .source("Wang 2006, chapter 3")
         .ties("Of points equally near a centre the one that comes first stays; a duplicate is a point like any other.")
         .not_finite("Refused, with their number and the first of them.")
         .in<PointCloud>("points", "Finite coordinates; every column is carried along.")
-        .out<PointCloud>("points",
-                         "The kept points, in input order; with a derived bin size also `curvature-1`, `curvature-2`, "
-                         "`fit-error`, `local-bin-size` and `stands-for`, the number of points in the voxel.")
+        .out<PointCloud>(
+            "points",
+            "The kept points, in input order, each with the edge of its voxel in the column `bin-size`; when that is "
+            "derived also `curvature-1`, `curvature-2`, `fit-error`, `local-bin-size` and `stands-for`, the "
+            "number of points in the voxel.")
         .param("bin-size", &P::bin_size, "Edge of a voxel; auto derives it from the tolerance.", word("auto"), above(0))
         .param("tolerance", &P::tolerance,
                "Largest distance between the scanned surface and a triangulation of the kept points; for bin-size: "

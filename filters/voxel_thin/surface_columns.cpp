@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "voxel_thin/surface_columns.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
+#include "voxel_thin/added_columns.hpp"
 
 namespace scanmill::voxel {
 
@@ -20,21 +18,13 @@ void add_surface_columns(PointCloud& thinned, const LocalBins& bins, std::span<c
         error[i] = surface.fit_error;
         size[i] = bins.sizes[place];
     }
-    const std::vector<Column> added{Column("curvature-1", 1, Buffer<double>(std::move(first))),
-                                    Column("curvature-2", 1, Buffer<double>(std::move(second))),
-                                    Column("fit-error", 1, Buffer<double>(std::move(error))),
-                                    Column("local-bin-size", 1, Buffer<double>(std::move(size))),
-                                    Column("stands-for", 1, Buffer<u32>(Array<u32>(members.begin(), members.end())))};
-    ColumnTable columns;
-    for (const Column& column : thinned.columns) {
-        if (std::ranges::find(added, column.name(), &Column::name) == added.end())
-            columns.add(column);
-        else
-            context.warn(
-                fmt::format("column `{}` of the scan gives way to the one that thinning makes", column.name()));
-    }
-    for (const Column& column : added) columns.add(column);
-    thinned.columns = std::move(columns);
+    add_columns(thinned,
+                {Column("curvature-1", 1, Buffer<double>(std::move(first))),
+                 Column("curvature-2", 1, Buffer<double>(std::move(second))),
+                 Column("fit-error", 1, Buffer<double>(std::move(error))),
+                 Column("local-bin-size", 1, Buffer<double>(std::move(size))),
+                 Column("stands-for", 1, Buffer<u32>(Array<u32>(members.begin(), members.end())))},
+                context);
 }
 
 }  // namespace scanmill::voxel

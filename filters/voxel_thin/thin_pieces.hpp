@@ -20,7 +20,7 @@ VoxelThinResult thin(const PointPieces& points, const BoundingBox& box, const Vo
 Vec3 grid_origin(const BoundingBox& box, const VoxelThinParams& params);
 /// Throws Error when all points were noise.
 void require_some(const NearestRows& rows, std::size_t points, u32 min_points);
-/// Puts the rows into the result and tells the metrics that every thinning has.
+/// Puts the rows into the result and the bins' sizes into its points, and tells the metrics that every thinning has.
 void finish(VoxelThinResult& result, NearestRows rows, std::size_t points, Context& context);
 
 }  // namespace scanmill::voxel

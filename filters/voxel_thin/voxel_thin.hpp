@@ -55,10 +55,11 @@ struct VoxelThinParams {
 };
 
 struct VoxelThinResult {
-    /// The kept points in input order, every column carried along; when the bin size was derived, with the columns
+    /// The kept points in input order, every column carried along, and last `bin-size`: the edge of the bin that the
+    /// point was kept from, in an octree of its leaf. When the bin size was derived, before it also the columns
     /// `curvature-1` (of larger size, positive), `curvature-2` (negative on saddles), `fit-error` (mean distance of
     /// the neighbours to the fitted quadric), `local-bin-size` (what the place allows) and `stands-for` (how many
-    /// points share its bin).
+    /// points share its bin). An older column of such a name gives way, told.
     PointCloud points;
     /// Their rows in the input, ascending.
     Array<u32> kept;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "filters/voxel_thin_cases.hpp"
 #include "support/point_sets.hpp"
@@ -30,7 +31,7 @@ OctreeChoice chosen(const PointCloud& cloud, std::span<const double> sizes, doub
 struct ByDefinition {
     const PointCloud& cloud;
     std::span<const double> sizes;
-    std::vector<u32> kept = {};
+    std::map<u32, double> edge_of_kept = {};
 
     void cut(const std::vector<u32>& rows, const Vec3& low, double edge) {
         double least = 1e300;
@@ -38,7 +39,7 @@ struct ByDefinition {
         if (rows.size() <= 1 || edge <= least) {
             const Vec3 centre = low + Vec3::Constant(edge / 2);
             const auto distance = [&](u32 row) { return (cloud.positions[row] - centre).squaredNorm(); };
-            if (!rows.empty()) kept.push_back(*std::ranges::min_element(rows, {}, distance));
+            if (!rows.empty()) edge_of_kept[*std::ranges::min_element(rows, {}, distance)] = edge;
             return;
         }
         std::array<std::vector<u32>, 8> children;
@@ -59,6 +60,7 @@ TEST(VoxelThinAdaptive, FourPointsByHand_AreCutAsEachAllows) {
     const OctreeChoice choice = chosen(cloud, sizes, 1);
     EXPECT_THAT(choice.kept, ElementsAre(1u, 2u, 3u));
     EXPECT_THAT(choice.members, ElementsAre(2u, 1u, 1u));
+    EXPECT_THAT(choice.edges, ElementsAre(2, 1, 1));
     EXPECT_EQ(choice.largest, 2);
     EXPECT_EQ(choice.smallest, 2);
     const OctreeChoice without_poor = chosen(cloud, sizes, 1, 2);
@@ -88,8 +90,10 @@ TEST(VoxelThinAdaptive, RandomSizes_AgreeWithTheDefinition) {
         std::vector<u32> rows(cloud.size());
         for (u32 row = 0; row < rows.size(); ++row) rows[row] = row;
         expected.cut(rows, bounding_box(cloud.positions.span()).low, 0.04 * 32);
-        std::ranges::sort(expected.kept);
-        EXPECT_THAT(choice.kept, ::testing::ElementsAreArray(expected.kept)) << seed;
+        std::map<u32, double> edges;
+        for (std::size_t i = 0; i < choice.kept.size(); ++i) edges[choice.kept[i]] = choice.edges[i];
+        EXPECT_EQ(edges, expected.edge_of_kept) << seed;
+        EXPECT_TRUE(std::ranges::is_sorted(choice.kept));
         EXPECT_GT(choice.largest, 2 * choice.smallest);
     }
 }

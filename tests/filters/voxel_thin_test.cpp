@@ -181,6 +181,22 @@ TEST(VoxelThin, Columns_AreCarriedWithTheirRows) {
     EXPECT_THAT(result.points.columns.find("colour")->values<u8>(), ElementsAre(4, 5, 6, 7, 8, 9));
 }
 
+TEST(VoxelThin, BinSize_IsAColumnOfEveryKeptPoint) {
+    const VoxelThinResult once = thin(cloud_of({{0, 0, 0}, {0.5, 0.5, 0.5}, {7, 7, 7}}), bins_of(0.7));
+    EXPECT_THAT(column<double>(once, "bin-size"), ElementsAre(0.7, 0.7));
+    // Thinning again says the bins of the last time, and that the older ones gave way.
+    Context context;
+    const VoxelThinResult twice = voxel_thin(once.points, bins_of(3.5), context);
+    EXPECT_THAT(column<double>(twice, "bin-size"), ElementsAre(3.5, 3.5));
+    EXPECT_EQ(twice.points.columns.size(), 1u);
+    EXPECT_THAT(context.warnings(), ElementsAre(::testing::HasSubstr("`bin-size`")));
+}
+
+TEST(VoxelThin, BinSize_OfADerivedSizeIsThatSize) {
+    const VoxelThinResult result = thin(random_sphere(20'000, 1), within(0.02));
+    EXPECT_THAT(column<double>(result, "bin-size"), ::testing::Each(result.bin_size));
+}
+
 TEST(VoxelThin, Metrics_SayWhatHappened) {
     VoxelThinParams params = bins_of(1);
     params.min_points = 2;

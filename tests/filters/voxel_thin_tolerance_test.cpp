@@ -123,7 +123,7 @@ TEST(VoxelThinTolerance, Columns_TellWhatIsKnownOfEachKeptPoint) {
         const double sum = column<double>(result, "curvature-1")[i] + column<double>(result, "curvature-2")[i];
         EXPECT_DOUBLE_EQ(column<double>(result, "local-bin-size")[i], bin_for(sum, 0.02, Guarantee::points));
     }
-    EXPECT_EQ(thin(sphere, bins_of(0.1)).points.columns.size(), 1u) << "a given size computes no curvature";
+    EXPECT_EQ(thin(sphere, bins_of(0.1)).points.columns.size(), 2u) << "a given size computes no curvature";
 }
 
 TEST(VoxelThinTolerance, CurvatureOfASaddle_IsNegativeTheOtherWay) {
@@ -142,9 +142,10 @@ TEST(VoxelThinTolerance, OlderColumnsOfTheseNames_GiveWayAndThatIsTold) {
     const VoxelThinResult once = thin(moved(fibonacci_sphere(5000), 2), within(0.005));
     Context context;
     const VoxelThinResult twice = voxel_thin(once.points, within(0.02), context);
-    EXPECT_EQ(twice.points.columns.size(), 5u);
-    ASSERT_EQ(context.warnings().size(), 5u);
+    EXPECT_EQ(twice.points.columns.size(), 6u);
+    ASSERT_EQ(context.warnings().size(), 6u);
     EXPECT_THAT(context.warnings()[0], HasSubstr("`curvature-1`"));
+    EXPECT_THAT(context.warnings()[5], HasSubstr("`bin-size`"));
 }
 
 TEST(VoxelThinTolerance, OrderAndThreads_ChangeNoSize) {

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bins that a thinning told: how far the search reaches with them, and what happens when they are not to be believed.
+#include <gmock/gmock.h>
+
+#include "filters/region_grow_cases.hpp"
+#include "merge/merge.hpp"
+#include "region_grow/point_normals.hpp"
+#include "region_grow/search_radii.hpp"
+#include "scanmill/filter/random.hpp"
+#include "scanmill/formats/files.hpp"
+#include "support/temporary_folder.hpp"
+#include "voxel_thin/voxel_thin.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace test;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+PointCloud thinned(const PointCloud& cloud, double bin) {
+    VoxelThinParams params;
+    params.bin_size = Length(bin);
+    Context context;
+    return voxel_thin(cloud, params, context).points;
+}
+
+PointCloud with_bins(PointCloud cloud, const std::function<double(std::size_t row)>& size) {
+    Array<double> sizes(cloud.size());
+    for (std::size_t row = 0; row < sizes.size(); ++row) sizes[row] = size(row);
+    cloud.columns = {};
+    cloud.columns.add(Column("bin-size", 1, Buffer<double>(std::move(sizes))));
+    return cloud;
+}
+
+PointCloud without_columns(PointCloud cloud) {
+    cloud.columns = {};
+    return cloud;
+}
+
+/// What one run says, beside its mesh.
+struct Said {
+    RegionGrowResult result;
+    std::vector<std::string> warnings;
+    double known = 0;
+};
+
+Said grown_and_said(const PointCloud& cloud, const RegionGrowParams& params = {}) {
+    Context context;
+    Said said;
+    said.result = region_grow(cloud, params, context);
+    said.warnings = context.warnings();
+    if (const auto metric = context.metrics().find("known-bins")) said.known = metric->value;
+    return said;
+}
+
+void expect_the_same(const RegionGrowResult& one, const RegionGrowResult& two) {
+    EXPECT_TRUE(std::ranges::equal(one.mesh.triangles, two.mesh.triangles));
+    EXPECT_TRUE(std::ranges::equal(one.rows, two.rows));
+}
+
+/// Of a 41 x 41 grid of step 1 at its middle: the bin that the search radius there is 2 √3 of.
+double bin_in_the_middle(double thinned_with, const Vec3& normal) {
+    const PointCloud cloud = grid(41, 41);
+    const growing::Samples samples = growing::distinct_samples(cloud.positions.span());
+    const growing::Neighbourhoods neighbourhoods(samples, 1);
+    const Array<Vec3> normals(samples.size(), normal);
+    const Array<double> thinned(samples.size(), thinned_with * samples.scale);
+    const growing::SearchRadii found = growing::automatic_radii(samples, neighbourhoods, normals, thinned, 1);
+    const auto middle = std::ranges::find(samples.positions, Vec3(Vec3(20, 20, 0) * samples.scale));
+    return found.radii[static_cast<std::size_t>(middle - samples.positions.begin())] / samples.scale /
+           (2 * std::numbers::sqrt3);
+}
+
+TEST(RegionGrow_SearchRadius, ByHand_IsOfTheBinsWhereTheDensityAgrees) {
+    // The 12th neighbour is 2 away: 12 bins in a circle of radius 2 are of size 1.0233, were each met by a face along
+    // the bins; of any direction √1.5 times that, which is what counts where bins are unknown or doubtful.
+    const double seen = 2 * std::sqrt(std::numbers::pi / 12);
+    EXPECT_NEAR(bin_in_the_middle(0, Vec3::UnitZ()), std::sqrt(1.5) * seen, 1e-12) << "nobody knows";
+    EXPECT_NEAR(bin_in_the_middle(1.1, Vec3::UnitZ()), 1.1, 1e-12);
+    EXPECT_NEAR(bin_in_the_middle(0.9, Vec3::UnitZ()), 0.9, 1e-12) << "points are a little farther apart";
+    EXPECT_NEAR(bin_in_the_middle(0.88, Vec3::UnitZ()), std::sqrt(1.5) * seen, 1e-12) << "points are too sparse";
+    EXPECT_NEAR(bin_in_the_middle(2.5, Vec3::UnitZ()), 2.5, 1e-12) << "layers";
+    EXPECT_NEAR(bin_in_the_middle(2.6, Vec3::UnitZ()), std::sqrt(1.5) * seen, 1e-12) << "points are too dense";
+    // A face across all bins meets √3 times as many.
+    const Vec3 oblique = Vec3(1, 1, -1).normalized();
+    EXPECT_NEAR(bin_in_the_middle(1.1, oblique), std::sqrt(1.5) * seen, 1e-12);
+    EXPECT_NEAR(bin_in_the_middle(1.2, oblique), 1.2, 1e-12);
+}
+
+/// A plate of 60 x 60 with five round holes, anywhere in the grid of bins of 2.
+PointCloud plate_with_holes(double radius, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<Vec3> points;
+    std::vector<Vec3> holes{{15, 15, 0}, {45, 15, 0}, {15, 45, 0}, {45, 45, 0}, {30, 30, 0}};
+    for (Vec3& hole : holes) hole += Vec3(random.uniform(0, 2), random.uniform(0, 2), 0);
+    for (int i = 0; i < 80'000; ++i) {
+        const Vec3 p(random.uniform(0, 60), random.uniform(0, 60), 0);
+        if (std::ranges::none_of(holes, [&](const Vec3& hole) { return (p - hole).norm() <= radius; }))
+            points.push_back(p);
+    }
+    return cloud_from(std::move(points));
+}
+
+TEST(RegionGrow_HolesOf170PercentOfABin, StayOpenWhereverTheGridLies) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const PointCloud cloud = thinned(plate_with_holes(1.7 * 2, seed), 2);
+        const Said said = grown_and_said(cloud);
+        expect_consistent(said.result);
+        EXPECT_EQ(said.result.holes, 5u) << seed;
+        EXPECT_EQ(said.result.loops, 6u) << seed;
+        EXPECT_EQ(said.result.unused_points, 0u);
+        EXPECT_GE(said.known, 0.95 * static_cast<double>(cloud.size()));
+        EXPECT_THAT(said.warnings, IsEmpty());
+    }
+}
+
+TEST(RegionGrow_BinsThatContradictThePoints, CountForNothing) {
+    const PointCloud cloud = thinned(fibonacci_sphere(20000, 0.01), 0.1);
+    const Said plain = grown_and_said(without_columns(cloud));
+    EXPECT_EQ(plain.known, 0);
+    const auto expect_plain = [&](double size) {
+        Said said = grown_and_said(with_bins(cloud, [&](std::size_t) { return size; }));
+        EXPECT_EQ(said.known, 0) << size;
+        expect_the_same(said.result, plain.result);
+        return said.warnings;
+    };
+    // As from a scan in another unit.
+    EXPECT_THAT(expect_plain(1), ElementsAre(AllOf(HasSubstr("too dense for what their column `bin-size` says"),
+                                                   HasSubstr("not 1 u"), HasSubstr("bins of 0.1"))));
+    // The scan was sparser than its bins, or thinned otherwise afterwards: nothing to tell.
+    EXPECT_THAT(expect_plain(0.01), IsEmpty());
+    const double inf = std::numeric_limits<double>::infinity();
+    for (const double nothing : {0.0, -0.1, inf, std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_THAT(expect_plain(nothing), IsEmpty()) << nothing;
+}
+
+TEST(RegionGrow_Bins, AreToldPerPoint) {
+    const PointCloud cloud = thinned(fibonacci_sphere(20000, 0.01), 0.1);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Said said = grown_and_said(with_bins(cloud, [&](std::size_t row) { return row % 3 ? 0.1 : nan; }));
+    expect_consistent(said.result);
+    EXPECT_NEAR(said.known, 2.0 / 3 * static_cast<double>(cloud.size()), 0.02 * static_cast<double>(cloud.size()));
+    EXPECT_EQ(said.result.unused_points, 0u);
+    EXPECT_THAT(said.warnings, IsEmpty());
+}
+
+TEST(RegionGrow_BinsOfTwoNumbers, AreNotReadAndThatIsTold) {
+    PointCloud cloud = without_columns(thinned(fibonacci_sphere(5000), 0.1));
+    const Said plain = grown_and_said(cloud);
+    cloud.columns.add(Column("bin-size", 2, Buffer<double>(Array<double>(2 * cloud.size(), 0.1))));
+    const Said said = grown_and_said(cloud);
+    expect_the_same(said.result, plain.result);
+    EXPECT_THAT(said.warnings, ElementsAre(HasSubstr("not one number per point")));
+}
+
+TEST(RegionGrow_Bins, GiveWayToAGivenRadius) {
+    const PointCloud cloud = thinned(fibonacci_sphere(5000), 0.1);
+    RegionGrowParams params;
+    params.search_radius = Length(0.4);
+    expect_the_same(grown_and_said(cloud, params).result, grown_and_said(without_columns(cloud), params).result);
+}
+
+TEST(RegionGrow_Bins, AreInTheScansUnit) {
+    const PointCloud cloud = thinned(plate_with_holes(3.4, 2), 2);
+    const Said plain = grown_and_said(cloud);
+    for (const double factor : {0x1p-300, 0x1p-20, 0x1p300}) {
+        const Said said = grown_and_said(with_bins(moved(cloud, factor), [&](std::size_t) { return 2 * factor; }));
+        EXPECT_EQ(said.known, plain.known) << factor;
+        expect_the_same(said.result, plain.result);
+    }
+}
+
+TEST(RegionGrow_BinsReadBackFromAFile, AreTheSame) {
+    const TemporaryFolder folder;
+    const PointCloud cloud = thinned(plate_with_holes(3.4, 3), 2);
+    write_file(folder / "thinned.ply", std::make_shared<const PointCloud>(cloud));
+    const Said before = grown_and_said(cloud), after = grown_and_said(*read_points(folder / "thinned.ply"));
+    EXPECT_GT(after.known, 0);
+    EXPECT_EQ(after.known, before.known);
+    expect_the_same(after.result, before.result);
+}
+
+TEST(RegionGrow_ScansThinnedApartAndMerged, ReachAsFarAsEachOnesBins) {
+    // Left of 30 with bins of 1, right of it with bins of 2.
+    std::vector<Vec3> left, right;
+    for (const Vec3& p : plate_with_holes(3.4, 1).positions) (p.x() < 30 ? left : right).push_back(p);
+    const std::vector<std::shared_ptr<const PointCloud>> parts{
+        std::make_shared<const PointCloud>(thinned(cloud_from(left), 1)),
+        std::make_shared<const PointCloud>(thinned(cloud_from(right), 2))};
+    Context context;
+    const PointCloud merged = merge(parts, {}, context).points;
+    const Said said = grown_and_said(merged);
+    expect_consistent(said.result);
+    EXPECT_EQ(said.result.holes, 5u);
+    EXPECT_EQ(said.result.loops, 6u);
+    EXPECT_GE(said.known, 0.9 * static_cast<double>(merged.size()));
+}
+
+TEST(RegionGrow_ScansThinnedByAnOctree, KnowMostOfTheirLeaves) {
+    Array<Vec3> points;
+    for (const Vec3& p : random_sphere(100'000, 1).positions) points.push_back({4 * p.x(), p.y(), p.z()});
+    VoxelThinParams params;
+    params.tolerance = 0.03;
+    params.rule = VoxelThinParams::Rule::adaptive;
+    Context context;
+    const PointCloud cloud = voxel_thin({{}, std::move(points), {}}, params, context).points;
+    const Said said = grown_and_said(cloud);
+    expect_consistent(said.result);
+    EXPECT_EQ(said.result.loops, 0u);
+    EXPECT_EQ(said.result.components, 1u);
+    EXPECT_LE(1000 * said.result.unused_points, cloud.size());
+    EXPECT_GE(2 * said.known, static_cast<double>(cloud.size()));
+}
+
+}  // namespace
+}  // namespace scanmill
