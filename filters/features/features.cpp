@@ -2,25 +2,16 @@
 #include "features/features.hpp"
 
 #include "scanmill/filter/error.hpp"
+#include "scanmill/geometry/feature_doubts.hpp"
 
 namespace scanmill {
 
 namespace {
 
-std::string counted(std::size_t count, std::string_view thing) {
-    return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
-}
-
-void warn_of_doubts(const FeatureCounts& counts, const FeatureParams& params, Context& context) {
-    if (counts.without_area > 0)
-        context.warn(counted(counts.without_area, "triangle") + " without area: counted to a neighbour's plane");
-    if (counts.ambiguous > 0)
-        context.warn(counted(counts.ambiguous, "boundary loop") +
-                     " whose area does not tell outer boundaries from holes: the longest of a piece was taken for its "
-                     "outer boundary");
+void warn_of_short_creases(const FeatureCounts& counts, const FeatureParams& params, Context& context) {
     if (counts.dropped > 0)
-        context.warn(fmt::format("{} shorter than {:.6g} u: left out", counted(counts.dropped, "crease"),
-                                 params.min_length.value()));
+        context.warn(fmt::format("{} crease{} shorter than {:.6g} u: left out", counts.dropped,
+                                 counts.dropped == 1 ? "" : "s", params.min_length.value()));
 }
 
 }  // namespace
@@ -31,7 +22,8 @@ FeatureLines features(const TriangleMesh& mesh, const FeatureParams& params, Con
             .hint("`scanmill info` tells what a file holds");
     context.check_cancelled();
     FeatureLines lines = find_features(mesh, params, context.threads());
-    warn_of_doubts(lines.counts, params, context);
+    warn_of_doubts(lines.counts, context);
+    warn_of_short_creases(lines.counts, params, context);
 
     const auto metric = [&](std::string_view name, std::size_t count) {
         context.metric(name, static_cast<double>(count));

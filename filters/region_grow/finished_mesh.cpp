@@ -10,9 +10,6 @@ namespace scanmill::growing {
 
 namespace {
 
-/// As feature_lines.hpp counts angles as equal.
-constexpr double angle_tie = 1e-9;
-
 /// The third corner of the triangle beyond the edge. Triangles may have been turned over since they were stored.
 u32 opposite(const Surface& surface, u32 from, u32 to, u32 third) {
     const u32 left = surface.fans.left_of(from, to), right = surface.fans.right_of(from, to);
@@ -20,7 +17,8 @@ u32 opposite(const Surface& surface, u32 from, u32 to, u32 third) {
 }
 
 /// By places. Each edge is asked from its triangle whose third corner is the lower.
-std::vector<Edge> bent_edges(const Surface& surface, double limit) {
+std::vector<Edge> bent_edges(const Surface& surface, Angle sharp_angle) {
+    const double limit = sharp_angle.in_radians() + angle_tie;
     const double surely_below = std::cos(limit) + 1e-6;
     std::vector<Edge> edges;
     for (const Triangle& triangle : surface.triangles)
@@ -63,8 +61,7 @@ FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::s
     }
     mesh.triangles = std::move(triangles);
     Array<Edge> sharp;
-    for (const auto& [a, b] : bent_edges(surface, sharp_angle.in_radians() + angle_tie))
-        sharp.push_back(make_edge(vertex(a), vertex(b)));
+    for (const auto& [a, b] : bent_edges(surface, sharp_angle)) sharp.push_back(make_edge(vertex(a), vertex(b)));
     for (const PatchEdge& edge : patch_edges) sharp.push_back(make_edge(vertex(edge.from), vertex(edge.to)));
     std::ranges::sort(sharp);
     mesh.sharp_edges = std::move(sharp);

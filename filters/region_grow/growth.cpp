@@ -84,7 +84,7 @@ bool Growth::start(u32 place) {
 bool Growth::is_covered(u32 place, const Vec3& normal) const {
     const auto& p = surface_.positions;
     for (u32 other : surface_.neighbourhoods.of(place)) {
-        if (surface_.states[other] == PlaceState::unused) continue;
+        if (!surface_.is_used(other)) continue;
         const bool covered = surface_.fans.any(other, [&](const Fans::Pair& pair) {
             const Triangle triangle{other, pair.first, pair.last};
             const Vec3 facet = surface_.facet_normal(other, pair.first, pair.last);
@@ -102,7 +102,7 @@ bool Growth::form_seed(u32 place) {
     const Vec3& normal = surface_.normals[place];
     u32 second = nobody;
     for (u32 other : surface_.neighbourhoods.of(place))
-        if (surface_.states[other] == PlaceState::unused) {
+        if (surface_.states[other] == PlaceState::unused && !surface_.are_twins(place, other)) {
             second = other;
             break;
         }

@@ -42,6 +42,7 @@ SCANMILL_FILTER() {
         .metric("loops", Unit::count, "Boundary loops.", headline)
         .metric("holes", Unit::count, "Of these, such as go round a hole.")
         .metric("unused-points", Unit::count, "Distinct points in no triangle: noise, or too near others.", headline)
+        .metric("near-twins", Unit::count, "Of these, such as gave way to a near twin: scans laid over each other.")
         .metric("duplicates", Unit::count, "Points that repeat the place of an earlier one.")
         .metric("known-bins", Unit::count, "Distinct points whose search radius follows from the column `bin-size`.")
         .metric("patch-edges", Unit::count, "Border edges beyond which the surface goes on at too large an angle.")

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "region_grow/region_grow.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -11,15 +9,17 @@
 #include "region_grow/far_sides.hpp"
 #include "region_grow/finished_mesh.hpp"
 #include "region_grow/given_normals.hpp"
+#include "region_grow/near_twins.hpp"
 #include "region_grow/pieces.hpp"
 #include "region_grow/pinches.hpp"
+#include "region_grow/refusals.hpp"
+#include "region_grow/report.hpp"
 #include "region_grow/search_radii.hpp"
 #include "region_grow/seeds.hpp"
 #include "region_grow/small_holes.hpp"
 #include "region_grow/thinned_bins.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/feature_lines.hpp"
 
 namespace scanmill {
@@ -27,51 +27,6 @@ namespace scanmill {
 namespace {
 
 using namespace growing;
-
-constexpr const char* few_points_hint =
-    "look at the file with `scanmill info`; thin less coarsely if the scan was thinned";
-
-void require_in_range(const RegionGrowParams& params, std::size_t points) {
-    const double least = params.min_angle.in_degrees(), bend = params.max_normal_angle.in_degrees();
-    if (!(least >= 0 && least < 60))
-        throw Error("min-angle is {} degrees; it must be at least 0 and below 60, what no triangle exceeds", least);
-    if (!(bend > 0 && bend <= 180))
-        throw Error("max-normal-angle is {} degrees; it must be above 0 and at most 180", bend);
-    if (params.search_radius) {
-        const double radius = params.search_radius->value();
-        if (!(radius > 0 && std::isfinite(radius))) throw Error("search-radius is {}; it must be above 0", radius);
-    }
-    if (params.close_holes > 100) throw Error("close-holes is {}; at most 100 edges are closed", params.close_holes);
-    if (params.start && *params.start >= points)
-        throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points);
-}
-
-void require_size(const PointCloud& cloud) {
-    const double size = bounding_box(cloud.positions.span()).diagonal();
-    if (size == 0 || (size > 1e-100 && size < 1e100)) return;
-    const std::string actual =
-        std::isfinite(size) ? fmt::format("{:.3g} {}", size, symbol(cloud.frame.unit)) : std::string("beyond 1.7e308");
-    throw Error("needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {}",
-                actual)
-        .hint("remove stray points, or check that the columns x, y and z are read as such; scale the scan if they are");
-}
-
-/// Three places off one line, by the two farthest from the first and from the line.
-void require_area(const Samples& samples, std::size_t points) {
-    if (samples.size() < 3)
-        throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", samples.size(), points)
-            .hint(few_points_hint);
-    const auto& p = samples.positions;
-    const auto farthest = [&](const auto& distance) { return *std::ranges::max_element(p, {}, distance); };
-    const Vec3 end = farthest([&](const Vec3& x) { return (x - p[0]).squaredNorm(); });
-    const Vec3 along = (end - p[0]).normalized();
-    const auto off_line = [&](const Vec3& x) { return (x - p[0]).cross(along).norm(); };
-    const double off = off_line(farthest(off_line));
-    if (off <= 1e-9 * (end - p[0]).norm())
-        throw Error("all {} distinct points lie on one line, to within {:.2g} u; a surface needs some off it",
-                    samples.size(), off / samples.scale)
-            .hint("scan more than a single profile, or check that the columns x, y and z are read as such");
-}
 
 /// The given limits and those that parked edges are retried under.
 std::vector<Limits> limits_of(const RegionGrowParams& params) {
@@ -98,14 +53,15 @@ std::vector<Limits> limits_of(const RegionGrowParams& params) {
 }
 
 Array<double> search_radii(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
-                           const Array<Vec3>& normals, const RegionGrowParams& params, Context& context) {
+                           const Array<Vec3>& normals, std::span<const u8> twins, const RegionGrowParams& params,
+                           Context& context) {
     if (params.search_radius) {
         Array<double> radii(samples.size());
         std::ranges::fill(radii, params.search_radius->value() * samples.scale);
         return radii;
     }
     const Array<double> thinned = thinned_bins(cloud, samples, context);
-    SearchRadii found = automatic_radii(samples, neighbourhoods, normals, thinned, context.threads());
+    SearchRadii found = automatic_radii(samples, neighbourhoods, normals, twins, thinned, context.threads());
     tell_contradiction(samples, thinned, found, context);
     context.metric("known-bins", static_cast<double>(found.known));
     return std::move(found.radii);
@@ -117,58 +73,11 @@ std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std
     return static_cast<u32>(std::ranges::find(samples.positions, wanted) - samples.positions.begin());
 }
 
-[[noreturn]] void refuse_start(u32 row) {
-    throw Error("no triangle can start at row {}: no two other points near it make one within the limits", row)
-        .hint("start at another point, on a flat and evenly sampled part, or leave start to `auto`");
-}
-
-[[noreturn]] void refuse_all(const Samples& samples, const RegionGrowParams& params) {
-    const std::string radius = params.search_radius ? fmt::format("search-radius {} u", params.search_radius->value())
-                                                    : std::string("the automatic search-radius");
-    throw Error("no three of the {} distinct points make a triangle with angles of at least {} and {}", samples.size(),
-                params.min_angle.text(), radius)
-        .hint("enlarge search-radius, or lessen min-angle");
-}
-
-void report(const RegionGrowResult& result, std::size_t places, Context& context) {
-    const auto count = [&](std::string_view name, std::size_t value) {
-        context.metric(name, static_cast<double>(value));
-    };
-    count("triangles", result.mesh.triangles.size());
-    count("components", result.components);
-    count("loops", result.loops);
-    count("holes", result.holes);
-    count("unused-points", result.unused_points);
-    count("duplicates", result.duplicates);
-    count("patch-edges", result.patch_edges);
-    count("creases", result.creases);
-    count("corners", result.corners);
-    count("closed-holes", result.closed_holes);
-    count("removed-triangles", result.removed_triangles);
-    count("ambiguous", result.ambiguous_loops);
-    count("without-area", result.triangles_without_area);
-    count("relaxed-triangles", static_cast<std::size_t>(std::ranges::count_if(
-                                   result.passes, [](u8 pass) { return pass > 0 && pass < closing_pass; })));
-    if (200 * result.unused_points > places)
-        context.warn(
-            fmt::format("{} of {} distinct points are in no triangle; thin the scan, or remove its noise first",
-                        result.unused_points, places));
-    if (result.ambiguous_loops > 0)
-        context.warn(
-            fmt::format("{} of {} boundary loops have no area that tells outer boundaries from holes: the longest of a "
-                        "piece was taken for its outer boundary",
-                        result.ambiguous_loops, result.loops));
-    if (result.triangles_without_area > 0)
-        context.warn(fmt::format("{} of {} triangles are without area: counted to a neighbour's plane",
-                                 result.triangles_without_area, result.mesh.triangles.size()));
-}
-
 }  // namespace
 
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context) {
     require_finite(cloud.positions.span());
     require_in_range(params, cloud.size());
-    if (cloud.size() == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(few_points_hint);
     require_size(cloud);
     const Samples samples = distinct_samples(cloud.positions.span());
     require_area(samples, cloud.size());
@@ -178,8 +87,9 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     context.progress(0.3);
     PointNormals normals = principal_normals(samples, neighbourhoods, context.threads());
     const bool oriented = take_given_normals(cloud, samples, neighbourhoods, normals, context);
-    Array<double> radii = search_radii(cloud, samples, neighbourhoods, normals.directions, params, context);
-    Surface surface(samples, neighbourhoods, std::move(normals), std::move(radii), oriented);
+    Array<u8> twins = count_near_twins(samples, neighbourhoods, context.threads());
+    Array<double> radii = search_radii(cloud, samples, neighbourhoods, normals.directions, twins, params, context);
+    Surface surface(samples, neighbourhoods, std::move(normals), std::move(radii), std::move(twins), oriented);
     context.progress(0.4);
 
     const std::vector<Limits> limits = limits_of(params);
@@ -187,7 +97,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     Growth growth(surface, score, limits, context);
     Array<u32> groups;
     if (!grow_all_pieces(surface, growth, place_of(samples, cloud, params.start), groups)) refuse_start(*params.start);
-    if (surface.triangles.empty()) refuse_all(samples, params);
+    if (surface.triangles.empty()) refuse_all(surface, params, cloud.frame.unit, context.threads());
     context.progress(0.9);
 
     RegionGrowResult result;
@@ -219,7 +129,8 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.components = pieces.count;
     result.duplicates = samples.duplicates;
     result.unused_points = samples.size() - result.rows.size();
-    report(result, samples.size(), context);
+    result.near_twins = static_cast<std::size_t>(std::ranges::count(surface.states, PlaceState::twin));
+    report(result, lines.counts, surface, context);
     context.progress(1);
     return result;
 }

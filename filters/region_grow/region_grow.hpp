@@ -56,6 +56,8 @@ struct RegionGrowResult {
     std::size_t loops = 0, holes = 0;
     /// Rows without a vertex of their own: repeats of an earlier row, and places that no triangle reached.
     std::size_t duplicates = 0, unused_points = 0;
+    /// Of the unused points those that gave way to one much nearer than the rest, where most points have such twins.
+    std::size_t near_twins = 0;
     /// Border edges beyond which a place of the front was turned down for the angle to the triangle there alone.
     std::size_t patch_edges = 0;
     std::size_t creases = 0, corners = 0, closed_holes = 0;
@@ -70,11 +72,13 @@ struct RegionGrowResult {
 /// Points should be thinned: of even density, at least locally. A column `normal` (three numbers per row) is used as it
 /// is, sign and all; a normal that is zero or not finite is replaced by the principal one. Without the column normals
 /// are principal directions of the 12 nearest neighbours. A column `bin-size` (a number per row, in the scan's unit;
-/// what is not above 0 or not finite counts as unknown) tells the bins of a thinning.
+/// what is not above 0 or not finite counts as unknown) tells the bins of a thinning. Where most points have near
+/// twins (see near_twins.hpp), as scans laid over each other do, one of each is used.
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, a
-/// search radius too small for any triangle, a cloud beyond 1e-100 to 1e100 u in size.
+/// search radius too small for any triangle (or layers so near that none is flat), a cloud beyond 1e-100 to 1e100 u in
+/// size.
 ///
 /// Post: an oriented manifold: every edge in one triangle or in two that pass it in opposite directions, every vertex's
 /// triangles one fan. No vertex twice in one place. Triangles round a vertex do not overlap as seen along its normal.

@@ -19,11 +19,11 @@ constexpr double least_share = 0.4, largest_share = 1.15;
 constexpr std::size_t chunk = 1 << 12;
 
 /// The bin whose thinning would put the place's last counted neighbour where it is, of one cube per squared bin.
-double bin_at(const Samples& samples, const Neighbourhoods& neighbourhoods, u32 place) {
+double bin_at(const Samples& samples, const Neighbourhoods& neighbourhoods, u32 twins, u32 place) {
     const auto neighbours = neighbourhoods.of(place);
     const std::size_t count = std::min(counted_neighbours, neighbours.size());
     const double distance = (samples.positions[neighbours[count - 1]] - samples.positions[place]).norm();
-    return distance * std::sqrt(std::numbers::pi / static_cast<double>(count));
+    return distance * std::sqrt(std::numbers::pi * (1 + twins) / static_cast<double>(count));
 }
 
 /// How many cubes per squared bin a surface of this normal meets.
@@ -37,13 +37,15 @@ double median(std::vector<double>& values) {
 
 class Bins {
 public:
-    Bins(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals, unsigned threads)
+    Bins(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals,
+         std::span<const u8> near_twins, unsigned threads)
         : neighbourhoods_(neighbourhoods),
           normals_(normals),
           bins_(samples.size()) {
         for_each_chunk(threads, bins_.size(), chunk, [&](std::size_t begin, std::size_t end) {
             for (std::size_t place = begin; place < end; ++place)
-                bins_[place] = bin_at(samples, neighbourhoods, static_cast<u32>(place));
+                bins_[place] = bin_at(samples, neighbourhoods, near_twins.empty() ? u8(0) : near_twins[place],
+                                      static_cast<u32>(place));
         });
     }
 
@@ -69,8 +71,8 @@ private:
 }  // namespace
 
 SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals,
-                            std::span<const double> thinned, unsigned threads) {
-    const Bins bins(samples, neighbourhoods, normals, threads);
+                            std::span<const u8> near_twins, std::span<const double> thinned, unsigned threads) {
+    const Bins bins(samples, neighbourhoods, normals, near_twins, threads);
     SearchRadii result;
     result.radii.resize(samples.size());
     std::vector<std::size_t> known((samples.size() + chunk - 1) / chunk, 0);
@@ -87,6 +89,15 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
     });
     for (const std::size_t places : known) result.known += places;
     return result;
+}
+
+double bins_as_dense(const Surface& surface, unsigned threads) {
+    Array<double> radii =
+        automatic_radii(surface.samples, surface.neighbourhoods, surface.normals, surface.near_twins, {}, threads)
+            .radii;
+    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+    std::nth_element(radii.begin(), middle, radii.end());
+    return *middle / (2 * std::numbers::sqrt3) / surface.samples.scale;
 }
 
 }  // namespace scanmill::growing

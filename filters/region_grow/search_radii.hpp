@@ -3,7 +3,7 @@
 /// How far a triangle may reach, where nobody said it: from the bins that the places were thinned with, or from how
 /// dense they are.
 
-#include "region_grow/neighbourhoods.hpp"
+#include "region_grow/surface.hpp"
 
 namespace scanmill::growing {
 
@@ -24,8 +24,14 @@ struct SearchRadii {
 /// B²: 1 along them, √3 at most. The median of what that makes of the neighbours' densities is 0.95 to 1.15 of the bin
 /// where the scan was dense (at rims and corners, too), down to 0.6 of it where the scan was noisy, less where thinned
 /// scans were merged. From 0.4 to 1.15 they agree. Where points are sparser the scan itself was, or some were lost;
-/// where they are denser the bins are not theirs. Cost: linear.
+/// where they are denser the bins are not theirs.
+///
+/// `near_twins`: as count_near_twins() gives them; a place and its twins count as one. Cost: linear.
 SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals,
-                            std::span<const double> thinned, unsigned threads);
+                            std::span<const u8> near_twins, std::span<const double> thinned, unsigned threads);
+
+/// The bin size, in the scan's unit, whose thinning would leave points as dense as they are at the middle place, near
+/// twins counted once.
+double bins_as_dense(const Surface& surface, unsigned threads);
 
 }  // namespace scanmill::growing

@@ -21,7 +21,7 @@ public:
         std::vector<u32> turned;
         for (u32 place : unused)
             for (u32 other : surface_.neighbourhoods.of(place))
-                if (surface_.states[other] != PlaceState::unused && waits(place)) {
+                if (surface_.is_used(other) && waits(place)) {
                     turn(other, place);
                     turned.push_back(place);
                 }

@@ -8,13 +8,14 @@
 namespace scanmill::growing {
 
 Surface::Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radii,
-                 bool are_oriented)
+                 Array<u8> twins, bool are_oriented)
     : samples(from),
       neighbourhoods(near),
       positions(from.positions),
       normals(std::move(facing.directions)),
       roughness(std::move(facing.roughness)),
       search_radius(std::move(search_radii)),
+      near_twins(std::move(twins)),
       oriented(are_oriented),
       fans(from.size()),
       states(from.size()) {
@@ -27,6 +28,14 @@ Vec3 Surface::facet_normal(u32 a, u32 b, u32 c) const {
     return (positions[b] - positions[a]).cross(positions[c] - positions[a]).normalized();
 }
 
+bool Surface::are_twins(u32 a, u32 b) const {
+    const auto has = [&](u32 one, u32 other) {
+        const auto twins = twins_of(one);
+        return std::ranges::find(twins, other) != twins.end();
+    };
+    return has(a, b) || has(b, a);
+}
+
 void Surface::add(const Triangle& triangle, Pass pass) {
     const auto& [a, b, c] = triangle;
     assert(fans.left_of(a, b) == nobody && fans.left_of(b, c) == nobody && fans.left_of(c, a) == nobody);
@@ -35,6 +44,10 @@ void Surface::add(const Triangle& triangle, Pass pass) {
     triangles.push_back(triangle);
     passes.push_back(pass);
     for (u32 corner : triangle) {
+        if (states[corner] == PlaceState::unused)
+            for (u32 twin : twins_of(corner))
+                if (states[twin] == PlaceState::unused && std::ranges::find(triangle, twin) == triangle.end())
+                    states[twin] = PlaceState::twin;
         if (states[corner] == PlaceState::unused && !oriented && normals[corner].dot(normal) < 0)
             normals[corner] = -normals[corner];
         states[corner] = fans.closed(corner) ? PlaceState::interior : PlaceState::front;

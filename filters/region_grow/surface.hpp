@@ -8,7 +8,12 @@
 
 namespace scanmill::growing {
 
-enum class PlaceState : u8 { unused, front, interior };
+enum class PlaceState : u8 {
+    unused,
+    front,
+    interior,
+    twin  ///< on no triangle, and will be on none: a near twin is
+};
 
 /// Which limits a triangle was formed under: 0 the given ones, 1 to 3 relaxed ones, 4 none (it closed a
 /// small hole).
@@ -16,7 +21,7 @@ using Pass = u8;
 
 struct Surface {
     Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radius,
-            bool oriented);
+            Array<u8> near_twins, bool oriented);
 
     const Samples& samples;
     const Neighbourhoods& neighbourhoods;
@@ -26,6 +31,8 @@ struct Surface {
     Array<float> roughness;
     /// Per place, in the samples' scale.
     Array<double> search_radius;
+    /// As count_near_twins() gives them.
+    Array<u8> near_twins;
     /// Normals came with the cloud: a triangle must agree with their sign.
     bool oriented;
 
@@ -34,6 +41,14 @@ struct Surface {
     Array<Triangle> triangles;
     Array<Pass> passes;
 
+    bool is_used(u32 place) const {
+        return states[place] == PlaceState::front || states[place] == PlaceState::interior;
+    }
+    std::span<const u32> twins_of(u32 place) const {
+        return neighbourhoods.of(place).first(near_twins.empty() ? 0 : near_twins[place]);
+    }
+    /// Either is among the other's.
+    bool are_twins(u32 a, u32 b) const;
     /// Whether from → to bounds the surface: a triangle on its left and none on its right.
     bool is_border(u32 from, u32 to) const {
         return fans.left_of(from, to) != nobody && fans.right_of(from, to) == nobody;
@@ -41,7 +56,8 @@ struct Surface {
     /// The unit normal of the triangle left of a → b whose third corner is c.
     Vec3 facet_normal(u32 a, u32 b, u32 c) const;
 
-    /// Adds a → b → c. Pre: none of its three directed edges has a triangle.
+    /// Adds a → b → c; unused near twins of its corners will stay so. Pre: none of its three directed edges has a
+    /// triangle.
     void add(const Triangle& triangle, Pass pass);
 };
 

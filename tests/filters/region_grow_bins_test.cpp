@@ -68,7 +68,7 @@ double bin_in_the_middle(double thinned_with, const Vec3& normal) {
     const growing::Neighbourhoods neighbourhoods(samples, 1);
     const Array<Vec3> normals(samples.size(), normal);
     const Array<double> thinned(samples.size(), thinned_with * samples.scale);
-    const growing::SearchRadii found = growing::automatic_radii(samples, neighbourhoods, normals, thinned, 1);
+    const growing::SearchRadii found = growing::automatic_radii(samples, neighbourhoods, normals, {}, thinned, 1);
     const auto middle = std::ranges::find(samples.positions, Vec3(Vec3(20, 20, 0) * samples.scale));
     return found.radii[static_cast<std::size_t>(middle - samples.positions.begin())] / samples.scale /
            (2 * std::numbers::sqrt3);
@@ -143,6 +143,7 @@ TEST(RegionGrow_Bins, AreToldPerPoint) {
     const Said said = grown_and_said(with_bins(cloud, [&](std::size_t row) { return row % 3 ? 0.1 : nan; }));
     expect_consistent(said.result);
     EXPECT_NEAR(said.known, 2.0 / 3 * static_cast<double>(cloud.size()), 0.02 * static_cast<double>(cloud.size()));
+    EXPECT_EQ(said.result.near_twins, 0u);
     EXPECT_EQ(said.result.unused_points, 0u);
     EXPECT_THAT(said.warnings, IsEmpty());
 }

@@ -30,4 +30,8 @@ FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> twins,
 /// 0 when one is zero.
 double angle_between(const Vec3& a, const Vec3& b);
 
+/// Angles between normals that differ from a limit by no more than this, in radians, count as equal to it: what
+/// rounding does to the sides of a regular prism.
+inline constexpr double angle_tie = 1e-9;
+
 }  // namespace scanmill

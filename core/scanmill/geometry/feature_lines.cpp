@@ -18,9 +18,6 @@ namespace scanmill {
 
 namespace {
 
-/// Angles that differ by less are equal: rounding must not decide for every edge of a regular prism on its own.
-constexpr double angle_tie = 1e-9;
-
 void require_sound(const FeatureParams& params) {
     const auto require_angle = [](const char* name, const Angle& angle) {
         if (!(angle.in_radians() >= 0 && angle.in_degrees() <= 180))

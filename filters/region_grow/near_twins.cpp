@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "region_grow/near_twins.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "scanmill/filter/parallel.hpp"
+
+namespace scanmill::growing {
+
+namespace {
+
+constexpr std::size_t most_twins = 3;
+/// Of the distance to the nearest other place. Of points at random a quarter are as near to one of their nearest, of a
+/// thinned scan's one in forty.
+constexpr double near_share = 0.45;
+/// Of a place and its neighbours, what makes most of them.
+constexpr std::size_t part = 10, of_places = 17;
+constexpr std::size_t chunk = 1 << 12;
+
+/// Where a place's twins end and the others begin; 0 where it has none.
+struct Gap {
+    double twins = 0, others = 0;
+};
+
+Gap widest_gap(const Samples& samples, const Neighbourhoods& neighbourhoods, u32 place) {
+    const auto near = neighbourhoods.of(place);
+    const auto distance = [&](std::size_t i) { return (samples.positions[near[i]] - samples.positions[place]).norm(); };
+    Gap widest;
+    double least = near_share;
+    for (std::size_t count = 1; count <= most_twins && count < near.size(); ++count) {
+        const Gap gap{distance(count - 1), distance(count)};
+        if (gap.twins >= least * gap.others) continue;
+        least = gap.twins / gap.others;
+        widest = gap;
+    }
+    return widest;
+}
+
+class Twins {
+public:
+    Twins(const Samples& samples, const Neighbourhoods& neighbourhoods, unsigned threads)
+        : samples_(samples),
+          neighbourhoods_(neighbourhoods),
+          gaps_(samples.size()),
+          counts_(samples.size()) {
+        for_each_chunk(threads, gaps_.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t place = begin; place < end; ++place)
+                gaps_[place] = widest_gap(samples, neighbourhoods, static_cast<u32>(place));
+        });
+        Array<u8> among_twins(counts_.size());
+        for_each_chunk(threads, counts_.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t place = begin; place < end; ++place)
+                among_twins[place] = most(static_cast<u32>(place), [&](u32 other) { return gaps_[other].twins > 0; });
+        });
+        for_each_chunk(threads, counts_.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            std::vector<Gap> room;
+            for (std::size_t i = begin; i < end; ++i) {
+                const u32 place = static_cast<u32>(i);
+                const bool laid_over = most(place, [&](u32 other) { return among_twins[other] > 0; });
+                counts_[i] = laid_over ? count(place, room) : u8(0);
+            }
+        });
+    }
+    Array<u8> counts() && { return std::move(counts_); }
+
+private:
+    /// Whether most of the place and its neighbours are such.
+    template <class Such>
+    bool most(u32 place, const Such& such) const {
+        const auto near = neighbourhoods_.of(place);
+        const auto number = static_cast<std::size_t>(std::ranges::count_if(near, such)) + (such(place) ? 1 : 0);
+        return of_places * number >= part * (near.size() + 1);
+    }
+
+    u8 count(u32 place, std::vector<Gap>& gaps) const {
+        const auto near = neighbourhoods_.of(place);
+        gaps.clear();
+        if (gaps_[place].twins > 0) gaps.push_back(gaps_[place]);
+        for (u32 other : near)
+            if (gaps_[other].twins > 0) gaps.push_back(gaps_[other]);
+        if (gaps.empty()) return 0;
+        const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+        std::ranges::nth_element(gaps, middle, {}, &Gap::twins);
+        const double twins = middle->twins;
+        std::ranges::nth_element(gaps, middle, {}, &Gap::others);
+        const double radius = std::max(gaps_[place].twins, std::min(1.6 * twins, 0.5 * middle->others));
+        std::size_t number = 0;
+        while (number < near.size() && (samples_.positions[near[number]] - samples_.positions[place]).norm() <= radius)
+            ++number;
+        return static_cast<u8>(number);
+    }
+
+    const Samples& samples_;
+    const Neighbourhoods& neighbourhoods_;
+    Array<Gap> gaps_;
+    Array<u8> counts_;
+};
+
+}  // namespace
+
+Array<u8> count_near_twins(const Samples& samples, const Neighbourhoods& neighbourhoods, unsigned threads) {
+    Array<u8> counts = Twins(samples, neighbourhoods, threads).counts();
+    if (std::ranges::all_of(counts, [](u8 count) { return count == 0; })) return {};
+    return counts;
+}
+
+}  // namespace scanmill::growing

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "region_grow/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "region_grow/search_radii.hpp"
+#include "region_grow/small_holes.hpp"
+#include "scanmill/geometry/feature_doubts.hpp"
+
+namespace scanmill::growing {
+
+namespace {
+
+void count_all(const RegionGrowResult& result, Context& context) {
+    const auto count = [&](std::string_view name, std::size_t value) {
+        context.metric(name, static_cast<double>(value));
+    };
+    count("triangles", result.mesh.triangles.size());
+    count("components", result.components);
+    count("loops", result.loops);
+    count("holes", result.holes);
+    count("unused-points", result.unused_points);
+    count("near-twins", result.near_twins);
+    count("duplicates", result.duplicates);
+    count("patch-edges", result.patch_edges);
+    count("creases", result.creases);
+    count("corners", result.corners);
+    count("closed-holes", result.closed_holes);
+    count("removed-triangles", result.removed_triangles);
+    count("ambiguous", result.ambiguous_loops);
+    count("without-area", result.triangles_without_area);
+    count("relaxed-triangles", static_cast<std::size_t>(std::ranges::count_if(
+                                   result.passes, [](u8 pass) { return pass > 0 && pass < closing_pass; })));
+}
+
+void warn_of_unused(const RegionGrowResult& result, const Surface& surface, Context& context) {
+    const std::size_t places = surface.samples.size(), twins = result.near_twins;
+    const std::size_t unused = result.unused_points - twins;
+    if (200 * twins > places)
+        context.warn(
+            fmt::format("{} of {} distinct points were left out as near twins of others, as of scans laid over each "
+                        "other; voxel-thin with bins of {:.3g} {} takes one of each by place",
+                        twins, places, bins_as_dense(surface, context.threads()), symbol(result.mesh.frame.unit)));
+    if (200 * unused > places)
+        context.warn(fmt::format(
+            "{} of {} distinct points are in no triangle; thin the scan, or remove its noise first", unused, places));
+}
+
+}  // namespace
+
+void report(const RegionGrowResult& result, const FeatureCounts& lines, const Surface& surface, Context& context) {
+    count_all(result, context);
+    warn_of_unused(result, surface, context);
+    warn_of_doubts(lines, context);
+}
+
+}  // namespace scanmill::growing

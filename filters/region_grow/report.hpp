@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What the filter says of its result: metrics, and warnings of what the result does not show.
+
+#include "region_grow/region_grow.hpp"
+#include "region_grow/surface.hpp"
+#include "scanmill/geometry/feature_lines.hpp"
+
+namespace scanmill::growing {
+
+/// Metrics as plugin.cpp declares them, except `known-bins`. Warns when more than half a percent of the places gave way
+/// to near twins, and when as many more are unused, and of what find_features() could not tell.
+void report(const RegionGrowResult& result, const FeatureCounts& lines, const Surface& surface, Context& context);
+
+}  // namespace scanmill::growing
