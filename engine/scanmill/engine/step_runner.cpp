@@ -116,8 +116,7 @@ Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDe
         const Ready ready = prepare(context);
         report.resolved = ready.resolved.values;
         if (std::optional<Outputs> known = recall(report.resolved, report)) return std::move(*known);
-        Outputs outputs =
-            with_reasons(ready.resolved.left, [&] { return ready.run(filter(), ready.resolved.values); });
+        Outputs outputs = with_reasons(ready.resolved.left, [&] { return ready.run(filter(), ready.resolved.values); });
         require_whole(outputs, step.spec);
         keep_findings();
         return outputs;
