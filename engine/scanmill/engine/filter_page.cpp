@@ -167,8 +167,8 @@ std::string filter_page(const FilterSpec& spec, const FilterLibrary& library) {
 std::string stream_text(const FilterSpec& spec) {
     std::string given;
     for (const std::string& name : spec.streams->given) given += (given.empty() ? "" : " and ") + name;
-    return fmt::format("{} a scan that no other step needs whole is read piece by piece and never in memory.",
-                       given.empty() ? "As the first step," : fmt::format("With {} given", given));
+    return fmt::format("{} a scan that no other step needs whole is read piece by piece, and never is in memory.",
+                       given.empty() ? "As the first step," : fmt::format("With {} given,", given));
 }
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }
