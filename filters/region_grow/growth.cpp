@@ -27,15 +27,16 @@ void Growth::add(const Triangle& triangle, Pass pass) {
                                                     (2.0 * static_cast<double>(surface_.samples.size()))));
 }
 
-SuitablePoint Growth::look(DirectedEdge edge, const Limits& limits, bool far) {
+SuitablePoint Growth::look(DirectedEdge edge, const Limits& limits, bool far, bool in_space) {
     // Also where edges find nothing and no triangle comes of it. With a generous search radius a look takes long.
     if (looks_++ % 64 == 0) context_.check_cancelled();
-    return chooser_.choose(edge.from, edge.to, limits, far);
+    return chooser_.choose(edge.from, edge.to, limits, far, in_space);
 }
 
 void Growth::continue_at(DirectedEdge edge, std::size_t line, const Limits& limits) {
     if (surface_.fans.right_of(edge.from, edge.to) != nobody) return;  // continued from the other side
-    const SuitablePoint found = look(edge, limits, line == 2);
+    // Of the first line only plain ones are added: there the surface is as good as in its plane.
+    const SuitablePoint found = look(edge, limits, line == 2, line > 0);
     if (line < 2 && found.uncovered)
         waiting_[2].push_back(edge);
     else if (found.point == nobody)
@@ -62,7 +63,7 @@ void Growth::retry(std::size_t round) {
         auto [edge, tried] = parked_[i];
         for (; tried <= round; ++tried) {
             if (surface_.fans.right_of(edge.from, edge.to) != nobody) break;
-            const SuitablePoint found = look(edge, limits_[tried], true);
+            const SuitablePoint found = look(edge, limits_[tried], true, true);
             if (found.point == nobody) continue;
             add({edge.from, found.point, edge.to}, limits_[tried].pass);
             grow(limits_.front());
@@ -108,7 +109,8 @@ bool Growth::form_seed(u32 place) {
         }
     if (second == nobody || is_covered(second, normal)) return false;
     const u32 third = chooser_.choose_third(place, second, limits_.front());
-    if (third == nobody || is_covered(third, normal)) return false;
+    if (third == nobody || is_covered(third, normal) || chooser_.passes_through_others({place, second, third}))
+        return false;
     const Vec3 up = surface_.facet_normal(place, second, third);
     add(up.dot(normal) > 0 ? Triangle{place, second, third} : Triangle{place, third, second}, 0);
     return true;

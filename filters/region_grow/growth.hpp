@@ -38,7 +38,7 @@ private:
     void add(const Triangle& triangle, Pass pass);
     void grow(const Limits& limits);
     /// What the edge would take; now and then asks whether to go on at all.
-    SuitablePoint look(DirectedEdge edge, const Limits& limits, bool far);
+    SuitablePoint look(DirectedEdge edge, const Limits& limits, bool far, bool in_space);
     /// Looks at one edge; adds a triangle when it may be added in this line.
     void continue_at(DirectedEdge edge, std::size_t line, const Limits& limits);
     /// Tries the parked edges, and those parked meanwhile, up to limits_[round].

@@ -41,11 +41,6 @@ std::vector<Fan> fans_at(const Surface& surface, u32 vertex) {
     return fans;
 }
 
-Triangle lowest_first(Triangle triangle) {
-    std::ranges::rotate(triangle, std::ranges::min_element(triangle));
-    return triangle;
-}
-
 }  // namespace
 
 std::size_t remove_pinches(Surface& surface) {
@@ -65,25 +60,19 @@ std::size_t remove_pinches(Surface& surface) {
             for (const auto& [first, last] : *fan) {
                 const Triangle triangle{vertex, first, last};
                 surface.fans.remove(triangle);
-                removed.push_back(lowest_first(triangle));
+                removed.push_back(triangle);
                 for (u32 corner : triangle) {
-                    surface.states[corner] = surface.fans.empty(corner) ? PlaceState::unused : PlaceState::front;
+                    surface.states[corner] = surface.fans.empty(corner)    ? PlaceState::unused
+                                             : surface.fans.closed(corner) ? PlaceState::interior
+                                                                           : PlaceState::front;
                     suspects.push_back(corner);
                 }
             }
         }
     }
-    if (removed.empty()) return 0;
-    std::ranges::sort(removed);
-    std::size_t kept = 0;
-    for (std::size_t row = 0; row < surface.triangles.size(); ++row) {
-        if (std::ranges::binary_search(removed, lowest_first(surface.triangles[row]))) continue;
-        surface.triangles[kept] = surface.triangles[row];
-        surface.passes[kept++] = surface.passes[row];
-    }
-    surface.triangles.resize(kept);
-    surface.passes.resize(kept);
-    return removed.size();
+    const std::size_t count = removed.size();
+    surface.drop(std::move(removed));
+    return count;
 }
 
 }  // namespace scanmill::growing

@@ -9,6 +9,7 @@
 #include "region_grow/far_sides.hpp"
 #include "region_grow/finished_mesh.hpp"
 #include "region_grow/given_normals.hpp"
+#include "region_grow/narrow_holes.hpp"
 #include "region_grow/near_twins.hpp"
 #include "region_grow/pieces.hpp"
 #include "region_grow/pinches.hpp"
@@ -101,10 +102,16 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     context.progress(0.9);
 
     RegionGrowResult result;
-    result.closed_holes = close_small_holes(surface, params.close_holes);
-    result.removed_triangles = remove_pinches(surface);
-    // What was removed may have left a small hole; at single fans closing makes no new pinch.
-    result.closed_holes += close_small_holes(surface, params.close_holes);
+    if (params.close_holes >= 3) {
+        result.closed_holes = close_small_holes(surface, params.close_holes);
+        result.removed_triangles = remove_pinches(surface);
+        // What was removed may have left a small hole; at single fans closing makes no new pinch.
+        const NarrowHoles narrow =
+            close_narrow_holes(surface, largest_circle * limits.back().reach, params.close_holes);
+        result.closed_holes += narrow.closed;
+        result.removed_triangles += narrow.replaced;
+    } else
+        result.removed_triangles = remove_pinches(surface);
     PointChooser chooser(surface, score);
     const std::vector<PatchEdge> patch_edges = find_patch_edges(surface, chooser, limits.front());
     const Pieces pieces = find_pieces(surface);

@@ -16,9 +16,6 @@ namespace {
 /// Scores no farther apart than this, relative to 1 or to themselves, are equal: what rounding does to points of a
 /// grid.
 constexpr double same_score = 1e-9;
-/// Of the search radius: how large an empty circle may be before it is a hole of the surface. Points thinned with bins
-/// of edge B leave circles of 1.1 B at most; the search radius is 2 √3 B.
-constexpr double largest_circle = 1.0 / 3;
 
 /// Of the neighbours' variance, across their plane: above the first a point's normal tells less, at an edge; above the
 /// second nothing, at a tip. At an edge of 90 degrees it is a tenth; noise of 0.3 spacings makes 0.03.
@@ -182,7 +179,7 @@ void PointChooser::put_in_order() {
     std::ranges::make_heap(candidates_, std::greater(), &Candidate::score);
 }
 
-SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool far) {
+SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool far, bool in_space) {
     const Vec3 joined = surface_.facet_normal(from, to, surface_.fans.left_of(from, to));
     collect(from, to, search_radius(from, to) * limits.reach, far);
     rate(from, to, joined, limits);
@@ -190,7 +187,8 @@ SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool 
     const double half = (surface_.positions[to] - surface_.positions[from]).norm() / 2;
     while (has_candidates()) {
         const Candidate candidate = take_best();
-        if (!is_suitable(from, to, candidate, limits, false)) {
+        if (!is_suitable(from, to, candidate, limits, false) ||
+            (in_space && passes_through_others({from, candidate.point, to}))) {
             turned_down_.push_back(candidate);
             continue;
         }
@@ -229,6 +227,11 @@ u32 PointChooser::beyond_sharp_edge(u32 from, u32 to, const Limits& limits) {
         turned_down_.push_back(candidate);
     }
     return nobody;
+}
+
+bool PointChooser::passes_through_others(const Triangle& triangle) {
+    near_triangles_.gather_near(surface_, triangle);
+    return near_triangles_.meet(surface_, triangle);
 }
 
 bool PointChooser::is_neighbour(u32 point, u32 vertex) const {

@@ -5,9 +5,14 @@
 #include <optional>
 #include <vector>
 
+#include "region_grow/crossings.hpp"
 #include "region_grow/surface.hpp"
 
 namespace scanmill::growing {
+
+/// Of the search radius: how large an empty circle may be before it is a hole of the surface. Points thinned with bins
+/// of edge B leave circles of 1.1 B at most; the search radius is 2 √3 B.
+inline constexpr double largest_circle = 1.0 / 3;
 
 enum class Score : u8 { circumradius, midpoint };
 
@@ -39,7 +44,11 @@ public:
     ///
     /// circumradius: the point that sees the edge under the largest angle, so that no other one lies in the circle
     /// through the three; midpoint: the one nearest the edge's midpoint. Equal ones (within rounding) by number.
-    SuitablePoint choose(u32 from, u32 to, const Limits& limits, bool far);
+    /// `in_space`: the triangle does not pass through others near it either, which the plane that the surface faces
+    /// along does not tell where it bends.
+    SuitablePoint choose(u32 from, u32 to, const Limits& limits, bool far, bool in_space);
+    /// Whether the triangle meets those at the places nearest to its corners in more than common corners and edges.
+    bool passes_through_others(const Triangle& triangle);
     /// The point with which two unused ones begin a surface, on whichever side.
     u32 choose_third(u32 from, u32 to, const Limits& limits);
     /// The place on the front that a border edge would take, were it not for the angle to the triangle there: none of
@@ -74,6 +83,7 @@ private:
     const Surface& surface_;
     Score score_;
     NeighbourBuffer buffer_;
+    NearTriangles near_triangles_;
     std::vector<u32> near_;
     std::vector<u32> fronts_;
     /// A heap by score, the least first, and those taken from it because their scores are equal to the least.

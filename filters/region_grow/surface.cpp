@@ -7,6 +7,15 @@
 
 namespace scanmill::growing {
 
+namespace {
+
+Triangle lowest_first(Triangle triangle) {
+    std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+    return triangle;
+}
+
+}  // namespace
+
 Surface::Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radii,
                  Array<u8> twins, bool are_oriented)
     : samples(from),
@@ -52,6 +61,28 @@ void Surface::add(const Triangle& triangle, Pass pass) {
             normals[corner] = -normals[corner];
         states[corner] = fans.closed(corner) ? PlaceState::interior : PlaceState::front;
     }
+}
+
+void Surface::drop(std::vector<Triangle> taken_off) {
+    if (taken_off.empty()) return;
+    for (Triangle& triangle : taken_off) triangle = lowest_first(triangle);
+    std::ranges::sort(taken_off);
+    std::vector<bool> gone(taken_off.size(), false);
+    std::size_t kept = 0;
+    for (std::size_t row = 0; row < triangles.size(); ++row) {
+        const Triangle triangle = lowest_first(triangles[row]);
+        auto at = static_cast<std::size_t>(std::ranges::lower_bound(taken_off, triangle) - taken_off.begin());
+        while (at < taken_off.size() && taken_off[at] == triangle && gone[at]) ++at;
+        if (at < taken_off.size() && taken_off[at] == triangle) {
+            gone[at] = true;
+            continue;
+        }
+        triangles[kept] = triangles[row];
+        passes[kept++] = passes[row];
+    }
+    assert(kept + taken_off.size() == triangles.size());
+    triangles.resize(kept);
+    passes.resize(kept);
 }
 
 }  // namespace scanmill::growing

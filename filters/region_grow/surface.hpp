@@ -2,6 +2,8 @@
 #pragma once
 /// The surface while it grows: its triangles, what every place is to it, and which way it faces there.
 
+#include <vector>
+
 #include "region_grow/fans.hpp"
 #include "region_grow/neighbourhoods.hpp"
 #include "region_grow/point_normals.hpp"
@@ -59,6 +61,8 @@ struct Surface {
     /// Adds a → b → c; unused near twins of its corners will stay so. Pre: none of its three directed edges has a
     /// triangle.
     void add(const Triangle& triangle, Pass pass);
+    /// Forgets triangles that the fans have no more, one for each. Of equal ones the oldest goes.
+    void drop(std::vector<Triangle> taken_off);
 };
 
 }  // namespace scanmill::growing

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The triangles that fill a hole best.
+
+#include <vector>
+
+#include "region_grow/crossings.hpp"
+
+namespace scanmill::growing {
+
+/// What the triangles that fill a hole must keep to.
+struct FillLimits {
+    /// Each lies in a circle of this radius; infinite: they may be of any size.
+    double largest_circle;
+    /// Between the normals of triangles that share an edge: at least.
+    double bend_cosine;
+};
+
+/// The triangles of least total area that fill the loop of `corners` (each once, counter-clockwise as the triangles
+/// will be); none when no filling keeps to the limits, repeats no edge of the surface, and passes neither through
+/// itself nor through `near`. Of equal fillings the one that joins the first corners. Cost: corners³ / 6 triangles at
+/// most, of which those that would be cheaper than others are compared with `near`.
+std::vector<Triangle> cheapest_filling(const Surface& surface, const NearTriangles& near, std::vector<u32> corners,
+                                       const FillLimits& limits);
+
+}  // namespace scanmill::growing
