@@ -24,10 +24,11 @@ double squared_radius(double a, double b, double c, double twice_area) {
 /// triangle over the chord from i to j, and by the parts beyond its other sides.
 class Filling {
 public:
-    Filling(const Surface& surface, const NearTriangles& near, std::vector<u32> corners, const FillLimits& limits)
+    Filling(const Surface& surface, const NearTriangles& near, const std::vector<u32>& corners,
+            const FillLimits& limits)
         : surface_(surface),
           near_(near),
-          corners_(std::move(corners)),
+          corners_(corners),
           limits_(limits),
           parts_(corners_.size() * corners_.size()) {}
 
@@ -97,20 +98,22 @@ private:
 
     const Surface& surface_;
     const NearTriangles& near_;
-    std::vector<u32> corners_;
+    const std::vector<u32>& corners_;
     FillLimits limits_;
     std::vector<Part> parts_;
 };
 
 }  // namespace
 
-std::vector<Triangle> cheapest_filling(const Surface& surface, const NearTriangles& near, std::vector<u32> corners,
+std::vector<Triangle> cheapest_filling(const Surface& surface, NearTriangles& near, const std::vector<u32>& corners,
                                        const FillLimits& limits) {
     // Seldom is anything in the way, and when there is no filling at all there is none past it either.
     const NearTriangles nothing;
     std::vector<Triangle> triangles = Filling(surface, nothing, corners, limits).find();
+    if (triangles.empty()) return {};
+    near.gather_round(surface, corners);
     if (std::ranges::any_of(triangles, [&](const Triangle& t) { return near.meet(surface, t); }))
-        triangles = Filling(surface, near, std::move(corners), limits).find();
+        triangles = Filling(surface, near, corners, limits).find();
     for (std::size_t i = 0; i < triangles.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
             if (meet(surface.positions, triangles[i], triangles[j])) return {};

@@ -17,10 +17,13 @@ struct FillLimits {
 };
 
 /// The triangles of least total area that fill the loop of `corners` (each once, counter-clockwise as the triangles
-/// will be); none when no filling keeps to the limits, repeats no edge of the surface, and passes neither through
-/// itself nor through `near`. Of equal fillings the one that joins the first corners. Cost: corners³ / 6 triangles at
-/// most, of which those that would be cheaper than others are compared with `near`.
-std::vector<Triangle> cheapest_filling(const Surface& surface, const NearTriangles& near, std::vector<u32> corners,
+/// will be); none when no filling was found that keeps to the limits, repeats no edge of the surface, and passes
+/// neither through it nor through itself. Of equal fillings the one that joins the first corners. Parts of the loop are
+/// filled by themselves first, so a filling can be missed whose parts are not the best of theirs.
+///
+/// `near` is memory to be used again. Cost: corners³ / 6 triangles at most, of which those that would be cheaper than
+/// others are compared with the surface near the loop.
+std::vector<Triangle> cheapest_filling(const Surface& surface, NearTriangles& near, const std::vector<u32>& corners,
                                        const FillLimits& limits);
 
 }  // namespace scanmill::growing

@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <limits>
-#include <optional>
 
 #include "region_grow/filling.hpp"
 #include "region_grow/small_holes.hpp"
@@ -13,7 +13,8 @@ namespace scanmill::growing {
 
 namespace {
 
-constexpr std::size_t most_corners = 100, most_corners_replacing = 30;
+/// Of loops that are filled at all, and in place of one triangle, of two.
+constexpr std::array<std::size_t, 3> most_corners{100, 30, 12};
 constexpr double least_fold_cosine = -0.9902680687415704;  // of 172 degrees
 /// Between the filling and the triangles round the loop, on average: of 120 and of 78 degrees.
 constexpr double least_facing = -0.5, least_facing_of_long = 0.2;
@@ -66,44 +67,46 @@ public:
           most_edges_(most_edges) {}
 
     /// Corners counter-clockwise as the filling's triangles.
-    bool close(std::span<const u32> corners) {
+    bool close(const std::vector<u32>& corners) {
         const Rim rim(surface_, corners);
         const double circle = largest_circle_ * rim.mean_radius;
         const bool is_long = rim.farthest > 2 * circle;
         if (rim.facing < (is_long ? least_facing_of_long : least_facing)) return false;
         limits_ = {corners.size() <= most_edges_ ? std::numeric_limits<double>::infinity() : circle, least_fold_cosine};
-        if (fill(corners, std::nullopt)) return true;
-        if (corners.size() > most_corners_replacing) return false;
-        for (std::size_t edge = 0; edge < corners.size(); ++edge)
-            if (fill(corners, edge)) return true;
+        for (std::size_t in_place_of = 0; in_place_of < most_corners.size(); ++in_place_of)
+            if (corners.size() <= most_corners[in_place_of] && fill(corners, in_place_of)) return true;
         return false;
     }
 
     std::vector<Triangle> replaced;
 
 private:
-    /// Also in place of the triangle at the edge that begins at a corner, when that is given.
-    bool fill(std::span<const u32> loop, std::optional<std::size_t> edge) {
-        std::vector<u32> corners(loop.begin(), loop.end());
-        Triangle in_the_way{};
-        if (edge) {
-            const u32 from = loop[*edge], to = loop[*edge + 1 < loop.size() ? *edge + 1 : 0];
+    bool fill(const std::vector<u32>& corners, std::size_t in_place_of) {
+        if (in_place_of > 0) return fill_in_place(corners, in_place_of);
+        const std::vector<Triangle> filling = cheapest_filling(surface_, near_, corners, limits_);
+        for (const Triangle& triangle : filling) surface_.add(triangle, closing_pass);
+        return !filling.empty();
+    }
+
+    /// Takes the triangle at one edge after the other off and fills what is then the hole.
+    bool fill_in_place(const std::vector<u32>& corners, std::size_t in_place_of) {
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const u32 from = corners[i], to = corners[i + 1 < corners.size() ? i + 1 : 0];
             const u32 third = surface_.fans.left_of(to, from);
             // Else it would be a corner of two loops, or twice of this one.
-            if (surface_.states[third] != PlaceState::interior) return false;
-            in_the_way = {to, from, third};
-            corners.insert(corners.begin() + static_cast<std::ptrdiff_t>(*edge) + 1, third);
+            if (surface_.states[third] != PlaceState::interior || std::ranges::find(corners, third) != corners.end())
+                continue;
+            const Triangle in_the_way{to, from, third};
+            std::vector<u32> wider = corners;
+            wider.insert(wider.begin() + static_cast<std::ptrdiff_t>(i) + 1, third);
             surface_.fans.remove(in_the_way);
+            if (fill(wider, in_place_of - 1)) {
+                replaced.push_back(in_the_way);
+                return true;
+            }
+            surface_.fans.add(in_the_way);
         }
-        near_.gather_round(surface_, corners);
-        const std::vector<Triangle> filling = cheapest_filling(surface_, near_, std::move(corners), limits_);
-        if (filling.empty()) {
-            if (edge) surface_.fans.add(in_the_way);
-            return false;
-        }
-        if (edge) replaced.push_back(in_the_way);
-        for (const Triangle& triangle : filling) surface_.add(triangle, closing_pass);
-        return true;
+        return false;
     }
 
     Surface& surface_;
@@ -126,7 +129,7 @@ NarrowHoles close_narrow_holes(Surface& surface, double largest_circle, std::siz
             passed[vertex] = true;
             loop.push_back(vertex);
         }
-        if (loop.size() < 3 || loop.size() > most_corners) continue;
+        if (loop.size() < 3 || loop.size() > most_corners[0]) continue;
         std::ranges::reverse(loop);
         result.closed += closing.close(loop);
     }

@@ -20,13 +20,14 @@ struct NarrowHoles {
 /// filled whatever their size.
 ///
 /// The filling has the least area and no bend above 172 degrees; it passes neither through the surface nor through
-/// itself. Where there is none, one triangle at the loop may give way: the first, from the loop's lowest place on, in
-/// place of which there is one. Left open are loops of more than 100 edges and those round which the surface faces away
-/// from what would close them, for it ends there: on average by more than 120 degrees, or, when the loop is longer
-/// than twice that circle, by more than 78: a thin wall's end, a channel, a scrap.
+/// itself. Where there is none, one triangle at a loop of at most 30 edges may give way, or two of at most 12: the
+/// first, from the loop's lowest place on, in place of which there is one. Left open are loops of more than 100 edges
+/// and those round which the surface faces away from what would close them, for it ends there: on average by more than
+/// 120 degrees, or, when the loop is longer than twice that circle, by more than 78: a thin wall's end, a channel, a
+/// scrap.
 ///
-/// Pre: every place has one fan. Cost: linear in the places, and edges³ (edges⁴ below 30) per loop that could be
-/// filled.
+/// Pre: every place has one fan. Cost: linear in the places, and edges³ per loop, edges times as much where triangles
+/// have to give way.
 NarrowHoles close_narrow_holes(Surface& surface, double largest_circle, std::size_t most_edges);
 
 }  // namespace scanmill::growing

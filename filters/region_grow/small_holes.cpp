@@ -74,13 +74,12 @@ std::size_t close_small_holes(Surface& surface, std::size_t most_edges) {
             if (surface.states[from] == PlaceState::interior || surface.states[to] == PlaceState::interior ||
                 surface.fans.right_of(from, to) != nobody)
                 continue;
-            std::vector<u32> hole = hole_at(surface, from, to, most_edges);
+            const std::vector<u32> hole = hole_at(surface, from, to, most_edges);
             if (hole.size() < 3) continue;
             std::vector<u32> from_lowest = hole;
             std::ranges::rotate(from_lowest, std::ranges::min_element(from_lowest));
             if (impossible_loops.contains(from_lowest)) continue;
-            near.gather_round(surface, hole);
-            const std::vector<Triangle> filling = cheapest_filling(surface, near, std::move(hole), any_size);
+            const std::vector<Triangle> filling = cheapest_filling(surface, near, hole, any_size);
             for (const Triangle& filled : filling) surface.add(filled, closing_pass);
             if (filling.empty())
                 impossible_loops.insert(std::move(from_lowest));
