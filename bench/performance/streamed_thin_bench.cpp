@@ -64,8 +64,23 @@ std::array<float, 3> scanned(std::size_t row, std::size_t count, Random& random)
             static_cast<float>(radius * z)};
 }
 
+/// Written in large blocks, as scanners' programs do: the system then maps such files in large blocks, too.
+class LargeFile {
+public:
+    explicit LargeFile(const fs::path& path) {
+        stream_.rdbuf()->pubsetbuf(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+        stream_.open(path, std::ios::binary);
+    }
+    std::ofstream& stream() { return stream_; }
+
+private:
+    std::vector<char> buffer_ = std::vector<char>(std::size_t(1) << 22);
+    std::ofstream stream_;
+};
+
 void write_ply(const fs::path& path, std::size_t count) {
-    std::ofstream file(path, std::ios::binary);
+    LargeFile large(path);
+    std::ofstream& file = large.stream();
     file << "ply\nformat binary_little_endian 1.0\nelement vertex " << count
          << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
     Random random(1);
@@ -77,7 +92,8 @@ void write_ply(const fs::path& path, std::size_t count) {
 }
 
 void write_text(const fs::path& path, std::size_t count) {
-    std::ofstream file(path, std::ios::binary);
+    LargeFile large(path);
+    std::ofstream& file = large.stream();
     Random random(1);
     for (std::size_t row = 0; row < count; ++row) {
         std::array<char, 100> line;

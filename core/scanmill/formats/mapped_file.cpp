@@ -35,19 +35,17 @@ struct Descriptor {
     throw Error("cannot be opened: {}", std::generic_category().message(reason));
 }
 
-/// Pages of a mapping.
+/// Those of a mapping that a part of it touches.
 struct Pages {
-    enum Which { touched, covered };
     char* begin;
     std::size_t size;
 };
 
-Pages pages_of(std::string_view part, const char* mapping, Pages::Which which) {
+Pages pages_of(std::string_view part, const char* mapping) {
     static const std::size_t page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-    std::size_t begin = static_cast<std::size_t>(part.data() - mapping), end = begin + part.size();
-    begin = (which == Pages::covered ? begin + page - 1 : begin) / page * page;
-    if (which == Pages::covered) end = end / page * page;
-    return {const_cast<char*>(mapping) + begin, end > begin ? end - begin : 0};
+    const std::size_t begin = static_cast<std::size_t>(part.data() - mapping), end = begin + part.size();
+    const std::size_t first = begin / page * page;
+    return {const_cast<char*>(mapping) + first, end - first};
 }
 
 }  // namespace
@@ -71,13 +69,13 @@ MappedFile::MappedFile(const std::filesystem::path& path, bool whole) {
 
 void MappedFile::fetch(std::string_view part) const noexcept {
 #ifdef MADV_POPULATE_READ
-    const Pages pages = pages_of(part, static_cast<const char*>(data_), Pages::touched);
+    const Pages pages = pages_of(part, static_cast<const char*>(data_));
     if (pages.size > 0) ::madvise(pages.begin, pages.size, MADV_POPULATE_READ);  // an older kernel refuses: no harm
 #endif
 }
 
 void MappedFile::release(std::string_view part) const noexcept {
-    const Pages pages = pages_of(part, static_cast<const char*>(data_), Pages::covered);
+    const Pages pages = pages_of(part, static_cast<const char*>(data_));
     if (pages.size > 0) ::madvise(pages.begin, pages.size, MADV_DONTNEED);
 }
 

@@ -22,8 +22,8 @@ public:
 
     /// These bytes will be read next: their pages are mapped in one call. `part` is a part of bytes().
     void fetch(std::string_view part) const noexcept;
-    /// These bytes are not needed for now: pages that lie in them as a whole no longer count as memory of this process.
-    /// Reading them again is allowed.
+    /// These bytes are not needed for now: their pages no longer count as memory of this process. Reading them, or what
+    /// else lies in these pages, is allowed, also meanwhile.
     void release(std::string_view part) const noexcept;
 
 private:

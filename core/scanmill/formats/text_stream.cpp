@@ -60,6 +60,7 @@ private:
             const std::size_t size = line_end == text.npos ? text.size() : line_end + 1;
             if (size > longest_piece) return false;
             texts_.push_back(text.substr(0, size));
+            file_->release(texts_.back());  // looking for a line's end may have mapped megabytes around it
             text.remove_prefix(size);
         }
         return true;
