@@ -219,8 +219,9 @@ TEST_F(StreamedRun, ScanThatChangesAfterPlanning_Fails) {
     prepare("  - test-stream: {length: 1 u}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-stream}\n");
     scan("a.xyz", "0 0 0\n7 0 0\n");
     const RunReport report = run_graph();
-    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("changed while the run was going on"));
+    EXPECT_THAT(report.nodes[0].failure.text, HasSubstr("changed while the run was going on"));
     EXPECT_FALSE(fs::exists(folder_ / "out/a.ply"));
+    EXPECT_FALSE(foresee(graph_, cache_.get())[0].known) << "under the key of what it held before";
 }
 
 TEST_F(StreamedRun, ScanThatChangesBetweenOpeningAndTheStep_Fails) {
@@ -234,6 +235,30 @@ TEST_F(StreamedRun, ScanThatChangesBetweenOpeningAndTheStep_Fails) {
     changer.change = [&] { scan("a.xyz", "0 0 0\n9 0 0\n0 9 0\n1 2 2\n"); };
     const RunReport report = run_graph(changer);
     EXPECT_THAT(report.cells[0].failure.text, HasSubstr("changed while the run was going on"));
+}
+
+TEST_F(StreamedRun, CancelledWhileItIsOpened_Stops) {
+    prepare("  - test-stream: {length: 1 u}\n", {scan("a.xyz")});
+    struct Canceller : RunObserver {
+        bool is_cancelled = false;
+        void node_started(const RunNode&, std::size_t) override { is_cancelled = true; }
+    } canceller;
+    settings_.is_cancelled = [&] { return canceller.is_cancelled; };
+    const RunReport report = run_graph(canceller);
+    EXPECT_TRUE(report.interrupted);
+    EXPECT_EQ(report.nodes[0].outcome, Outcome::skipped);
+}
+
+TEST_F(StreamedRun, Forgotten_IsClosed) {
+    prepare("  - test-stream: {length: 1 u}\n", {scan("a.xyz")});
+    Workbench bench(library_, nullptr, KeepRule::Policy::never, folder_ / "scratch");
+    Job job;
+    job.node = 0;
+    job.work = ReadWork{graph_.nodes[0].leaf, {}};
+    EXPECT_EQ(bench.perform(job, {{}, [](std::string_view) {}, {}}).outcome, Outcome::done);
+    EXPECT_FALSE(bench.is_empty());
+    bench.forget(0);
+    EXPECT_TRUE(bench.is_empty());
 }
 
 TEST_F(StreamedRun, Cancelled_Stops) {

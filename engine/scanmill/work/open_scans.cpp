@@ -12,7 +12,6 @@ std::shared_ptr<const PointStream> OpenScans::open(std::size_t node, const LeafS
     if (is_checked) scan.check.emplace(leaf.file, leaf.content, threads > 1);
     scan.stream = open_leaf(leaf, threads, on_warning, on_positions);
     if (!scan.stream) return nullptr;
-    if (scan.check) scan.check->require();
     return scans_.insert_or_assign(node, std::move(scan)).first->second.stream;
 }
 

@@ -18,13 +18,14 @@ namespace scanmill {
 class OpenScans {
 public:
     /// Opens the leaf's file; nullptr when it cannot be read piece by piece. `is_checked`: its content is known by a
-    /// key, and must be that.
+    /// key, and require_unchanged() is to be called once it was read.
     std::shared_ptr<const PointStream> open(std::size_t node, const LeafSource& leaf, unsigned threads, bool is_checked,
                                             const std::function<void(std::string)>& on_warning,
                                             const OnWorldPositions& on_positions = {});
     /// nullptr when it is not open.
     std::shared_ptr<const PointStream> find(std::size_t node) const;
-    /// Throws Error when a checked file is another than the one that was hashed, now that it was read. Pre: it is open.
+    /// Throws Error when a checked file is, or was while it was read, another than the one that was hashed. Pre: it is
+    /// open.
     void require_unchanged(std::size_t node);
     void forget(std::size_t node) { scans_.erase(node); }
     bool empty() const { return scans_.empty(); }

@@ -44,8 +44,8 @@ private:
     using Place = std::pair<std::size_t, std::string>;  // node and port
 
     void read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report);
-    bool read_as_stream(const Job& job, const ReadWork& work, const std::function<void(std::string)>& on_warning,
-                        JobReport& report);
+    bool read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener,
+                        const std::function<void(std::string)>& on_warning, JobReport& report);
     void run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report);
     void expect(const Job& job, const ExpectWork& work, JobReport& report);
     void check_expectations(const PlannedStep& step, const Value& primary, const Place& place, NodeReport& report);

@@ -21,7 +21,7 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
         listener.on_warning(text);
         report.node.warnings.push_back(std::move(text));
     };
-    if (work.leaf.is_streamed && read_as_stream(job, work, on_warning, report)) return;
+    if (work.leaf.is_streamed && read_as_stream(job, work, listener, on_warning, report)) return;
     const auto start = std::chrono::steady_clock::now();
     std::optional<UnchangedWhileRead> check;
     if (uses_cache(work.memory)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
@@ -37,24 +37,30 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
 
 /// The scan stays open in place of its value, and is known as the value would be. False when its file must be read as a
 /// whole.
-bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const std::function<void(std::string)>& on_warning,
-                               JobReport& report) {
+bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener,
+                               const std::function<void(std::string)>& on_warning, JobReport& report) {
     const auto start = std::chrono::steady_clock::now();
     const JobMemory& memory = work.memory;
     std::optional<StepResult> known = uses_cache(memory) ? cache_->step(memory.plan_key) : std::nullopt;
     if (known && !known->output("")) known.reset();
     StreamedContent content;
-    OnWorldPositions learn;
-    if (uses_cache(memory) && !known) learn = [&](std::span<const Vec3> positions) { content.add_world(positions); };
-    const auto scan = scans_.open(job.node, work.leaf, job.threads, uses_cache(memory), on_warning, learn);
+    const bool learns = uses_cache(memory) && !known;
+    const auto look = [&](std::span<const Vec3> positions) {
+        if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
+        if (learns) content.add_world(positions);
+    };
+    const auto scan = scans_.open(job.node, work.leaf, job.threads, uses_cache(memory), on_warning, look);
     if (!scan) return false;
     report.node.facts.set("points", static_cast<double>(scan->size()), Unit::count);
+    std::vector<ResultOutput> outputs;
     if (known) {
-        report.result.outputs = known->outputs;
-    } else if (uses_cache(memory)) {
+        outputs = known->outputs;
+    } else if (learns) {
         const ValueName name = content.of(*scan, job.threads);
-        report.result.outputs = {{"", Kind::points, name.content, name.bytes}};
+        outputs = {{"", Kind::points, name.content, name.bytes}};
     }
+    scans_.require_unchanged(job.node);
+    report.result.outputs = std::move(outputs);
     for (const ResultOutput& output : report.result.outputs)
         if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
     remember(job, memory, memory.plan_key, said_of(work.leaf.file), seconds_since(start), report);
