@@ -3,7 +3,9 @@
 
 namespace scanmill::growing {
 
-std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits) {
+std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits,
+                                        const Context& context) {
+    std::size_t looks = 0;
     std::vector<PatchEdge> edges;
     for (const Triangle& triangle : surface.triangles)
         for (std::size_t i = 0; i < 3; ++i) {
@@ -11,6 +13,7 @@ std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& ch
             if (surface.states[from] != PlaceState::front || surface.states[to] != PlaceState::front ||
                 surface.fans.right_of(from, to) != nobody)
                 continue;
+            if (looks++ % 64 == 0) context.check_cancelled();
             const u32 beyond = chooser.beyond_sharp_edge(from, to, limits);
             if (beyond != nobody) edges.push_back({from, to, beyond});
         }

@@ -3,6 +3,7 @@
 /// Border edges that are no end of the points but a sharp edge: beyond them the surface goes on in another patch.
 
 #include "region_grow/suitable_point.hpp"
+#include "scanmill/filter/context.hpp"
 
 namespace scanmill::growing {
 
@@ -15,6 +16,7 @@ struct PatchEdge {
 /// Border edges for which a place on the front, no neighbour of theirs, keeps to all limits but the one of the angle to
 /// the triangle there: where nothing else ended the patch. In the order of the triangles, facing as they were grown.
 /// Cost: linear in the border.
-std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits);
+std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits,
+                                        const Context& context);
 
 }  // namespace scanmill::growing

@@ -83,6 +83,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     const Samples samples = distinct_samples(cloud.positions.span());
     require_area(samples, cloud.size());
     context.progress(0.05);
+    context.check_cancelled();
     const Neighbourhoods neighbourhoods(samples, context.threads());
     context.check_cancelled();
     context.progress(0.3);
@@ -103,7 +104,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
 
     RegionGrowResult result;
     if (params.close_holes >= 3) {
-        result.closed_holes = close_small_holes(surface, params.close_holes);
+        result.closed_holes = close_small_holes(surface, params.close_holes, context);
         result.removed_triangles = remove_pinches(surface);
         // What was removed may have left a small hole; at single fans closing makes no new pinch.
         const NarrowHoles narrow =
@@ -113,7 +114,8 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     } else
         result.removed_triangles = remove_pinches(surface);
     PointChooser chooser(surface, score);
-    const std::vector<PatchEdge> patch_edges = find_patch_edges(surface, chooser, limits.front());
+    const std::vector<PatchEdge> patch_edges = find_patch_edges(surface, chooser, limits.front(), context);
+    context.check_cancelled();
     const Pieces pieces = find_pieces(surface);
     if (!oriented) face_outwards(surface, pieces, groups);
 

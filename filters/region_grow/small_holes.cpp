@@ -59,7 +59,7 @@ std::vector<u32> hole_at(const Surface& surface, u32 from, u32 to, std::size_t m
 
 }  // namespace
 
-std::size_t close_small_holes(Surface& surface, std::size_t most_edges) {
+std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Context& context) {
     if (most_edges < 3) return 0;
     std::size_t closed = 0;
     // Each from its lowest corner. Filling others leaves them as impossible as they were: their border edges keep their
@@ -68,6 +68,7 @@ std::size_t close_small_holes(Surface& surface, std::size_t most_edges) {
     NearTriangles near;
     const std::size_t count = surface.triangles.size();
     for (std::size_t row = 0; row < count; ++row) {
+        if (row % 1024 == 0) context.check_cancelled();
         const Triangle triangle = surface.triangles[row];
         for (std::size_t i = 0; i < 3; ++i) {
             const u32 from = triangle[i], to = triangle[(i + 1) % 3];
@@ -79,6 +80,7 @@ std::size_t close_small_holes(Surface& surface, std::size_t most_edges) {
             std::vector<u32> from_lowest = hole;
             std::ranges::rotate(from_lowest, std::ranges::min_element(from_lowest));
             if (impossible_loops.contains(from_lowest)) continue;
+            context.check_cancelled();  // a long loop takes as long as a million triangles
             const std::vector<Triangle> filling = cheapest_filling(surface, near, hole, any_size);
             for (const Triangle& filled : filling) surface.add(filled, closing_pass);
             if (filling.empty())

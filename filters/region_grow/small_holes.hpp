@@ -3,6 +3,7 @@
 /// Closing what growth left open where it should not have: loops of a few edges.
 
 #include "region_grow/surface.hpp"
+#include "scanmill/filter/context.hpp"
 
 namespace scanmill::growing {
 
@@ -14,6 +15,6 @@ inline constexpr Pass closing_pass = 4;
 /// through others. Where several fans meet in a vertex a loop goes on to the next one round it. How many loops were
 /// filled. Cost: linear in the triangles, most_edges² per border edge, and most_edges³ per loop, which is solved once
 /// whether it can be filled or not.
-std::size_t close_small_holes(Surface& surface, std::size_t most_edges);
+std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Context& context);
 
 }  // namespace scanmill::growing

@@ -20,6 +20,9 @@ constexpr double same_score = 1e-9;
 /// Of the neighbours' variance, across their plane: above the first a point's normal tells less, at an edge; above the
 /// second nothing, at a tip. At an edge of 90 degrees it is a tenth; noise of 0.3 spacings makes 0.03.
 constexpr float rough = 0.04f, shapeless = 0.18f;
+/// Times the squared distance to a place's last listed neighbour: a search that goes farther asks first whether any
+/// place there can be taken. With a search radius of many spacings on a noisy scan mostly none can.
+constexpr double wide = 9;
 /// A triangle that bends back by more than 150 degrees lies on its neighbour.
 constexpr double least_bend_cosine = -0.8660254037844387;
 
@@ -32,11 +35,10 @@ double PointChooser::search_radius(u32 from, u32 to) const {
 void PointChooser::collect(u32 from, u32 to, double reach, bool far) {
     near_.clear();
     if (far) {
-        // In a circle through the edge's ends no two points are farther apart than its diameter.
-        const double radius = score_ == Score::midpoint ? reach : 2 * largest_circle * reach;
-        surface_.neighbourhoods.within(from, radius * radius, buffer_, near_);
+        const double squared = squared_range(reach);
+        surface_.neighbourhoods.within(from, squared, buffer_, near_);
         if (score_ == Score::midpoint) {
-            surface_.neighbourhoods.within(to, radius * radius, buffer_, near_);
+            surface_.neighbourhoods.within(to, squared, buffer_, near_);
             std::ranges::sort(near_);
             near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
         }
@@ -46,6 +48,35 @@ void PointChooser::collect(u32 from, u32 to, double reach, bool far) {
     near_.assign(first.begin(), first.end());
     for (u32 other : surface_.neighbourhoods.of(to))
         if (std::ranges::find(first, other) == first.end()) near_.push_back(other);
+}
+
+bool PointChooser::may_find(u32 from, u32 to, const Vec3& joined, double reach, const Limits& limits) {
+    const double squared = squared_range(reach);
+    if (squared <
+        wide * std::max(surface_.neighbourhoods.squared_reach(from), surface_.neighbourhoods.squared_reach(to)))
+        return true;
+    near_.clear();
+    live_.within(from, squared, near_);
+    if (score_ == Score::midpoint) live_.within(to, squared, near_);
+    rate(from, to, joined, limits);
+    const auto kept = std::partition(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
+        return keeps_limits(from, to, candidate, limits, false) &&
+               sectors_are_free({from, candidate.point, to}, candidate.normal, limits.pass);
+    });
+    return std::any_of(candidates_.begin(), kept, [&](const Candidate& candidate) {
+        // The others are turned down before it is looked at, unless their scores might count as equal.
+        const double lower = candidate.score - 3 * same_score * (1 + std::abs(candidate.score));
+        turned_down_.clear();
+        std::copy_if(kept, candidates_.end(), std::back_inserter(turned_down_),
+                     [&](const Candidate& other) { return other.score < lower; });
+        return !lies_over_others({from, candidate.point, to}, candidate.normal);
+    });
+}
+
+double PointChooser::squared_range(double reach) const {
+    // In a circle through the edge's ends no two points are farther apart than its diameter.
+    const double radius = score_ == Score::midpoint ? reach : 2 * largest_circle * reach;
+    return radius * radius;
 }
 
 void PointChooser::rate(u32 from, u32 to, const Vec3& joined, const Limits& limits) {
@@ -139,7 +170,8 @@ bool PointChooser::has_good_angles(u32 from, u32 to, u32 point, const Limits& li
     return std::min({a, b, c}) * twice_area >= limits.least_sine * a * b * c;
 }
 
-bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool new_surface) {
+bool PointChooser::keeps_limits(u32 from, u32 to, const Candidate& candidate, const Limits& limits,
+                                bool new_surface) const {
     const u32 point = candidate.point;
     if (surface_.states[point] == PlaceState::interior || !has_good_angles(from, to, point, limits)) return false;
     const Triangle triangle{from, point, to};
@@ -152,7 +184,13 @@ bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, con
         return false;
     // A triangle that joins those at the point in nothing but the point: the next ones will join them at edges.
     const bool touches = !fans.empty(point) && fans.left_of(point, from) == nobody && fans.left_of(to, point) == nobody;
-    if (touches && fan_axis(point, Vec3::Zero()).dot(candidate.normal) < limits.touch_cosine) return false;
+    return !touches || fan_axis(point, Vec3::Zero()).dot(candidate.normal) >= limits.touch_cosine;
+}
+
+bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool new_surface) {
+    if (!keeps_limits(from, to, candidate, limits, new_surface)) return false;
+    if (new_surface) return true;
+    const Triangle triangle{from, candidate.point, to};
     return sectors_are_free(triangle, candidate.normal, limits.pass) && !lies_over_others(triangle, candidate.normal);
 }
 
@@ -181,7 +219,9 @@ void PointChooser::put_in_order() {
 
 SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool far, bool in_space) {
     const Vec3 joined = surface_.facet_normal(from, to, surface_.fans.left_of(from, to));
-    collect(from, to, search_radius(from, to) * limits.reach, far);
+    const double reach_here = search_radius(from, to) * limits.reach;
+    if (far && !may_find(from, to, joined, reach_here, limits)) return {};
+    collect(from, to, reach_here, far);
     rate(from, to, joined, limits);
     put_in_order();
     const double half = (surface_.positions[to] - surface_.positions[from]).norm() / 2;
@@ -213,9 +253,11 @@ SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool 
 
 u32 PointChooser::beyond_sharp_edge(u32 from, u32 to, const Limits& limits) {
     const Vec3 joined = surface_.facet_normal(from, to, surface_.fans.left_of(from, to));
-    collect(from, to, search_radius(from, to) * limits.reach, true);
+    const double reach = search_radius(from, to) * limits.reach;
     Limits bent = limits;
     bent.normal_cosine = least_bend_cosine;
+    if (!may_find(from, to, joined, reach, bent)) return nobody;
+    collect(from, to, reach, true);
     rate(from, to, joined, bent);
     put_in_order();
     while (has_candidates()) {

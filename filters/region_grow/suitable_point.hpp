@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "region_grow/crossings.hpp"
-#include "region_grow/surface.hpp"
+#include "region_grow/live_places.hpp"
 
 namespace scanmill::growing {
 
@@ -37,7 +37,7 @@ struct SuitablePoint {
 
 class PointChooser {
 public:
-    PointChooser(const Surface& surface, Score score) : surface_(surface), score_(score) {}
+    PointChooser(const Surface& surface, Score score) : surface_(surface), score_(score), live_(surface) {}
 
     /// The point D for which triangle (from, D, to) continues the surface over its border edge from → to; none when no
     /// point keeps to the limits. `far`: look at all points in the search radius, not only at the nearest ones.
@@ -63,6 +63,10 @@ private:
     };
 
     void collect(u32 from, u32 to, double reach, bool far);
+    /// Of how far a search goes.
+    double squared_range(double reach) const;
+    /// False when nobody in the search radius keeps to the limits, whatever lies nearer. Changes near_ and candidates_.
+    bool may_find(u32 from, u32 to, const Vec3& joined, double reach, const Limits& limits);
     /// Between rate() and take_best(): begins a new order, with nothing turned down.
     void put_in_order();
     bool has_candidates() const { return !candidates_.empty() || !equal_.empty(); }
@@ -70,6 +74,8 @@ private:
     Candidate take_best();
     bool is_neighbour(u32 point, u32 vertex) const;
     void rate(u32 from, u32 to, const Vec3& joined, const Limits& limits);
+    /// With sectors_are_free() all that does not depend on other candidates.
+    bool keeps_limits(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool new_surface) const;
     bool is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool new_surface);
     bool has_good_angles(u32 from, u32 to, u32 point, const Limits& limits) const;
     bool agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const;
@@ -82,6 +88,7 @@ private:
 
     const Surface& surface_;
     Score score_;
+    LivePlaces live_;
     NeighbourBuffer buffer_;
     NearTriangles near_triangles_;
     std::vector<u32> near_;
