@@ -13,9 +13,7 @@ struct PointNormals {
     Array<float> roughness;
 };
 
-/// The direction across which a place and its neighbours vary least. Neighbours on one line leave it undetermined; any
-/// direction across the line is returned then. Only sums, products, quotients and roots: the same bytes everywhere.
-/// Cost: linear.
+/// The direction in which a place and its 12 nearest neighbours vary least, as scatter_of() has it. Cost: linear.
 PointNormals principal_normals(const Samples& samples, const Neighbourhoods& neighbourhoods, unsigned threads);
 
 }  // namespace scanmill::growing

@@ -89,11 +89,12 @@ struct RegionGrowResult {
 ///
 /// Cost: O(n log n) time where the nearest 16 places decide, about 425 bytes per point beside the result. An edge where
 /// they do not, or that finds nothing, looks at all m places within its search radius, up to four times: O(m log m)
-/// each, and as often again as places are turned down for what the front or other places do there. So a search radius
-/// of many spacings costs O(n m log m) on noisy scans; leave it to `auto` there. Metrics: see plugin.cpp. Warns when
+/// each, and as often again as places are turned down for what the front or other places do there. Where that radius
+/// is of many spacings, it asks the places that are open first, which are fewer. So such a radius costs O(n m log m) on
+/// noisy scans; leave it to `auto` there. Metrics: see plugin.cpp. Warns when
 /// more than half a percent of the places stay unused, when most points lie too dense for their `bin-size`, and of what
-/// find_features() could not tell. Source: Wang 2006,
-/// chapter 4, made robust; the choice by empty circles after Delaunay.
+/// find_features() could not tell. Source: Wang 2006, chapter 4, made robust; the choice by empty circles after
+/// Delaunay.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill

@@ -84,6 +84,7 @@ Scatter scatter_of(std::span<const Vec3> points) {
     scatter.normal = with_positive_sign(direction_of(moments, least));
     const double others = moments.trace() - least;
     scatter.flatness = others > 0 ? std::max(0.0, moments.sum_of_minors() - least * others) / (others * others) : 0;
+    scatter.roughness = moments.trace() > 0 ? least / moments.trace() : 0;
     return scatter;
 }
 

@@ -16,6 +16,8 @@ struct Scatter {
     /// Product of the two larger principal variances over the square of their sum: 1/4 for a round disc, 0 for a line;
     /// of a strip about its squared width over its squared length.
     double flatness;
+    /// Variance along the normal over that in all directions, 0 to 1/3; 0 for one place.
+    double roughness;
 };
 
 /// Pre: at least one point, coordinates at most some 1e50 in size and the largest not below 1e-50; relative to a point
