@@ -35,7 +35,7 @@ SuitablePoint Growth::look(DirectedEdge edge, const Limits& limits, bool far, bo
 
 void Growth::continue_at(DirectedEdge edge, std::size_t line, const Limits& limits) {
     if (surface_.fans.right_of(edge.from, edge.to) != nobody) return;  // continued from the other side
-    // Of the first line only plain ones are added: there the surface is as good as in its plane.
+    // In the first line only plain ones are added, for which the plane tells enough.
     const SuitablePoint found = look(edge, limits, line == 2, line > 0);
     if (line < 2 && found.uncovered)
         waiting_[2].push_back(edge);

@@ -29,8 +29,9 @@ SCANMILL_FILTER() {
             "lie otherwise, that which the local density tells.",
             above(0), word("auto"))
         .param("sharp-angle", &P::sharp_angle, "Edges that bend by more are creases.", at_least(0), at_most(180))
-        .param("close-holes", &P::close_holes, "Loops of at most so many edges are closed; 0 closes none.", at_least(0),
-               at_most(100))
+        .param("close-holes", &P::close_holes,
+               "Loops of at most so many edges are closed, and longer ones too narrow for a hole; 0 closes none.",
+               at_least(0), at_most(100))
         .choice("score", &P::score,
                 {{"circumradius", P::Score::circumradius, "The point whose circle with the edge holds no other point."},
                  {"midpoint", P::Score::midpoint, "The point nearest the edge's middle: the thesis's rule."}},
@@ -48,8 +49,9 @@ SCANMILL_FILTER() {
         .metric("patch-edges", Unit::count, "Border edges beyond which the surface goes on at too large an angle.")
         .metric("creases", Unit::count, "Chains of sharp edges.")
         .metric("corners", Unit::count, "Vertices where feature lines meet or turn.")
-        .metric("closed-holes", Unit::count, "Small loops that were closed.")
-        .metric("removed-triangles", Unit::count, "Triangles taken off again where a vertex had several fans.")
+        .metric("closed-holes", Unit::count, "Small and narrow loops that were closed.")
+        .metric("removed-triangles", Unit::count,
+                "Triangles taken off again where a vertex had several fans, or to close a hole.")
         .metric("ambiguous", Unit::count, "Loops told apart by their length, as their area does not tell.")
         .metric("without-area", Unit::count, "Triangles without area, counted to a neighbour's plane.")
         .metric("relaxed-triangles", Unit::count, "Triangles formed under relaxed limits.")

@@ -33,7 +33,8 @@ struct RegionGrowParams {
     std::optional<Length> search_radius;
     /// Edges whose triangles' normals differ by more are creases. 0 to 180 degrees.
     Angle sharp_angle = Angle::degrees(40);
-    /// Loops of at most this many edges are closed; 0 (as 1 and 2) closes none, at most 100.
+    /// Loops of at most this many edges are closed, and longer ones (up to 100 edges) that hold no circle as large as a
+    /// hole; 0 (as 1 and 2) closes none, at most 100.
     u32 close_holes = 4;
     Score score = Score::circumradius;
     /// The row of the point that the seed triangle starts at; nothing: the flattest place.
@@ -61,7 +62,8 @@ struct RegionGrowResult {
     /// Border edges beyond which a place of the front was turned down for the angle to the triangle there alone.
     std::size_t patch_edges = 0;
     std::size_t creases = 0, corners = 0, closed_holes = 0;
-    /// Of these triangles, grown and taken off again, vertices would have had several fans.
+    /// Grown and taken off again: vertices would have had several fans, or a hole could only be closed in place of
+    /// them.
     std::size_t removed_triangles = 0;
     /// Loops whose area does not tell boundaries from holes, and triangles without area, as find_features() counts.
     std::size_t ambiguous_loops = 0, triangles_without_area = 0;
@@ -82,6 +84,7 @@ struct RegionGrowResult {
 ///
 /// Post: an oriented manifold: every edge in one triangle or in two that pass it in opposite directions, every vertex's
 /// triangles one fan. No vertex twice in one place. Triangles round a vertex do not overlap as seen along its normal.
+/// No triangle in doubt, nor one that closes a hole, passes through those that are near it.
 /// Angles of triangles of pass 0 keep the limits; later passes relax them (see the page). Pieces that enclose a volume
 /// face outwards; so do open ones that bulge, flat ones face up. With a normal column they face as it says.
 /// Ties: equal scores (to 1e-9) by place, along a space-filling curve through the cloud's box. So the mesh depends

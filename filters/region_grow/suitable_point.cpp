@@ -227,8 +227,10 @@ SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool 
     const double half = (surface_.positions[to] - surface_.positions[from]).norm() / 2;
     while (has_candidates()) {
         const Candidate candidate = take_best();
+        const auto faces_away = [&](u32 x) { return surface_.normals[x].dot(candidate.normal) < 0; };
         if (!is_suitable(from, to, candidate, limits, false) ||
-            (in_space && passes_through_others({from, candidate.point, to}))) {
+            ((in_space || std::ranges::any_of(fronts_, faces_away)) &&
+             passes_through_others({from, candidate.point, to}))) {
             turned_down_.push_back(candidate);
             continue;
         }

@@ -45,7 +45,7 @@ public:
     /// circumradius: the point that sees the edge under the largest angle, so that no other one lies in the circle
     /// through the three; midpoint: the one nearest the edge's midpoint. Equal ones (within rounding) by number.
     /// `in_space`: the triangle does not pass through others near it either, which the plane that the surface faces
-    /// along does not tell where it bends.
+    /// along does not tell where it bends. Asked in any case where a front that faces away is near.
     SuitablePoint choose(u32 from, u32 to, const Limits& limits, bool far, bool in_space);
     /// Whether the triangle meets those at the places nearest to its corners in more than common corners and edges.
     bool passes_through_others(const Triangle& triangle);

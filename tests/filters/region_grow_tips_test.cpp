@@ -30,16 +30,20 @@ std::vector<Vec3> sampled(std::size_t count, std::uint64_t seed, const std::func
     return points;
 }
 
+std::size_t self_intersections(const TriangleMesh& mesh) {
+    MeasureParams params;
+    params.samples = 100;
+    Context context;
+    return measure(mesh, mesh, params, context).self_intersections.value();
+}
+
 /// One piece with one boundary, like a disc, that nowhere passes through itself.
 void expect_disc(const RegionGrowResult& result) {
     expect_consistent(result);
     EXPECT_EQ(result.components, 1u);
     EXPECT_EQ(result.loops, 1u);
     EXPECT_EQ(topology(result.mesh).euler, 1);
-    MeasureParams params;
-    params.samples = 100;
-    Context context;
-    EXPECT_EQ(measure(result.mesh, result.mesh, params, context).self_intersections.value(), 0u);
+    EXPECT_EQ(self_intersections(result.mesh), 0u);
 }
 
 double degrees(double angle) { return angle / 180 * std::numbers::pi; }
@@ -61,9 +65,9 @@ TEST(RegionGrowTips_Cones, AreClosedAtTheTipAndOpenAtTheRim) {
         }
 }
 
-/// Two planes at 60 degrees, 6 wide and 10 long, rounded where they meet.
-PointCloud edge_of_60_degrees(double radius, std::uint64_t seed) {
-    const double half = degrees(30), arc = std::numbers::pi - 2 * half, side = 6;
+/// Two planes at such an angle, 6 wide and 10 long, rounded where they meet.
+PointCloud edge(double opening, double radius, std::uint64_t seed) {
+    const double half = degrees(opening / 2), arc = std::numbers::pi - 2 * half, side = 6;
     return thinned(sampled(50000, seed, [&](Random& random) {
         const double along = random.uniform(-side - radius * arc / 2, side + radius * arc / 2);
         const double beyond = std::max(0.0, std::abs(along) - radius * arc / 2);
@@ -77,11 +81,11 @@ TEST(RegionGrowTips_EdgesOf60Degrees, AreClosedSharpOrRounded) {
     for (const double radius : {0.0, 0.1, 0.15})
         for (std::uint64_t seed = 1; seed <= 3; ++seed) {
             SCOPED_TRACE(testing::Message() << "radius " << radius << ", seed " << seed);
-            expect_disc(grown(edge_of_60_degrees(radius, seed)));
+            expect_disc(grown(edge(60, radius, seed)));
         }
     // A quarter of a bin is the hardest: points of either plane lie inside the rounding.
     std::size_t holes = 0;
-    for (std::uint64_t seed = 1; seed <= 8; ++seed) holes += grown(edge_of_60_degrees(0.05, seed)).loops - 1;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) holes += grown(edge(60, 0.05, seed)).loops - 1;
     EXPECT_LE(holes, 1u);
 }
 
@@ -116,6 +120,18 @@ TEST(RegionGrowTips_RidgesThatSag, AreClosed) {
                 if (random.uniform(0, 6) < steep) return Vec3(x, y, z);
             }
         }))));
+    }
+}
+
+TEST(RegionGrowTips_WhatIsTooNarrowForItsBins, DoesNotPassThroughItself) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE(seed);
+        for (const PointCloud& cloud :
+             {cone(8, seed), cone(10, seed), edge(50, 0, seed), edge(40, 0.05, seed), edge(20, 0, seed)}) {
+            const RegionGrowResult result = grown(cloud);
+            expect_consistent(result);
+            EXPECT_EQ(self_intersections(result.mesh), 0u);
+        }
     }
 }
 
