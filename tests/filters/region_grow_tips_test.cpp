@@ -135,6 +135,23 @@ TEST(RegionGrowTips_WhatIsTooNarrowForItsBins, DoesNotPassThroughItself) {
     }
 }
 
+TEST(RegionGrowTips_SheetsThatCross, DoNotPassThroughEachOther) {
+    // z = ± 0.3 x; where they meet no rule of a plane can tell which way either goes on.
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const RegionGrowResult result = grown(cloud_from(sampled(6000, seed, [](Random& random) {
+            const double x = random.uniform(-3, 3), y = random.uniform(-3, 3);
+            return Vec3(x, y, random.uniform(-1, 1) < 0 ? 0.3 * x : -0.3 * x);
+        })));
+        expect_consistent(result);
+        EXPECT_EQ(self_intersections(result.mesh), 0u) << seed;
+    }
+}
+
+TEST(RegionGrowTips_PointsOfNoSurface, DoNotMakeOneThatPassesThroughItself) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed)
+        EXPECT_EQ(self_intersections(grown(random_cube(2000, seed)).mesh), 0u) << seed;
+}
+
 /// An open box: grids of step 1 at y = 0 and y = width, joined at the sides that are asked for.
 PointCloud box(u32 length, u32 width, u32 height, bool ends) {
     std::vector<Vec3> points;
@@ -148,7 +165,7 @@ PointCloud box(u32 length, u32 width, u32 height, bool ends) {
 
 TEST(RegionGrowTips_ThinWallsAndChannels, StayOpen) {
     // A grid of step 1 is as dense as what bins of 1.25 leave: 4 apart is a little more than 3 bins.
-    for (const u32 width : {4u, 6u})
+    for (const u32 width : {3u, 4u, 6u})
         for (const bool ends : {true, false}) {
             const RegionGrowResult result = grown(box(30, width, 8, ends));
             expect_consistent(result);
