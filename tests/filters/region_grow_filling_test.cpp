@@ -40,7 +40,7 @@ public:
         : samples_(distinct_samples(positions)),
           neighbourhoods_(samples_, 1),
           surface_(samples_, neighbourhoods_, principal_normals(samples_, neighbourhoods_, 1),
-                   Array<double>(samples_.size()), false),
+                   Array<double>(samples_.size()), Array<u8>(), false),
           positions_(positions) {
         std::ranges::fill(surface_.search_radius, 4 * samples_.scale);
         for (const Vec3& p : positions)
