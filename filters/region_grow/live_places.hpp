@@ -10,7 +10,7 @@ namespace scanmill::growing {
 /// nor of the front are forgotten when a search meets them; so none may come back while this is used.
 class LivePlaces {
 public:
-    /// Cost: linear, about 7 bytes per place.
+    /// Cost: linear, 7 to 14 bytes per place.
     explicit LivePlaces(const Surface& surface);
 
     /// Appends the live places at a squared distance from `place` below `squared`, itself not among them, by number.

@@ -90,7 +90,7 @@ struct RegionGrowResult {
 /// Ties: equal scores (to 1e-9) by place, along a space-filling curve through the cloud's box. So the mesh depends
 /// neither on the order of the points, up to numbering, nor on the number of threads.
 ///
-/// Cost: O(n log n) time where the nearest 16 places decide, about 425 bytes per point beside the result. An edge where
+/// Cost: O(n log n) time where the nearest 16 places decide, about 440 bytes per point beside the result. An edge where
 /// they do not, or that finds nothing, looks at all m places within its search radius, up to four times: O(m log m)
 /// each, and as often again as places are turned down for what the front or other places do there. Where that radius
 /// is of many spacings, it asks the places that are open first, which are fewer. So such a radius costs O(n m log m) on
