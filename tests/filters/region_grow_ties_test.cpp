@@ -42,7 +42,8 @@ TEST(RegionGrow_Ties, AnEdgeOfTheFrontTakesTheLowerOfTwo) {
             two.surface.add({two.at(0, 0), two.at(2, -3), two.at(4, 0)}, 0);
             PointChooser chooser(two.surface, score);
             // The triangle's own edge from (4, 0) to (0, 0).
-            EXPECT_EQ(chooser.choose(two.at(4, 0), two.at(0, 0), generous, far, true).point, two.lower_of_the_two()) << far;
+            EXPECT_EQ(chooser.choose(two.at(4, 0), two.at(0, 0), generous, far, true).point, two.lower_of_the_two())
+                << far;
         }
 }
 

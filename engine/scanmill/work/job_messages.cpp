@@ -1,141 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/work/job_messages.hpp"
 
-#include <algorithm>
-
 #include "scanmill/cache/metrics_rows.hpp"
-#include "scanmill/engine/expectation.hpp"
 #include "scanmill/filter/error.hpp"
+#include "scanmill/work/message_bytes.hpp"
+#include "scanmill/work/step_message.hpp"
 
 namespace scanmill {
 
 namespace {
 
 using Json = nlohmann::json;
-
-std::string bytes_of(const Json& json) {
-    std::string bytes;
-    Json::to_cbor(json, bytes);
-    return bytes;
-}
-
-/// Reads over a message and keeps nothing: what nests deeper than any message of ours would exhaust the stack.
-class DepthCheck : public Json::json_sax_t {
-public:
-    bool null() override { return true; }
-    bool boolean(bool) override { return true; }
-    bool number_integer(number_integer_t) override { return true; }
-    bool number_unsigned(number_unsigned_t) override { return true; }
-    bool number_float(number_float_t, const string_t&) override { return true; }
-    bool string(string_t&) override { return true; }
-    bool binary(binary_t&) override { return true; }
-    bool start_object(std::size_t) override { return enter(); }
-    bool key(string_t&) override { return true; }
-    bool end_object() override { return leave(); }
-    bool start_array(std::size_t) override { return enter(); }
-    bool end_array() override { return leave(); }
-    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override {
-        what_ = error.what();
-        return false;
-    }
-    const std::string& what() const { return what_; }
-
-private:
-    bool enter() {
-        constexpr int deepest = 16;
-        return ++depth_ <= deepest;
-    }
-    bool leave() {
-        --depth_;
-        return true;
-    }
-    int depth_ = 0;
-    std::string what_ = "it nests too deep";
-};
-
-/// Runs `read` over the message; whatever is not as it should be becomes an Error.
-template <class Read>
-auto read_message(std::string_view message, Read&& read) {
-    try {
-        DepthCheck check;
-        if (!Json::sax_parse(message, &check, Json::input_format_t::cbor))
-            throw Error("a message between runner and worker cannot be understood: {}", check.what());
-        return read(Json::from_cbor(message));
-    } catch (const Error&) {
-        throw;
-    } catch (const std::exception& error) {
-        throw Error("a message between runner and worker cannot be understood: {}", error.what());
-    }
-}
-
-Json rows_of(const ParameterSet& parameters) {
-    Json rows = Json::array();
-    for (const auto& [name, value] : parameters.values) {
-        if (std::holds_alternative<std::monostate>(value)) continue;
-        const WrittenParameter text = written(value);
-        rows.push_back({name, text.items, text.list});
-    }
-    return rows;
-}
-
-/// In the order of the declaration.
-ParameterSet parameters_from(const Json& rows, const FilterSpec& spec) {
-    ParameterSet set;
-    for (const ParameterSpec& parameter : spec.parameters) {
-        const auto row = std::ranges::find_if(rows, [&](const Json& each) { return each.at(0) == parameter.name; });
-        set.values.emplace_back(
-            parameter.name,
-            row == rows.end() ? ParameterValue()
-                              : parse(parameter, {row->at(1).get<std::vector<std::string>>(), row->at(2).get<bool>()}));
-    }
-    return set;
-}
-
-Json to_json(const WrittenParameter& value) { return {value.items, value.list}; }
-
-/// One end of an expectation; there may be none.
-Json end_of(const ParameterValue& value) {
-    return std::holds_alternative<std::monostate>(value) ? Json() : to_json(written(value));
-}
-
-ParameterValue end_from(const Json& json, Unit unit) {
-    if (json.is_null()) return {};
-    return parse(written_as(unit), {json.at(0).get<std::vector<std::string>>(), json.at(1).get<bool>()});
-}
-
-Json to_json(const PlannedStep& step) {
-    Json json{{"filter", step.spec.name},
-              {"version", step.spec.version},
-              {"label", step.label},
-              {"parameters", rows_of(step.parameters)},
-              {"expect", Json::array()}};
-    for (const PlannedExpectation& expected : step.expectations)
-        json["expect"].push_back({expected.name, static_cast<int>(expected.relation), static_cast<int>(expected.unit),
-                                  end_of(expected.low), end_of(expected.high), expected.text});
-    return json;
-}
-
-std::shared_ptr<const PlannedStep> step_from(const Json& json, const FilterLibrary& library) {
-    const std::string name = json.at("filter");
-    const FilterSpec* spec = library.find(name);
-    if (!spec || spec->version != json.at("version").get<int>())
-        throw Error("the filter {} changed while the run was going on", name).hint("run it again");
-    auto step = std::make_shared<PlannedStep>();
-    step->label = json.at("label");
-    step->spec = *spec;
-    step->parameters = parameters_from(json.at("parameters"), *spec);
-    for (const Json& row : json.at("expect")) {
-        const Unit unit = static_cast<Unit>(row.at(2).get<int>());
-        step->expectations.push_back({row.at(0),
-                                      {},
-                                      static_cast<Expectation::Relation>(row.at(1).get<int>()),
-                                      unit,
-                                      end_from(row.at(3), unit),
-                                      end_from(row.at(4), unit),
-                                      row.at(5)});
-    }
-    return step;
-}
 
 Json to_json(const LeafSource& leaf);
 LeafSource leaf_from(const Json& json);
