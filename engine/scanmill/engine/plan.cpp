@@ -10,7 +10,7 @@
 #include "scanmill/engine/expectation.hpp"
 #include "scanmill/engine/key.hpp"
 #include "scanmill/engine/output_template.hpp"
-#include "scanmill/engine/path_parameters.hpp"
+#include "scanmill/engine/step_parameters.hpp"
 #include "scanmill/engine/wiring.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
@@ -116,7 +116,8 @@ private:
     }
 
     std::size_t add_step(const ExpandedStep& step, const FilterSpec& spec, const WiringScope& scope) {
-        ParameterSet set = parameters(step, spec);
+        ParameterSet set =
+            step_parameters(step, spec, {plan_.workflow.file, *settings_, diagnostics_, settings_diagnostics_});
         std::vector<PlannedInput> inputs = wire(*step.syntax, spec, scope, diagnostics_);
         std::string key = structure_key(spec, set, inputs);
         const auto [place, is_new] = step_of_key_.emplace(key, plan_.steps.size());
@@ -136,96 +137,6 @@ private:
                 expectations.push_back(std::move(*expectation));
         }
         return place->second;
-    }
-
-    ParameterSet parameters(const ExpandedStep& step, const FilterSpec& spec) {
-        std::vector<std::string> known;
-        for (const ParameterSpec& parameter : spec.parameters) known.push_back(parameter.name);
-        for (const NamedExpression& written : step.syntax->parameters)
-            if (!spec.parameter(written.name))
-                diagnostics_.error(written.position,
-                                   fmt::format("{} has no parameter '{}'; {}{}", spec.name, written.name,
-                                               known.empty() ? "it has none" : "it has " + enumerated(known),
-                                               did_you_mean(written.name, known)));
-        ParameterSet set;
-        for (const ParameterSpec& parameter : spec.parameters)
-            set.values.emplace_back(parameter.name, parameter_value(step, parameter));
-        return set;
-    }
-
-    ParameterValue parameter_value(const ExpandedStep& step, const ParameterSpec& parameter) {
-        const auto argument = std::ranges::find(step.arguments, parameter.name,
-                                                [](const ChosenArgument& given) { return given.parameter->name; });
-        if (argument == step.arguments.end()) {
-            const bool attempted = std::ranges::find(step.syntax->parameters, parameter.name, &NamedExpression::name) !=
-                                   step.syntax->parameters.end();  // its text was wrong, and reported
-            if (parameter.required && !attempted)
-                diagnostics_.error(step.syntax->position,
-                                   fmt::format("{} needs the parameter '{}': {}", step.syntax->filter, parameter.name,
-                                               expectation(parameter)));
-            return parameter.default_value;
-        }
-        try {
-            return with_folders(*argument, parameter, parse(parameter, argument->value));
-        } catch (const Error& error) {
-            complain_of_value(*argument, parameter, step.syntax->filter, error.sentence());
-            return parameter.default_value;
-        }
-    }
-
-    /// Relative paths count from the folder of the file that they are written in.
-    ParameterValue with_folders(const ChosenArgument& argument, const ParameterSpec& parameter, ParameterValue value) {
-        if (parameter.type != ParameterType::path) return value;
-        const auto with_folder = [&](const ParameterScalar& path, std::size_t item) -> ParameterScalar {
-            const ReplacedName* source = source_of(argument, item);
-            const bool from_outside = source && settings_->contains(source->use->name);
-            if (from_outside && !settings_diagnostics_) return path;  // relative to where we are
-            const std::filesystem::path file = from_outside ? settings_diagnostics_->file() : plan_.workflow.file;
-            return std::get<ParameterScalar>(with_paths_from(file.parent_path(), path));
-        };
-        if (auto* one = std::get_if<ParameterScalar>(&value)) *one = with_folder(*one, 0);
-        if (auto* list = std::get_if<std::vector<ParameterScalar>>(&value))
-            for (std::size_t item = 0; item < list->size(); ++item) (*list)[item] = with_folder((*list)[item], item);
-        return value;
-    }
-
-    /// What an item of the value came from; nullptr when it stands in the step.
-    static const ReplacedName* source_of(const ChosenArgument& argument, std::size_t item) {
-        for (const ReplacedName& replaced : argument.replaced)
-            if (!argument.written->literal.list || replaced.use->item == item) return &replaced;
-        return nullptr;
-    }
-
-    void complain_of_value(const ChosenArgument& argument, const ParameterSpec& parameter, const std::string& filter,
-                           std::string sentence) {
-        const ReplacedName* source =
-            argument.written->literal.list ? refused_item(argument, parameter, sentence) : source_of(argument, 0);
-        if (source && settings_diagnostics_ && settings_->contains(source->use->name))
-            settings_diagnostics_->error(
-                source->value->position,
-                fmt::format("${} is {}the {} of {}: {}", source->use->name,
-                            argument.written->literal.list ? "one of " : "", parameter.name, filter, sentence));
-        else
-            diagnostics_.error(
-                source ? source->use->position : argument.written->position,
-                fmt::format("{}{}: {}", parameter.name, source ? " (from $" + source->use->name + ")" : "", sentence));
-    }
-
-    /// The first `$name` of a list whose value is no item of it, and why; nullptr when something else is wrong.
-    static const ReplacedName* refused_item(const ChosenArgument& argument, const ParameterSpec& parameter,
-                                            std::string& sentence) {
-        if (!parameter.list) return nullptr;
-        ParameterSpec item = parameter;
-        item.list = false;
-        item.size.reset();
-        item.word.clear();
-        for (const ReplacedName& replaced : argument.replaced) try {
-                parse(item, replaced.value->literal);
-            } catch (const Error& error) {
-                sentence = error.sentence();
-                return &replaced;
-            }
-        return nullptr;
     }
 
     std::string structure_key(const FilterSpec& spec, const ParameterSet& parameters,
