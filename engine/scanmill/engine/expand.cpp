@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "scanmill/filter/suggestion.hpp"
+#include "scanmill/engine/name_references.hpp"
 
 namespace scanmill {
 
@@ -187,61 +187,6 @@ private:
     std::map<std::string, const WrittenValue*> bound_;  // swept workflow parameters, once chosen
 };
 
-/// Every `$name` of the file must be declared, in a list be a single value, and every declared one should be used.
-class References {
-public:
-    References(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
-        : diagnostics_(diagnostics) {
-        for (const WorkflowParameter& parameter : workflow.parameters) {
-            names_.push_back(parameter.name);
-            const auto setting = settings.find(parameter.name);
-            const ValueExpression& given = setting != settings.end() ? setting->second : parameter.value;
-            const auto is_list = [](const WrittenValue& value) { return value.literal.list; };
-            if (std::ranges::any_of(given.values, is_list)) lists_.insert(parameter.name);
-        }
-        look_at(workflow.steps);
-        for (const WorkflowParameter& parameter : workflow.parameters)
-            if (!used_.contains(parameter.name))
-                diagnostics_.warning(parameter.position,
-                                     fmt::format("no step uses the parameter '{}'", parameter.name));
-    }
-
-    void require_known(const std::string& name, Position position) const {
-        if (std::ranges::find(names_, name) != names_.end()) return;
-        diagnostics_.error(position, fmt::format("the workflow has no parameter '{}'; {}{}", name,
-                                                 names_.empty() ? "it declares none" : "it has " + enumerated(names_),
-                                                 did_you_mean(name, names_)));
-    }
-
-private:
-    void look_at(const std::vector<StepItem>& items) {
-        for (const StepItem& item : items) {
-            if (const auto* fork = std::get_if<OneOfSyntax>(&item.item)) {
-                for (const AlternativeSyntax& alternative : fork->alternatives) look_at(alternative.steps);
-                continue;
-            }
-            for (const NamedExpression& parameter : std::get<StepSyntax>(item.item).parameters)
-                for (const WrittenValue& written : parameter.value.values)
-                    for (const NameUse& use : written.uses) {
-                        require_known(use.name, use.position);
-                        if (written.literal.list) require_single(use, parameter.name);
-                        used_.insert(use.name);
-                    }
-        }
-    }
-
-    void require_single(const NameUse& use, const std::string& parameter) const {
-        if (lists_.contains(use.name))
-            diagnostics_.error(use.position, fmt::format("${0} is a list, which cannot stand within a list; expected a "
-                                                         "single value, or the whole list as `{1}: ${0}`",
-                                                         use.name, parameter));
-    }
-
-    Diagnostics& diagnostics_;
-    std::vector<std::string> names_;
-    std::set<std::string> used_, lists_;
-};
-
 /// What there is too many of, as "more than 7 variants"; empty when there is not.
 std::string excess(const Workflow& workflow, const Settings& settings) {
     EveryCombination choices;
@@ -277,8 +222,7 @@ std::vector<std::string> undeclared(const Settings& settings, const Workflow& wo
 
 void expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics,
             const std::function<void(const Variant&)>& visit) {
-    const References references(workflow, settings, diagnostics);
-    for (const auto& [name, value] : settings) references.require_known(name, {});
+    check_references(workflow, settings, diagnostics);
     if (const std::string too_much = excess(workflow, settings); !too_much.empty()) {
         diagnostics.error({}, "has " + too_much + "; sweep over fewer values");
         visit_all<EachOnce>(workflow, settings, visit);
