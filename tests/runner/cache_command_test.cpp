@@ -20,7 +20,8 @@ using testing::Not;
 class CacheCommand : public testing::Test {
 protected:
     CacheCommand() {
-        folder_.write("a.xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 2\n");
+        // With normals, so that it is read whole: what is read as a stream is not kept.
+        folder_.write("a.xyz", "0 0 0 0 0 1\n1 0 0 0 0 1\n0 2 0 0 0 1\n1 2 2 0 0 1\n");
         folder_.write("w.yaml",
                       "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: 0.1 u}\n"
                       "outputs: {'{scan}.ply': voxel-thin}\n");
