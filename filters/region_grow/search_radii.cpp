@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "region_grow/median.hpp"
 #include "scanmill/filter/parallel.hpp"
 
 namespace scanmill::growing {
@@ -28,12 +29,6 @@ double bin_at(const Samples& samples, const Neighbourhoods& neighbourhoods, u32 
 
 /// How many cubes per squared bin a surface of this normal meets.
 double cubes_met(const Vec3& normal) { return normal.cwiseAbs().sum(); }
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 class Bins {
 public:
@@ -75,6 +70,7 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
     const Bins bins(samples, neighbourhoods, normals, near_twins, threads);
     SearchRadii result;
     result.radii.resize(samples.size());
+    result.too_dense = Array<double>(thinned.size(), 0);
     std::vector<std::size_t> known((samples.size() + chunk - 1) / chunk, 0);
     for_each_chunk(threads, samples.size(), chunk, [&](std::size_t begin, std::size_t end) {
         std::vector<double> room;
@@ -84,7 +80,9 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
             const double seen = said > 0 ? bins.by_density_and_normals(place, room) : 0;
             const bool agree = said > 0 && seen >= least_share * said && seen <= largest_share * said;
             known[begin / chunk] += agree;
-            result.radii[i] = 2 * std::numbers::sqrt3 * (agree ? said : bins.by_density(place, room));
+            const double bin = agree ? said : bins.by_density(place, room);
+            result.radii[i] = 2 * std::numbers::sqrt3 * bin;
+            if (seen < least_share * said) result.too_dense[i] = bin;
         }
     });
     for (const std::size_t places : known) result.known += places;
@@ -95,9 +93,7 @@ double bins_as_dense(const Surface& surface, unsigned threads) {
     Array<double> radii =
         automatic_radii(surface.samples, surface.neighbourhoods, surface.normals, surface.near_twins, {}, threads)
             .radii;
-    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-    std::nth_element(radii.begin(), middle, radii.end());
-    return *middle / (2 * std::numbers::sqrt3) / surface.samples.scale;
+    return median(radii) / (2 * std::numbers::sqrt3) / surface.samples.scale;
 }
 
 }  // namespace scanmill::growing

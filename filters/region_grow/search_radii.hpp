@@ -12,6 +12,9 @@ struct SearchRadii {
     Array<double> radii;
     /// Places whose B follows from the thinning.
     std::size_t known = 0;
+    /// Per place the B that the density tells where points lie too dense for the bin that they were said to be from;
+    /// 0 elsewhere. Empty where nothing was said.
+    Array<double> too_dense;
 };
 
 /// Thinning keeps one point in every cube of edge B, and a surface meets about 1.5 cubes per B², so its 12th neighbour

@@ -3,22 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "region_grow/median.hpp"
+
 namespace scanmill::growing {
-
-namespace {
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-}  // namespace
 
 Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Context& context) {
     const Column* column = cloud.columns.find("bin-size");
@@ -39,10 +29,9 @@ void tell_contradiction(const Samples& samples, std::span<const double> thinned,
                         Context& context) {
     std::vector<double> said, seen;
     for (std::size_t place = 0; place < thinned.size(); ++place) {
-        const double bin = found.radii[place] / (2 * std::numbers::sqrt3);
-        if (thinned[place] <= bin) continue;
+        if (found.too_dense[place] == 0) continue;
         said.push_back(thinned[place] / samples.scale);
-        seen.push_back(bin / samples.scale);
+        seen.push_back(found.too_dense[place] / samples.scale);
     }
     if (2 * said.size() <= thinned.size()) return;
     context.warn(

@@ -13,7 +13,7 @@ namespace scanmill::growing {
 /// the column, and, told, when it is not one number per row.
 Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Context& context);
 
-/// Tells when at more than half of the places points lie much denser than the bins allow: then the column is about
+/// Tells when at more than half of the places points lie too dense for the bins, as `found` says: then the column is about
 /// other points, or in another unit.
 void tell_contradiction(const Samples& samples, std::span<const double> thinned, const SearchRadii& found,
                         Context& context);

@@ -117,6 +117,16 @@ TEST(RegionGrow_HolesOf170PercentOfABin, StayOpenWhereverTheGridLies) {
     }
 }
 
+TEST(RegionGrow_Bins, OfAnySizeAreBelievedWithoutAWord) {
+    // A product and a quotient by 2 √3 give back less than one in twenty of all numbers; 0.65, 0.82 and 1.3 are such.
+    for (const double bin : {0.65, 0.82, 0.9, 1.3, 1.7}) {
+        const PointCloud cloud = thinned(plate_with_holes(3.4, 4), bin);
+        const Said said = grown_and_said(cloud);
+        EXPECT_GE(said.known, 0.9 * static_cast<double>(cloud.size())) << bin;
+        EXPECT_THAT(said.warnings, IsEmpty()) << bin;
+    }
+}
+
 TEST(RegionGrow_BinsThatContradictThePoints, CountForNothing) {
     const PointCloud cloud = thinned(fibonacci_sphere(20000, 0.01), 0.1);
     const Said plain = grown_and_said(without_columns(cloud));
