@@ -16,7 +16,9 @@ constexpr std::size_t counted_neighbours = 12;
 /// On average over all directions of a surface.
 constexpr double cubes_per_squared_bin = 1.5;
 /// What the density may come to, of the bins of a thinning, where the two agree.
-constexpr double least_share = 0.4, largest_share = 1.15;
+constexpr double least_share = 0.55, largest_share = 1.15;
+/// Of the median of the neighbours' bins, what a place's bin counts at most, as told or as dense.
+constexpr double largest_of_median = 1.15;
 constexpr std::size_t chunk = 1 << 12;
 
 /// The bin whose thinning would put the place's last counted neighbour where it is, of one cube per squared bin.
@@ -47,7 +49,15 @@ public:
     double by_density(u32 place, std::vector<double>& room) const {
         room.clear();
         for (u32 other : neighbourhoods_.of(place)) room.push_back(bins_[other]);
-        return std::sqrt(cubes_per_squared_bin) * std::min(bins_[place], 1.15 * median(room));
+        return std::sqrt(cubes_per_squared_bin) * std::min(bins_[place], largest_of_median * median(room));
+    }
+    /// The told one, no larger than those round it allow; 0 where nothing was told.
+    double told(std::span<const double> thinned, u32 place, std::vector<double>& room) const {
+        if (thinned.empty() || !(thinned[place] > 0)) return 0;
+        room.clear();
+        for (u32 other : neighbourhoods_.of(place))
+            if (thinned[other] > 0) room.push_back(thinned[other]);
+        return room.empty() ? thinned[place] : std::min(thinned[place], largest_of_median * median(room));
     }
     /// Of a surface that lies to the cubes as the normals say.
     double by_density_and_normals(u32 place, std::vector<double>& room) const {
@@ -76,7 +86,7 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
         std::vector<double> room;
         for (std::size_t i = begin; i < end; ++i) {
             const u32 place = static_cast<u32>(i);
-            const double said = thinned.empty() ? 0 : thinned[i];
+            const double said = bins.told(thinned, place, room);
             const double seen = said > 0 ? bins.by_density_and_normals(place, room) : 0;
             const bool agree = said > 0 && seen >= least_share * said && seen <= largest_share * said;
             known[begin / chunk] += agree;

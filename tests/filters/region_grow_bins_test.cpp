@@ -61,17 +61,23 @@ void expect_the_same(const RegionGrowResult& one, const RegionGrowResult& two) {
     EXPECT_TRUE(std::ranges::equal(one.rows, two.rows));
 }
 
-/// Of a 41 x 41 grid of step 1 at its middle: the bin that the search radius there is 2 √3 of.
-double bin_in_the_middle(double thinned_with, const Vec3& normal) {
+/// Of a 41 x 41 grid of step 1 at its middle: the bin that the search radius there is 2 √3 of. Bins as told there and
+/// everywhere else.
+double bin_in_the_middle(double thinned_with, double elsewhere, const Vec3& normal) {
     const PointCloud cloud = grid(41, 41);
     const growing::Samples samples = growing::distinct_samples(cloud.positions.span());
     const growing::Neighbourhoods neighbourhoods(samples, 1);
     const Array<Vec3> normals(samples.size(), normal);
-    const Array<double> thinned(samples.size(), thinned_with * samples.scale);
+    Array<double> thinned(samples.size(), elsewhere * samples.scale);
+    const auto middle = static_cast<std::size_t>(
+        std::ranges::find(samples.positions, Vec3(Vec3(20, 20, 0) * samples.scale)) - samples.positions.begin());
+    thinned[middle] = thinned_with * samples.scale;
     const growing::SearchRadii found = growing::automatic_radii(samples, neighbourhoods, normals, {}, thinned, 1);
-    const auto middle = std::ranges::find(samples.positions, Vec3(Vec3(20, 20, 0) * samples.scale));
-    return found.radii[static_cast<std::size_t>(middle - samples.positions.begin())] / samples.scale /
-           (2 * std::numbers::sqrt3);
+    return found.radii[middle] / samples.scale / (2 * std::numbers::sqrt3);
+}
+
+double bin_in_the_middle(double thinned_with, const Vec3& normal) {
+    return bin_in_the_middle(thinned_with, thinned_with, normal);
 }
 
 TEST(RegionGrow_SearchRadius, ByHand_IsOfTheBinsWhereTheDensityAgrees) {
@@ -82,12 +88,19 @@ TEST(RegionGrow_SearchRadius, ByHand_IsOfTheBinsWhereTheDensityAgrees) {
     EXPECT_NEAR(bin_in_the_middle(1.1, Vec3::UnitZ()), 1.1, 1e-12);
     EXPECT_NEAR(bin_in_the_middle(0.9, Vec3::UnitZ()), 0.9, 1e-12) << "points are a little farther apart";
     EXPECT_NEAR(bin_in_the_middle(0.88, Vec3::UnitZ()), std::sqrt(1.5) * seen, 1e-12) << "points are too sparse";
-    EXPECT_NEAR(bin_in_the_middle(2.5, Vec3::UnitZ()), 2.5, 1e-12) << "layers";
-    EXPECT_NEAR(bin_in_the_middle(2.6, Vec3::UnitZ()), std::sqrt(1.5) * seen, 1e-12) << "points are too dense";
+    EXPECT_NEAR(bin_in_the_middle(1.8, Vec3::UnitZ()), 1.8, 1e-12) << "layers";
+    EXPECT_NEAR(bin_in_the_middle(1.9, Vec3::UnitZ()), std::sqrt(1.5) * seen, 1e-12) << "points are too dense";
     // A face across all bins meets √3 times as many.
     const Vec3 oblique = Vec3(1, 1, -1).normalized();
     EXPECT_NEAR(bin_in_the_middle(1.1, oblique), std::sqrt(1.5) * seen, 1e-12);
     EXPECT_NEAR(bin_in_the_middle(1.2, oblique), 1.2, 1e-12);
+}
+
+TEST(RegionGrow_SearchRadius, ByHand_IsOfAtMost115PercentOfTheNeighboursBins) {
+    EXPECT_NEAR(bin_in_the_middle(1.6, 1.1, Vec3::UnitZ()), 1.15 * 1.1, 1e-12);
+    EXPECT_NEAR(bin_in_the_middle(1.1, 1.6, Vec3::UnitZ()), 1.1, 1e-12);
+    EXPECT_NEAR(bin_in_the_middle(1.6, 0, Vec3::UnitZ()), 1.6, 1e-12) << "nobody knows those";
+    EXPECT_NEAR(bin_in_the_middle(2.5, 1.1, Vec3::UnitZ()), 1.15 * 1.1, 1e-12) << "points agree with that";
 }
 
 /// A plate of 60 x 60 with five round holes, anywhere in the grid of bins of 2.
@@ -208,6 +221,26 @@ TEST(RegionGrow_ScansThinnedApartAndMerged, ReachAsFarAsEachOnesBins) {
     EXPECT_EQ(said.result.holes, 5u);
     EXPECT_EQ(said.result.loops, 6u);
     EXPECT_GE(said.known, 0.9 * static_cast<double>(merged.size()));
+}
+
+TEST(RegionGrow_ScansThinnedDifferentlyOverEachOther, KeepTheHolesOfTheFiner) {
+    // Holes of 2.6 are open for bins of 1, and would not be for the coarser ones.
+    const PointCloud plate = plate_with_holes(2.6, 1);
+    const auto fine = std::make_shared<const PointCloud>(thinned(plate, 1));
+    for (const double bin : {1.25, 1.5, 1.75, 2.0, 2.5, 3.0}) {
+        const auto coarse = std::make_shared<const PointCloud>(thinned(plate, bin));
+        for (const auto& parts : {std::vector{fine, coarse}, std::vector{coarse, fine}})
+            for (const double within : {0.0, 0.3}) {
+                SCOPED_TRACE(testing::Message() << bin << " within " << within);
+                MergeParams params;
+                params.within = Length(within);
+                Context context;
+                const Said said = grown_and_said(merge(parts, params, context).points);
+                expect_consistent(said.result);
+                EXPECT_EQ(said.result.holes, 5u);
+                EXPECT_EQ(said.result.loops, 6u);
+            }
+    }
 }
 
 TEST(RegionGrow_ScansThinnedByAnOctree, KnowMostOfTheirLeaves) {
