@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "scanmill/filter/error.hpp"
 
@@ -18,6 +21,26 @@ void require_vectors(const Column& column, std::size_t points) {
     throw Error("the column 'normal' holds {} in {} rows; normals are 3 numbers in each of the {} rows", size,
                 column.rows(), points)
         .hint("rename or drop the column, then normals are taken from the neighbours");
+}
+
+/// The row's normal as a unit vector; nothing when it is zero or not finite.
+std::optional<Vec3> direction(const Column& column, u32 row) {
+    const Vec3 normal(column.number(row, 0), column.number(row, 1), column.number(row, 2));
+    const double largest = normal.cwiseAbs().maxCoeff();
+    if (!normal.allFinite() || !(largest > 0)) return std::nullopt;
+    return (normal / largest).normalized();
+}
+
+/// Per place its row's; of several rows the first by x, y, z, whatever their order.
+std::vector<std::optional<Vec3>> directions_of(const Column& column, const Samples& samples) {
+    std::vector<std::optional<Vec3>> directions(samples.size());
+    for (u32 place = 0; place < samples.size(); ++place) directions[place] = direction(column, samples.rows[place]);
+    for (const auto& [place, row] : samples.repeats) {
+        std::optional<Vec3>& known = directions[place];
+        const std::optional<Vec3> other = direction(column, row);
+        if (other && (!known || std::lexicographical_compare(other->begin(), other->end(), known->begin(), known->end()))) known = other;
+    }
+    return directions;
 }
 
 /// Turns a principal normal to where the given ones around it point.
@@ -68,17 +91,15 @@ bool take_given_normals(const PointCloud& cloud, const Samples& samples, const N
     const Column* column = cloud.columns.find("normal");
     if (!column) return false;
     require_vectors(*column, cloud.size());
+    const std::vector<std::optional<Vec3>> directions = directions_of(*column, samples);
     std::vector<bool> given(samples.size(), false);
     std::size_t missing = 0, lying = 0;
     for (u32 place = 0; place < samples.size(); ++place) {
-        const u32 row = samples.rows[place];
-        Vec3 normal(column->number(row, 0), column->number(row, 1), column->number(row, 2));
-        const double largest = normal.cwiseAbs().maxCoeff();
-        if (!normal.allFinite() || !(largest > 0)) {
+        if (!directions[place]) {
             ++missing;
             continue;
         }
-        normal = (normal / largest).normalized();
+        const Vec3& normal = *directions[place];
         if (lies_in_surface(samples, neighbourhoods, place, normal, normals.directions[place])) ++lying;
         normals.directions[place] = normal;
         given[place] = true;

@@ -136,7 +136,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.triangles_without_area = lines.counts.without_area;
     result.patch_edges = patch_edges.size();
     result.components = pieces.count;
-    result.duplicates = samples.duplicates;
+    result.duplicates = samples.repeats.size();
     result.unused_points = samples.size() - result.rows.size();
     result.near_twins = static_cast<std::size_t>(std::ranges::count(surface.states, PlaceState::twin));
     report(result, lines.counts, surface, context);

@@ -57,11 +57,13 @@ Samples distinct_samples(std::span<const Vec3> positions) {
     samples.positions.reserve(order.size());
     samples.rows.reserve(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i > 0 && scaled[order[i]] == scaled[order[i - 1]]) continue;
+        if (i > 0 && scaled[order[i]] == scaled[order[i - 1]]) {
+            samples.repeats.push_back({static_cast<u32>(samples.rows.size() - 1), order[i]});
+            continue;
+        }
         samples.positions.push_back(scaled[order[i]]);
         samples.rows.push_back(order[i]);
     }
-    samples.duplicates = order.size() - samples.size();
     return samples;
 }
 

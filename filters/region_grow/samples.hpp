@@ -3,6 +3,7 @@
 /// The places that a surface grows over: each once, numbered so that neighbours in space are neighbours in memory.
 
 #include <span>
+#include <vector>
 
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/frame.hpp"
@@ -16,16 +17,20 @@ struct Samples {
     Array<Vec3> positions;
     /// Per place the lowest row of the cloud that lies there.
     Array<u32> rows;
+    /// All further rows, by place and row.
+    struct Repeat {
+        u32 place, row;
+    };
+    std::vector<Repeat> repeats;
     /// What the cloud's positions were multiplied with: a power of two that brings the box's extent near 1, so that
     /// products of coordinates neither overflow nor vanish.
     double scale = 1;
-    std::size_t duplicates = 0;
 
     std::size_t size() const { return positions.size(); }
 };
 
 /// Pre: finite positions, at least one, fewer than 2^32, all one place or in a box between 1e-100 and 1e100 in size.
-/// Cost: O(n log n) at most, 85 bytes per point.
+/// Cost: O(n log n) at most, 85 bytes per point, 8 more per repeat.
 Samples distinct_samples(std::span<const Vec3> positions);
 
 }  // namespace scanmill::growing

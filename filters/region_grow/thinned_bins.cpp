@@ -17,11 +17,14 @@ Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Cont
         context.warn("the column `bin-size` is not one number per point; the search radius follows from the density");
         return {};
     }
+    const auto bin = [&](u32 row) {
+        const double size = column->number(row);
+        return std::isfinite(size) && size > 0 ? size * samples.scale : 0;
+    };
     Array<double> bins(samples.size());
-    for (std::size_t place = 0; place < bins.size(); ++place) {
-        const double size = column->number(samples.rows[place]);
-        bins[place] = std::isfinite(size) && size > 0 ? size * samples.scale : 0;
-    }
+    for (std::size_t place = 0; place < bins.size(); ++place) bins[place] = bin(samples.rows[place]);
+    for (const auto& [place, row] : samples.repeats)
+        if (const double size = bin(row); size > 0 && (bins[place] == 0 || size < bins[place])) bins[place] = size;
     return bins;
 }
 

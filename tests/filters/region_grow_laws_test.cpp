@@ -151,6 +151,30 @@ TEST(RegionGrow_OrderOfThePoints, ChangesNothingButNumbers) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) EXPECT_EQ(by_place(grown(shuffled(cloud, seed)).mesh), triangles);
 }
 
+TEST(RegionGrow_OrderOfRowsInOnePlace, ChangesNothingThatTheirColumnsSay) {
+    // Every place three times, with bins of its own and normals that tilt either way, some of them unknown.
+    const PointCloud one = thinned(fibonacci_sphere(20000, 0.01), 0.1);
+    PointCloud cloud = joined(joined(one, one), one);
+    Random random(3);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Array<double> bins, normals;
+    for (std::size_t row = 0; row < cloud.size(); ++row) {
+        bins.push_back(random.uniform(0, 3) < 1 ? nan : random.uniform(0.06, 0.2));
+        const Vec3 tilt(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        const Vec3 normal = random.uniform(0, 3) < 1 ? Vec3::Zero() : Vec3(cloud.positions[row] + 0.9 * tilt);
+        normals.insert(normals.end(), normal.begin(), normal.end());
+    }
+    const Column bin_column("bin-size", 1, Buffer<double>(std::move(bins)));
+    const Column normal_column("normal", 3, Buffer<double>(std::move(normals)));
+    for (const Column& column : {bin_column, normal_column}) {
+        cloud.columns = {};
+        cloud.columns.add(column);
+        const auto triangles = by_place(grown(cloud).mesh);
+        for (std::uint64_t seed = 1; seed <= 2; ++seed)
+            EXPECT_TRUE(by_place(grown(shuffled(cloud, seed)).mesh) == triangles) << column.name() << ", " << seed;
+    }
+}
+
 TEST(RegionGrow_Threads, GiveTheSameBytes) {
     const PointCloud cloud = torus_scan();
     const RegionGrowResult one = grown(cloud), two = grown(cloud, {}, 2);
