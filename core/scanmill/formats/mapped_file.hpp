@@ -25,6 +25,8 @@ public:
     /// These bytes are not needed for now: their pages no longer count as memory of this process. Reading them, or what
     /// else lies in these pages, is allowed, also meanwhile.
     void release(std::string_view part) const noexcept;
+    /// The same, and what touching single bytes of the part without fetch() mapped around them: up to a huge page.
+    void release_around(std::string_view part) const noexcept;
 
 private:
     void* data_ = nullptr;

@@ -90,6 +90,23 @@ private:
         file_->release(rows);
     }
 
+    /// Few rows far from each other touch as much of the file as all of it: what lies behind is given back on the way.
+    Array<char> picked_bytes(std::span<const u32> rows) const {
+        constexpr std::size_t longest_stretch = std::size_t(1) << 20;
+        Array<char> picked(rows.size() * row_size_);
+        char* place = picked.data();
+        u32 first = rows.front();
+        for (const u32 row : rows) {
+            if ((row - first) * row_size_ > longest_stretch) {
+                file_->release_around(bytes_of(first, row - first));
+                first = row;
+            }
+            place = std::ranges::copy(bytes_of(row, 1), place).out;
+        }
+        file_->release_around(bytes_of(first, rows.back() - first + 1));
+        return picked;
+    }
+
     PointCloud gather_world(std::span<const u32> rows, unsigned threads) const override {
         PlyElement kept = vertex_;
         kept.count = rows.size();
@@ -101,10 +118,7 @@ private:
             std::vector<PlySlot> slots(table.slots().begin(), table.slots().end());
             for (PlySlot& slot : slots)
                 if (slot.place) slot.place += begin * slot.stride;
-            Array<char> picked((end - begin) * row_size_);
-            for (std::size_t i = begin; i < end; ++i)
-                std::ranges::copy(bytes_of(rows[i], 1), picked.begin() + static_cast<long>((i - begin) * row_size_));
-            file_->release(bytes_of(rows[begin], rows[end - 1] - rows[begin] + 1));
+            const Array<char> picked = picked_bytes(rows.subspan(begin, end - begin));
             decode({picked.data(), picked.size()}, slots);
         });
         PointCloud cloud;
