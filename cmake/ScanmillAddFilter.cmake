@@ -50,7 +50,7 @@ function(scanmill_add_filter folder)
                BUILD_WITH_INSTALL_RPATH ON
                INSTALL_RPATH_USE_LINK_PATH ON
                LIBRARY_OUTPUT_DIRECTORY ${SCANMILL_PLUGIN_OUTPUT_DIRECTORY})
-  target_compile_definitions(scanmill-${name} PRIVATE SCANMILL_FILTER_NAME="${name}")
+  target_compile_definitions(scanmill-${name} PRIVATE SCANMILL_FILTER_NAME="${name}" ${SCANMILL_HEADERS_DEFINITION})
   target_link_libraries(scanmill-${name} PRIVATE scanmill-${name}-algorithm)
   target_link_options(scanmill-${name} PRIVATE LINKER:--exclude-libs,ALL)
   if(TARGET scanmill-warnings)

@@ -21,7 +21,7 @@ function(scanmill_add_format folder)
                BUILD_WITH_INSTALL_RPATH ON
                INSTALL_RPATH_USE_LINK_PATH ON
                LIBRARY_OUTPUT_DIRECTORY ${SCANMILL_FORMAT_OUTPUT_DIRECTORY})
-  target_compile_definitions(${module} PRIVATE SCANMILL_FORMAT_NAME="${folder}")
+  target_compile_definitions(${module} PRIVATE SCANMILL_FORMAT_NAME="${folder}" ${SCANMILL_HEADERS_DEFINITION})
   target_include_directories(${module} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_include_directories(${module} SYSTEM PRIVATE ${FORMAT_INCLUDE})
   target_link_libraries(${module} PRIVATE Scanmill::core ${FORMAT_LINK})

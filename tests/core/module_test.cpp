@@ -50,6 +50,13 @@ TEST(LoadModule, AnotherAbi_IsRefusedWithBothTextsAndWithoutACall) {
     EXPECT_THAT(error.hint(), HasSubstr("build the module again"));
 }
 
+TEST(LoadModule, OtherHeaders_AreAnotherAbi) {
+    // Version and compiler are ours; the declaration's layout may not be, and calling it would abort this program.
+    EXPECT_THAT(refusal("other-headers"),
+                AllOf(HasSubstr("was built for another program"), HasSubstr("headers 0123456789abcdef"),
+                      HasSubstr("'" + abi_text() + "'")));
+}
+
 TEST(LoadModule, AnotherMagic_IsNoFilter) {
     EXPECT_THAT(refusal("other-magic"), AllOf(HasSubstr("is no filter"), HasSubstr("begins with")));
 }
@@ -133,8 +140,8 @@ TEST(LoadModule, CopyElsewhere_IsAModuleToo) {
 }
 
 TEST(AbiText, NamesWhatMustAgree) {
-    EXPECT_THAT(abi_text(),
-                AllOf(HasSubstr("scanmill " SCANMILL_VERSION), HasSubstr("libstdc++"), HasSubstr("eigen 3")));
+    EXPECT_THAT(abi_text(), AllOf(HasSubstr("scanmill " SCANMILL_VERSION), HasSubstr("libstdc++"), HasSubstr("eigen 3"),
+                                  testing::ContainsRegex("headers [0-9a-f]{16},")));
 }
 
 TEST(ContentHash, EqualBytes_HaveEqualHashesWhateverTheFile) {

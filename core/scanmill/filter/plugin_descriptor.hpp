@@ -20,10 +20,12 @@
 #else
 #define SCANMILL_ABI_DEBUG ""
 #endif
-/// Everything that must agree for C++ objects to cross the border.
+/// Everything that must agree for C++ objects to cross the border. SCANMILL_HEADERS, a hash of all headers of this
+/// library, comes from the build: with Scanmill::core of the installed package, or from scanmill_add_filter().
 #define SCANMILL_ABI_TEXT                                                                                         \
     "scanmill " SCANMILL_VERSION ", compiler abi " SCANMILL_TEXT(__GXX_ABI_VERSION) ", libstdc++ " SCANMILL_TEXT( \
         _GLIBCXX_RELEASE) " strings " SCANMILL_TEXT(_GLIBCXX_USE_CXX11_ABI) SCANMILL_ABI_DEBUG                    \
+        ", headers " SCANMILL_HEADERS                                                                             \
         ", c++ " SCANMILL_TEXT(__cplusplus) ", eigen " SCANMILL_TEXT(EIGEN_WORLD_VERSION) "." SCANMILL_TEXT(      \
             EIGEN_MAJOR_VERSION) " aligned to " SCANMILL_TEXT(EIGEN_MAX_STATIC_ALIGN_BYTES) SCANMILL_ABI_SANITIZER
 
