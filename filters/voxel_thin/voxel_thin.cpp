@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scanmill/filter/parallel.hpp"
+#include "scanmill/geometry/finite_bounds.hpp"
 #include "voxel_thin/thin_pieces.hpp"
 #include "voxel_thin/tolerance_thin.hpp"
 
@@ -13,29 +14,17 @@ namespace scanmill {
 namespace {
 
 /// Bounds of all points in one pass that also notices a NaN or an infinity; a second one finds the words for it.
-BoundingBox finite_bounds(std::span<const Vec3> positions, Context& context) {
+BoundingBox required_bounds(std::span<const Vec3> positions, Context& context) {
     constexpr std::size_t chunk = 1 << 18;
-    std::vector<BoundingBox> boxes((positions.size() + chunk - 1) / chunk);
-    std::vector<char> finite(boxes.size());
+    std::vector<FiniteBounds> parts((positions.size() + chunk - 1) / chunk);
     for_each_chunk(context.threads(), positions.size(), chunk, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
-        BoundingBox box;
-        Vec3 zero = Vec3::Zero();  // unless some x * 0 is NaN
-        for (const Vec3& p : positions.subspan(begin, end - begin)) {
-            box.low = box.low.cwiseMin(p);
-            box.high = box.high.cwiseMax(p);
-            zero += p * 0.0;
-        }
-        boxes[begin / chunk] = box;
-        finite[begin / chunk] = zero == Vec3::Zero();
+        parts[begin / chunk] = finite_bounds(positions.subspan(begin, end - begin));
     });
-    if (std::ranges::count(finite, 0)) require_finite(positions);
-    BoundingBox all;
-    for (const BoundingBox& box : boxes) {
-        all.low = all.low.cwiseMin(box.low);
-        all.high = all.high.cwiseMax(box.high);
-    }
-    return all;
+    FiniteBounds all;
+    for (const FiniteBounds& part : parts) all.add(part);
+    if (!all.finite) require_finite(positions);
+    return all.box;
 }
 
 /// A piece fits a processor's own cache.
@@ -56,7 +45,7 @@ voxel::PointPieces pieces_of(std::span<const Vec3> positions) {
 VoxelThinResult voxel_thin(const PointCloud& cloud, const VoxelThinParams& params, Context& context) {
     voxel::require_sound(cloud.size(), params);
     const std::span<const Vec3> positions = cloud.positions.span();
-    const BoundingBox box = finite_bounds(positions, context);
+    const BoundingBox box = required_bounds(positions, context);
     const voxel::PointPieces pieces = pieces_of(positions);
     if (!params.bin_size) return voxel::thin_within_tolerance(cloud, pieces, box, params, context);
     return voxel::thin(

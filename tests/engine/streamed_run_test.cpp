@@ -237,6 +237,24 @@ TEST_F(StreamedRun, ScanThatChangesBetweenOpeningAndTheStep_Fails) {
     EXPECT_THAT(report.cells[0].failure.text, HasSubstr("changed while the run was going on"));
 }
 
+TEST_F(StreamedRun, ScanThatLosesRowsBetweenOpeningAndTheStep_FailsInWords) {
+    struct Changer : RunObserver {
+        std::function<void()> change;
+        void node_ended(const RunNode& node, const NodeReport&) override {
+            if (!node.step) change();
+        }
+    } changer;
+    changer.change = [&] { scan("a.xyz", "0 0 0\n1 0 0\n0 2 0\n     \n"); };
+    for (const bool has_cache : {true, false}) {
+        if (!has_cache) settings_.cache = nullptr;
+        prepare("  - voxel-thin: {bin-size: 0.5 u}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': voxel-thin}\n");
+        const RunReport report = run_graph(changer);
+        EXPECT_THAT(report.cells[0].failure.text,
+                    HasSubstr(has_cache ? "changed while the run was going on" : "changed while it was read"));
+        EXPECT_THAT(report.cells[0].failure.text, HasSubstr("run it again"));
+    }
+}
+
 TEST_F(StreamedRun, CancelledWhileItIsOpened_Stops) {
     prepare("  - test-stream: {length: 1 u}\n", {scan("a.xyz")});
     struct Canceller : RunObserver {

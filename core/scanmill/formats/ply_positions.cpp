@@ -37,8 +37,8 @@ std::optional<PackedPositions> packed_positions(const PlyElement& vertex, PlyEnc
 
 /// `source` is the first row's x, rows are `stride` bytes apart. One pass: bounds and doubles together.
 template <class Scalar>
-BoundingBox widen_positions(const char* source, std::size_t stride, Array<Vec3>& positions) {
-    BoundingBox box;
+FiniteBounds widen_positions(const char* source, std::size_t stride, Array<Vec3>& positions) {
+    FiniteBounds all;
     constexpr std::size_t block = 1024;
     for (std::size_t first = 0; first < positions.size(); first += block) {
         const std::size_t rows = std::min(block, positions.size() - first);
@@ -55,18 +55,18 @@ BoundingBox widen_positions(const char* source, std::size_t stride, Array<Vec3>&
                 positions[first + row][axis] = static_cast<double>(p[axis]);
             }
         }
-        BoundingBox bounds{Vec3(low[0], low[1], low[2]), Vec3(high[0], high[1], high[2])};
-        if (!(poison[0] + poison[1] + poison[2] == 0)) bounds = bounding_box({positions.data() + first, rows});
-        box.low = box.low.cwiseMin(bounds.low);
-        box.high = box.high.cwiseMax(bounds.high);
+        FiniteBounds bounds{{Vec3(low[0], low[1], low[2]), Vec3(high[0], high[1], high[2])},
+                            poison[0] + poison[1] + poison[2] == 0};
+        if (!bounds.finite) bounds.box = bounding_box({positions.data() + first, rows});
+        all.add(bounds);
     }
-    return box;
+    return all;
 }
 
 }  // namespace
 
-std::optional<BoundingBox> widen_packed_positions(std::string_view body, const PlyElement& vertex, PlyEncoding encoding,
-                                                  Array<Vec3>& positions) {
+std::optional<FiniteBounds> widen_packed_positions(std::string_view body, const PlyElement& vertex,
+                                                   PlyEncoding encoding, Array<Vec3>& positions) {
     const auto packed = packed_positions(vertex, encoding);
     if (!packed) return std::nullopt;
     const char* source = body.data() + packed->offset;

@@ -5,15 +5,15 @@
 
 #include <optional>
 
-#include "scanmill/data/points.hpp"
 #include "scanmill/formats/ply_header.hpp"
+#include "scanmill/geometry/finite_bounds.hpp"
 
 namespace scanmill {
 
-/// Fills `positions`, one per row, from the rows at the front of `body`, and returns the bounds of the finite ones;
-/// nothing, without touching them, when the element is no such case.
+/// Fills `positions`, one per row, from the rows at the front of `body`, and returns the bounds of the finite ones
+/// and whether all are; nothing, without touching them, when the element is no such case.
 /// Pre: positions.size() rows are there (require_room() passed); the element has scalars x, y and z.
-std::optional<BoundingBox> widen_packed_positions(std::string_view body, const PlyElement& vertex, PlyEncoding encoding,
-                                                  Array<Vec3>& positions);
+std::optional<FiniteBounds> widen_packed_positions(std::string_view body, const PlyElement& vertex,
+                                                   PlyEncoding encoding, Array<Vec3>& positions);
 
 }  // namespace scanmill

@@ -82,8 +82,8 @@ private:
         constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
         PlyTable table(element, header_.comments, axes);
         positions_.resize(element.count);
-        if (const auto box = widen_packed_positions(bytes_.substr(at_), element, header_.encoding, positions_)) {
-            box_ = *box;
+        if (const auto bounds = widen_packed_positions(bytes_.substr(at_), element, header_.encoding, positions_)) {
+            box_ = bounds->box;
             decode(element, table.slots());
         } else {
             for (PlySlot& slot : table.slots()) {

@@ -38,21 +38,16 @@ private:
     bool look_over(unsigned threads, const OnWorldPositions& on_positions) {
         struct Room {
             Array<Vec3> positions;
-            PieceBounds bounds{{}};
+            FiniteBounds bounds;
         };
-        bool is_finite = true;
         for_each_in_order<Room>(
             threads, pieces_.size() - 1,
-            [&](std::size_t piece, Room& room) {
-                read_world(piece, room.positions);
-                room.bounds = PieceBounds(room.positions);
-            },
+            [&](std::size_t piece, Room& room) { room.bounds = read_world(piece, room.positions); },
             [&](std::size_t, const Room& room) {
-                is_finite = is_finite && room.bounds.finite;
-                add_to_bounds(room.bounds.box);
+                world_.add(room.bounds);
                 if (on_positions) on_positions(room.positions);
             });
-        return is_finite;
+        return world_.finite;
     }
 
     std::string_view bytes_of(std::size_t first, std::size_t count) const {
@@ -76,18 +71,21 @@ private:
         decode_ply_binary(rows, header_.size, part, header_.encoding == PlyEncoding::binary_big_endian, slots);
     }
 
-    void read_world(std::size_t piece, Array<Vec3>& room) const override {
+    FiniteBounds read_world(std::size_t piece, Array<Vec3>& room) const override {
         const std::size_t first = pieces_[piece], count = pieces_[piece + 1] - first;
         const std::string_view rows = bytes_of(first, count);
         file_->fetch(rows);
         room.resize(count);
-        if (!widen_packed_positions(rows, vertex_, header_.encoding, room)) {
+        std::optional<FiniteBounds> bounds = widen_packed_positions(rows, vertex_, header_.encoding, room);
+        if (!bounds) {
             std::vector<PlySlot> slots;
             for (const PlyProperty& property : vertex_.properties) slots.push_back({.property = &property});
             place_axes(slots, room.data());
             decode(rows, slots);
+            bounds = finite_bounds(room);
         }
         file_->release(rows);
+        return *bounds;
     }
 
     /// Few rows far from each other touch as much of the file as all of it: what lies behind is given back on the way.

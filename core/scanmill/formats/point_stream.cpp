@@ -27,37 +27,26 @@ const PointStreamKind* kind_of(const std::filesystem::path& path, std::string_vi
 PointStream::~PointStream() = default;
 
 void PointStream::read(std::size_t piece, Array<Vec3>& room) const {
-    read_world(piece, room);
+    const FiniteBounds world = read_world(piece, room);
+    if (room.size() != pieces_[piece + 1] - pieces_[piece] || !world.are_within(world_.box)) throw_changed();
     if (frame_.origin == Vec3::Zero()) return;
     for (Vec3& p : room) p -= frame_.origin;
 }
 
 PointCloud PointStream::gather(std::span<const u32> rows, unsigned threads) const {
     PointCloud cloud = gather_world(rows, threads);
+    if (!finite_bounds(cloud.positions.span()).are_within(world_.box)) throw_changed();
     cloud.frame = frame_;
     if (frame_.origin != Vec3::Zero()) cloud.positions = translated(cloud.positions, -frame_.origin);
     return cloud;
 }
 
-PieceBounds::PieceBounds(std::span<const Vec3> positions) {
-    Vec3 zero = Vec3::Zero();  // unless some x * 0 is NaN
-    for (const Vec3& p : positions) {
-        box.low = box.low.cwiseMin(p);
-        box.high = box.high.cwiseMax(p);
-        zero += p * 0.0;
-    }
-    finite = zero == Vec3::Zero();
-}
-
-void PointStream::add_to_bounds(const BoundingBox& world) {
-    bounds_.low = bounds_.low.cwiseMin(world.low);
-    bounds_.high = bounds_.high.cwiseMax(world.high);
-}
+void PointStream::throw_changed() { throw Error("the scan's file changed while it was read").hint("run it again"); }
 
 void PointStream::choose_origin() {
-    frame_.origin = distant_origin(bounds_);
-    bounds_.low -= frame_.origin;
-    bounds_.high -= frame_.origin;
+    frame_.origin = distant_origin(world_.box);
+    bounds_.low = world_.box.low - frame_.origin;
+    bounds_.high = world_.box.high - frame_.origin;
 }
 
 std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path, const ReadOptions& options,

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/finite_bounds.hpp"
 
 namespace scanmill {
 
@@ -30,7 +31,9 @@ public:
     const std::vector<std::size_t>& pieces() const { return pieces_; }
     std::size_t size() const { return pieces_.back(); }
 
-    /// The positions of a piece, in `room`. From several threads at once, each with room of its own.
+    /// The positions of a piece, in `room`. From several threads at once, each with room of its own. Throws Error when
+    /// the file no longer holds what it held when it was opened, as far as that shows: other rows, or coordinates
+    /// outside bounds().
     void read(std::size_t piece, Array<Vec3>& room) const;
     /// These points with all their columns. Pre: `rows` ascending.
     PointCloud gather(std::span<const u32> rows, unsigned threads) const;
@@ -40,15 +43,16 @@ public:
 
 protected:
     PointStream() = default;
-    /// World positions of a piece, `room` sized to fit.
-    virtual void read_world(std::size_t piece, Array<Vec3>& room) const = 0;
+    /// Throws the Error of a file that changed.
+    [[noreturn]] static void throw_changed();
+    /// World positions of a piece, `room` sized to fit what the file has now, and their bounds.
+    virtual FiniteBounds read_world(std::size_t piece, Array<Vec3>& room) const = 0;
     virtual PointCloud gather_world(std::span<const u32> rows, unsigned threads) const = 0;
-    /// The next piece's bounds, which the frame's origin follows from once all are there.
-    void add_to_bounds(const BoundingBox& world);
-    /// Sets the frame's origin to what readers choose, and moves the bounds to it.
+    /// Sets the frame's origin to what readers choose, and the bounds relative to it. Pre: world_ bounds all pieces.
     void choose_origin();
 
     Frame frame_;
+    FiniteBounds world_;  ///< of the pieces that were looked over, as the file has them
     BoundingBox bounds_;
     std::vector<std::size_t> pieces_;
 };

@@ -21,12 +21,4 @@ struct PointStreamKind {
     decltype(&open_ply_stream) open;
 };
 
-/// The bounds of one piece, and whether it is finite.
-struct PieceBounds {
-    BoundingBox box;
-    bool finite = true;
-
-    explicit PieceBounds(std::span<const Vec3> positions);
-};
-
 }  // namespace scanmill

@@ -70,20 +70,18 @@ private:
     bool look_over(unsigned threads, const OnWorldPositions& on_positions) {
         struct Room {
             Array<Vec3> positions;
-            PieceBounds bounds{{}};
+            FiniteBounds bounds;
             std::vector<std::string> comments;
         };
-        bool is_finite = true;
         std::size_t rows = 0;
         for_each_in_order<Room>(
             threads, texts_.size(),
             [&](std::size_t piece, Room& room) {
                 room.comments = parse(piece, room.positions).comments();
-                room.bounds = PieceBounds(room.positions);
+                room.bounds = finite_bounds(room.positions);
             },
             [&](std::size_t, Room& room) {
-                is_finite = is_finite && room.bounds.finite;
-                add_to_bounds(room.bounds.box);
+                world_.add(room.bounds);
                 pieces_.push_back(rows);
                 rows += room.positions.size();
                 for (std::string& comment : room.comments)
@@ -91,7 +89,17 @@ private:
                 if (on_positions) on_positions(room.positions);
             });
         pieces_.push_back(rows);
-        return is_finite && rows <= ~u32(0);
+        return world_.finite && rows <= ~u32(0);
+    }
+
+    /// Nothing was unusual when the text was looked over: if something is now, the text is another.
+    template <class Reading>
+    static void as_before(Reading&& reading) {
+        try {
+            reading();
+        } catch (const Unusual&) {
+            throw_changed();
+        }
     }
 
     TextCursor parse(std::size_t piece, Array<Vec3>& room) const {
@@ -103,7 +111,10 @@ private:
         return cursor;
     }
 
-    void read_world(std::size_t piece, Array<Vec3>& room) const override { parse(piece, room); }
+    FiniteBounds read_world(std::size_t piece, Array<Vec3>& room) const override {
+        as_before([&] { parse(piece, room); });
+        return finite_bounds(room);
+    }
 
     PointCloud gather_world(std::span<const u32> rows, unsigned threads) const override {
         Array<Vec3> positions(rows.size());
@@ -114,10 +125,13 @@ private:
             file_->fetch(texts_[piece]);
             TextCursor cursor(texts_[piece], text_rules);
             std::size_t row = pieces_[piece];
-            for (auto kept = begin; kept != end; ++row) {
-                cursor.next_row();
-                if (*kept == row) positions[static_cast<std::size_t>(kept++ - rows.begin())] = parse_row(cursor, axes_);
-            }
+            as_before([&] {
+                for (auto kept = begin; kept != end; ++row) {
+                    cursor.next_row();
+                    if (*kept == row)
+                        positions[static_cast<std::size_t>(kept++ - rows.begin())] = parse_row(cursor, axes_);
+                }
+            });
             file_->release(texts_[piece]);
         });
         PointCloud cloud;

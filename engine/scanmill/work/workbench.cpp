@@ -121,8 +121,17 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
                 .hint("run it again");
         return library_.load(step.spec.name);
     };
-    const Outputs outputs = scan ? run_step(step, filter, *scan, std::move(options), recall, report.node)
-                                 : run_step(step, filter, inputs, std::move(options), recall, report.node);
+    const Outputs outputs = [&] {
+        if (!scan) return run_step(step, filter, inputs, std::move(options), recall, report.node);
+        try {
+            return run_step(step, filter, *scan, std::move(options), recall, report.node);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (...) {
+            scans_.require_unchanged(work.inputs.front().node);  // if it changed, that is why
+            throw;
+        }
+    }();
     const double seconds = seconds_since(start);
     if (scan) scans_.require_unchanged(work.inputs.front().node);
     if (uses_cache(work.memory))
