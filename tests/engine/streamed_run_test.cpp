@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <deque>
+#include <map>
 #include <set>
 
 #include "engine/run_fixture.hpp"
@@ -18,6 +20,35 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr Origin ran = Origin::ran, cached = Origin::cached, same_inputs = Origin::same_inputs;
+
+/// Two workers in this process; when both have something to do, the second is done first.
+class TwoBenches : public Workers {
+public:
+    TwoBenches(FilterLibrary& library, Cache& cache, KeepRule::Policy policy) {
+        for (const char* name : {"first", "second"}) benches_.emplace_back(library, &cache, policy, scratch_ / name);
+    }
+    std::size_t size() const override { return benches_.size(); }
+    void start(std::size_t worker, Job job) override {
+        steps_of_second += worker == 1 && std::holds_alternative<StepWork>(job.work);
+        jobs_[worker] = std::move(job);
+    }
+    void forget(std::size_t worker, std::size_t node) override { benches_[worker].forget(node); }
+    void wait(const WorkerListener& listener, std::chrono::milliseconds) override {
+        if (jobs_.empty()) return;
+        const auto [worker, job] = *jobs_.rbegin();
+        jobs_.erase(worker);
+        JobReport report = benches_[worker].perform(job, {[](double) {}, [](std::string_view) {}, {}});
+        listener.on_end(worker, std::move(report), false);
+    }
+    void cancel() override {}
+
+    std::size_t steps_of_second = 0;
+
+private:
+    TemporaryFolder scratch_;
+    std::deque<Workbench> benches_;
+    std::map<std::size_t, Job> jobs_;
+};
 
 class StreamedRun : public Run {
 protected:
@@ -184,6 +215,23 @@ TEST_F(StreamedRun, Workers_HandTheFilterAStreamAndGiveTheSame) {
     use_cache("other");
     expect_equal(there, run_graph());
     EXPECT_EQ(remembered("cache"), remembered("other"));
+}
+
+TEST_F(StreamedRun, HelperThatOpenedAScan_GoesOnHelping) {
+    // The first worker's own: two scans, a step on each, and one that brings both together. Whatever the second does is
+    // help, and its scan is opened before the first one's.
+    request_.inputs = {{"other", {scan("b.xyz", "0 0 0\n4 4 4\n")}}};
+    prepare(
+        "  - id: a\n    test-stream: {length: 1 u}\n    in: {points: scan}\n"
+        "  - id: b\n    test-stream: {length: 2 u}\n    in: {points: other}\n"
+        "  - id: both\n    test-step:\n    in: {points: a, more: [b]}\n",
+        {scan("a.xyz")}, "outputs: {'{scan}.ply': both}\n", "{scan: points, other: points}");
+    settings_.shares_values = true;
+    TwoBenches workers(library_, *cache_, keep_);
+    RunObserver nobody;
+    const RunReport report = scanmill::run(library_, graph_, workers, settings_, nobody);
+    ASSERT_TRUE(report.all_done()) << report.cells[0].failure.text;
+    EXPECT_EQ(workers.steps_of_second, 1u);
 }
 
 TEST_F(StreamedRun, TheSameAgain_ComputesNothing) {

@@ -64,8 +64,10 @@ void Scheduler::ended(std::size_t worker, JobReport report, bool lost_values) {
         const bool is_away = components_[component].home != worker;
         finish_node(task.node, std::move(report));
         const std::set<std::string>& needed = foresight_[task.node].needed;
-        // Values that cannot be kept do not get home: helping would mean doing things twice.
-        if (is_away && nodes_[task.node].state == State::done && !std::ranges::includes(nodes_[task.node].kept, needed))
+        // Values that cannot be kept do not get home: helping would mean doing things twice. A streamed scan never is
+        // kept, for whoever needs it opens its file.
+        if (is_away && nodes_[task.node].state == State::done && !graph_.nodes[task.node].leaf.is_streamed &&
+            !std::ranges::includes(nodes_[task.node].kept, needed))
             is_helping_useless_ = true;
     }
 }
