@@ -17,6 +17,7 @@
 #include "printable.hpp"
 #include "progress.hpp"
 #include "run_output.hpp"
+#include "scanmill/engine/memory_need.hpp"
 #include "scanmill/engine/observers.hpp"
 #include "scanmill/engine/run.hpp"
 #include "scanmill/filter/error.hpp"
@@ -92,19 +93,9 @@ std::string what_bars_folder(const std::string& folder) {
 
 constexpr unsigned most_jobs = 1024;
 
-/// As many as there is work for and cores, and as memory allows when each takes the largest scan: a file of binary
-/// coordinates becomes up to about a hundred times its size on the way to a mesh, other files less. What is streamed
-/// never is in memory.
+/// As many as there is work for and cores, and as memory allows when each takes the largest scan.
 unsigned default_jobs(const RunGraph& graph) {
-    constexpr u64 times_the_file = 100;
-    u64 largest = 1;
-    for (const RunNode& node : graph.nodes) {
-        std::error_code gone;
-        const auto bytes =
-            node.is_scan && !node.leaf.is_streamed ? std::filesystem::file_size(node.leaf.file, gone) : 0;
-        if (!gone) largest = std::max<u64>(largest, bytes);
-    }
-    const u64 held = available_memory() / times_the_file / largest;
+    const u64 held = available_memory() / std::max<u64>(1, memory_need(graph));
     return static_cast<unsigned>(std::clamp<u64>(std::min<u64>(graph.cells.size(), held), 1, cores()));
 }
 
