@@ -58,6 +58,20 @@ std::string text(std::size_t count, double middle = 0) {
     return file;
 }
 
+/// The column, piece by piece, is the one that was gathered.
+bool same_columns(const PointStream& stream, const Column& gathered) {
+    std::string bytes;
+    for (std::size_t piece = 0; piece + 1 < stream.pieces().size(); ++piece) {
+        const Column part = stream.read_column(piece, gathered.name());
+        EXPECT_EQ(part.name(), gathered.name());
+        EXPECT_EQ(part.type(), gathered.type());
+        EXPECT_EQ(part.components(), gathered.components());
+        bytes.append(reinterpret_cast<const char*>(part.bytes().data()), part.bytes().size());
+    }
+    const std::string_view whole(reinterpret_cast<const char*>(gathered.bytes().data()), gathered.bytes().size());
+    return bytes == whole;
+}
+
 /// All points, piece by piece.
 PointCloud streamed(const PointStream& stream, const std::vector<u32>& rows, unsigned threads) {
     Array<Vec3> all, room;
@@ -68,6 +82,9 @@ PointCloud streamed(const PointStream& stream, const std::vector<u32>& rows, uns
     }
     EXPECT_EQ(all.size(), stream.size());
     PointCloud gathered = stream.gather(rows, threads);
+    if (rows.size() == stream.size()) {
+        for (const Column& column : gathered.columns) EXPECT_TRUE(same_columns(stream, column));
+    }
     for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(gathered.positions[i], all[rows[i]]);
     return gathered;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cassert>
 
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/waves.hpp"
@@ -51,6 +52,11 @@ public:
         frame_ = declared_frame(comments_, options);
         choose_origin();
         return true;
+    }
+
+    Column read_column(std::size_t, std::string_view name) const override {
+        assert(!"a text of three columns has none beside its coordinates");
+        throw Error("there is no column '{}'", name);
     }
 
 private:

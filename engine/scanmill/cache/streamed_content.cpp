@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/cache/streamed_content.hpp"
 
-#include <numeric>
-#include <vector>
+#include <optional>
 
 #include "scanmill/cache/value_fields.hpp"
 #include "scanmill/filter/waves.hpp"
@@ -34,18 +33,10 @@ void add_positions(const PointStream& stream, unsigned threads, ArraysHash& hash
 }
 
 void add_column(const PointStream& stream, const std::string& name, unsigned threads, ArraysHash& hash) {
-    struct Room {
-        std::vector<u32> rows;
-        PointCloud cloud;
-    };
-    for_each_in_order<Room>(
+    for_each_in_order<std::optional<Column>>(
         threads, piece_count(stream),
-        [&](std::size_t piece, Room& room) {
-            room.rows.resize(stream.pieces()[piece + 1] - stream.pieces()[piece]);
-            std::iota(room.rows.begin(), room.rows.end(), static_cast<u32>(stream.pieces()[piece]));
-            room.cloud = stream.gather(room.rows, 1);
-        },
-        [&](std::size_t, const Room& room) { hash.add(room.cloud.columns.find(name)->bytes().span()); });
+        [&](std::size_t piece, std::optional<Column>& room) { room = stream.read_column(piece, name); },
+        [&](std::size_t, const std::optional<Column>& room) { hash.add(room->bytes().span()); });
 }
 
 }  // namespace
