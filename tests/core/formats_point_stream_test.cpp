@@ -144,6 +144,14 @@ TEST(PointStream, OfBigEndianAndOfWholeNumbers_IsTheFileReadWhole) {
     expect_as_read_whole(folder.write("b.ply", ply<std::int16_t>(70'000, "short", 100)));
 }
 
+TEST(PointStream, OfAFileThatEndsWithALinesEnd_IsTheFileReadWhole) {
+    const TemporaryFolder folder;
+    for (const char* end :
+         {"\n", "\r\n", "\n\n\r\n\r", "\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n\n"})
+        expect_as_read_whole(folder.write("a.ply", ply<float>(70'000, "float") + end));
+    expect_not_read_so(ply<float>(3, "float") + "\n.", "behind.ply");
+}
+
 TEST(PointStream, OfText_IsTheFileReadWhole) {
     const TemporaryFolder folder;
     expect_as_read_whole(folder.write("a.xyz", text(200'000)));

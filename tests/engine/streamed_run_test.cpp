@@ -178,9 +178,11 @@ TEST_F(StreamedRun, FileThatTurnsOutToNeedIt_IsReadWhole) {
     expect_the_same(scan("late.xyz", small_scan + "1 2 3 4\n"), "bin-size: 0.1 u");
     const std::string mixed = scan("mixed.xyz", small_scan + "1, 2 3\n");
     expect_the_same(mixed, "bin-size: 0.1 u");
-    run_logging(nan);
-    EXPECT_THAT(logged(), HasSubstr("whole"));
-    EXPECT_THAT(logged(), testing::Not(HasSubstr("stream")));
+    use_cache("logging");
+    const std::vector<std::string> log = run_logging(nan).nodes[0].effort.log;
+    EXPECT_THAT(log, ElementsAre(HasSubstr("read as a whole")));
+    EXPECT_THAT(run_logging(scan("a.xyz")).nodes[0].effort.log, testing::IsEmpty());
+    EXPECT_THAT(logged(), testing::MatchesRegex("whole .*\nstream .*\n"));
 }
 
 TEST_F(StreamedRun, HandsTheFilterAStream) {

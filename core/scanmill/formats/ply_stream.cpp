@@ -153,7 +153,8 @@ private:
     std::string_view rows_;
 };
 
-/// Whether the file holds vertices and nothing else, and all of them, so that nothing is left to be said of it.
+/// Whether the file holds vertices and nothing else but perhaps ends of lines behind them, and all of them, so that
+/// nothing is left to be said of it.
 bool holds_only_vertices(std::string_view file, const PlyHeader& header) {
     if (header.encoding == PlyEncoding::ascii || header.elements.empty()) return false;
     const PlyElement& vertex = header.elements.front();
@@ -164,8 +165,9 @@ bool holds_only_vertices(std::string_view file, const PlyHeader& header) {
     if (std::any_of(header.elements.begin() + 1, header.elements.end(), has_rows)) return false;
     std::size_t row_size = 0;
     for (const PlyProperty& property : vertex.properties) row_size += size_of(property.type);
-    const std::size_t body = file.size() - header.size;
-    return body % row_size == 0 && body / row_size == vertex.count;
+    const std::string_view body = file.substr(header.size);
+    return body.size() / row_size >= vertex.count &&
+           body.substr(vertex.count * row_size).find_first_not_of("\r\n") == std::string_view::npos;
 }
 
 }  // namespace

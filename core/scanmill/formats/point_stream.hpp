@@ -74,7 +74,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path
                                                unsigned threads, const OnWorldPositions& on_positions = {});
 
 /// Whether the file begins like one that open_point_stream() reads; what stands further back may still forbid it.
-/// Looks at its first bytes only.
+/// Looks at its first bytes, and its last.
 bool may_be_point_stream(const std::filesystem::path& path);
 
 }  // namespace scanmill

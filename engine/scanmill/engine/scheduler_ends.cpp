@@ -35,6 +35,8 @@ void Scheduler::ended(std::size_t worker, JobReport report, bool lost_values) {
         here.worn_by = component;
         report.node.effort.log.push_back(fmt::format("scanmill: the worker is replaced: {}", report.worn));
     }
+    if (report.was_read_whole)
+        report.node.effort.log.push_back("scanmill: the file could not be read piece by piece and was read as a whole");
     if (!report.lost.empty()) return lost(worker, task, report.lost);
     if (report.outcome == Outcome::skipped) {  // cancelled
         report_.interrupted = is_stopped_ = true;

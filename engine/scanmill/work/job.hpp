@@ -77,6 +77,7 @@ struct JobReport {
     StepResult result;  ///< what the cache knows of it now; empty without a cache
     std::vector<std::string> kept;  ///< ports whose values the cache has
     OutputReport output;
+    bool was_read_whole = false;  ///< a scan that was to be streamed
     std::string worn;  ///< why whoever did this should do nothing else; empty: it may
 };
 

@@ -148,6 +148,7 @@ Json to_json(const JobReport& report) {
               {"node", to_json(report.node)},
               {"kept", report.kept},
               {"output", to_json(report.output)},
+              {"whole", report.was_read_whole},
               {"worn", report.worn},
               {"lost", Json::array()}};
     const std::string result = to_bytes(report.result);
@@ -164,6 +165,7 @@ JobReport report_from(const Json& json, const PlannedStep* step) {
     report.node.attempts = 1;
     report.kept = json.at("kept").get<std::vector<std::string>>();
     report.output = output_from(json.at("output"));
+    report.was_read_whole = json.at("whole");
     report.worn = json.at("worn");
     const Json::binary_t& result = json.at("result").get_binary();
     report.result = step_result_from({reinterpret_cast<const char*>(result.data()), result.size()});

@@ -22,6 +22,7 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
         report.node.warnings.push_back(std::move(text));
     };
     if (work.leaf.is_streamed && read_as_stream(job, work, listener, on_warning, report)) return;
+    report.was_read_whole = work.leaf.is_streamed;
     const auto start = std::chrono::steady_clock::now();
     std::optional<UnchangedWhileRead> check;
     if (uses_cache(work.memory)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
