@@ -252,11 +252,18 @@ TEST_F(StreamedRun, AnotherParameter_OpensTheScanAgain) {
     EXPECT_THAT(origins(run_thin("bin-size: 0.2 u", file)), ElementsAre(ran, ran));
 }
 
-TEST_F(StreamedRun, ValueThatWasKept_IsTakenInstead) {
+TEST_F(StreamedRun, ValueThatWasKept_ChangesNothing) {
     const std::string file = scan("a.xyz");
     run("  - test-step:\n", {file});  // reads it whole, and keeps it
     EXPECT_THAT(origins(run_logging(file)), ElementsAre(cached, ran));
-    EXPECT_EQ(logged(), "whole 0.03 u 4\n");
+    EXPECT_EQ(logged(), "stream 0.03 u 4\n") << "as is said before anything runs";
+}
+
+TEST_F(StreamedRun, ValueThatWasKept_IsTakenWhereTheFileHasToBeReadWhole) {
+    const std::string file = scan("a.xyz", small_scan + "1 2 nan\n");
+    run("  - test-step:\n", {file});
+    EXPECT_THAT(origins(run_logging(file)), ElementsAre(cached, ran));
+    EXPECT_THAT(logged(), HasSubstr("whole"));
 }
 
 TEST_F(StreamedRun, OtherBytesOfTheSamePoints_AreCutOffBelow) {

@@ -59,7 +59,8 @@ private:
     const Value* find(std::size_t node, const std::string& port) const;
     /// From the bench or the cache.
     std::optional<Value> at_hand(const JobInput& input);
-    /// The step's scan, when it is to be had as a stream and not at hand as a value.
+    /// The step's scan, when it is to be had as a stream. Its value is not looked for in the cache: whether a scan fits
+    /// into memory must not depend on what was done before.
     std::shared_ptr<const PointStream> stream_for(const StepWork& work, unsigned threads);
     /// From the bench, the cache, or its file; nothing, and a word in the report, when it is lost.
     std::optional<Value> fetch(const JobInput& input, JobReport& report);
@@ -71,7 +72,7 @@ private:
     std::filesystem::path scratch_, folder_;
     std::map<std::size_t, std::vector<StepInput>> values_;  // by node
     OpenScans scans_;
-    std::map<Place, Metrics> facts_;                        // of values, where they were asked for
+    std::map<Place, Metrics> facts_;  // of values, where they were asked for
 };
 
 /// On a clock that only goes forward.

@@ -87,7 +87,7 @@ std::shared_ptr<const PointStream> Workbench::stream_for(const StepWork& work, u
     const JobInput& input = work.inputs.front();
     if (!input.leaf || !input.leaf->is_streamed) return nullptr;
     if (const auto scan = scans_.find(input.node)) return scan;
-    if (at_hand(input)) return nullptr;
+    if (find(input.node, input.from)) return nullptr;  // its file had to be read as a whole
     return scans_.open(input.node, *input.leaf, threads, cache_ != nullptr, said_before);
 }
 
