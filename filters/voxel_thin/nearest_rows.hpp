@@ -37,7 +37,7 @@ struct NearestRows {
 /// Pre: at least one point, all in the grid's box; fewer than 2^32.
 /// Post: of equally near points the first; the same for any cut into pieces and any number of threads.
 /// Cost: O(n) time; 24 to 72 bytes per occupied bin, an eighth of a byte per point (4 bytes more to count members), 32
-/// to 56 bytes per point of 16 pieces.
+/// bytes (48 where the grid has 2^32 bins or more) per point of 16 pieces, and 24 more when they are read into rooms.
 NearestRows nearest_rows(const PointPieces& points, const BinGrid& grid, u32 min_points, Context& context,
                          bool count_members = false);
 

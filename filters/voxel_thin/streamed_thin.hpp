@@ -13,7 +13,8 @@ namespace scanmill {
 /// once for the bins, and once more at the rows that are kept.
 ///
 /// Lengths are resolved against scan.bounds(). Cost: beside the result 24 to 72 bytes per occupied bin, an eighth of a
-/// byte per point and at most 60 MB.
+/// byte per point, 56 bytes (72 where the grid has 2^32 bins or more) per point of 16 pieces, thus at most 76 MB, and
+/// for each thread pages of the file: of a piece, or 4 MB while the kept rows are picked.
 VoxelThinResult voxel_thin(const PointStream& scan, const VoxelThinParams& params, Context& context);
 
 }  // namespace scanmill

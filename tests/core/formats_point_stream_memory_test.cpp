@@ -48,5 +48,22 @@ TEST(PointStreamMemory, GatheringFewRowsOfALargeFile_HoldsAFewMegabytes) {
         }
 }
 
+void expect_short_pieces(const fs::path& path) {
+    const auto stream = open_point_stream(path, {}, 2);
+    ASSERT_TRUE(stream) << path;
+    for (std::size_t piece = 0; piece + 1 < stream->pieces().size(); ++piece)
+        ASSERT_LE(stream->pieces()[piece + 1] - stream->pieces()[piece], std::size_t(1) << 16) << path;
+}
+
+TEST(PointStreamMemory, Pieces_AreShortHoweverShortTheRows) {
+    const TemporaryFolder folder;
+    std::string rows, last_line;
+    for (int i = 0; i < 300'000; ++i) rows += "1 2 3\n";
+    expect_short_pieces(folder.write("short.xyz", rows));
+    for (int i = 0; i < 60'000; ++i) last_line += "1 2 3\r";
+    expect_short_pieces(folder.write("one_line.xyz", last_line));
+    expect_short_pieces(large_ply(folder, 8));
+}
+
 }  // namespace
 }  // namespace scanmill::test

@@ -9,6 +9,7 @@
 
 #include "filters/voxel_thin_cases.hpp"
 #include "scanmill/filter/error.hpp"
+#include "support/peak_memory.hpp"
 #include "support/real_data.hpp"
 #include "support/same_points.hpp"
 #include "support/shapes.hpp"
@@ -112,6 +113,23 @@ TEST(VoxelThinOfAStream, RefusesWhatIsRefusedInMemory) {
     VoxelThinParams params = bins_of(0.001);
     params.min_points = 1000;
     EXPECT_THAT(sentence_of([&] { thinned_stream(path, params, 1); }), HasSubstr("nothing would be left"));
+}
+
+TEST(VoxelThinOfAStream, OfManyShortRows_TakesTheMemoryOfFewPieces) {
+    std::string rows;
+    for (int i = 0; i < 3'000'000; ++i) {
+        rows += std::to_string(i % 10) + ' ';
+        rows += std::to_string(i / 10 % 10) + " 0\n";
+    }
+    const TemporaryFolder folder;
+    const auto path = folder.write("a.xyz", rows);
+    for (const unsigned threads : {1u, 2u}) {
+        std::size_t kept = 0;
+        const auto peak = peak_of([&] { kept = thinned_stream(path, bins_of(1), threads).result.kept.size(); });
+        EXPECT_EQ(kept, 100u);
+        if (!peak) GTEST_SKIP() << "the system does not tell peaks of memory";
+        EXPECT_LT(*peak, 80 << 20) << threads << " threads";  // 76 as the header says, and the stack of a thread
+    }
 }
 
 TEST(VoxelThinOfAStream, IsThatInMemory_OfARealScan) {

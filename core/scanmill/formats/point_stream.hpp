@@ -27,7 +27,7 @@ public:
     const Frame& frame() const { return frame_; }
     /// Of all points, relative to frame().origin.
     const BoundingBox& bounds() const { return bounds_; }
-    /// Where the pieces begin, and one more: the number of points. A piece may be empty.
+    /// Where the pieces begin, and one more: the number of points. A piece may be empty, and has at most 2^16 points.
     const std::vector<std::size_t>& pieces() const { return pieces_; }
     std::size_t size() const { return pieces_.back(); }
 
@@ -66,10 +66,12 @@ protected:
 ///
 /// Nothing when the file cannot be read so, or not at all, or when there is something to be said of it: the caller then
 /// reads it whole, and read_points() says it. Read so are: PLY, binary, whose first element is `vertex` without lists
-/// and whose other elements are empty; XYZ and CSV text of three columns in lines that end with LF. All coordinates
-/// must be finite. What declared units and frames give cause to say goes to options.on_warning. The file must not
-/// change meanwhile. Cost: binary, as fast as the file is read; text, its numbers are parsed. Memory: four pieces of
-/// about 1.5 MB for each thread, 8 bytes per piece; pages of the file are given back piece by piece.
+/// and whose other elements are empty, with nothing but ends of lines behind; XYZ and CSV text of three columns in
+/// lines that end with LF. All coordinates must be finite. What declared units and frames give cause to say goes to
+/// options.on_warning. The file must not change as long as the stream is there; read() tells when it shows that it did.
+/// Cost: binary, as fast as the file is read; text, its numbers are parsed. Memory: the positions of four pieces for
+/// each thread, at most 1.5 MB each, 8 bytes per piece (24 more in texts), and the bytes of one piece for each thread:
+/// pages of the file are given back piece by piece.
 std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path, const ReadOptions& options,
                                                unsigned threads, const OnWorldPositions& on_positions = {});
 

@@ -12,9 +12,11 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::size_t piece_size = std::size_t(1) << 20;
+/// No row is shorter than the shortest three numbers and a line's end.
+constexpr std::size_t most_rows = std::size_t(1) << 16, shortest_row = std::string_view("1 2 3\n").size();
+constexpr std::size_t piece_size = std::size_t(1) << 18;
 /// A text whose lines end otherwise than with LF is one long line to us.
-constexpr std::size_t longest_piece = 4 * piece_size;
+constexpr std::size_t longest_piece = most_rows * shortest_row;
 constexpr std::size_t most_comments = 1000;
 
 /// Thrown and caught here: something in the text needs a word, which whoever reads it whole has.
