@@ -102,6 +102,17 @@ TEST(FuzzTargets, AreTheFoldersOfSeeds) {
     EXPECT_EQ(folders, targets);
 }
 
+TEST(FuzzTargets, SomeSeeds_AreStreams) {
+    for (const char* format : {"ply", "xyz", "csv"}) {
+        std::size_t streams = 0;
+        for (const auto& file : fs::directory_iterator(corpus / format))
+            streams += read_stream(format, content_of(file.path()));
+        for (const Seed& seed : binary_seeds())
+            if (seed.target == format) streams += read_stream(format, seed.bytes);
+        EXPECT_GT(streams, 0u) << format;
+    }
+}
+
 TEST(FuzzTargets, ALawThatIsBroken_IsSaid) {
     EXPECT_NO_THROW(require_law(true, "never"));
     EXPECT_THROW(require_law(false, "always"), LawBroken);

@@ -85,6 +85,7 @@ void require_coming_back(const Value& value, const Format& format) {
 
 bool read_scan(std::string_view extension, std::string_view bytes) {
     const std::string name = "scan." + std::string(extension);
+    read_stream(extension, bytes);
     LoadedFile loaded;
     try {
         loaded = read_bytes(bytes, name, {[](const std::string&) {}});

@@ -34,6 +34,9 @@ inline void require_law(bool holds, const std::string& law) {
 /// Reads the bytes as a scan called "scan.EXTENSION"; what was read is consistent, and comes back from every format
 /// that can carry it.
 bool read_scan(std::string_view extension, std::string_view bytes);
+/// Opens the bytes as a stream of the points in "scan.EXTENSION"; whether there is one. It is what reading the file
+/// gives, and tells what that tells. Every scan that is read goes through this, too.
+bool read_stream(std::string_view extension, std::string_view bytes);
 /// Parses and plans a workflow, against filters that exist only as declarations.
 bool check_workflow_text(std::string_view bytes);
 /// Parses and plans a batch, in a folder with two scans and a workflow, against the same filters; bytes that could lead
