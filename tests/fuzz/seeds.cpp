@@ -54,6 +54,18 @@ std::string ply_points(std::endian order) {
     return file.all();
 }
 
+/// Three points far from zero that can be read piece by piece, with columns before and behind, and a line's end.
+std::string ply_stream(std::endian order) {
+    Bytes file(ply_header(order,
+                          "comment frame part\nelement vertex 3\nproperty uchar flag\nproperty double x\n"
+                          "property double y\nproperty double z\nproperty float nx\nproperty float ny\n"
+                          "property float nz\nelement face 0\nproperty list uchar int vertex_indices\n"),
+               order);
+    for (const double x : {5e6, 5e6 + 1, 5e6 + 2})
+        file.put<std::uint8_t>({1}).put<double>({x, 0.5, -x}).put<float>({0, 0, 1});
+    return file.all() + "\n";
+}
+
 /// A tetrahedron as a quad, two triangles and a strip, with edges; doubles far from zero.
 std::string ply_mesh(std::endian order) {
     Bytes file(ply_header(order,
@@ -102,6 +114,8 @@ std::vector<Seed> binary_seeds() {
     return {
         {"ply", "points_little_endian.ply", points},
         {"ply", "points_big_endian.ply", ply_points(std::endian::big)},
+        {"ply", "stream_little_endian.ply", ply_stream(std::endian::little)},
+        {"ply", "stream_big_endian.ply", ply_stream(std::endian::big)},
         {"ply", "mesh_little_endian.ply", ply_mesh(std::endian::little)},
         {"ply", "mesh_big_endian.ply", ply_mesh(std::endian::big)},
         {"ply", "truncated_in_a_list.ply", points.substr(0, points.size() - 3)},
