@@ -45,6 +45,28 @@ TEST(StreamedContent, FarFromZero_IsThatOfTheValueNearItsOrigin) {
     expect_the_values_name(written(folder / "a.xyz", without_columns(far)));
 }
 
+TEST(StreamedContent, EveryPassOverPositionsAndColumns_CanBeEnded) {
+    const TemporaryFolder folder;
+    struct Enough {};
+    for (const Vec3& middle : {Vec3(0, 0, 0), Vec3(4e6, 5e6, -7e6)}) {
+        const auto path = written(folder / "a.ply", helix(150'000, middle));
+        std::size_t told = 0;
+        const auto learn = [&](std::size_t most) {
+            StreamedContent content;
+            const auto stream =
+                open_point_stream(path, {}, 1, [&](std::span<const Vec3> world) { content.add_world(world); });
+            told = 0;
+            content.of(*stream, 1, [&] {
+                if (++told > most) throw Enough{};
+            });
+        };
+        learn(1000);
+        EXPECT_EQ(told, middle.isZero() ? 9u : 12u) << "three pieces of three columns, and of positions far from zero";
+        EXPECT_THROW(learn(0), Enough);
+        EXPECT_THROW(learn(8), Enough) << "in the last";
+    }
+}
+
 TEST(StreamedContent, UnitAndFrame_BelongToIt) {
     const TemporaryFolder folder;
     PointCloud cloud = helix(10);

@@ -26,31 +26,39 @@ PointCloud hollow_cloud(const PointStream& stream) {
 
 std::size_t piece_count(const PointStream& stream) { return stream.pieces().size() - 1; }
 
-void add_positions(const PointStream& stream, unsigned threads, ArraysHash& hash) {
+void add_positions(const PointStream& stream, unsigned threads, const std::function<void()>& on_piece,
+                   ArraysHash& hash) {
     for_each_in_order<Array<Vec3>>(
         threads, piece_count(stream), [&](std::size_t piece, Array<Vec3>& room) { stream.read(piece, room); },
-        [&](std::size_t, const Array<Vec3>& positions) { hash.add(std::as_bytes(std::span(positions))); });
+        [&](std::size_t, const Array<Vec3>& positions) {
+            if (on_piece) on_piece();
+            hash.add(std::as_bytes(std::span(positions)));
+        });
 }
 
-void add_column(const PointStream& stream, const std::string& name, unsigned threads, ArraysHash& hash) {
+void add_column(const PointStream& stream, const std::string& name, unsigned threads,
+                const std::function<void()>& on_piece, ArraysHash& hash) {
     for_each_in_order<std::optional<Column>>(
         threads, piece_count(stream),
         [&](std::size_t piece, std::optional<Column>& room) { room = stream.read_column(piece, name); },
-        [&](std::size_t, const std::optional<Column>& room) { hash.add(room->bytes().span()); });
+        [&](std::size_t, const std::optional<Column>& room) {
+            if (on_piece) on_piece();
+            hash.add(room->bytes().span());
+        });
 }
 
 }  // namespace
 
-ValueName StreamedContent::of(const PointStream& stream, unsigned threads) {
+ValueName StreamedContent::of(const PointStream& stream, unsigned threads, const std::function<void()>& on_piece) {
     ArraysHash hash = std::move(positions_);
     if (stream.frame().origin != Vec3::Zero()) {
         hash = {};
-        add_positions(stream, threads, hash);
+        add_positions(stream, threads, on_piece, hash);
     }
     hash.end_array();
     const PointCloud hollow = hollow_cloud(stream);
     for (const Column& column : hollow.columns) {
-        add_column(stream, column.name(), threads, hash);
+        add_column(stream, column.name(), threads, on_piece, hash);
         hash.end_array();
     }
     return name_of_value(fields_of(std::make_shared<const PointCloud>(hollow)), hash);

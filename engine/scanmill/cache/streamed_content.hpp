@@ -2,6 +2,8 @@
 #pragma once
 /// What the cache calls the value in a scan file, learned piece by piece: the value itself never is in memory.
 
+#include <functional>
+
 #include "scanmill/cache/arrays_hash.hpp"
 #include "scanmill/cache/value_file.hpp"
 #include "scanmill/formats/point_stream.hpp"
@@ -15,7 +17,8 @@ public:
     /// The name that EncodedValue gives to the point cloud of the file. Pre: add_world() was told all of this stream,
     /// and this is called once. Cost: one more pass over the file for each column, and one for the positions of a scan
     /// that is far from zero; up to four pieces for each thread are in memory.
-    ValueName of(const PointStream& stream, unsigned threads);
+    /// `on_piece` is called for every piece, from this thread, and may throw what is to end it.
+    ValueName of(const PointStream& stream, unsigned threads, const std::function<void()>& on_piece = {});
 
 private:
     ArraysHash positions_;

@@ -46,8 +46,11 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
     if (known && !known->output("")) known.reset();
     StreamedContent content;
     const bool learns = uses_cache(memory) && !known;
-    const auto look = [&](std::span<const Vec3> positions) {
+    const auto check_cancelled = [&] {
         if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
+    };
+    const auto look = [&](std::span<const Vec3> positions) {
+        check_cancelled();
         if (learns) content.add_world(positions);
     };
     const auto scan = scans_.open(job.node, work.leaf, job.threads, uses_cache(memory), on_warning, look);
@@ -57,7 +60,7 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
     if (known) {
         outputs = known->outputs;
     } else if (learns) {
-        const ValueName name = content.of(*scan, job.threads);
+        const ValueName name = content.of(*scan, job.threads, check_cancelled);
         outputs = {{"", Kind::points, name.content, name.bytes}};
     }
     scans_.require_unchanged(job.node);
