@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "unit_conversion.hpp"
 
+#include "length_columns.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill::runner {
 
 namespace {
+
+ColumnTable& columns_of(PointCloud& points) { return points.columns; }
+ColumnTable& columns_of(TriangleMesh& mesh) { return mesh.vertex_columns; }
 
 template <class T>
 std::shared_ptr<const T> rescaled(const T& value, LengthUnit unit) {
@@ -22,6 +26,8 @@ std::shared_ptr<const T> rescaled(const T& value, LengthUnit unit) {
     scaled.positions = std::move(positions);
     scaled.frame.origin = convert(value.frame.origin);
     scaled.frame.unit = unit;
+    ColumnTable& columns = columns_of(scaled);
+    columns = with_lengths_scaled(columns, in_unit(1, value.frame.unit, unit));
     return std::make_shared<const T>(std::move(scaled));
 }
 

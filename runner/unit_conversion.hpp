@@ -6,7 +6,8 @@
 
 namespace scanmill::runner {
 
-/// Pre: points or a mesh, of a known unit. Throws Error for coordinates that leave double's range.
+/// Columns that are known to be lengths are scaled as well (see length_columns.hpp). Pre: points or a mesh, of a known
+/// unit. Throws Error for coordinates that leave double's range.
 Value in_other_unit(const Value& value, LengthUnit unit);
 
 }  // namespace scanmill::runner

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scanmill/formats/files.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -216,6 +217,27 @@ TEST(Command, Convert_KeepsPointsAndConvertsUnits) {
     EXPECT_EQ(scanmill_program({"convert", "a.xyz", "b.ply", "--to-unit", "m"}, here).exit_code, 1) << "unknown unit";
     EXPECT_EQ(scanmill_program({"convert", "a.xyz", "a.xyz"}, here).exit_code, 1) << "its own input";
     EXPECT_EQ(scanmill_program({"convert", "a.xyz", "a.docx"}, here).exit_code, 1) << "no such format";
+}
+
+TEST(Command, Convert_ScalesColumnsThatAreLengths) {
+    const TemporaryFolder folder;
+    folder.write(
+        "a.ply",
+        "ply\nformat ascii 1.0\ncomment unit cm\nelement vertex 2\nproperty double x\nproperty double y\n"
+        "property double z\nproperty double bin-size\nproperty double local-bin-size\nproperty float fit-error\n"
+        "property double curvature-1\nproperty double curvature-2\nproperty double weight\nend_header\n"
+        "0 0 0 2 3 0.5 4 -5 7\n1 0 0 2 3 0.5 4 -5 7\n");
+    const ProgramResult done = scanmill_program({"convert", "a.ply", "b.ply", "--unit", "cm", "--to-unit", "mm"},
+                                                {.folder = folder.path(), .environment = {}});
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    const auto points = read_points(folder / "b.ply");
+    const auto first = [&](const char* column) { return points->columns.find(column)->number(0); };
+    EXPECT_DOUBLE_EQ(first("bin-size"), 20);
+    EXPECT_DOUBLE_EQ(first("local-bin-size"), 30);
+    EXPECT_DOUBLE_EQ(first("fit-error"), 5);
+    EXPECT_DOUBLE_EQ(first("curvature-1"), 0.4);
+    EXPECT_DOUBLE_EQ(first("curvature-2"), -0.5);
+    EXPECT_EQ(first("weight"), 7) << "nobody knows in what it is";
 }
 
 }  // namespace
