@@ -4,8 +4,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace scanmill::voxel {
+
+namespace {
+
+/// One number per row, all finite and above 0.
+bool are_sizes(const Column& column, std::size_t rows) {
+    if (column.components() != 1 || column.rows() != rows) return false;
+    for (std::size_t row = 0; row < rows; ++row)
+        if (const double size = column.number(row); !(size > 0 && std::isfinite(size))) return false;
+    return true;
+}
+
+}  // namespace
 
 void add_columns(PointCloud& thinned, std::vector<Column> added, Context& context) {
     ColumnTable columns;
@@ -20,13 +33,23 @@ void add_columns(PointCloud& thinned, std::vector<Column> added, Context& contex
     thinned.columns = std::move(columns);
 }
 
-Column bin_sizes(std::size_t points, std::span<const double> edges, double grid_edge) {
-    Array<double> sizes(points);
+void add_bin_sizes(PointCloud& thinned, std::span<const double> edges, double grid_edge, Context& context) {
+    Array<double> sizes(thinned.size());
     if (edges.empty())
         std::ranges::fill(sizes, grid_edge);
     else
         std::ranges::copy(edges, sizes.begin());
-    return Column("bin-size", 1, Buffer<double>(std::move(sizes)));
+    std::size_t older = 0;
+    if (const Column* before = thinned.columns.find("bin-size"); before && are_sizes(*before, sizes.size()))
+        for (std::size_t row = 0; row < sizes.size(); ++row)
+            if (const double size = before->number(row); size > sizes[row]) {
+                sizes[row] = size;
+                ++older;
+            }
+    if (older > 0)
+        context.warn(fmt::format("{} of {} kept points were thinned with larger bins before; their `bin-size` stays",
+                                 older, sizes.size()));
+    add_columns(thinned, {Column("bin-size", 1, Buffer<double>(std::move(sizes)))}, context);
 }
 
 }  // namespace scanmill::voxel

@@ -56,7 +56,7 @@ void require_some(const NearestRows& rows, std::size_t points, u32 min_points) {
 }
 
 void finish(VoxelThinResult& result, NearestRows rows, std::size_t points, Context& context) {
-    add_columns(result.points, {bin_sizes(rows.kept.size(), rows.edges, result.bin_size)}, context);
+    add_bin_sizes(result.points, rows.edges, result.bin_size, context);
     result.kept = std::move(rows.kept);
     result.noise = rows.noise;
     result.removed = points - result.kept.size();

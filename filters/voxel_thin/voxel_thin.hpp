@@ -59,7 +59,8 @@ struct VoxelThinResult {
     /// point was kept from, in an octree of its leaf. When the bin size was derived, before it also the columns
     /// `curvature-1` (of larger size, positive), `curvature-2` (negative on saddles), `fit-error` (mean distance of
     /// the neighbours to the fitted quadric), `local-bin-size` (what the place allows) and `stands-for` (how many
-    /// points share its bin). An older column of such a name gives way, told.
+    /// points share its bin). An older column of such a name gives way, told; but a `bin-size` of one finite number
+    /// above 0 per point stays where it is larger, for the points lie as those bins left them.
     PointCloud points;
     /// Their rows in the input, ascending.
     Array<u32> kept;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -190,6 +191,24 @@ TEST(VoxelThin, BinSize_IsAColumnOfEveryKeptPoint) {
     EXPECT_THAT(column<double>(twice, "bin-size"), ElementsAre(3.5, 3.5));
     EXPECT_EQ(twice.points.columns.size(), 1u);
     EXPECT_THAT(context.warnings(), ElementsAre(::testing::HasSubstr("`bin-size`")));
+}
+
+TEST(VoxelThin, BinSize_OfEarlierLargerBinsStays) {
+    PointCloud cloud = cloud_of({{0, 0, 0}, {5, 5, 5}, {7, 7, 7}});
+    cloud.columns.add(Column("bin-size", 1, Buffer<float>{2.f, 1.f, 4.f}));
+    Context context;
+    const VoxelThinResult again = voxel_thin(cloud, bins_of(1.5), context);
+    EXPECT_THAT(column<double>(again, "bin-size"), ElementsAre(2, 1.5, 4));
+    EXPECT_THAT(context.warnings(),
+                ElementsAre(::testing::HasSubstr("2 of 3 kept points were thinned with larger bins before"),
+                            ::testing::HasSubstr("gives way")));
+    // Of a column in which any number is no size, none is believed.
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double nothing : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+        PointCloud other = cloud_of({{0, 0, 0}, {5, 5, 5}, {7, 7, 7}});
+        other.columns.add(Column("bin-size", 1, Buffer<double>{2, nothing, 4}));
+        EXPECT_THAT(column<double>(thin(other, bins_of(1.5)), "bin-size"), ::testing::Each(1.5)) << nothing;
+    }
 }
 
 TEST(VoxelThin, BinSize_OfADerivedSizeIsThatSize) {
