@@ -5,6 +5,7 @@
 #include <CGAL/intersections.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace scanmill::growing {
 
@@ -51,15 +52,11 @@ bool meet(std::span<const Vec3> positions, const Triangle& one, const Triangle& 
 }
 
 void NearTriangles::gather_round(const Surface& surface, std::span<const u32> corners) {
-    // Triangles' circles are at most a little above a third of the search radius.
-    constexpr double largest_triangle = 0.5;
     const Vec3& centre = surface.positions[corners[0]];
-    double size = 0, radius = 0;
-    for (u32 corner : corners) {
-        size = std::max(size, (surface.positions[corner] - centre).norm());
-        radius = std::max(radius, surface.search_radius[corner]);
-    }
-    const double reach = size + largest_triangle * radius;
+    double size = 0;
+    for (u32 corner : corners) size = std::max(size, (surface.positions[corner] - centre).norm());
+    // The filling lies in that ball; of a triangle that meets it a corner is no farther than its circle.
+    const double reach = (size + std::sqrt(surface.largest_squared_circle)) * (1 + 1e-9);
     places_.assign(1, corners[0]);
     surface.neighbourhoods.within(corners[0], reach * reach, buffer_, places_);
     gather_at_places(surface);

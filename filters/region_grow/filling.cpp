@@ -6,19 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "region_grow/triangle_circle.hpp"
+
 namespace scanmill::growing {
 
 namespace {
 
 constexpr double impossible = std::numeric_limits<double>::infinity();
-
-/// Of the smallest circle that holds the triangle of these squared sides and area: the circle through the corners, or
-/// the one over the longest side.
-double squared_radius(double a, double b, double c, double twice_area) {
-    const double longest = std::max({a, b, c});
-    if (2 * longest >= a + b + c) return longest / 4;
-    return a * b * c / (4 * twice_area * twice_area);
-}
 
 /// A hole's corners, counter-clockwise as its triangles will be. The part between corners i and j is filled by a
 /// triangle over the chord from i to j, and by the parts beyond its other sides.
@@ -72,7 +66,7 @@ private:
         const Vec3 across = u.cross(w);
         const double twice_area = across.norm();
         if (!(twice_area > 0) || !(others + twice_area < best.cost)) return;
-        const double squared = squared_radius(u.squaredNorm(), w.squaredNorm(), (w - u).squaredNorm(), twice_area);
+        const double squared = squared_circle(u.squaredNorm(), w.squaredNorm(), (w - u).squaredNorm(), twice_area);
         if (squared > limits_.largest_circle * limits_.largest_circle) return;
         const Vec3 normal = across / twice_area;
         if (folds(i, k, normal) || folds(k, j, normal) || (i == 0 && j + 1 == corners_.size() && folds(j, i, normal)))
@@ -104,6 +98,11 @@ private:
 };
 
 }  // namespace
+
+bool can_be_filled(const Surface& surface, const std::vector<u32>& corners, const FillLimits& limits) {
+    const NearTriangles nothing;
+    return !Filling(surface, nothing, corners, limits).find().empty();
+}
 
 std::vector<Triangle> cheapest_filling(const Surface& surface, NearTriangles& near, const std::vector<u32>& corners,
                                        const FillLimits& limits) {

@@ -16,6 +16,11 @@ struct FillLimits {
     double bend_cosine;
 };
 
+inline constexpr double any_bend = -2;
+
+/// Whether there is a filling that keeps to the limits and repeats no edge, whatever it passes through.
+bool can_be_filled(const Surface& surface, const std::vector<u32>& corners, const FillLimits& limits);
+
 /// The triangles of least total area that fill the loop of `corners` (each once, counter-clockwise as the triangles
 /// will be); none when no filling was found that keeps to the limits, repeats no edge of the surface, and passes
 /// neither through it nor through itself. Of equal fillings the one that joins the first corners. Parts of the loop are

@@ -38,7 +38,9 @@ std::vector<std::optional<Vec3>> directions_of(const Column& column, const Sampl
     for (const auto& [place, row] : samples.repeats) {
         std::optional<Vec3>& known = directions[place];
         const std::optional<Vec3> other = direction(column, row);
-        if (other && (!known || std::lexicographical_compare(other->begin(), other->end(), known->begin(), known->end()))) known = other;
+        if (other &&
+            (!known || std::lexicographical_compare(other->begin(), other->end(), known->begin(), known->end())))
+            known = other;
     }
     return directions;
 }

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "region_grow/filling.hpp"
@@ -13,11 +14,21 @@ namespace scanmill::growing {
 
 namespace {
 
-/// Of loops that are filled at all, and in place of one triangle, of two.
+/// Of loops that are filled at all, and in place of one triangle, of two. The first is what close-holes may ask for;
+/// the others keep what is tried (edges⁴ and edges⁵) below what the longest loop costs.
 constexpr std::array<std::size_t, 3> most_corners{100, 30, 12};
-constexpr double least_fold_cosine = -0.9902680687415704;  // of 172 degrees
-/// Between the filling and the triangles round the loop, on average: of 120 and of 78 degrees.
-constexpr double least_facing = -0.5, least_facing_of_long = 0.2;
+/// Of 172 degrees: the sides of a cone of half angle 12 differ by 156, and a filling over its tip splits that unevenly.
+/// What is left of 180 keeps rounding from laying triangles on each other.
+constexpr double least_fold_cosine = -0.9902680687415704;
+/// Between the filling and the triangles round the loop, on average. A tip's sides face the way that its lid does; the
+/// strips beside a scrap, a fold with rims all round, face away from what would close it by 120 degrees or more.
+constexpr double least_facing = -0.5;
+/// Along a channel or a wall's end the sides stand across what would close it, at 90 degrees less what noise makes of
+/// them; 78 lies between those and a slit across a bend of 120.
+constexpr double least_facing_of_long = 0.2;
+/// A filling through points all round a hole's centre reaches one circle from it; noise and bends make it less than
+/// two.
+constexpr double long_in_circles = 2;
 
 /// The border edge that leaves the vertex, surface on its left. Pre: it is on the border, with one fan.
 u32 next_on_border(const Surface& surface, u32 vertex) {
@@ -33,9 +44,11 @@ struct Rim {
     double farthest = 0;  ///< of its corners from the border's centre
     double facing = 0;  ///< mean cosine, along the border, between its triangles and a filling
     double mean_radius = 0;  ///< of search
+    /// Between the normals of any two triangles at the border, the least; of a loop that is not asked for it, 1.
+    double least_cosine = 1;
 
     /// Corners counter-clockwise as a filling's triangles.
-    Rim(const Surface& surface, std::span<const u32> corners) {
+    Rim(const Surface& surface, std::span<const u32> corners, bool compare) {
         const auto& p = surface.positions;
         const auto next = [&](std::size_t i) { return corners[i + 1 < corners.size() ? i + 1 : 0]; };
         Vec3 centre = Vec3::Zero(), area = Vec3::Zero();
@@ -49,9 +62,12 @@ struct Rim {
         }
         centre /= length;
         const Vec3 facing_of_filling = area.normalized();
+        std::vector<Vec3> normals;
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const u32 a = corners[i], b = next(i);
             const Vec3 normal = surface.facet_normal(b, a, surface.fans.left_of(b, a));
+            for (const Vec3& other : normals) least_cosine = std::min(least_cosine, normal.dot(other));
+            if (compare) normals.push_back(normal);
             facing += (p[b] - p[a]).norm() / length * normal.dot(facing_of_filling);
             farthest = std::max(farthest, (p[a] - centre).norm());
             mean_radius += surface.search_radius[a] / static_cast<double>(corners.size());
@@ -61,21 +77,29 @@ struct Rim {
 
 class Closing {
 public:
-    Closing(Surface& surface, double largest_circle, std::size_t most_edges)
+    Closing(Surface& surface, const NarrowLimits& limits, const Context& context)
         : surface_(surface),
-          largest_circle_(largest_circle),
-          most_edges_(most_edges) {}
+          narrow_(limits),
+          bend_cosine_(std::max(least_fold_cosine, std::cos(limits.largest_bend) - 1e-9)),
+          context_(context) {}
 
     /// Corners counter-clockwise as the filling's triangles.
     bool close(const std::vector<u32>& corners) {
-        const Rim rim(surface_, corners);
-        const double circle = largest_circle_ * rim.mean_radius;
-        const bool is_long = rim.farthest > 2 * circle;
+        context_.check_cancelled();
+        const bool of_any_size = corners.size() <= narrow_.most_edges;
+        const bool ends_at_bends = !of_any_size && bend_cosine_ > least_fold_cosine;
+        const Rim rim(surface_, corners, ends_at_bends);
+        const double circle = narrow_.largest_circle * rim.mean_radius;
+        const bool is_long = rim.farthest > long_in_circles * circle;
         if (rim.facing < (is_long ? least_facing_of_long : least_facing)) return false;
-        limits_ = {corners.size() <= most_edges_ ? std::numeric_limits<double>::infinity() : circle, least_fold_cosine};
-        for (std::size_t in_place_of = 0; in_place_of < most_corners.size(); ++in_place_of)
-            if (corners.size() <= most_corners[in_place_of] && fill(corners, in_place_of)) return true;
-        return false;
+        if (ends_at_bends && rim.least_cosine < bend_cosine_) return false;
+        limits_ = of_any_size ? FillLimits{std::numeric_limits<double>::infinity(), least_fold_cosine}
+                              : FillLimits{circle, bend_cosine_};
+        if (fill(corners, 0)) return true;
+        // Where only larger triangles would do, taking one off leaves more to fill with them.
+        if (corners.size() > most_corners[1] || !can_be_filled(surface_, corners, {limits_.largest_circle, any_bend}))
+            return false;
+        return fill(corners, 1) || (corners.size() <= most_corners[2] && fill(corners, 2));
     }
 
     std::vector<Triangle> replaced;
@@ -99,6 +123,7 @@ private:
             const Triangle in_the_way{to, from, third};
             std::vector<u32> wider = corners;
             wider.insert(wider.begin() + static_cast<std::ptrdiff_t>(i) + 1, third);
+            context_.check_cancelled();
             surface_.fans.remove(in_the_way);
             if (fill(wider, in_place_of - 1)) {
                 replaced.push_back(in_the_way);
@@ -110,17 +135,18 @@ private:
     }
 
     Surface& surface_;
-    double largest_circle_;
-    std::size_t most_edges_;
+    NarrowLimits narrow_;
+    double bend_cosine_;
+    const Context& context_;
     FillLimits limits_{};
     NearTriangles near_;
 };
 
 }  // namespace
 
-NarrowHoles close_narrow_holes(Surface& surface, double largest_circle, std::size_t most_edges) {
+NarrowHoles close_narrow_holes(Surface& surface, const NarrowLimits& limits, const Context& context) {
     NarrowHoles result;
-    Closing closing(surface, largest_circle, most_edges);
+    Closing closing(surface, limits, context);
     std::vector<bool> passed(surface.states.size(), false);
     for (u32 begin = 0; begin < passed.size(); ++begin) {
         if (surface.states[begin] != PlaceState::front || passed[begin]) continue;

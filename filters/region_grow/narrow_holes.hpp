@@ -4,6 +4,7 @@
 /// in creases and folds, where the front arrives from several sides and has no plane to decide in.
 
 #include "region_grow/surface.hpp"
+#include "scanmill/filter/context.hpp"
 
 namespace scanmill::growing {
 
@@ -14,10 +15,20 @@ struct NarrowHoles {
     std::size_t replaced = 0;
 };
 
+struct NarrowLimits {
+    /// Of the mean search radius of a loop's places.
+    double largest_circle;
+    /// Loops of at most so many edges are filled whatever their size.
+    std::size_t most_edges;
+    /// Between the filling of a longer loop and what it joins, and between any two triangles round it, in radians: at
+    /// most. 172 degrees or more: what closes a tip.
+    double largest_bend;
+};
+
 /// Fills every loop that can be filled with triangles which each lie in a circle of `largest_circle` times the mean
 /// search radius of its places. Then no place of the filling is farther than that from a point, so that the loop holds
-/// no larger empty circle: it is surface, whatever the number of its edges. Loops of at most `most_edges` edges are
-/// filled whatever their size.
+/// no larger empty circle: it is surface, whatever the number of its edges, unless the surface ends there for its
+/// bends.
 ///
 /// The filling has the least area and no bend above 172 degrees; it passes neither through the surface nor through
 /// itself. Where there is none, one triangle at a loop of at most 30 edges may give way, or two of at most 12: the
@@ -26,8 +37,8 @@ struct NarrowHoles {
 /// 120 degrees, or, when the loop is longer than twice that circle, by more than 78: a thin wall's end, a channel, a
 /// scrap.
 ///
-/// Pre: every place has one fan. Cost: linear in the places, and edges³ per loop, edges times as much where triangles
-/// have to give way.
-NarrowHoles close_narrow_holes(Surface& surface, double largest_circle, std::size_t most_edges);
+/// Pre: every place has one fan. Cost: linear in the places; edges³ per loop, up to 30 times as much where one triangle
+/// may have to give way and 156 times where two, and what a filling costs to compare with the places in its reach.
+NarrowHoles close_narrow_holes(Surface& surface, const NarrowLimits& limits, const Context& context);
 
 }  // namespace scanmill::growing

@@ -53,6 +53,14 @@ std::vector<Limits> limits_of(const RegionGrowParams& params) {
     return limits;
 }
 
+/// Of what closes narrow holes, in radians. From 90 degrees on no patch is meant to end at a sharp edge, and a tip is
+/// closed whatever its angle; below, surfaces end at what growth would not bend over in its last round.
+double largest_bend(const RegionGrowParams& params) {
+    const double angle = params.max_normal_angle.in_radians();
+    constexpr double right_angle = 3.14159265358979323846 / 2;
+    return angle >= right_angle * (1 - 1e-12) ? 2 * right_angle : angle * 4 / 3;
+}
+
 Array<double> search_radii(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
                            const Array<Vec3>& normals, std::span<const u8> twins, const RegionGrowParams& params,
                            Context& context) {
@@ -63,7 +71,7 @@ Array<double> search_radii(const PointCloud& cloud, const Samples& samples, cons
     }
     const Array<double> thinned = thinned_bins(cloud, samples, context);
     SearchRadii found = automatic_radii(samples, neighbourhoods, normals, twins, thinned, context.threads());
-    tell_contradiction(samples, thinned, found, context);
+    tell_contradiction(samples, thinned, found, cloud.frame.unit, context);
     context.metric("known-bins", static_cast<double>(found.known));
     return std::move(found.radii);
 }
@@ -107,8 +115,8 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
         result.closed_holes = close_small_holes(surface, params.close_holes, context);
         result.removed_triangles = remove_pinches(surface);
         // What was removed may have left a small hole; at single fans closing makes no new pinch.
-        const NarrowHoles narrow =
-            close_narrow_holes(surface, largest_circle * limits.back().reach, params.close_holes);
+        const NarrowHoles narrow = close_narrow_holes(
+            surface, {largest_circle * limits.back().reach, params.close_holes, largest_bend(params)}, context);
         result.closed_holes += narrow.closed;
         result.removed_triangles += narrow.replaced;
     } else

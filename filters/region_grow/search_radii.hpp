@@ -24,11 +24,11 @@ struct SearchRadii {
 ///
 /// `thinned`: per place the bin that it was kept from, finite, 0 where nobody knows; or empty. This is B, up to 1.15
 /// times the median of the neighbours' (scans thinned with different bins may lie over each other, and the finer one
-/// tells what is a hole), where the density agrees. Cubes stand along the axes then, and a surface of normal n meets |n_x| + |n_y| + |n_z| of them per
-/// B²: 1 along them, √3 at most. The median of what that makes of the neighbours' densities is 0.95 to 1.15 of the bin
-/// where the scan was dense (at rims and corners, too), down to 0.6 of it where the scan was noisy or lies there twice, less
-/// where more thinned scans were merged. From 0.55 to 1.15 they agree. Where points are sparser the scan itself was, or some were lost;
-/// where they are denser the bins are not theirs.
+/// tells what is a hole), where the density agrees. Cubes stand along the axes then, and a surface of normal n meets
+/// |n_x| + |n_y| + |n_z| of them per B²: 1 along them, √3 at most. The median of what that makes of the neighbours'
+/// densities is 0.95 to 1.15 of the bin where the scan was dense (at rims and corners, too), down to 0.6 of it where
+/// the scan was noisy or lies there twice, less where more thinned scans were merged. From 0.55 to 1.15 they agree.
+/// Where points are sparser the scan itself was, or some were lost; where they are denser the bins are not theirs.
 ///
 /// `near_twins`: as count_near_twins() gives them; a place and its twins count as one. Cost: linear.
 SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals,

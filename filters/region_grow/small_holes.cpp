@@ -13,10 +13,9 @@ namespace scanmill::growing {
 
 namespace {
 
-constexpr double least_fold_cosine = -0.8660254037844387;  // of 150 degrees
 constexpr double impossible = std::numeric_limits<double>::infinity();
 
-constexpr FillLimits any_size{impossible, least_fold_cosine};
+constexpr FillLimits any_size{impossible, least_bend_cosine};
 
 /// Grows with the angle from `ref` to `direction`, counter-clockwise seen against `axis`, from 0 to 4.
 double turn(const Vec3& ref, const Vec3& direction, const Vec3& axis) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "region_grow/triangle_circle.hpp"
+
 namespace scanmill::growing {
 
 namespace {
@@ -39,8 +41,9 @@ Vec3 Surface::facet_normal(u32 a, u32 b, u32 c) const {
 
 bool Surface::are_twins(u32 a, u32 b) const {
     const auto has = [&](u32 one, u32 other) {
-        const auto twins = twins_of(one);
-        return std::ranges::find(twins, other) != twins.end();
+        bool found = false;
+        for_twins_of(one, [&](u32 twin) { found = found || twin == other; });
+        return found;
     };
     return has(a, b) || has(b, a);
 }
@@ -48,15 +51,19 @@ bool Surface::are_twins(u32 a, u32 b) const {
 void Surface::add(const Triangle& triangle, Pass pass) {
     const auto& [a, b, c] = triangle;
     assert(fans.left_of(a, b) == nobody && fans.left_of(b, c) == nobody && fans.left_of(c, a) == nobody);
-    const Vec3 normal = facet_normal(a, b, c);
+    const Vec3 u = positions[b] - positions[a], w = positions[c] - positions[a], across = u.cross(w);
+    const Vec3 normal = across.normalized();
+    largest_squared_circle = std::max(
+        largest_squared_circle, squared_circle(u.squaredNorm(), w.squaredNorm(), (w - u).squaredNorm(), across.norm()));
     fans.add(triangle);
     triangles.push_back(triangle);
     passes.push_back(pass);
     for (u32 corner : triangle) {
         if (states[corner] == PlaceState::unused)
-            for (u32 twin : twins_of(corner))
+            for_twins_of(corner, [&](u32 twin) {
                 if (states[twin] == PlaceState::unused && std::ranges::find(triangle, twin) == triangle.end())
                     states[twin] = PlaceState::twin;
+            });
         if (states[corner] == PlaceState::unused && !oriented && normals[corner].dot(normal) < 0)
             normals[corner] = -normals[corner];
         states[corner] = fans.closed(corner) ? PlaceState::interior : PlaceState::front;

@@ -21,6 +21,9 @@ enum class PlaceState : u8 {
 /// small hole).
 using Pass = u8;
 
+/// Of 150 degrees: a triangle that bends back by more lies on its neighbour.
+inline constexpr double least_bend_cosine = -0.8660254037844387;
+
 struct Surface {
     Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radius,
             Array<u8> near_twins, bool oriented);
@@ -42,12 +45,20 @@ struct Surface {
     Array<PlaceState> states;
     Array<Triangle> triangles;
     Array<Pass> passes;
+    /// The largest circle of a triangle so far, as squared_circle() tells.
+    double largest_squared_circle = 0;
 
     bool is_used(u32 place) const {
         return states[place] == PlaceState::front || states[place] == PlaceState::interior;
     }
-    std::span<const u32> twins_of(u32 place) const {
-        return neighbourhoods.of(place).first(near_twins.empty() ? 0 : near_twins[place]);
+    /// By given normals: they are of two sides of something.
+    bool face_apart(u32 a, u32 b) const { return oriented && normals[a].dot(normals[b]) <= 0; }
+    /// Calls twin(other) for every near twin of the place.
+    template <class Twin>
+    void for_twins_of(u32 place, const Twin& twin) const {
+        if (near_twins.empty()) return;
+        for (u32 other : neighbourhoods.of(place).first(near_twins[place]))
+            if (!face_apart(place, other)) twin(other);
     }
     /// Either is among the other's.
     bool are_twins(u32 a, u32 b) const;

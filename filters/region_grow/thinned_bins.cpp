@@ -18,8 +18,8 @@ Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Cont
         return {};
     }
     const auto bin = [&](u32 row) {
-        const double size = column->number(row);
-        return std::isfinite(size) && size > 0 ? size * samples.scale : 0;
+        const double size = column->number(row) * samples.scale;
+        return std::isfinite(size) && size > 0 ? size : 0;
     };
     Array<double> bins(samples.size());
     for (std::size_t place = 0; place < bins.size(); ++place) bins[place] = bin(samples.rows[place]);
@@ -29,7 +29,7 @@ Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Cont
 }
 
 void tell_contradiction(const Samples& samples, std::span<const double> thinned, const SearchRadii& found,
-                        Context& context) {
+                        LengthUnit unit, Context& context) {
     std::vector<double> said, seen;
     for (std::size_t place = 0; place < thinned.size(); ++place) {
         if (found.too_dense[place] == 0) continue;
@@ -38,9 +38,10 @@ void tell_contradiction(const Samples& samples, std::span<const double> thinned,
     }
     if (2 * said.size() <= thinned.size()) return;
     context.warn(
-        fmt::format("{} of {} points lie too dense for what their column `bin-size` says: as after bins of {:.3g} u, "
-                    "not {:.3g} u; their search radius follows from the density",
-                    said.size(), thinned.size(), median(seen), median(said)));
+        fmt::format("{} of {} points lie too dense for what their column `bin-size` says: as after bins of {:.3g} {}, "
+                    "not {:.3g}; their search radius follows from the density. Thin the points again, drop the column, "
+                    "or check the scan's unit",
+                    said.size(), thinned.size(), median(seen), symbol(unit), median(said)));
 }
 
 }  // namespace scanmill::growing

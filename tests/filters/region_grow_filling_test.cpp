@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "filters/region_grow_cases.hpp"
+#include "filters/region_grow_patch.hpp"
 #include "region_grow/filling.hpp"
 #include "region_grow/point_normals.hpp"
 
@@ -33,44 +34,21 @@ TEST(RegionGrowMeet_Triangles, MeetBeyondTheirCommonCornersAndEdges) {
     EXPECT_TRUE(met(floor, {1, 2, 0})) << "itself";
 }
 
-/// A surface over places in an order of its own; named by their positions.
-class Patch {
-public:
-    explicit Patch(const std::vector<Vec3>& positions)
-        : samples_(distinct_samples(positions)),
-          neighbourhoods_(samples_, 1),
-          surface_(samples_, neighbourhoods_, principal_normals(samples_, neighbourhoods_, 1),
-                   Array<double>(samples_.size()), Array<u8>(), false),
-          positions_(positions) {
-        std::ranges::fill(surface_.search_radius, 4 * samples_.scale);
-        for (const Vec3& p : positions)
-            place_.push_back(static_cast<u32>(std::ranges::find(samples_.positions, p * samples_.scale) -
-                                              samples_.positions.begin()));
+/// As sorted corners; lengths as in the positions given.
+std::vector<Triangle> filling(const Patch& patch, const std::vector<u32>& loop, double circle, double bend) {
+    std::vector<u32> corners;
+    for (u32 x : loop) corners.push_back(patch.place(x));
+    NearTriangles near;
+    std::vector<Triangle> triangles;
+    for (Triangle t : cheapest_filling(patch.surface(), near, corners,
+                                       {circle * patch.scale(), std::cos(bend / 180 * std::numbers::pi)})) {
+        for (u32& corner : t) corner = patch.name_of(corner);
+        EXPECT_LT(std::ranges::find(loop, t[0]), std::ranges::find(loop, t[1])) << "in the loop's direction";
+        std::ranges::sort(t);
+        triangles.push_back(t);
     }
-    void add(u32 a, u32 b, u32 c) { surface_.add({place_[a], place_[b], place_[c]}, 0); }
-    /// As sorted corners; lengths as in the positions given.
-    std::vector<Triangle> filling(const std::vector<u32>& loop, double circle, double bend) const {
-        std::vector<u32> corners;
-        for (u32 x : loop) corners.push_back(place_[x]);
-        NearTriangles near;
-        std::vector<Triangle> triangles;
-        for (Triangle t : cheapest_filling(surface_, near, corners,
-                                           {circle * samples_.scale, std::cos(bend / 180 * std::numbers::pi)})) {
-            for (u32& corner : t) corner = static_cast<u32>(std::ranges::find(place_, corner) - place_.begin());
-            EXPECT_LT(std::ranges::find(loop, t[0]), std::ranges::find(loop, t[1])) << "in the loop's direction";
-            std::ranges::sort(t);
-            triangles.push_back(t);
-        }
-        return triangles;
-    }
-
-private:
-    Samples samples_;
-    Neighbourhoods neighbourhoods_;
-    Surface surface_;
-    std::vector<Vec3> positions_;
-    std::vector<u32> place_;
-};
+    return triangles;
+}
 
 constexpr double any = std::numeric_limits<double>::infinity();
 
@@ -79,22 +57,22 @@ constexpr double any = std::numeric_limits<double>::infinity();
 const std::vector<Vec3> lifted{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 1), Vec3(0, 2, 0)};
 
 TEST(RegionGrowFilling_FourCorners, TakesTheDiagonalOfLessArea) {
-    EXPECT_THAT(Patch(lifted).filling({0, 1, 2, 3}, any, 150),
+    EXPECT_THAT(filling(Patch(lifted), {0, 1, 2, 3}, any, 150),
                 UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
 }
 
 TEST(RegionGrowFilling_Square, BreaksTheTieByTheFirstCorners) {
     const std::vector<Vec3> square{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)};
-    EXPECT_THAT(Patch(square).filling({0, 1, 2, 3}, any, 150),
+    EXPECT_THAT(filling(Patch(square), {0, 1, 2, 3}, any, 150),
                 UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
-    EXPECT_THAT(Patch(square).filling({1, 2, 3, 0}, any, 150),
+    EXPECT_THAT(filling(Patch(square), {1, 2, 3, 0}, any, 150),
                 UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
 TEST(RegionGrowFilling_Circles, LimitTheTrianglesNotTheirNumber) {
     const std::vector<Vec3> square{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)};
-    EXPECT_THAT(Patch(square).filling({0, 1, 2, 3}, 1.415, 150), testing::SizeIs(2));
-    EXPECT_THAT(Patch(square).filling({0, 1, 2, 3}, 1.414, 150), IsEmpty());
+    EXPECT_THAT(filling(Patch(square), {0, 1, 2, 3}, 1.415, 150), testing::SizeIs(2));
+    EXPECT_THAT(filling(Patch(square), {0, 1, 2, 3}, 1.414, 150), IsEmpty());
     // A slit 1 wide and 40 long, and a round hole of radius 1.5: twelve corners each.
     std::vector<Vec3> slit, round;
     std::vector<u32> loop;
@@ -105,9 +83,9 @@ TEST(RegionGrowFilling_Circles, LimitTheTrianglesNotTheirNumber) {
         loop.push_back(i);
     }
     for (Vec3& p : slit) p.x() /= 8;
-    EXPECT_THAT(Patch(slit).filling(loop, 0.75, 150), testing::SizeIs(10));
-    EXPECT_THAT(Patch(round).filling(loop, 1.45, 150), IsEmpty());
-    EXPECT_THAT(Patch(round).filling(loop, 1.51, 150), testing::SizeIs(10));
+    EXPECT_THAT(filling(Patch(slit), loop, 0.75, 150), testing::SizeIs(10));
+    EXPECT_THAT(filling(Patch(round), loop, 1.45, 150), IsEmpty());
+    EXPECT_THAT(filling(Patch(round), loop, 1.51, 150), testing::SizeIs(10));
 }
 
 TEST(RegionGrowFilling_ATriangleInTheWay, IsPassedOrNothingIsFilled) {
@@ -116,11 +94,21 @@ TEST(RegionGrowFilling_ATriangleInTheWay, IsPassedOrNothingIsFilled) {
     for (const Vec3& p : {Vec3(0.5, 0.5, -3), Vec3(0.4, 0.6, -3), Vec3(0.5, 0.5, 0.1)}) positions.push_back(p);
     Patch under(positions);
     under.add(4, 5, 6);
-    EXPECT_THAT(under.filling({0, 1, 2, 3}, any, 150), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+    EXPECT_THAT(filling(under, {0, 1, 2, 3}, any, 150), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
     positions[6] = Vec3(0.5, 0.5, 3);
     Patch through(positions);
     through.add(4, 5, 6);
-    EXPECT_THAT(through.filling({0, 1, 2, 3}, any, 150), IsEmpty());
+    EXPECT_THAT(filling(through, {0, 1, 2, 3}, any, 150), IsEmpty());
+}
+
+TEST(RegionGrowFilling_ATriangleInTheWay, IsSeenHoweverFarItsCornersAre) {
+    // Through the whole lid, ten times as far as any search radius.
+    std::vector<Vec3> positions = lifted;
+    for (const Vec3& p : {Vec3(0.5, 0.5, -40), Vec3(0.4, 0.6, -40), Vec3(0.5, 0.5, 40)}) positions.push_back(p);
+    Patch through(positions);
+    EXPECT_THAT(filling(through, {0, 1, 2, 3}, any, 150), testing::SizeIs(2));
+    through.add(4, 5, 6);
+    EXPECT_THAT(filling(through, {0, 1, 2, 3}, any, 150), IsEmpty());
 }
 
 TEST(RegionGrowFilling_EdgesThatAreThere, AreNotRepeated) {
@@ -128,7 +116,7 @@ TEST(RegionGrowFilling_EdgesThatAreThere, AreNotRepeated) {
     positions.push_back(Vec3(1, 1, -3));
     Patch patch(positions);
     patch.add(1, 3, 4);
-    EXPECT_THAT(patch.filling({0, 1, 2, 3}, any, 150), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+    EXPECT_THAT(filling(patch, {0, 1, 2, 3}, any, 150), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
 TEST(RegionGrowFilling_Bends, OfATentsRoofDecide) {
@@ -136,8 +124,8 @@ TEST(RegionGrowFilling_Bends, OfATentsRoofDecide) {
     const double slope = std::tan(std::numbers::pi / 12);
     Patch patch({Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(1, 1, 0), Vec3(1, 1.5, 1.5 * slope)});
     patch.add(1, 0, 3);
-    EXPECT_THAT(patch.filling({0, 1, 2}, any, 166), ElementsAre(Triangle{0, 1, 2}));
-    EXPECT_THAT(patch.filling({0, 1, 2}, any, 164), IsEmpty());
+    EXPECT_THAT(filling(patch, {0, 1, 2}, any, 166), ElementsAre(Triangle{0, 1, 2}));
+    EXPECT_THAT(filling(patch, {0, 1, 2}, any, 164), IsEmpty());
 }
 
 }  // namespace

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A surface of a few triangles made by hand, its places named by where they stand in a list.
+
+#include <algorithm>
+
+#include "region_grow/surface.hpp"
+
+namespace scanmill::growing {
+
+class Patch {
+public:
+    /// `twins`: per position, of its nearest neighbours.
+    explicit Patch(const std::vector<Vec3>& positions, std::vector<u8> twins = {})
+        : samples_(distinct_samples(positions)),
+          neighbourhoods_(samples_, 1),
+          surface_(samples_, neighbourhoods_, principal_normals(samples_, neighbourhoods_, 1),
+                   Array<double>(samples_.size()), by_place(positions, twins), false) {
+        for (const Vec3& p : positions) place_.push_back(place_at(p));
+        for (u32 name = 0; name < positions.size(); ++name) set_search_radius(name, 4);
+    }
+    void add(u32 a, u32 b, u32 c) { surface_.add({place_[a], place_[b], place_[c]}, 0); }
+    /// Lengths as in the positions given.
+    void set_search_radius(u32 name, double radius) { surface_.search_radius[place_[name]] = radius * samples_.scale; }
+    Surface& surface() { return surface_; }
+    const Surface& surface() const { return surface_; }
+    double scale() const { return samples_.scale; }
+    u32 place(u32 name) const { return place_[name]; }
+    u32 name_of(u32 place) const { return static_cast<u32>(std::ranges::find(place_, place) - place_.begin()); }
+    PlaceState state(u32 name) const { return surface_.states[place_[name]]; }
+
+private:
+    u32 place_at(const Vec3& p) const {
+        return static_cast<u32>(std::ranges::find(samples_.positions, Vec3(p * samples_.scale)) -
+                                samples_.positions.begin());
+    }
+    Array<u8> by_place(const std::vector<Vec3>& positions, const std::vector<u8>& twins) const {
+        Array<u8> counts(twins.empty() ? 0 : samples_.size());
+        for (std::size_t name = 0; name < twins.size(); ++name) counts[place_at(positions[name])] = twins[name];
+        return counts;
+    }
+
+    Samples samples_;
+    Neighbourhoods neighbourhoods_;
+    Surface surface_;
+    std::vector<u32> place_;
+};
+
+}  // namespace scanmill::growing
