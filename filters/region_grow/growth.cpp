@@ -90,8 +90,9 @@ bool Growth::is_covered(u32 place, const Vec3& normal) const {
             const Triangle triangle{other, pair.first, pair.last};
             const Vec3 facet = surface_.facet_normal(other, pair.first, pair.last);
             const double height = std::abs(facet.dot(p[place] - p[other]));
-            return std::abs(facet.dot(normal)) > 0.5 && height < (p[pair.first] - p[pair.last]).norm() &&
-                   lies_over(surface_, triangle, facet, place);
+            const double cosine = facet.dot(normal);
+            return (surface_.oriented ? cosine : std::abs(cosine)) > 0.5 &&
+                   height < (p[pair.first] - p[pair.last]).norm() && lies_over(surface_, triangle, facet, place);
         });
         if (covered) return true;
     }
@@ -103,7 +104,8 @@ bool Growth::form_seed(u32 place) {
     const Vec3& normal = surface_.normals[place];
     u32 second = nobody;
     for (u32 other : surface_.neighbourhoods.of(place))
-        if (surface_.states[other] == PlaceState::unused && !surface_.are_twins(place, other)) {
+        if (surface_.states[other] == PlaceState::unused && !surface_.are_twins(place, other) &&
+            !surface_.face_apart(place, other)) {
             second = other;
             break;
         }

@@ -15,8 +15,12 @@ constexpr std::size_t most_twins = 3;
 /// Of the distance to the nearest other place. Of points at random a quarter are as near to one of their nearest, of a
 /// thinned scan's one in forty.
 constexpr double near_share = 0.45;
-/// Of a place and its neighbours, what makes most of them.
+/// Of a place and its neighbours, what makes most of them: more than half, so that a patch of one sheet is none.
 constexpr std::size_t part = 10, of_places = 17;
+/// Of the median distance of twins: copies that were moved by up to some length lie at two thirds of it on average.
+constexpr double twins_reach = 1.6;
+/// Of the median distance of the next ones: what is nearer to those is none.
+constexpr double nearer_than_others = 0.5;
 constexpr std::size_t chunk = 1 << 12;
 
 /// Where a place's twins end and the others begin; 0 where it has none.
@@ -24,30 +28,36 @@ struct Gap {
     double twins = 0, others = 0;
 };
 
-Gap widest_gap(const Samples& samples, const Neighbourhoods& neighbourhoods, u32 place) {
-    const auto near = neighbourhoods.of(place);
-    const auto distance = [&](std::size_t i) { return (samples.positions[near[i]] - samples.positions[place]).norm(); };
+bool face_alike(std::span<const Vec3> facing, u32 a, u32 b) { return facing.empty() || facing[a].dot(facing[b]) > 0; }
+
+Gap widest_gap(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> facing, u32 place) {
     Gap widest;
-    double least = near_share;
-    for (std::size_t count = 1; count <= most_twins && count < near.size(); ++count) {
-        const Gap gap{distance(count - 1), distance(count)};
-        if (gap.twins >= least * gap.others) continue;
-        least = gap.twins / gap.others;
-        widest = gap;
+    double least = near_share, before = 0;
+    std::size_t seen = 0;
+    for (const u32 other : neighbourhoods.of(place)) {
+        if (!face_alike(facing, place, other)) continue;
+        const double distance = (samples.positions[other] - samples.positions[place]).norm();
+        if (seen > 0 && before < least * distance) {
+            least = before / distance;
+            widest = {before, distance};
+        }
+        before = distance;
+        if (++seen > most_twins) break;
     }
     return widest;
 }
 
 class Twins {
 public:
-    Twins(const Samples& samples, const Neighbourhoods& neighbourhoods, unsigned threads)
+    Twins(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> facing, unsigned threads)
         : samples_(samples),
           neighbourhoods_(neighbourhoods),
+          facing_(facing),
           gaps_(samples.size()),
           counts_(samples.size()) {
         for_each_chunk(threads, gaps_.size(), chunk, [&](std::size_t begin, std::size_t end) {
             for (std::size_t place = begin; place < end; ++place)
-                gaps_[place] = widest_gap(samples, neighbourhoods, static_cast<u32>(place));
+                gaps_[place] = widest_gap(samples, neighbourhoods, facing, static_cast<u32>(place));
         });
         Array<u8> among_twins(counts_.size());
         for_each_chunk(threads, counts_.size(), chunk, [&](std::size_t begin, std::size_t end) {
@@ -85,23 +95,28 @@ private:
         std::ranges::nth_element(gaps, middle, {}, &Gap::twins);
         const double twins = middle->twins;
         std::ranges::nth_element(gaps, middle, {}, &Gap::others);
-        const double radius = std::max(gaps_[place].twins, std::min(1.6 * twins, 0.5 * middle->others));
+        const double radius =
+            std::max(gaps_[place].twins, std::min(twins_reach * twins, nearer_than_others * middle->others));
         std::size_t number = 0;
-        while (number < near.size() && (samples_.positions[near[number]] - samples_.positions[place]).norm() <= radius)
-            ++number;
+        for (std::size_t i = 0; i < near.size(); ++i) {
+            if ((samples_.positions[near[i]] - samples_.positions[place]).norm() > radius) break;
+            if (face_alike(facing_, place, near[i])) number = i + 1;
+        }
         return static_cast<u8>(number);
     }
 
     const Samples& samples_;
     const Neighbourhoods& neighbourhoods_;
+    std::span<const Vec3> facing_;
     Array<Gap> gaps_;
     Array<u8> counts_;
 };
 
 }  // namespace
 
-Array<u8> count_near_twins(const Samples& samples, const Neighbourhoods& neighbourhoods, unsigned threads) {
-    Array<u8> counts = Twins(samples, neighbourhoods, threads).counts();
+Array<u8> count_near_twins(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> facing,
+                           unsigned threads) {
+    Array<u8> counts = Twins(samples, neighbourhoods, facing, threads).counts();
     if (std::ranges::all_of(counts, [](u8 count) { return count == 0; })) return {};
     return counts;
 }

@@ -12,7 +12,12 @@ namespace scanmill::growing {
 /// have some. Where most of a place and its neighbours lie so, its twins are those that it seems to have, and all up to
 /// 1.6 times the median of these distances round it, but at most half of the median distance of the next ones.
 /// Elsewhere it has none: points may happen to be near each other, and bins that the surface cuts obliquely leave small
-/// patches of them. Empty when nobody has any. Cost: linear.
-Array<u8> count_near_twins(const Samples& samples, const Neighbourhoods& neighbourhoods, unsigned threads);
+/// patches of them. Empty when nobody has any.
+///
+/// `facing`: the given normals, or empty. With them neighbours that do not face as the place does are none in all of
+/// this: they are of the other side of something thin. The number is that of the nearest neighbours among which those
+/// that face so are the twins. Cost: linear.
+Array<u8> count_near_twins(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> facing,
+                           unsigned threads);
 
 }  // namespace scanmill::growing

@@ -97,7 +97,9 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     context.progress(0.3);
     PointNormals normals = principal_normals(samples, neighbourhoods, context.threads());
     const bool oriented = take_given_normals(cloud, samples, neighbourhoods, normals, context);
-    Array<u8> twins = count_near_twins(samples, neighbourhoods, context.threads());
+    std::span<const Vec3> facing;
+    if (oriented) facing = normals.directions;
+    Array<u8> twins = count_near_twins(samples, neighbourhoods, facing, context.threads());
     Array<double> radii = search_radii(cloud, samples, neighbourhoods, normals.directions, twins, params, context);
     Surface surface(samples, neighbourhoods, std::move(normals), std::move(radii), std::move(twins), oriented);
     context.progress(0.4);

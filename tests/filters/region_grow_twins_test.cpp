@@ -40,9 +40,9 @@ PointCloud twice(const PointCloud& cloud, double offset) {
 /// Two equal grids, one over the other.
 PointCloud two_sheets(double height) { return joined(grid(20, 20), moved(grid(20, 20), 1, Vec3(0, 0, height))); }
 
-Array<u8> twins_of(const PointCloud& cloud, unsigned threads = 1) {
+Array<u8> twins_of(const PointCloud& cloud, std::span<const Vec3> facing = {}) {
     const growing::Samples samples = growing::distinct_samples(cloud.positions.span());
-    return growing::count_near_twins(samples, growing::Neighbourhoods(samples, threads), threads);
+    return growing::count_near_twins(samples, growing::Neighbourhoods(samples, 1), facing, 1);
 }
 
 TEST(RegionGrow_TwoSheetsUpTo04StepsApart, AreGrownAsOne) {
@@ -60,6 +60,46 @@ TEST(RegionGrow_TwoSheetsUpTo04StepsApart, AreGrownAsOne) {
         EXPECT_THAT(context.warnings(), ElementsAre(AllOf(HasSubstr("400 of 800 distinct points were left out as near"),
                                                           HasSubstr("bins of 1.25 u"))));
     }
+}
+
+/// Normals along z, up where `up`.
+template <class Up>
+PointCloud with_normals(PointCloud cloud, const Up& up) {
+    Array<double> numbers;
+    for (const Vec3& p : cloud.positions) numbers.insert(numbers.end(), {0, 0, up(p) ? 1.0 : -1.0});
+    cloud.columns.add(Column("normal", 3, Buffer<double>(std::move(numbers))));
+    return cloud;
+}
+
+TEST(RegionGrow_BothSidesOfSheetMetal, AreNoTwinsByTheirNormals) {
+    for (const double thickness : {0.1, 0.3}) {
+        Context context;
+        const PointCloud metal = with_normals(two_sheets(thickness), [](const Vec3& p) { return p.z() > 0; });
+        RegionGrowParams params;
+        params.search_radius = Length(4);
+        const RegionGrowResult result = region_grow(metal, params, context);
+        expect_consistent(result);
+        EXPECT_EQ(result.near_twins, 0u);
+        EXPECT_EQ(result.unused_points, 0u);
+        EXPECT_THAT(context.warnings(), IsEmpty());
+        // Each side whole, and seen from there.
+        std::size_t above = 0, below = 0;
+        for (const Triangle& t : result.mesh.triangles) {
+            const double z = normal_of(result.mesh, t).normalized().z();
+            above += z > 0.99;
+            below += z < -0.99;
+        }
+        EXPECT_EQ(above, 2 * 19u * 19);
+        EXPECT_EQ(below, 2 * 19u * 19);
+    }
+    // One way up they are twins as before, and two layers on either side leave one on each.
+    const PointCloud sheets = with_normals(two_sheets(0.3), [](const Vec3&) { return true; });
+    EXPECT_EQ(grown(sheets).near_twins, 400u);
+    PointCloud layers = joined(two_sheets(0.05), moved(two_sheets(0.05), 1, Vec3(0, 0, 0.3)));
+    layers = with_normals(std::move(layers), [](const Vec3& p) { return p.z() > 0.2; });
+    const RegionGrowResult result = grown(layers);
+    EXPECT_EQ(result.near_twins, 800u);
+    EXPECT_EQ(result.unused_points, 800u);
 }
 
 TEST(RegionGrow_ScanWithASlightlyMovedCopy, HasAsManyTrianglesAsOneOfThem) {
