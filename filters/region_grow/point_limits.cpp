@@ -10,9 +10,8 @@ namespace scanmill::growing {
 
 namespace {
 
-/// Of the neighbours' variance, across their plane: above the first a point's normal tells less, at an edge; above the
-/// second nothing, at a tip. At an edge of 90 degrees it is a tenth; noise of 0.3 spacings makes 0.03.
-constexpr float rough = 0.04f, shapeless = 0.18f;
+/// Of the neighbours' variance, across their plane: above this a point's normal tells nothing, at a tip.
+constexpr float shapeless = 0.18f;
 
 }  // namespace
 

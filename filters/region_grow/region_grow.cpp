@@ -62,7 +62,7 @@ double largest_bend(const RegionGrowParams& params) {
 }
 
 Array<double> search_radii(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
-                           const Array<Vec3>& normals, std::span<const u8> twins, const RegionGrowParams& params,
+                           const PointNormals& normals, std::span<const u8> twins, const RegionGrowParams& params,
                            Context& context) {
     if (params.search_radius) {
         Array<double> radii(samples.size());
@@ -70,7 +70,8 @@ Array<double> search_radii(const PointCloud& cloud, const Samples& samples, cons
         return radii;
     }
     const Array<double> thinned = thinned_bins(cloud, samples, context);
-    SearchRadii found = automatic_radii(samples, neighbourhoods, normals, twins, thinned, context.threads());
+    SearchRadii found = automatic_radii(samples, neighbourhoods, normals.directions, normals.roughness, twins, thinned,
+                                        context.threads());
     tell_contradiction(samples, thinned, found, cloud.frame.unit, context);
     context.metric("known-bins", static_cast<double>(found.known));
     return std::move(found.radii);
@@ -100,7 +101,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     std::span<const Vec3> facing;
     if (oriented) facing = normals.directions;
     Array<u8> twins = count_near_twins(samples, neighbourhoods, facing, context.threads());
-    Array<double> radii = search_radii(cloud, samples, neighbourhoods, normals.directions, twins, params, context);
+    Array<double> radii = search_radii(cloud, samples, neighbourhoods, normals, twins, params, context);
     Surface surface(samples, neighbourhoods, std::move(normals), std::move(radii), std::move(twins), oriented);
     context.progress(0.4);
 

@@ -34,7 +34,7 @@ double cubes_met(const Vec3& normal) { return normal.cwiseAbs().sum(); }
 
 class Bins {
 public:
-    Bins(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals,
+    Bins(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> normals,
          std::span<const u8> near_twins, unsigned threads)
         : neighbourhoods_(neighbourhoods),
           normals_(normals),
@@ -69,14 +69,15 @@ public:
 
 private:
     const Neighbourhoods& neighbourhoods_;
-    const Array<Vec3>& normals_;
+    std::span<const Vec3> normals_;
     Array<double> bins_;
 };
 
 }  // namespace
 
-SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals,
-                            std::span<const u8> near_twins, std::span<const double> thinned, unsigned threads) {
+SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> normals,
+                            std::span<const float> roughness, std::span<const u8> near_twins,
+                            std::span<const double> thinned, unsigned threads) {
     const Bins bins(samples, neighbourhoods, normals, near_twins, threads);
     SearchRadii result;
     result.radii.resize(samples.size());
@@ -90,7 +91,8 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
             const double seen = said > 0 ? bins.by_density_and_normals(place, room) : 0;
             const bool agree = said > 0 && seen >= least_share * said && seen <= largest_share * said;
             known[begin / chunk] += agree;
-            const double bin = agree ? said : bins.by_density(place, room);
+            const double dense = agree && roughness[i] <= rough ? 0 : bins.by_density(place, room);
+            const double bin = agree ? std::max(said, dense) : dense;
             result.radii[i] = 2 * std::numbers::sqrt3 * bin;
             if (seen < least_share * said) result.too_dense[i] = bin;
         }
@@ -100,9 +102,9 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
 }
 
 double bins_as_dense(const Surface& surface, unsigned threads) {
-    Array<double> radii =
-        automatic_radii(surface.samples, surface.neighbourhoods, surface.normals, surface.near_twins, {}, threads)
-            .radii;
+    Array<double> radii = automatic_radii(surface.samples, surface.neighbourhoods, surface.normals, surface.roughness,
+                                          surface.near_twins, {}, threads)
+                              .radii;
     return median(radii) / (2 * std::numbers::sqrt3) / surface.samples.scale;
 }
 

@@ -28,11 +28,14 @@ struct SearchRadii {
 /// |n_x| + |n_y| + |n_z| of them per B²: 1 along them, √3 at most. The median of what that makes of the neighbours'
 /// densities is 0.95 to 1.15 of the bin where the scan was dense (at rims and corners, too), down to 0.6 of it where
 /// the scan was noisy or lies there twice, less where more thinned scans were merged. From 0.55 to 1.15 they agree.
-/// Where points are sparser the scan itself was, or some were lost; where they are denser the bins are not theirs.
+/// Where points are sparser the scan itself was, or some were lost; where they are denser the bins are not theirs. At
+/// rough places, tips and edges, points of bins that touch lie round a corner and the empty circles are larger than on
+/// a face; there B is no less than the density tells.
 ///
 /// `near_twins`: as count_near_twins() gives them; a place and its twins count as one. Cost: linear.
-SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, const Array<Vec3>& normals,
-                            std::span<const u8> near_twins, std::span<const double> thinned, unsigned threads);
+SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> normals,
+                            std::span<const float> roughness, std::span<const u8> near_twins,
+                            std::span<const double> thinned, unsigned threads);
 
 /// The bin size, in the scan's unit, whose thinning would leave points as dense as they are at the middle place, near
 /// twins counted once.

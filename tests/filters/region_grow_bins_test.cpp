@@ -64,7 +64,7 @@ void expect_the_same(const RegionGrowResult& one, const RegionGrowResult& two) {
 
 /// Of a 41 x 41 grid of step 1 at its middle: the bin that the search radius there is 2 √3 of. Bins as told there and
 /// everywhere else.
-double bin_in_the_middle(double thinned_with, double elsewhere, const Vec3& normal) {
+double bin_in_the_middle(double thinned_with, double elsewhere, const Vec3& normal, float roughness_of_all = 0.01f) {
     const PointCloud cloud = grid(41, 41);
     const growing::Samples samples = growing::distinct_samples(cloud.positions.span());
     const growing::Neighbourhoods neighbourhoods(samples, 1);
@@ -73,7 +73,9 @@ double bin_in_the_middle(double thinned_with, double elsewhere, const Vec3& norm
     const auto middle = static_cast<std::size_t>(
         std::ranges::find(samples.positions, Vec3(Vec3(20, 20, 0) * samples.scale)) - samples.positions.begin());
     thinned[middle] = thinned_with * samples.scale;
-    const growing::SearchRadii found = growing::automatic_radii(samples, neighbourhoods, normals, {}, thinned, 1);
+    const Array<float> roughness(samples.size(), roughness_of_all);
+    const growing::SearchRadii found =
+        growing::automatic_radii(samples, neighbourhoods, normals, roughness, {}, thinned, 1);
     return found.radii[middle] / samples.scale / (2 * std::numbers::sqrt3);
 }
 
@@ -102,6 +104,13 @@ TEST(RegionGrow_SearchRadius, ByHand_IsOfAtMost115PercentOfTheNeighboursBins) {
     EXPECT_NEAR(bin_in_the_middle(1.1, 1.6, Vec3::UnitZ()), 1.1, 1e-12);
     EXPECT_NEAR(bin_in_the_middle(1.6, 0, Vec3::UnitZ()), 1.6, 1e-12) << "nobody knows those";
     EXPECT_NEAR(bin_in_the_middle(2.5, 1.1, Vec3::UnitZ()), 1.15 * 1.1, 1e-12) << "points agree with that";
+}
+
+TEST(RegionGrow_SearchRadius, ByHand_IsNoLessThanTheDensityTellsAtTipsAndEdges) {
+    const double seen = std::sqrt(1.5) * 2 * std::sqrt(std::numbers::pi / 12);
+    EXPECT_NEAR(bin_in_the_middle(1.1, 1.1, Vec3::UnitZ(), 0.05f), seen, 1e-12);
+    EXPECT_NEAR(bin_in_the_middle(1.1, 1.1, Vec3::UnitZ(), 0.03f), 1.1, 1e-12) << "what noise makes";
+    EXPECT_NEAR(bin_in_the_middle(1.6, 1.6, Vec3::UnitZ(), 0.05f), 1.6, 1e-12);
 }
 
 /// A plate of 60 x 60 with five round holes, anywhere in the grid of bins of 2.
