@@ -10,7 +10,9 @@ SCANMILL_FILTER() {
         .summary(
             "Grows a surface over thinned points from a seed triangle, and tells its borders, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
-        .ties("Of equally good points the one that comes first along a curve through the box; of duplicates the first.")
+        .ties(
+            "Of equally good points the one that comes first along a curve through the box; of duplicates the first, "
+            "with the least bin and normal.")
         .not_finite("Refused, with their number and the first of them; normals are replaced instead.")
         .in<PointCloud>("points",
                         "Thinned: of even density, at least locally. Columns `normal` and `bin-size` are used.")
@@ -30,7 +32,8 @@ SCANMILL_FILTER() {
             above(0), word("auto"))
         .param("sharp-angle", &P::sharp_angle, "Edges that bend by more are creases.", at_least(0), at_most(180))
         .param("close-holes", &P::close_holes,
-               "Loops of at most so many edges are closed, and longer ones too narrow for a hole; 0 closes none.",
+               "Loops of at most so many edges are closed, and longer ones, up to 100 edges, too narrow for a hole; 0 "
+               "closes none.",
                at_least(0), at_most(100))
         .choice("score", &P::score,
                 {{"circumradius", P::Score::circumradius, "The point whose circle with the edge holds no other point."},

@@ -34,7 +34,8 @@ struct RegionGrowParams {
     /// Edges whose triangles' normals differ by more are creases. 0 to 180 degrees.
     Angle sharp_angle = Angle::degrees(40);
     /// Loops of at most this many edges are closed, and longer ones (up to 100 edges) that hold no circle as large as a
-    /// hole; 0 (as 1 and 2) closes none, at most 100.
+    /// hole, unless `max_normal_angle` is below 90 degrees and they bend by more than 4/3 of it; 0 (as 1 and 2) closes
+    /// none, at most 100.
     u32 close_holes = 4;
     Score score = Score::circumradius;
     /// The row of the point that the seed triangle starts at; nothing: the flattest place.
@@ -74,8 +75,9 @@ struct RegionGrowResult {
 /// Points should be thinned: of even density, at least locally. A column `normal` (three numbers per row) is used as it
 /// is, sign and all; a normal that is zero or not finite is replaced by the principal one. Without the column normals
 /// are principal directions of the 12 nearest neighbours. A column `bin-size` (a number per row, in the scan's unit;
-/// what is not above 0 or not finite counts as unknown) tells the bins of a thinning. Where most points have near
-/// twins (see near_twins.hpp), as scans laid over each other do, one of each is used.
+/// what is not above 0 or not finite counts as unknown) tells the bins of a thinning. Of rows in one place the
+/// least bin counts, and the normal first by x, y, z. Where most points have near twins (see near_twins.hpp), as scans
+/// laid over each other do, one of each is used.
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, a
@@ -83,12 +85,12 @@ struct RegionGrowResult {
 /// size.
 ///
 /// Post: an oriented manifold: every edge in one triangle or in two that pass it in opposite directions, every vertex's
-/// triangles one fan. No vertex twice in one place. Triangles round a vertex do not overlap as seen along its normal.
-/// No triangle in doubt, nor one that closes a hole, passes through those that are near it.
-/// Angles of triangles of pass 0 keep the limits; later passes relax them (see the page). Pieces that enclose a volume
-/// face outwards; so do open ones that bulge, flat ones face up. With a normal column they face as it says.
-/// Ties: equal scores (to 1e-9) by place, along a space-filling curve through the cloud's box. So the mesh depends
-/// neither on the order of the points, up to numbering, nor on the number of threads.
+/// triangles one fan. No vertex twice in one place. Triangles round a vertex do not overlap as seen along its normal,
+/// but for those of pass 4, which bend by up to 172 degrees. No triangle in doubt, nor one that closes a hole, passes
+/// through those that are near it. Angles of triangles of pass 0 keep the limits; later passes relax them (see the
+/// page). Pieces that enclose a volume face outwards; so do open ones that bulge, flat ones face up. With a normal
+/// column they face as it says. Ties: equal scores (to 1e-9) by place, along a space-filling curve through the cloud's
+/// box. So the mesh depends neither on the order of the points, up to numbering, nor on the number of threads.
 ///
 /// Cost: O(n log n) time where the nearest 16 places decide, about 440 bytes per point beside the result. An edge where
 /// they do not, or that finds nothing, looks at all m places within its search radius, up to four times: O(m log m)
