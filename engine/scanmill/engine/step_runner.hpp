@@ -30,8 +30,9 @@ using Recall = std::function<std::optional<Outputs>(const ParameterSet& resolved
 
 /// Runs the filter unless `recall` knows better: inputs brought to one origin, lengths resolved, outputs checked. A
 /// default that the scan has no measure for (`0.1 %diag` of points at one place) is left to the filter as it is
-/// declared, and fails the step only when it is read; a length that was chosen fails it before the filter runs. What it
-/// learned goes to `report` even when it throws (Error or Cancelled). `filter` is called for when it runs.
+/// declared, and fails the step only when it is read; a length that was chosen fails it before the filter runs (one
+/// that is written out and equals the default counts as the default). What it learned goes to `report` even when it
+/// throws (Error or Cancelled). `filter` is called for when it runs.
 Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
                  const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
                  NodeReport& report);
