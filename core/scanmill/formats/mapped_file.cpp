@@ -77,17 +77,13 @@ void MappedFile::fetch(std::string_view part) const noexcept {
 }
 
 void MappedFile::release(std::string_view part) const noexcept {
-    const Pages pages = pages_of(part, static_cast<const char*>(data_));
-    if (pages.size > 0) ::madvise(pages.begin, pages.size, MADV_DONTNEED);
-}
-
-void MappedFile::release_around(std::string_view part) const noexcept {
-    // The system maps aligned blocks: some pages around the one that was touched, or a whole large one.
+    // Whatever is touched, the system maps the aligned block around it: some pages, or a whole large one.
     constexpr std::size_t huge_page = std::size_t(2) << 20;
     const auto mapping = reinterpret_cast<std::uintptr_t>(data_), begin = reinterpret_cast<std::uintptr_t>(part.data());
     const std::uintptr_t first = std::max(mapping, begin / huge_page * huge_page);
     const std::uintptr_t end = (begin + part.size() + huge_page - 1) / huge_page * huge_page;
-    release(bytes().substr(first - mapping, end - first));
+    const Pages pages = pages_of(bytes().substr(first - mapping, end - first), static_cast<const char*>(data_));
+    if (pages.size > 0) ::madvise(pages.begin, pages.size, MADV_DONTNEED);
 }
 
 MappedFile::~MappedFile() { ::munmap(data_, size_); }

@@ -22,11 +22,9 @@ public:
 
     /// These bytes will be read next: their pages are mapped in one call. `part` is a part of bytes().
     void fetch(std::string_view part) const noexcept;
-    /// These bytes are not needed for now: their pages no longer count as memory of this process. Reading them, or what
-    /// else lies in these pages, is allowed, also meanwhile.
+    /// These bytes are not needed for now: their pages, and what touching them mapped around them, no longer count as
+    /// memory of this process. Reading them, or what else lies in these pages, is allowed, also meanwhile.
     void release(std::string_view part) const noexcept;
-    /// The same, and what touching single bytes of the part without fetch() mapped around them: up to a huge page.
-    void release_around(std::string_view part) const noexcept;
 
 private:
     void* data_ = nullptr;

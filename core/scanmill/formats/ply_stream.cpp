@@ -117,12 +117,12 @@ private:
         u32 first = rows.front();
         for (const u32 row : rows) {
             if ((row - first) * row_size_ > longest_stretch) {
-                file_->release_around(bytes_of(first, row - first));
+                file_->release(bytes_of(first, row - first));
                 first = row;
             }
             place = std::ranges::copy(bytes_of(row, 1), place).out;
         }
-        file_->release_around(bytes_of(first, rows.back() - first + 1));
+        file_->release(bytes_of(first, rows.back() - first + 1));
         return picked;
     }
 
