@@ -61,20 +61,19 @@ double largest_bend(const RegionGrowParams& params) {
     return angle >= right_angle * (1 - 1e-12) ? 2 * right_angle : angle * 4 / 3;
 }
 
-Array<double> search_radii(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
-                           const PointNormals& normals, std::span<const u8> twins, const RegionGrowParams& params,
-                           Context& context) {
-    if (params.search_radius) {
-        Array<double> radii(samples.size());
-        std::ranges::fill(radii, params.search_radius->value() * samples.scale);
-        return radii;
-    }
-    const Array<double> thinned = thinned_bins(cloud, samples, context);
+SearchRadii search_radii(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
+                         const PointNormals& normals, std::span<const u8> twins, const RegionGrowParams& params,
+                         Context& context) {
+    const Array<double> thinned = params.search_radius ? Array<double>() : thinned_bins(cloud, samples, context);
     SearchRadii found = automatic_radii(samples, neighbourhoods, normals.directions, normals.roughness, twins, thinned,
                                         context.threads());
+    if (params.search_radius) {
+        std::ranges::fill(found.radii, params.search_radius->value() * samples.scale);
+        return found;
+    }
     tell_contradiction(samples, thinned, found, cloud.frame.unit, context);
     context.metric("known-bins", static_cast<double>(found.known));
-    return std::move(found.radii);
+    return found;
 }
 
 std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std::optional<u32> row) {
@@ -101,8 +100,9 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     std::span<const Vec3> facing;
     if (oriented) facing = normals.directions;
     Array<u8> twins = count_near_twins(samples, neighbourhoods, facing, context.threads());
-    Array<double> radii = search_radii(cloud, samples, neighbourhoods, normals, twins, params, context);
-    Surface surface(samples, neighbourhoods, std::move(normals), std::move(radii), std::move(twins), oriented);
+    SearchRadii radii = search_radii(cloud, samples, neighbourhoods, normals, twins, params, context);
+    Surface surface(samples, neighbourhoods, std::move(normals), std::move(radii.radii), std::move(radii.by_density),
+                    std::move(twins), oriented);
     context.progress(0.4);
 
     const std::vector<Limits> limits = limits_of(params);

@@ -81,6 +81,7 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
     const Bins bins(samples, neighbourhoods, normals, near_twins, threads);
     SearchRadii result;
     result.radii.resize(samples.size());
+    result.by_density.resize(samples.size());
     result.too_dense = Array<double>(thinned.size(), 0);
     std::vector<std::size_t> known((samples.size() + chunk - 1) / chunk, 0);
     for_each_chunk(threads, samples.size(), chunk, [&](std::size_t begin, std::size_t end) {
@@ -91,9 +92,10 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
             const double seen = said > 0 ? bins.by_density_and_normals(place, room) : 0;
             const bool agree = said > 0 && seen >= least_share * said && seen <= largest_share * said;
             known[begin / chunk] += agree;
-            const double dense = agree && roughness[i] <= rough ? 0 : bins.by_density(place, room);
-            const double bin = agree ? std::max(said, dense) : dense;
+            const double dense = bins.by_density(place, room);
+            const double bin = !agree ? dense : roughness[i] > rough ? std::max(said, dense) : said;
             result.radii[i] = 2 * std::numbers::sqrt3 * bin;
+            result.by_density[i] = 2 * std::numbers::sqrt3 * dense;
             if (seen < least_share * said) result.too_dense[i] = bin;
         }
     });

@@ -10,6 +10,8 @@ namespace scanmill::growing {
 struct SearchRadii {
     /// Per place 2 √3 B, in the samples' scale.
     Array<double> radii;
+    /// Per place what the density alone makes of it.
+    Array<double> by_density;
     /// Places whose B follows from the thinning.
     std::size_t known = 0;
     /// Per place the B that the density tells where points lie too dense for the bin that they were said to be from;

@@ -152,9 +152,9 @@ SuitablePoint PointChooser::choose(u32 from, u32 to, const Limits& limits, bool 
                                                          : half * std::hypot(1.0, s + std::sqrt(1 + s * s));
             result.uncovered = top * top > reach;
         }
-        const double largest = largest_circle * search_radius(from, to);
+        const double usual = largest_circle * std::max(surface_.usual_radius[from], surface_.usual_radius[to]);
         const double radius = half * std::sqrt(1 + candidate.score * candidate.score);
-        result.plain = joined.dot(candidate.normal) > 0.75 && radius < 0.6 * largest && turned_down_.empty();
+        result.plain = joined.dot(candidate.normal) > 0.75 && radius < 0.6 * usual && turned_down_.empty();
         return result;
     }
     return {nobody, false, !far};

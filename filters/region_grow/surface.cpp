@@ -19,13 +19,14 @@ Triangle lowest_first(Triangle triangle) {
 }  // namespace
 
 Surface::Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radii,
-                 Array<u8> twins, bool are_oriented)
+                 Array<double> usual_radii, Array<u8> twins, bool are_oriented)
     : samples(from),
       neighbourhoods(near),
       positions(from.positions),
       normals(std::move(facing.directions)),
       roughness(std::move(facing.roughness)),
       search_radius(std::move(search_radii)),
+      usual_radius(std::move(usual_radii)),
       near_twins(std::move(twins)),
       oriented(are_oriented),
       fans(from.size()),

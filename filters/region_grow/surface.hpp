@@ -26,7 +26,7 @@ inline constexpr double least_bend_cosine = -0.8660254037844387;
 
 struct Surface {
     Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radius,
-            Array<u8> near_twins, bool oriented);
+            Array<double> usual_radius, Array<u8> near_twins, bool oriented);
 
     const Samples& samples;
     const Neighbourhoods& neighbourhoods;
@@ -36,6 +36,8 @@ struct Surface {
     Array<float> roughness;
     /// Per place, in the samples' scale.
     Array<double> search_radius;
+    /// What it would be by the density alone: triangles that are small beside it are as the points lie there.
+    Array<double> usual_radius;
     /// As count_near_twins() gives them.
     Array<u8> near_twins;
     /// Normals came with the cloud: a triangle must agree with their sign.

@@ -113,6 +113,31 @@ TEST(RegionGrow_SearchRadius, ByHand_IsNoLessThanTheDensityTellsAtTipsAndEdges) 
     EXPECT_NEAR(bin_in_the_middle(1.6, 1.6, Vec3::UnitZ(), 0.05f), 1.6, 1e-12);
 }
 
+/// The surface of a cube of so many cells along every edge, where thinning with bins of the cell's size left a point at
+/// every corner of a cell.
+PointCloud cube_of_cells(int cells, double size) {
+    std::vector<Vec3> points;
+    const auto is_outside = [&](int i) { return i == 0 || i == cells; };
+    for (int x = 0; x <= cells; ++x)
+        for (int y = 0; y <= cells; ++y)
+            for (int z = 0; z <= cells; ++z)
+                if (is_outside(x) || is_outside(y) || is_outside(z)) points.push_back(Vec3(x, y, z) * size);
+    PointCloud cloud = cloud_from(std::move(points));
+    return with_bins(std::move(cloud), [&](std::size_t) { return size; });
+}
+
+TEST(RegionGrow_CubeOfCells, KeepsItsCornersAndEdgesWhateverTheUnit) {
+    for (const int cells : {4, 8, 12})
+        for (const double size : {0.1, 0.3, 1 / 3., 0.7, 0.9, 1., 1.3, 25.4}) {
+            SCOPED_TRACE(testing::Message() << cells << " cells of " << size);
+            const RegionGrowResult result = grown(cube_of_cells(cells, size));
+            EXPECT_EQ(result.unused_points, 0u);
+            EXPECT_EQ(result.mesh.triangles.size(), 12u * static_cast<unsigned>(cells * cells));
+            EXPECT_EQ(result.corners, 8u);
+            EXPECT_EQ(result.creases, 12u);
+        }
+}
+
 /// A plate of 60 x 60 with five round holes, anywhere in the grid of bins of 2.
 PointCloud plate_with_holes(double radius, std::uint64_t seed) {
     Random random(seed);

@@ -19,7 +19,7 @@ TEST(LivePlaces, WhileTheSurfaceClosesOverThem_AreThoseOfALoop) {
         const Samples samples = distinct_samples(random_cube(count, count).positions.span());
         const Neighbourhoods neighbourhoods(samples, 1);
         Surface surface(samples, neighbourhoods, principal_normals(samples, neighbourhoods, 1),
-                        Array<double>(samples.size(), 1), {}, false);
+                        Array<double>(samples.size(), 1), Array<double>(samples.size(), 1), {}, false);
         LivePlaces live(surface);
         Random random(3);
         for (int turn = 0; turn < 400; ++turn) {

@@ -15,7 +15,8 @@ public:
         : samples_(distinct_samples(positions)),
           neighbourhoods_(samples_, 1),
           surface_(samples_, neighbourhoods_, principal_normals(samples_, neighbourhoods_, 1),
-                   Array<double>(samples_.size()), by_place(positions, twins), false) {
+                   Array<double>(samples_.size()), Array<double>(samples_.size(), 1), by_place(positions, twins),
+                   false) {
         for (const Vec3& p : positions) place_.push_back(place_at(p));
         for (u32 name = 0; name < positions.size(); ++name) set_search_radius(name, 4);
     }
