@@ -8,7 +8,7 @@
 namespace scanmill::growing {
 
 /// Per place how many of its nearest neighbours are its twins. A place seems to have twins when one to three neighbours
-/// are nearer to it than 0.45 times the next. It lies among twins when most of it and its neighbours (10 of 17) seem to
+/// are nearer to it than 0.45 times the next. It lies among twins when most of it and its neighbours (14 of 17) seem to
 /// have some. Where most of a place and its neighbours lie so, its twins are those that it seems to have, and all up to
 /// 1.6 times the median of these distances round it, but at most half of the median distance of the next ones.
 /// Elsewhere it has none: points may happen to be near each other, and bins that the surface cuts obliquely leave small

@@ -132,6 +132,30 @@ TEST(RegionGrow_ScanHalfOfWhichIsThereTwice, IsClosed) {
                 0.01 * static_cast<double>(scan.size()));
 }
 
+TEST(RegionGrow_VerticesOfMarchingCubes, HaveHardlyAnyTwins) {
+    // Where the edges of a grid of step 1 cross a sphere: what marching cubes makes of it, many of them near corners.
+    const Vec3 centre(0.31, 0.57, 0.83);
+    const double radius = 30.2;
+    std::vector<Vec3> points;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = -32; i <= 32; ++i)
+            for (int j = -32; j <= 32; ++j) {
+                const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+                const double beside = std::pow(i - centre[u], 2) + std::pow(j - centre[v], 2);
+                if (beside >= radius * radius) continue;
+                for (const double side : {-1., 1.}) {
+                    Vec3 p;
+                    p[axis] = centre[axis] + side * std::sqrt(radius * radius - beside);
+                    p[u] = i;
+                    p[v] = j;
+                    points.push_back(p);
+                }
+            }
+    ASSERT_GT(points.size(), 16000u);
+    const RegionGrowResult result = grown(cloud_from(std::move(points)));
+    EXPECT_LE(100 * result.near_twins, result.rows.size());
+}
+
 TEST(RegionGrow_TheBinsThatTheWarningNames, LeaveNoTwins) {
     const PointCloud scan = twice(thinned(fibonacci_sphere(60'000), 0.06), 0.006);
     Context context;
