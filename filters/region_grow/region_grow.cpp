@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "region_grow/far_sides.hpp"
 #include "region_grow/finished_mesh.hpp"
@@ -57,7 +58,7 @@ std::vector<Limits> limits_of(const RegionGrowParams& params) {
 /// closed whatever its angle; below, surfaces end at what growth would not bend over in its last round.
 double largest_bend(const RegionGrowParams& params) {
     const double angle = params.max_normal_angle.in_radians();
-    constexpr double right_angle = 3.14159265358979323846 / 2;
+    constexpr double right_angle = std::numbers::pi / 2;
     return angle >= right_angle * (1 - 1e-12) ? 2 * right_angle : angle * 4 / 3;
 }
 
