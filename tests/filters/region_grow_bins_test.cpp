@@ -138,6 +138,11 @@ TEST(RegionGrow_CubeOfCells, KeepsItsCornersAndEdgesWhateverTheUnit) {
         }
 }
 
+TEST(RegionGrow_LatticeOnACubeThinned, UsesAsManyPointsAsWithoutTheBins) {
+    const PointCloud cloud = thinned(without_columns(cube_of_cells(32, 0.25)), 0.5);
+    EXPECT_LE(grown(cloud).unused_points, grown(without_columns(cloud)).unused_points);
+}
+
 /// A plate of 60 x 60 with five round holes, anywhere in the grid of bins of 2.
 PointCloud plate_with_holes(double radius, std::uint64_t seed) {
     Random random(seed);
