@@ -51,55 +51,68 @@ bool meet(std::span<const Vec3> positions, const Triangle& one, const Triangle& 
     }
 }
 
+NearTriangles::Box NearTriangles::box_of(const Surface& surface, std::span<const u32> corners) {
+    Box box{surface.positions[corners[0]], surface.positions[corners[0]]};
+    for (u32 corner : corners.subspan(1)) {
+        box.low = box.low.cwiseMin(surface.positions[corner]);
+        box.high = box.high.cwiseMax(surface.positions[corner]);
+    }
+    return box;
+}
+
 void NearTriangles::gather_round(const Surface& surface, std::span<const u32> corners) {
+    wide_.update(surface);
     const Vec3& centre = surface.positions[corners[0]];
     double size = 0;
     for (u32 corner : corners) size = std::max(size, (surface.positions[corner] - centre).norm());
     // The filling lies in that ball; of a triangle that meets it a corner is no farther than its circle.
-    const double reach = (size + std::sqrt(surface.largest_squared_circle)) * (1 + 1e-9);
+    const double reach = (size + std::sqrt(wide_.squared_circle_of_others())) * (1 + 1e-9);
     places_.assign(1, corners[0]);
     surface.neighbourhoods.within(corners[0], reach * reach, buffer_, places_);
-    gather_at_places(surface);
+    const Box where = box_of(surface, corners);
+    begin(surface);
+    for (u32 place : places_) gather_at(surface, place, where);
+    wide_.each(surface, [&](const Triangle& triangle) {
+        const Box box = box_of(surface, triangle);
+        if (where.meets(box)) triangles_.push_back({triangle, box});
+    });
 }
 
 void NearTriangles::gather_near(const Surface& surface, const Triangle& triangle) {
-    places_.assign(triangle.begin(), triangle.end());
+    const Box where = box_of(surface, triangle);
+    begin(surface);
+    for (u32 place : triangle) gather_at(surface, place, where);
     for (u32 place : triangle)
-        for (u32 other : surface.neighbourhoods.of(place))
-            if (surface.states[other] != PlaceState::unused) places_.push_back(other);
-    gather_at_places(surface);
+        for (u32 other : surface.neighbourhoods.of(place)) gather_at(surface, other, where);
 }
 
-void NearTriangles::gather_at_places(const Surface& surface) {
-    std::ranges::sort(places_);
-    places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
+void NearTriangles::begin(const Surface& surface) {
     triangles_.clear();
-    for (u32 place : places_)
-        surface.fans.any(place, [&](const Fans::Pair& pair) {
-            // Once: at the lowest of its corners that was gathered.
-            const auto earlier = [&](u32 corner) {
-                return corner < place && std::ranges::binary_search(places_, corner);
-            };
-            if (!earlier(pair.first) && !earlier(pair.last)) add(surface, {place, pair.first, pair.last});
-            return false;
-        });
+    if (asked_.empty()) asked_.resize(surface.positions.size(), 0);
+    if (++gathering_ != 0) return;
+    std::ranges::fill(asked_, 0);
+    gathering_ = 1;
 }
 
-void NearTriangles::add(const Surface& surface, const Triangle& triangle) {
-    const auto& p = surface.positions;
-    const Vec3 &a = p[triangle[0]], &b = p[triangle[1]], &c = p[triangle[2]];
-    triangles_.push_back({triangle, a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
+void NearTriangles::gather_at(const Surface& surface, u32 place, const Box& where) {
+    if (is_asked(place)) return;
+    asked_[place] = gathering_;
+    surface.fans.any(place, [&](const Fans::Pair& pair) {
+        if (is_asked(pair.first) || is_asked(pair.last)) return false;
+        const Triangle triangle{place, pair.first, pair.last};
+        const Box box = box_of(surface, triangle);
+        if (where.meets(box)) triangles_.push_back({triangle, box});
+        return false;
+    });
 }
 
 bool NearTriangles::meet(const Surface& surface, const Triangle& triangle) const {
-    const auto& p = surface.positions;
-    const Vec3 &a = p[triangle[0]], &b = p[triangle[1]], &c = p[triangle[2]];
-    const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    const Box box = box_of(surface, triangle);
     return std::ranges::any_of(triangles_, [&](const Boxed& other) {
-        return (other.low.array() <= high.array()).all() && (low.array() <= other.high.array()).all() &&
+        return box.meets(other.box) &&
                std::ranges::count_if(triangle, [&](u32 corner) { return std::ranges::count(other.corners, corner); }) !=
                    3 &&
-               growing::meet(p, triangle, other.corners);
+               growing::meet(surface.positions, triangle, other.corners);
     });
 }
 

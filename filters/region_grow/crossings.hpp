@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "region_grow/surface.hpp"
+#include "region_grow/wide_triangles.hpp"
 
 namespace scanmill::growing {
 
@@ -19,7 +19,8 @@ bool meet(std::span<const Vec3> positions, const Triangle& one, const Triangle& 
 /// The surface's triangles round somewhere, gathered once.
 class NearTriangles {
 public:
-    /// All that may meet a filling between these corners.
+    /// All that may meet a filling between these corners. Pre: since the first call the surface's triangles were only
+    /// appended to.
     void gather_round(const Surface& surface, std::span<const u32> corners);
     /// Those at the triangle's corners and at the nearest places of each.
     void gather_near(const Surface& surface, const Triangle& triangle);
@@ -27,14 +28,27 @@ public:
     bool meet(const Surface& surface, const Triangle& triangle) const;
 
 private:
+    struct Box {
+        Vec3 low, high;
+        bool meets(const Box& other) const {
+            return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+        }
+    };
     struct Boxed {
         Triangle corners;
-        Vec3 low, high;
+        Box box;
     };
-    void gather_at_places(const Surface& surface);
-    void add(const Surface& surface, const Triangle& triangle);
+    static Box box_of(const Surface& surface, std::span<const u32> corners);
+    void begin(const Surface& surface);
+    /// The triangles at the place that reach into the box, each once whatever places are asked.
+    void gather_at(const Surface& surface, u32 place, const Box& where);
+    bool is_asked(u32 place) const { return asked_[place] == gathering_; }
 
     std::vector<Boxed> triangles_;
+    /// Per place which gathering asked it last.
+    std::vector<u32> asked_;
+    u32 gathering_ = 0;
+    WideTriangles wide_;
     std::vector<u32> places_;
     NeighbourBuffer buffer_;
 };

@@ -15,10 +15,6 @@ namespace {
 /// grid.
 constexpr double same_score = 1e-9;
 
-/// Times the squared distance to a place's last listed neighbour: a search that goes farther asks first whether any
-/// place there can be taken. With a search radius of many spacings on a noisy scan mostly none can.
-constexpr double wide = 9;
-
 }  // namespace
 
 double PointChooser::search_radius(u32 from, u32 to) const {
@@ -45,9 +41,6 @@ void PointChooser::collect(u32 from, u32 to, double reach, bool far) {
 
 bool PointChooser::may_find(u32 from, u32 to, const Vec3& joined, double reach, const Limits& limits) {
     const double squared = squared_range(reach);
-    if (squared <
-        wide * std::max(surface_.neighbourhoods.squared_reach(from), surface_.neighbourhoods.squared_reach(to)))
-        return true;
     near_.clear();
     live_.within(from, squared, near_);
     if (score_ == Score::midpoint) live_.within(to, squared, near_);

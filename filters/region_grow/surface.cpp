@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "region_grow/triangle_circle.hpp"
-
 namespace scanmill::growing {
 
 namespace {
@@ -52,10 +50,7 @@ bool Surface::are_twins(u32 a, u32 b) const {
 void Surface::add(const Triangle& triangle, Pass pass) {
     const auto& [a, b, c] = triangle;
     assert(fans.left_of(a, b) == nobody && fans.left_of(b, c) == nobody && fans.left_of(c, a) == nobody);
-    const Vec3 u = positions[b] - positions[a], w = positions[c] - positions[a], across = u.cross(w);
-    const Vec3 normal = across.normalized();
-    largest_squared_circle = std::max(
-        largest_squared_circle, squared_circle(u.squaredNorm(), w.squaredNorm(), (w - u).squaredNorm(), across.norm()));
+    const Vec3 normal = facet_normal(a, b, c);
     fans.add(triangle);
     triangles.push_back(triangle);
     passes.push_back(pass);

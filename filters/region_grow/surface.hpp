@@ -47,8 +47,6 @@ struct Surface {
     Array<PlaceState> states;
     Array<Triangle> triangles;
     Array<Pass> passes;
-    /// The largest circle of a triangle so far, as squared_circle() tells.
-    double largest_squared_circle = 0;
 
     bool is_used(u32 place) const {
         return states[place] == PlaceState::front || states[place] == PlaceState::interior;
