@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "region_grow/normal_signs.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill::growing {
@@ -112,11 +113,19 @@ bool take_given_normals(const PointCloud& cloud, const Samples& samples, const N
         return false;
     }
     require_across(lying, samples.size() - missing, context);
-    for (u32 place = 0; place < samples.size(); ++place)
-        if (!given[place]) turn_like_neighbours(neighbourhoods, given, place, normals.directions);
     if (missing > 0)
         context.warn(fmt::format("{} of {} normals are zero or not finite; they are taken from the neighbours", missing,
                                  samples.size()));
+    const OpposedNormals opposed = opposed_normals(samples, neighbourhoods, normals.directions, given);
+    if (opposed.are_mixed(samples.size() - missing)) {
+        context.warn(fmt::format(
+            "{} of {} normals of the column 'normal' point the other way than their nearest neighbour's, as where "
+            "nobody oriented them, or two sides touch; their directions are used, their signs are not",
+            opposed.count, samples.size() - missing));
+        return false;
+    }
+    for (u32 place = 0; place < samples.size(); ++place)
+        if (!given[place]) turn_like_neighbours(neighbourhoods, given, place, normals.directions);
     return true;
 }
 

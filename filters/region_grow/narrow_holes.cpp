@@ -30,15 +30,6 @@ constexpr double least_facing_of_long = 0.2;
 /// two.
 constexpr double long_in_circles = 2;
 
-/// The border edge that leaves the vertex, surface on its left. Pre: it is on the border, with one fan.
-u32 next_on_border(const Surface& surface, u32 vertex) {
-    u32 next = nobody;
-    surface.fans.any(vertex, [&](const Fans::Pair& pair) {
-        return surface.fans.right_of(vertex, pair.first) == nobody && (next = pair.first, true);
-    });
-    return next;
-}
-
 /// Where a loop is, and how the surface faces round it.
 struct Rim {
     double farthest = 0;  ///< of its corners from the border's centre
@@ -151,7 +142,7 @@ NarrowHoles close_narrow_holes(Surface& surface, const NarrowLimits& limits, con
     for (u32 begin = 0; begin < passed.size(); ++begin) {
         if (surface.states[begin] != PlaceState::front || passed[begin]) continue;
         std::vector<u32> loop;
-        for (u32 vertex = begin; !passed[vertex]; vertex = next_on_border(surface, vertex)) {
+        for (u32 vertex = begin; !passed[vertex]; vertex = surface.next_on_border(vertex)) {
             passed[vertex] = true;
             loop.push_back(vertex);
         }

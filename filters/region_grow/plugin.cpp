@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = RegionGrowParams;
-    return Declare<P>("region-grow", 3)
+    return Declare<P>("region-grow", 4)
         .summary(
             "Grows a surface over thinned points from a seed triangle, and tells its borders, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
@@ -45,6 +45,10 @@ SCANMILL_FILTER() {
         .metric("components", Unit::count, "Connected pieces.")
         .metric("loops", Unit::count, "Boundary loops.", headline)
         .metric("holes", Unit::count, "Of these, such as go round a hole.")
+        .metric(
+            "thin-loops", Unit::count,
+            "Loops where two sides are nearer to each other than three bins, so that the surface may go on there; none "
+            "when normals are given.")
         .metric("unused-points", Unit::count, "Distinct points in no triangle: noise, or too near others.", headline)
         .metric("near-twins", Unit::count, "Of these, such as gave way to a near twin: scans laid over each other.")
         .metric("duplicates", Unit::count, "Points that repeat the place of an earlier one.")

@@ -19,6 +19,7 @@
 #include "region_grow/search_radii.hpp"
 #include "region_grow/seeds.hpp"
 #include "region_grow/small_holes.hpp"
+#include "region_grow/thin_parts.hpp"
 #include "region_grow/thinned_bins.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
@@ -142,6 +143,8 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.features = std::move(lines.graph);
     result.loops = lines.counts.holes + lines.counts.boundaries;
     result.holes = lines.counts.holes;
+    const ThinParts thin = find_thin_parts(surface, pieces);
+    result.thin_loops = thin.loops;
     result.creases = lines.counts.creases;
     result.corners = lines.counts.corners;
     result.ambiguous_loops = lines.counts.ambiguous;
@@ -151,7 +154,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.duplicates = samples.repeats.size();
     result.unused_points = samples.size() - result.rows.size();
     result.near_twins = static_cast<std::size_t>(std::ranges::count(surface.states, PlaceState::twin));
-    report(result, lines.counts, surface, context);
+    report(result, lines.counts, surface, thin, context);
     context.progress(1);
     return result;
 }

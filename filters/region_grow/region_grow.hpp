@@ -56,6 +56,8 @@ struct RegionGrowResult {
     std::size_t components = 0;
     /// Boundary loops, and those of them that are holes.
     std::size_t loops = 0, holes = 0;
+    /// Of the loops those at parts so thin that the surface may go on there (see thin_parts.hpp).
+    std::size_t thin_loops = 0;
     /// Rows without a vertex of their own: repeats of an earlier row, and places that no triangle reached.
     std::size_t duplicates = 0, unused_points = 0;
     /// Of the unused points those that gave way to one much nearer than the rest, where most points have such twins.
@@ -73,7 +75,8 @@ struct RegionGrowResult {
 /// Grows a surface over the cloud, as many pieces as it takes.
 ///
 /// Points should be thinned: of even density, at least locally. A column `normal` (three numbers per row) is used as it
-/// is, sign and all; a normal that is zero or not finite is replaced by the principal one. Without the column normals
+/// is, sign and all, unless the signs are mixed (see normal_signs.hpp), then without them; a normal that is zero or not
+/// finite is replaced by the principal one. Without the column normals
 /// are principal directions of the 12 nearest neighbours. A column `bin-size` (a number per row, in the scan's unit;
 /// what is not above 0 or not finite counts as unknown) tells the bins of a thinning. Of rows in one place the
 /// least bin counts, and the normal first by x, y, z. Where most points have near twins (see near_twins.hpp), as scans
@@ -89,17 +92,18 @@ struct RegionGrowResult {
 /// but for those of pass 4, which bend by up to 172 degrees. No triangle in doubt, nor one that closes a hole, passes
 /// through those that are near it. Angles of triangles of pass 0 keep the limits; later passes relax them (see the
 /// page). Pieces that enclose a volume face outwards; so do open ones that bulge, flat ones face up. With a normal
-/// column they face as it says. Ties: equal scores (to 1e-9) by place, along a space-filling curve through the cloud's
-/// box. So the mesh depends neither on the order of the points, up to numbering, nor on the number of threads.
+/// column whose signs count they face as it says. Ties: equal scores (to 1e-9) by place, along a space-filling curve
+/// through the cloud's box. So the mesh depends neither on the order of the points, up to numbering, nor on the number
+/// of threads.
 ///
-/// Cost: O(n log n) time where the nearest 16 places decide, about 440 bytes per point beside the result. An edge where
-/// they do not, or that finds nothing, looks at all m places within its search radius, up to four times: O(m log m)
-/// each, and as often again as places are turned down for what the front or other places do there. Where that radius
-/// is of many spacings, it asks the places that are open first, which are fewer. So such a radius costs O(n m log m) on
-/// noisy scans; leave it to `auto` there. Metrics: see plugin.cpp. Warns when
-/// more than half a percent of the places stay unused, when most points lie too dense for their `bin-size`, and of what
-/// find_features() could not tell. Source: Wang 2006, chapter 4, made robust; the choice by empty circles after
-/// Delaunay.
+/// Cost: O(n log n) time where the nearest 16 places decide, about 450 bytes per point beside the result. An edge where
+/// they do not, or that finds nothing, asks the places within its search radius that are still open, and if one of them
+/// could do looks at all m there, up to four times: O(m log m) each, and as often again as places are turned down for
+/// what the front or other places do there. So a radius of many spacings costs O(n m log m) on noisy scans; leave it to
+/// `auto` there. Metrics: see plugin.cpp. Warns when
+/// more than half a percent of the places stay unused, when most points lie too dense for their `bin-size`, of normals
+/// whose signs are mixed, of loops at thin parts, and of what find_features() could not tell. Source: Wang 2006,
+/// chapter 4, made robust; the choice by empty circles after Delaunay.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill

@@ -21,6 +21,7 @@ void count_all(const RegionGrowResult& result, Context& context) {
     count("components", result.components);
     count("loops", result.loops);
     count("holes", result.holes);
+    count("thin-loops", result.thin_loops);
     count("unused-points", result.unused_points);
     count("near-twins", result.near_twins);
     count("duplicates", result.duplicates);
@@ -48,12 +49,24 @@ void warn_of_unused(const RegionGrowResult& result, const Surface& surface, Cont
             "{} of {} distinct points are in no triangle; thin the scan, or remove its noise first", unused, places));
 }
 
+void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, double scale, Context& context) {
+    if (thin.loops == 0) return;
+    const std::string_view unit = symbol(result.mesh.frame.unit);
+    context.warn(fmt::format(
+        "{} of {} boundary loops {} where two sides are nearer to each other than {} bins, the nearest {:.3g} {} with "
+        "bins of {:.3g} {}: the surface may go on there; thin less, or scan more densely",
+        thin.loops, result.loops, thin.loops == 1 ? "lies" : "lie", thin_in_bins, thin.least / scale, unit,
+        thin.bin / scale, unit));
+}
+
 }  // namespace
 
-void report(const RegionGrowResult& result, const FeatureCounts& lines, const Surface& surface, Context& context) {
+void report(const RegionGrowResult& result, const FeatureCounts& lines, const Surface& surface, const ThinParts& thin,
+            Context& context) {
     count_all(result, context);
     warn_of_unused(result, surface, context);
     warn_of_doubts(lines, context);
+    warn_of_thin_parts(result, thin, surface.samples.scale, context);
 }
 
 }  // namespace scanmill::growing

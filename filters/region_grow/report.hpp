@@ -4,12 +4,14 @@
 
 #include "region_grow/region_grow.hpp"
 #include "region_grow/surface.hpp"
+#include "region_grow/thin_parts.hpp"
 #include "scanmill/geometry/feature_lines.hpp"
 
 namespace scanmill::growing {
 
 /// Metrics as plugin.cpp declares them, except `known-bins`. Warns when more than half a percent of the places gave way
-/// to near twins, and when as many more are unused, and of what find_features() could not tell.
-void report(const RegionGrowResult& result, const FeatureCounts& lines, const Surface& surface, Context& context);
+/// to near twins, and when as many more are unused, of what find_features() could not tell, and of loops at thin parts.
+void report(const RegionGrowResult& result, const FeatureCounts& lines, const Surface& surface, const ThinParts& thin,
+            Context& context);
 
 }  // namespace scanmill::growing

@@ -34,6 +34,14 @@ Surface::Surface(const Samples& from, const Neighbourhoods& near, PointNormals f
     passes.reserve(2 * from.size());
 }
 
+u32 Surface::next_on_border(u32 vertex) const {
+    u32 next = nobody;
+    fans.any(vertex, [&](const Fans::Pair& pair) {
+        return fans.right_of(vertex, pair.first) == nobody && (next = pair.first, true);
+    });
+    return next;
+}
+
 Vec3 Surface::facet_normal(u32 a, u32 b, u32 c) const {
     return (positions[b] - positions[a]).cross(positions[c] - positions[a]).normalized();
 }

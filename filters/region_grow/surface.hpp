@@ -66,6 +66,8 @@ struct Surface {
     bool is_border(u32 from, u32 to) const {
         return fans.left_of(from, to) != nobody && fans.right_of(from, to) == nobody;
     }
+    /// Where the border goes on from the vertex, surface on its left. Pre: it is on the border, with one fan.
+    u32 next_on_border(u32 vertex) const;
     /// The unit normal of the triangle left of a → b whose third corner is c.
     Vec3 facet_normal(u32 a, u32 b, u32 c) const;
 

@@ -88,6 +88,34 @@ INSTANTIATE_TEST_SUITE_P(
                     ThinnedModel{"meshes/fandisk_large.off", 1, 0}, ThinnedModel{"meshes/fandisk_large.off", 1.5, 0},
                     ThinnedModel{"meshes/refined_elephant.off", 1.2, 3}, ThinnedModel{"points_3/kitten.xyz", 2, 1}));
 
+/// Bins as percent of the diagonal; some parts are nearer than three of them.
+struct ThinModel {
+    const char* file;
+    double bin;
+    std::size_t loops;
+};
+
+void PrintTo(const ThinModel& model, std::ostream* stream) { *stream << model.file << " at " << model.bin; }
+
+class RegionGrowOfAThinModel : public testing::TestWithParam<ThinModel> {};
+
+TEST_P(RegionGrowOfAThinModel, HasTheModelsLoopsAndOthersOnlyAtThinParts) {
+    SCANMILL_REAL_SCAN(path, fetched_data, GetParam().file);
+    const double diagonal = bounding_box(positions_of(path).positions.span()).diagonal();
+    const PointCloud cloud = positions_of(path, GetParam().bin / 100 * diagonal);
+    const RegionGrowResult result = grown(cloud, {}, 2);
+    EXPECT_GT(result.thin_loops, 0u);
+    EXPECT_EQ(result.loops, result.thin_loops + GetParam().loops);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Models, RegionGrowOfAThinModel,
+    testing::Values(ThinModel{"meshes/armadillo.off", 0.4, 0}, ThinModel{"meshes/armadillo.off", 0.6, 0},
+                    ThinModel{"meshes/armadillo.off", 1, 0}, ThinModel{"meshes/armadillo.off", 1.2, 0},
+                    ThinModel{"meshes/mannequin-devil.off", 0.8, 1}, ThinModel{"meshes/mannequin-devil.off", 1, 1},
+                    ThinModel{"meshes/lion-head.off", 0.6, 1}, ThinModel{"meshes/lion-head.off", 0.8, 1},
+                    ThinModel{"meshes/lion-head.off", 1, 1}, ThinModel{"dragon/dragon_vrip.ply", 0.6, 0}));
+
 struct Scan {
     const char* file;
     double bin;

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Loops where two sides are too near each other to be told apart.
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "filters/region_grow_cases.hpp"
+#include "filters/region_grow_patch.hpp"
+#include "region_grow/thin_parts.hpp"
+
+namespace scanmill::growing {
+namespace {
+
+using namespace test;
+
+/// Two square sheets of four points, side 1, one `gap` above the other; the upper one faces up, the lower one down or
+/// up. Joined, a fifth point beside them makes one piece of both.
+Patch sheets(double gap, bool apart, bool joined = false) {
+    std::vector<Vec3> positions{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
+    for (int i = 0; i < 4; ++i) positions.push_back(positions[static_cast<std::size_t>(i)] + Vec3(0, 0, gap));
+    positions.push_back(Vec3(-0.3, 0.5, gap / 2));
+    for (int i = 0; i < 20; ++i) positions.push_back(Vec3(0, 100 + i % 5, 100 + i / 5));  // 16 neighbours for all
+    Patch patch(positions);
+    Surface& surface = patch.surface();
+    for (u32 i = 0; i < 9; ++i) surface.normals[patch.place(i)] = Vec3(0, 0, i < 4 && apart ? -1 : 1);
+    patch.add(4, 5, 6), patch.add(4, 6, 7);
+    if (apart)
+        patch.add(0, 2, 1), patch.add(0, 3, 2);
+    else
+        patch.add(0, 1, 2), patch.add(0, 2, 3);
+    if (joined) patch.add(0, 4, 8), patch.add(4, 7, 8), patch.add(7, 3, 8), patch.add(3, 0, 8);
+    for (u32 i = 0; i < 9; ++i) patch.set_search_radius(i, 2 * std::numbers::sqrt3);  // bins of 1
+    return patch;
+}
+
+ThinParts thin_parts(const Patch& patch) { return find_thin_parts(patch.surface(), find_pieces(patch.surface())); }
+
+TEST(RegionGrowThinParts_TwoSheets, AreThinBelowThreeBins) {
+    const ThinParts thin = thin_parts(sheets(2.5, true));
+    EXPECT_EQ(thin.loops, 2u);
+    const double scale = sheets(2.5, true).scale();
+    EXPECT_DOUBLE_EQ(thin.least, 2.5 * scale);
+    EXPECT_DOUBLE_EQ(thin.bin, scale);
+    EXPECT_EQ(thin_parts(sheets(2.999, true)).loops, 2u);
+    EXPECT_EQ(thin_parts(sheets(3.001, true)).loops, 0u);
+}
+
+TEST(RegionGrowThinParts_TwoPieces, CountWhicheverWayTheyFace) {
+    // Nothing tells how one piece faces beside the other.
+    EXPECT_EQ(thin_parts(sheets(2, false)).loops, 2u);
+}
+
+TEST(RegionGrowThinParts_GivenNormals, TellTheSidesHoweverNear) {
+    Patch patch = sheets(2, true);
+    patch.surface().oriented = true;
+    EXPECT_EQ(thin_parts(patch).loops, 0u);
+}
+
+TEST(RegionGrowThinParts_OnePiece, HasItsOneLoopCounted) {
+    Patch patch = sheets(2, true, true);
+    EXPECT_EQ(thin_parts(patch).loops, 1u);
+    for (u32 i = 0; i < 9; ++i) patch.surface().normals[patch.place(i)] = Vec3(0, 0, 1);
+    EXPECT_EQ(thin_parts(patch).loops, 0u) << "a fold's two layers face alike";
+}
+
+TEST(RegionGrowThinParts_PiecesSideBySide, AreNotTwoSides) {
+    // Two squares in one plane, a step apart: beside each other, not across.
+    std::vector<Vec3> positions;
+    for (const double x : {0.0, 2.0})
+        positions.insert(positions.end(), {Vec3(x, 0, 0), Vec3(x + 1, 0, 0), Vec3(x + 1, 1, 0), Vec3(x, 1, 0)});
+    Patch patch(positions);
+    for (u32 i = 0; i < 8; ++i) {
+        patch.surface().normals[patch.place(i)] = Vec3(0, 0, i < 4 ? 1 : -1);
+        patch.set_search_radius(i, 2 * std::numbers::sqrt3);
+    }
+    patch.add(0, 1, 2), patch.add(0, 2, 3), patch.add(4, 6, 5), patch.add(4, 7, 6);
+    EXPECT_EQ(thin_parts(patch).loops, 0u);
+}
+
+TEST(RegionGrow_ThinLoops, AreWarnedOfAndOthersAreNot) {
+    // The two sides of a plate, with no points on its narrow ones.
+    const auto plate = [](double gap) {
+        std::vector<Vec3> points;
+        for (u32 x = 0; x < 15; ++x)
+            for (u32 y = 0; y < 15; ++y) points.insert(points.end(), {Vec3(x, y, 0), Vec3(x, y, gap)});
+        return cloud_from(std::move(points));
+    };
+    RegionGrowParams params;
+    params.search_radius = Length(2 * std::numbers::sqrt3);
+    const auto warnings = [&](const PointCloud& cloud) {
+        Context context;
+        EXPECT_EQ(region_grow(cloud, params, context).loops, 2u);
+        return context.warnings();
+    };
+    EXPECT_THAT(warnings(plate(2.5)),
+                testing::Contains(testing::HasSubstr("2 of 2 boundary loops lie where two sides are nearer to each "
+                                                     "other than 3 bins, the nearest 2.5 u with bins of 1 u")));
+    EXPECT_THAT(warnings(plate(4)), testing::Not(testing::Contains(testing::HasSubstr("two sides"))));
+}
+
+}  // namespace
+}  // namespace scanmill::growing
