@@ -11,8 +11,7 @@ namespace scanmill::growing {
 /// Places whose normal and that of their nearest neighbour differ by more than 120 degrees.
 struct OpposedNormals {
     std::size_t count = 0;
-    /// Of these, such whose neighbour lies behind them, as on the other side of a sheet, and in front, as across a
-/// slit.
+    /// Of these, such whose neighbour lies behind them, as on the other side of a sheet; in front, as across a slit.
     std::size_t behind = 0, in_front = 0;
 
     /// More than one place in a hundred is opposed, and not because of thin sheets or slits, where nearly all

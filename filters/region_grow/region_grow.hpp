@@ -100,10 +100,11 @@ struct RegionGrowResult {
 /// they do not, or that finds nothing, asks the places within its search radius that are still open, and if one of them
 /// could do looks at all m there, up to four times: O(m log m) each, and as often again as places are turned down for
 /// what the front or other places do there. So a radius of many spacings costs O(n m log m) on noisy scans; leave it to
-/// `auto` there. Metrics: see plugin.cpp. Warns when
-/// more than half a percent of the places stay unused, when most points lie too dense for their `bin-size`, of normals
-/// whose signs are mixed, of loops at thin parts, and of what find_features() could not tell. Source: Wang 2006,
-/// chapter 4, made robust; the choice by empty circles after Delaunay.
+/// `auto` there. Metrics: see plugin.cpp.
+///
+/// Warns when more than half a percent of the places stay unused, when most points lie too dense for their `bin-size`,
+/// of normals whose signs are mixed, of loops at thin parts, and of what find_features() could not tell. Source: Wang
+/// 2006, chapter 4, made robust; the choice by empty circles after Delaunay.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill
