@@ -97,6 +97,7 @@ private:
     std::string twin_key(const Task& task) const;
     void begin(std::size_t worker, const Task& task);
     u64 memory_limit() const;
+    std::string frame_of(std::size_t node) const;
     Job job(const Task& task, std::size_t worker) const;
     JobMemory memory_of(std::size_t node, std::size_t worker) const;
     JobInput input_from(const Source& source, const std::string& port) const;
@@ -114,6 +115,7 @@ private:
     void task_ended(const Task& task);
     void count_for_cells(const std::vector<std::size_t>& cells, double seconds);
     void end_cell(std::size_t cell);
+    Failure out_of_time(std::size_t cell) const;
     void release(const Source& source);
     void renew(std::size_t worker);
     const std::vector<std::size_t>& cells_of(const Task& task) const;

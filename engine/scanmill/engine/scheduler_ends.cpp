@@ -226,14 +226,28 @@ void Scheduler::end_cell(std::size_t index) {
         report.outputs.push_back(write.report);
         report.outputs.back().file = write.file;
     }
-    if (!report.failure && cells_[index].is_given_up && !is_done)
-        report.failure = {Cause::time, 0,
-                          Error("the time did not suffice: the limit of a cell is {}, {:.2f} s were spent",
-                                duration_text(settings_.limits.cell_seconds), report.seconds)
-                              .add_frame(fmt::format("on scan '{}'", graph_.scan_names[cell.scan]))
-                              .what()};
+    if (!report.failure && cells_[index].is_given_up && !is_done) report.failure = out_of_time(index);
     report.outcome = report.failure ? Outcome::failed : is_done ? Outcome::done : Outcome::skipped;
     observer_.cell_ended(cell, report);
+}
+
+/// Of a cell that was given up, with the first that it did not come to.
+Failure Scheduler::out_of_time(std::size_t index) const {
+    const RunCell& cell = graph_.cells[index];
+    Error error("the time did not suffice: the limit of a cell is {}, {:.2f} s were spent and this is not done",
+                duration_text(settings_.limits.cell_seconds), report_.cells[index].seconds);
+    const auto left = std::ranges::find_if(
+        cell.nodes, [&](std::size_t node) { return report_.nodes[node].outcome != Outcome::done; });
+    if (left != cell.nodes.end())
+        error.add_frame(frame_of(*left));
+    else
+        for (const OutputReport& output : report_.cells[index].outputs)
+            if (output.outcome != Outcome::done) {
+                error.add_frame(fmt::format("while writing '{}'", output.file.string()));
+                break;
+            }
+    error.add_frame(fmt::format("on scan '{}'", graph_.scan_names[cell.scan]));
+    return {Cause::time, 0, std::move(error).hint("raise the limit, or thin the scan first").what()};
 }
 
 const std::vector<std::size_t>& Scheduler::cells_of(const Task& task) const {

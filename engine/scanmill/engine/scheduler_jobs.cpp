@@ -66,6 +66,14 @@ JobMemory Scheduler::memory_of(std::size_t index, std::size_t worker) const {
     return memory;
 }
 
+std::string Scheduler::frame_of(std::size_t index) const {
+    const RunNode& node = graph_.nodes[index];
+    const PlannedStep* step = graph_.step(node);
+    return step ? fmt::format("in step '{}' ({}:{}:{})", step->label, graph_.plans[node.plan]->workflow.file,
+                              step->position.line, step->position.column)
+                : fmt::format("while reading '{}'", node.leaf.file.string());
+}
+
 Job Scheduler::job(const Task& task, std::size_t worker) const {
     const RunNode& node = graph_.nodes[task.node];
     const auto step = [&] {
@@ -92,9 +100,7 @@ Job Scheduler::job(const Task& task, std::size_t worker) const {
         return job;
     }
     const PlannedStep& planned = *graph_.step(node);
-    job.frames = {fmt::format("in step '{}' ({}:{}:{})", planned.label, graph_.plans[node.plan]->workflow.file,
-                              planned.position.line, planned.position.column),
-                  on_scan};
+    job.frames = {frame_of(task.node), on_scan};
     if (!foresight_[task.node].will_run) {
         const std::string& primary = planned.spec.outputs.front().name;
         job.work = ExpectWork{step(), foresight_[task.node].known->metrics, input_from({task.node, primary}, primary)};

@@ -17,6 +17,12 @@ std::string work_key(const PlannedStep& step, const std::string& code, const Par
 }
 
 Failure failure_of(const Job& job, Cause cause, Error error, int number) {
+    // A reader that refuses a file begins with its name; what ends the reading from outside does not know it.
+    if (const auto* reading = std::get_if<ReadWork>(&job.work); reading && cause != Cause::refused) {
+        const std::string file = reading->leaf.file.string();
+        error.add_frame(fmt::format("while reading '{}'", file));
+        if (job.frames.empty()) error.add_frame(fmt::format("on scan '{}'", file));
+    }
     for (const std::string& frame : job.frames) error.add_frame(frame);
     return {cause, number, error.what()};
 }

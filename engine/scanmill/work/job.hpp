@@ -62,7 +62,8 @@ struct WriteWork {
 struct Job {
     std::size_t node = 0;  ///< whose values it makes, asks about or writes
     std::variant<ReadWork, StepWork, ExpectWork, WriteWork> work;
-    std::vector<std::string> frames;  ///< of its errors, innermost first
+    /// Of its errors, innermost first. None of a reading whose file is the scan.
+    std::vector<std::string> frames;
     unsigned threads = 1;
     std::uint64_t seed = 0;
     u64 memory_limit = 0;  ///< bytes; 0: none
@@ -86,7 +87,8 @@ struct JobReport {
 std::string work_key(const PlannedStep& step, const std::string& code, const ParameterSet& parameters,
                      const std::vector<JobInput>& inputs);
 
-/// The error with the job's frames, as a failure of this cause.
+/// The error with the job's frames, as a failure of this cause. Where a reader did not say it itself, also with the
+/// file that was being read.
 Failure failure_of(const Job& job, Cause cause, Error error, int number = 0);
 
 }  // namespace scanmill

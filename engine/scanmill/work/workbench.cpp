@@ -39,6 +39,16 @@ fs::path emptied(const fs::path& folder) {
     return folder;
 }
 
+Error out_of_memory(u64 limit, u64 peak) {
+    const std::string reached =
+        fmt::format("{} were resident at most, mapped files counted, when more was asked for", byte_size_text(peak));
+    if (limit == 0)
+        return Error("the machine's memory did not suffice: {}", reached)
+            .hint("thin the scan first, or use a machine with more memory");
+    return Error("the memory did not suffice: the limit is {}; {}", byte_size_text(limit), reached)
+        .hint("raise the limit, or thin the scan first");
+}
+
 }  // namespace
 
 Workbench::Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, fs::path scratch)
@@ -71,11 +81,7 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     } catch (const Error& error) {
         fail(is_write ? Cause::output : Cause::refused, error);
     } catch (const std::bad_alloc&) {
-        fail(Cause::memory, job.memory_limit > 0
-                                ? Error("the memory did not suffice: the limit is {}", byte_size_text(job.memory_limit))
-                                      .hint("raise the limit, or thin the scan first")
-                                : Error("the machine's memory did not suffice")
-                                      .hint("thin the scan first, or use a machine with more memory"));
+        fail(Cause::memory, out_of_memory(job.memory_limit, use.until_now().peak_memory));
     } catch (const std::exception& error) {
         fail(Cause::exception, Error("an unexpected error: {}", error.what()));
     } catch (...) {

@@ -247,9 +247,11 @@ void WorkerProcesses::enforce_limits(std::size_t worker, const WorkerListener& l
     }
     if (job.seconds_limit > 0 && place.is_ready &&
         now - place.begun >= std::chrono::duration<double>(job.seconds_limit))
-        return end_by_force(
-            worker, listener, Cause::time,
-            Error("the time did not suffice: {}", job.limit_text).hint("raise the limit, or thin the scan first"), 0);
+        return end_by_force(worker, listener, Cause::time,
+                            Error("the time did not suffice: it was ended after {:.2f} s, {}",
+                                  std::chrono::duration<double>(now - place.begun).count(), job.limit_text)
+                                .hint("raise the limit, or thin the scan first"),
+                            0);
     if (now - place.looked_at < between_looks) return;
     place.looked_at = now;
     const ResidentMemory memory = place.process->memory();
