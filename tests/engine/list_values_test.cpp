@@ -104,6 +104,18 @@ TEST_F(ListValues, UnknownName_IsToldAtItsPlaceAndIsAUse) {
                             AllOf(StartsWith("w:4:39: "), HasSubstr("found a map; expected a value or $name"))));
 }
 
+TEST_F(ListValues, NameBesideWhatCannotBeRead_IsUsed) {
+    EXPECT_THAT(check_step("size: 1 u", "thresholds: [$size, $]"), ElementsAre(HasSubstr("'$' names no parameter")));
+    EXPECT_THAT(check_step("size: 1 u", "thresholds: [{sweep: [1 u]}, $size]"),
+                ElementsAre(HasSubstr("found a map; expected a value or $name")));
+    EXPECT_THAT(check_step("size: 1 u", "thresholds: {sweep: [[$size, [1 u]]]}"),
+                ElementsAre(HasSubstr("found a list; expected a value or $name")));
+    EXPECT_THAT(check_step("size: 1 u", "thresholds: {sweep: $size}"), ElementsAre(HasSubstr("a list of values")));
+    EXPECT_THAT(check_step("size: 1 u", "thresholds: [1 u, $$size]"),
+                ElementsAre(HasSubstr("no step uses the parameter 'size'"), HasSubstr("'$size'")))
+        << "a text that begins with a dollar";
+}
+
 TEST_F(ListValues, ValueThatIsNoItem_IsToldWhereTheNameStands) {
     EXPECT_THAT(check_step("a: 1 yard, b: 1 u", "thresholds: [$b, $a]"),
                 ElementsAre(AllOf(StartsWith("w:4:35: "), HasSubstr("thresholds (from $a): 'yard' is no unit"))));
@@ -125,8 +137,7 @@ TEST_F(ListValues, ListWithinAList_IsRefusedAtItsPlace) {
 
 TEST_F(ListValues, DefaultsAndSettings_CannotReferFromWithinAList) {
     EXPECT_THAT(check_step("a: 1 u, b: [2 u, $a]", "thresholds: $b"),
-                ElementsAre(HasSubstr("no step uses the parameter 'a'"),
-                            AllOf(StartsWith("w:3:31: "), HasSubstr("cannot refer to another parameter"))));
+                ElementsAre(AllOf(StartsWith("w:3:31: "), HasSubstr("cannot refer to another parameter"))));
     EXPECT_THAT(rest("set: {s: [1 u, $n]}\n"), ElementsAre(AllOf(StartsWith("b:5:16: "), HasSubstr("cannot refer"))));
 }
 

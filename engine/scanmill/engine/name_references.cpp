@@ -24,8 +24,9 @@ public:
             if (std::ranges::any_of(given.values, is_list)) lists_.insert(parameter.name);
         }
         look_at(workflow.steps);
+        // Where a name stands in what could not be read, or where it must not, that is said, and nothing else is wrong.
         for (const WorkflowParameter& parameter : workflow.parameters)
-            if (!used_.contains(parameter.name))
+            if (!workflow.mentions.contains(parameter.name))
                 diagnostics_.warning(parameter.position,
                                      fmt::format("no step uses the parameter '{}'", parameter.name));
     }
@@ -49,7 +50,6 @@ private:
                     for (const NameUse& use : written.uses) {
                         require_known(use.name, use.position);
                         if (written.literal.list) require_single(use, parameter.name);
-                        used_.insert(use.name);
                     }
         }
     }
@@ -63,7 +63,7 @@ private:
 
     Diagnostics& diagnostics_;
     std::vector<std::string> names_;
-    std::set<std::string> used_, lists_;
+    std::set<std::string> lists_;
 };
 
 }  // namespace

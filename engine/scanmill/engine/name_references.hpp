@@ -7,8 +7,8 @@
 
 namespace scanmill {
 
-/// Every `$name` of the file must be declared, in a list be a single value, and every declared one should be used. So
-/// must every setting.
+/// Every `$name` of the steps must be declared, and be a single value in a list. So must every setting. Every declared
+/// one should be mentioned in the file.
 void check_references(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics);
 
 }  // namespace scanmill

@@ -12,6 +12,12 @@ namespace scanmill {
 
 namespace {
 
+void add_mentions(const YamlNode& node, std::set<std::string>& names) {
+    if (node.is_scalar() && node.text.starts_with('$')) names.insert(node.text.substr(1));
+    for (const YamlNode& item : node.items) add_mentions(item, names);
+    for (const YamlEntry& entry : node.entries) add_mentions(entry.value, names);
+}
+
 class WorkflowParser {
 public:
     explicit WorkflowParser(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
@@ -64,6 +70,7 @@ Workflow WorkflowParser::workflow(const YamlNode& root) {
     each_entry(keys.find("outputs"), "a map from file names to steps, as {\"{scan}.stl\": decimate}",
                [&](const YamlEntry& entry) { output(entry, workflow); });
     keys.complain_of_others();
+    if (!workflow.parameters.empty()) add_mentions(root, workflow.mentions);
     return workflow;
 }
 

@@ -4,6 +4,7 @@
 /// is checked later (plan.hpp), against the filters at hand.
 
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -122,6 +123,8 @@ struct Workflow {
     std::vector<WorkflowParameter> parameters;
     std::vector<StepItem> steps;
     std::vector<WorkflowOutput> outputs;
+    /// Names that the file has as `$name` anywhere, also in what could not be read.
+    std::set<std::string> mentions;
 };
 
 /// The workflow in `text`; what is wrong goes to `diagnostics`, what is right is still returned.
