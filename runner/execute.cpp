@@ -155,7 +155,7 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
 int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& workforce, const Warn& warn,
             const ExecuteOptions& options) {
     const RunGraph& graph = task.graph;
-    std::vector<NodeForesight> foresight = foresee(graph, cache);
+    std::vector<NodeForesight> foresight = foresee(graph, cache, keep_policy(options.cache));
     if (cache) explain_from_records(foresight, library, graph, options.output_folder, warn);
     if (options.dry_run) {
         fmt::print("{}", options.json ? graph_json(graph, foresight) + "\n" : printable(graph_text(graph, foresight)));

@@ -140,7 +140,7 @@ TEST_F(CachedRun, ValuesNotKept_AreMadeAgainWhereTheyAreNeeded) {
     fs::remove(folder_ / "out/a.ply");
     const RunReport again = run_two("factor: 2", "factor: 3");
     EXPECT_THAT(origins(again), ElementsAre(ran, ran, ran));
-    EXPECT_THAT(again.nodes[2].why, HasSubstr("'points' was not kept"));
+    EXPECT_THAT(again.nodes[2].why, HasSubstr("'points' is not in the cache"));
     EXPECT_EQ(content_of(folder_ / "out/a.ply"), first);
     const RunReport numbers_only = run("  - test-step: {factor: 2}\n", {scan("a.xyz")});
     EXPECT_THAT(origins(numbers_only), ElementsAre(cached, cached)) << "nobody needs its value";
@@ -261,6 +261,28 @@ TEST_F(CachedRun, Foresight_SaysWhatWillRunAndWhy) {
     EXPECT_TRUE(seen[2].will_run);
     EXPECT_THAT(seen[2].why, HasSubstr("has not run on such inputs"));
     EXPECT_THAT(foresee(graph_, nullptr)[0].why, HasSubstr("no cache"));
+}
+
+TEST_F(CachedRun, Foresight_SaysWhyAValueIsMissing) {
+    keep_ = KeepRule::Policy::never;
+    run_two("factor: 2", "factor: 3");
+    EXPECT_THAT(foresee(graph_, &cache_, KeepRule::Policy::never)[2].why,
+                testing::AllOf(HasSubstr("'points' is not in the cache"), HasSubstr("--keep never"),
+                               testing::Not(HasSubstr("quick"))));
+}
+
+TEST_F(CachedRun, ForesightOfAValueThatTookLong_DoesNotCallItQuick) {
+    keep_ = KeepRule::Policy::never;
+    run("  - test-step: {mode: slow}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-step.points}\n");
+    EXPECT_THAT(foresee(graph_, &cache_)[1].why, testing::AllOf(HasSubstr("did not keep it, or it was removed since"),
+                                                                testing::Not(HasSubstr("quick"))));
+    StepResult quick = *foresee(graph_, &cache_)[1].known;
+    quick.seconds = 0;
+    const std::string run_key(32, 'a');
+    cache_.clear();
+    cache_.keep_run_key(graph_.nodes[1].key, run_key);
+    cache_.keep_step(run_key, quick);
+    EXPECT_EQ(foresee(graph_, &cache_)[1].why, "its 'points' was not kept, being quick to make again");
 }
 
 TEST(KeepRule, WeighsMakingAgainstWriting) {

@@ -16,7 +16,11 @@ std::optional<StepResult> remembered(const Cache& cache, const std::string& plan
 
 class Seer {
 public:
-    Seer(const RunGraph& graph, const Cache* cache) : graph_(graph), cache_(cache), nodes_(graph.nodes.size()) {}
+    Seer(const RunGraph& graph, const Cache* cache, KeepRule::Policy policy)
+        : graph_(graph),
+          cache_(cache),
+          policy_(policy),
+          nodes_(graph.nodes.size()) {}
 
     std::vector<NodeForesight> see() {
         for (const RunCell& cell : graph_.cells)
@@ -43,8 +47,7 @@ private:
         else if (const auto missing = std::ranges::find_if(
                      seen.needed, [&](const std::string& port) { return !is_kept(*seen.known, port); });
                  missing != seen.needed.end())
-            seen.why = fmt::format("its {} was not kept, being quick to make again",
-                                   missing->empty() ? "content" : "'" + *missing + "'");
+            seen.why = why_missing(*seen.known, *missing);
         seen.will_run = !seen.why.empty();
         if (!seen.will_run) return;
         for (const NodeInput& input : node.inputs) nodes_[input.node].needed.insert(input.from);
@@ -63,13 +66,29 @@ private:
         return output && cache_->has_value(output->content, output->bytes);
     }
 
+    /// Nobody noted what the run that made the value was to keep, nor how fast its disk was: only what cannot be
+    /// otherwise is said.
+    std::string why_missing(const StepResult& result, const std::string& port) const {
+        const std::string what = port.empty() ? "content" : "'" + port + "'";
+        if (policy_ == KeepRule::Policy::never)
+            return fmt::format("its {} is not in the cache, and with --keep never none is kept", what);
+        const ResultOutput* output = result.output(port);
+        if (output && KeepRule().is_worth(result.seconds, output->bytes))
+            return fmt::format(
+                "its {} is not in the cache: the run that made it did not keep it, or it was removed since", what);
+        return fmt::format("its {} was not kept, being quick to make again", what);
+    }
+
     const RunGraph& graph_;
     const Cache* cache_;
+    KeepRule::Policy policy_;
     std::vector<NodeForesight> nodes_;
 };
 
 }  // namespace
 
-std::vector<NodeForesight> foresee(const RunGraph& graph, const Cache* cache) { return Seer(graph, cache).see(); }
+std::vector<NodeForesight> foresee(const RunGraph& graph, const Cache* cache, KeepRule::Policy policy) {
+    return Seer(graph, cache, policy).see();
+}
 
 }  // namespace scanmill

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scanmill/cache/cache.hpp"
+#include "scanmill/cache/keep_rule.hpp"
 #include "scanmill/engine/graph.hpp"
 
 namespace scanmill {
@@ -21,6 +22,8 @@ struct NodeForesight {
 
 /// For every node of the graph. Nothing is remembered without a cache. A node runs when the cache does not know it, or
 /// when a value of it is needed that was not kept: by an output to be written, an expectation, or a step that runs.
-std::vector<NodeForesight> foresee(const RunGraph& graph, const Cache* cache);
+/// `policy` is what this run keeps: where a value is missing, the reason depends on it.
+std::vector<NodeForesight> foresee(const RunGraph& graph, const Cache* cache,
+                                   KeepRule::Policy policy = KeepRule::Policy::worth);
 
 }  // namespace scanmill
