@@ -8,6 +8,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/convert.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/formats/reading.hpp"
 #include "stderr_text.hpp"
 #include "unit_conversion.hpp"
 
@@ -23,8 +24,11 @@ struct Options {
 template <class T>
 Value tell_dropped(Cleaned<T> cleaned, const std::function<void(std::string)>& warn) {
     if (cleaned.points > 0)
-        warn(fmt::format("{} points with a NaN or an infinity were left out, and {} triangles on them", cleaned.points,
-                         cleaned.triangles));
+        warn(counted(cleaned.points, "point", "points") + " with a NaN or an infinity " +
+             (cleaned.points == 1 ? "was" : "were") + " left out" +
+             (cleaned.triangles > 0 ? ", and " + counted(cleaned.triangles, "triangle", "triangles") + " on " +
+                                          (cleaned.points == 1 ? "it" : "them")
+                                    : ""));
     return std::make_shared<const T>(std::move(cleaned.result));
 }
 

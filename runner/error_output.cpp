@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "printable.hpp"
+#include "scanmill/formats/reading.hpp"
 #include "stderr_text.hpp"
 
 namespace scanmill::runner {
@@ -33,8 +34,7 @@ void print(const Diagnostics& diagnostics) {
     for (const Diagnostic& diagnostic : diagnostics.sorted())
         tell("{}\n", printable_line(text(diagnostic, diagnostics.file())));
     if (diagnostics.has_errors())
-        tell("{} error{} in '{}'\n", diagnostics.errors(), diagnostics.errors() == 1 ? "" : "s",
-             printable_line(diagnostics.file()));
+        tell("{} in '{}'\n", counted(diagnostics.errors(), "error", "errors"), printable_line(diagnostics.file()));
 }
 
 Json to_json(const Diagnostics& diagnostics) {

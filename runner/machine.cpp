@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "scanmill/engine/byte_size.hpp"
+#include "scanmill/formats/reading.hpp"
 
 namespace scanmill::runner {
 
@@ -31,8 +32,9 @@ std::string machine_text() {
     utsname system{};
     ::uname(&system);
     const u64 memory = static_cast<u64>(::sysconf(_SC_PHYS_PAGES)) * static_cast<u64>(::sysconf(_SC_PAGESIZE));
-    return fmt::format("{}, {} cores, {}, {} {} {}", processor(), std::thread::hardware_concurrency(),
-                       byte_size_text(memory), system.sysname, system.release, system.machine);
+    return fmt::format("{}, {}, {}, {} {} {}", processor(),
+                       counted(std::thread::hardware_concurrency(), "core", "cores"), byte_size_text(memory),
+                       system.sysname, system.release, system.machine);
 }
 
 std::string libraries_text() {

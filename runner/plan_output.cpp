@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scanmill/engine/streaming.hpp"
+#include "scanmill/formats/reading.hpp"
 
 namespace scanmill::runner {
 
@@ -41,9 +42,8 @@ std::string source_node(const ValueSource& source) {
 
 std::string plan_text(const Plan& plan) {
     std::string text =
-        fmt::format("{}: {} step{}, {} variant{}\n",
-                    plan.workflow.name.empty() ? plan.workflow.file : plan.workflow.name, plan.steps.size(),
-                    plan.steps.size() == 1 ? "" : "s", plan.variants.size(), plan.variants.size() == 1 ? "" : "s");
+        fmt::format("{}: {}, {}\n", plan.workflow.name.empty() ? plan.workflow.file : plan.workflow.name,
+                    counted(plan.steps.size(), "step", "steps"), counted(plan.variants.size(), "variant", "variants"));
     for (const WorkflowInput& input : plan.workflow.inputs)
         text += fmt::format("input {}: {}{}\n", input.name, name_of(input.kind), input.list ? " (a list)" : "");
     for (const PlannedVariant& variant : plan.variants) {

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "scanmill/formats/reading.hpp"
+
 namespace scanmill::runner {
 
 namespace {
@@ -102,8 +104,8 @@ std::vector<std::string> ProgressBoard::lines(double now, std::size_t width, std
         if (has_room || workers_[worker].id) all.push_back(line_of(worker, now, width));
     constexpr std::size_t bar_width = 20;
     const std::size_t filled = steps_ > 0 ? bar_width * std::min(ended_, steps_) / steps_ : bar_width;
-    std::string total = fmt::format("[{}{}] {}/{} steps", std::string(filled, '#'),
-                                    std::string(bar_width - filled, '.'), std::min(ended_, steps_), steps_);
+    std::string total = fmt::format("[{}{}] {}/{}", std::string(filled, '#'), std::string(bar_width - filled, '.'),
+                                    std::min(ended_, steps_), counted(steps_, "step", "steps"));
     if (failed_ > 0) total += fmt::format(", {} failed", failed_);
     total += ", " + clock_text(now);
     if (const std::optional<double> left = time_left(now)) total += fmt::format(", about {} left", clock_text(*left));

@@ -9,6 +9,7 @@
 #include "failure_json.hpp"
 #include "scanmill/engine/facts.hpp"
 #include "scanmill/formats/metrics_json.hpp"
+#include "scanmill/formats/reading.hpp"
 #include "table.hpp"
 
 namespace scanmill::runner {
@@ -89,8 +90,8 @@ std::string graph_text(const RunGraph& graph, const std::vector<NodeForesight>& 
             text += fmt::format("{} [{}{}] -> {}\n", graph.scan_names[cell.scan],
                                 several_workflows ? graph.workflow(cell) + ": " : "", graph.variant(cell).name,
                                 shown_path(output.file));
-    return text + fmt::format("{} to compute, {} cached, {} cell{}\n", graph.nodes.size() - cached, cached,
-                              graph.cells.size(), graph.cells.size() == 1 ? "" : "s");
+    return text + fmt::format("{} to compute, {} cached, {}\n", graph.nodes.size() - cached, cached,
+                              counted(graph.cells.size(), "cell", "cells"));
 }
 
 std::string graph_json(const RunGraph& graph, const std::vector<NodeForesight>& foresight) {

@@ -199,6 +199,7 @@ TEST_F(BatchScans, PosesInPlaceThatAreNone_AreRefusedWhereTheyAreWrong) {
         return found_;
     };
     EXPECT_THAT(refusals("[]"), ElementsAre(HasSubstr("a matrix of 0 rows")));
+    EXPECT_THAT(refusals("[[1]]"), ElementsAre(HasSubstr("a matrix of 1 row; expected 4 rows")));
     EXPECT_THAT(refusals("[[1, 0, 0, 0], [0, 1, 0], 5, [0, 0, x, 1]]"),
                 ElementsAre(HasSubstr("a list of 3 values; expected a row of 4 numbers"), HasSubstr("found '5'"),
                             HasSubstr("'x' is no finite number")));

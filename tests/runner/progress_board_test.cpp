@@ -26,6 +26,7 @@ TEST(ProgressBoard, OneWorker_NeedsNoNumber) {
     ProgressBoard board(1, 4, 4);
     board.started(0, &board, "a.ply: read", 0);
     EXPECT_EQ(board.lines(0, 80).front(), "a.ply: read 0:00");
+    EXPECT_THAT(ProgressBoard(1, 1, 1).lines(0, 80).back(), HasSubstr("0/1 step, "));
 }
 
 TEST(ProgressBoard, TimeLeft_CountsOnlyWhatTakesTime) {

@@ -11,6 +11,7 @@
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/quantity.hpp"
 #include "scanmill/filter/suggestion.hpp"
+#include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/rotation.hpp"
 
 namespace scanmill {
@@ -23,7 +24,8 @@ const std::string place = "the pose";
 bool read_numbers(const YamlNode& node, std::span<double> values, std::string_view expected, Diagnostics& diagnostics) {
     if (!require_list(node, expected, diagnostics)) return false;
     if (node.items.size() != values.size()) {
-        diagnostics.error(node.position, fmt::format("a list of {} values; expected {}", node.items.size(), expected));
+        diagnostics.error(node.position, fmt::format("a list of {}; expected {}",
+                                                     counted(node.items.size(), "value", "values"), expected));
         return false;
     }
     bool sound = true;
@@ -50,8 +52,8 @@ auto or_report(Position position, Diagnostics& diagnostics, Make&& make) -> std:
 
 std::optional<RigidTransform> from_matrix(const YamlNode& node, Diagnostics& diagnostics) {
     if (node.items.size() != 4) {
-        diagnostics.error(node.position,
-                          fmt::format("a matrix of {} rows; expected 4 rows of 4 numbers", node.items.size()));
+        diagnostics.error(node.position, fmt::format("a matrix of {}; expected 4 rows of 4 numbers",
+                                                     counted(node.items.size(), "row", "rows")));
         return std::nullopt;
     }
     std::array<double, 16> matrix;

@@ -9,6 +9,7 @@
 #include <clocale>
 #include <filesystem>
 
+#include "scanmill/formats/reading.hpp"
 #include "scanmill/work/resource_use.hpp"
 
 namespace scanmill {
@@ -54,7 +55,7 @@ ProcessState ProcessState::now() {
 
 std::string ProcessState::changes_since(const ProcessState& before) const {
     if (open_files_ > before.open_files_)
-        return fmt::format("{} more files are open", open_files_ - before.open_files_);
+        return counted(open_files_ - before.open_files_, "more file is open", "more files are open");
     if (open_files_ < before.open_files_) return "files were closed that somebody else had opened";
     if (folder_ != before.folder_) return "the working folder changed";
     if (locale_ != before.locale_) return "the locale changed";
