@@ -6,6 +6,7 @@
 #include "scanmill/batch/parse_scans.hpp"
 #include "scanmill/batch/parse_settings.hpp"
 #include "scanmill/engine/grammar.hpp"
+#include "scanmill/engine/no_file.hpp"
 
 namespace scanmill {
 
@@ -87,10 +88,10 @@ private:
             diagnostics_.error(node.position, fmt::format("'{}' is a folder; expected a workflow file", file.string()));
             return;
         }
-        if (!fs::is_regular_file(file, ignored)) {
-            diagnostics_.error(node.position, fmt::format("'{}': there is no such file; expected a workflow, by a path "
-                                                          "that counts from the batch's own folder",
-                                                          file.string()));
+        if (const std::optional<Error> other = why_no_file(file)) {
+            diagnostics_.error(node.position, fmt::format("{}; expected a workflow, by a path that counts from the "
+                                                          "batch's own folder",
+                                                          other->sentence()));
             return;
         }
         const auto [earlier, is_new] = line_of_.emplace(fs::absolute(file).lexically_normal(), node.position.line);

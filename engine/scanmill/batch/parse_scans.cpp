@@ -8,6 +8,7 @@
 #include "scanmill/batch/scan_files.hpp"
 #include "scanmill/engine/grammar.hpp"
 #include "scanmill/engine/input_frame.hpp"
+#include "scanmill/engine/no_file.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill {
@@ -46,10 +47,8 @@ public:
         if (!sound_) return;
         const fs::path file = folder_ / with_stem(text_, scan);
         try {
-            std::error_code ignored;
-            if (!fs::is_regular_file(file, ignored))
-                throw Error("'{}': there is no such file; expected the {} of '{}'", file.string(), what_,
-                            scan.string());
+            if (const std::optional<Error> other = why_no_file(file))
+                throw Error("{}; expected the {} of '{}'", other->sentence(), what_, scan.string());
             use(file);
         } catch (const Error& error) {
             if (++wrong_ <= most_) diagnostics_.error(position_, error.sentence());

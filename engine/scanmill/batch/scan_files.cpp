@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "scanmill/engine/no_file.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill {
@@ -101,6 +102,9 @@ std::vector<fs::path> scan_files(const fs::path& folder, const std::string& patt
     if (is_file(whole)) return {whole};
     if (is_folder(whole))
         throw Error("'{}' is a folder; expected files, as '{}'", pattern, (fs::path(pattern) / "*.ply").string());
+    if (std::error_code ignored; fs::exists(whole, ignored))
+        if (const std::optional<Error> other = why_no_file(whole))
+            throw Error("{}; {}", other->sentence(), other->hint());
     if (!has_wildcards(pattern))
         throw Error("there is no file '{}' in '{}'", whole.filename().string(), shown(whole.parent_path()));
 

@@ -5,6 +5,7 @@
 
 #include "scanmill/engine/input_frame.hpp"
 #include "scanmill/engine/key.hpp"
+#include "scanmill/engine/no_file.hpp"
 #include "scanmill/engine/output_files.hpp"
 #include "scanmill/engine/output_template.hpp"
 #include "scanmill/engine/path_parameters.hpp"
@@ -251,11 +252,11 @@ private:
         const auto [known, is_new] = contents_.try_emplace(file.string());
         if (is_new) {
             try {
-                std::error_code absent;  // a pipe would block, a folder has no content; reading them says why
-                if (!fs::is_regular_file(file, absent)) throw Error("'{}' is no file", file.string());
+                if (const std::optional<Error> other = why_no_file(file)) throw *other;
                 known->second.first = hash_(file);
             } catch (const Error& error) {
-                known->second = {"unreadable " + file.string(), error.sentence()};
+                known->second = {"unreadable " + file.string(),
+                                 error.sentence() + (error.hint().empty() ? "" : "; " + error.hint())};
             }
         }
         if (why_unreadable) *why_unreadable = known->second.second;
