@@ -57,6 +57,17 @@ TEST(LoadModule, OtherHeaders_AreAnotherAbi) {
                       HasSubstr("'" + abi_text() + "'")));
 }
 
+TEST(LoadModule, AbiTextOfBeforeItNamedTheHeaders_IsAnotherAbi) {
+    // It is ours in everything that it names.
+    std::string older = abi_text();
+    const std::size_t begin = older.find(", headers ");
+    ASSERT_NE(begin, std::string::npos);
+    older.erase(begin, older.find(',', begin + 1) - begin);
+    EXPECT_THAT(refusal("headers-not-named"),
+                AllOf(HasSubstr("was built for another program"),
+                      HasSubstr("it needs '" + older + "', this is '" + abi_text() + "'")));
+}
+
 TEST(LoadModule, AnotherMagic_IsNoFilter) {
     EXPECT_THAT(refusal("other-magic"), AllOf(HasSubstr("is no filter"), HasSubstr("begins with")));
 }
