@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The guide names every column that `convert --to-unit` scales, and no other.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <regex>
+#include <set>
+
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using Names = std::set<std::string>;
+
+/// What the pattern's first group matches.
+Names matches_in(const std::string& text, const std::string& pattern) {
+    const std::regex expression(pattern);
+    Names all;
+    for (std::sregex_iterator match(text.begin(), text.end(), expression), end; match != end; ++match)
+        all.insert((*match)[1]);
+    return all;
+}
+
+TEST(LengthColumns, TheGuideNamesThemWhereItTellsOfConvert) {
+    const std::filesystem::path source = SCANMILL_SOURCE_DIR;
+    const std::string list = content_of(source / "runner/length_columns.cpp");
+    const Names scaled = matches_in(list, "\\{\"([a-z0-9-]+)\", (?:false|true)\\}");
+    ASSERT_TRUE(scaled.contains("bin-size") && scaled.contains("curvature-1"));
+    const std::string guide = content_of(source / "docs/user-guide.md");
+    const std::size_t begin = guide.find("`--to-unit mm` multiplies");
+    ASSERT_NE(begin, std::string::npos);
+    const std::string told = guide.substr(begin + 15, guide.find("\n\n", begin) - begin - 15);
+    EXPECT_EQ(matches_in(told, "`([a-z0-9-]+)`"), scaled);
+}
+
+}  // namespace
+}  // namespace scanmill::test
