@@ -29,8 +29,16 @@ std::optional<std::size_t> resident_of(const std::filesystem::path& file) {
 class MappedFileMemory : public testing::Test {
 protected:
     static constexpr std::size_t size = std::size_t(24) << 20;
+    /// Written page by page: the system then keeps it in pages, and maps some around each that is touched. What it
+    /// keeps in larger blocks it gives back as a whole.
+    MappedFileMemory() : path_(folder_.write("large", "")) {
+        constexpr std::size_t page = 4096;
+        std::ofstream stream(path_, std::ios::binary);
+        for (std::size_t written = 0; written < size; written += page) (stream << std::string(page, '\1')).flush();
+    }
+
     TemporaryFolder folder_;
-    const std::filesystem::path path_ = folder_.write("large", std::string(size, '\1'));
+    std::filesystem::path path_;
 };
 
 TEST_F(MappedFileMemory, BytesTouchedHereAndThere_LeaveNothingWhenGivenBack) {
