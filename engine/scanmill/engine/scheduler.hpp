@@ -80,13 +80,12 @@ private:
     std::vector<Source> sources(const Task& task) const;
     std::vector<std::size_t> prerequisites(const Task& task) const;
     bool only_expects(std::size_t node) const;
-
     void consider_all();
     void consider(const Task& task);
     bool is_wanted(const Task& task) const;
     void adopt(std::size_t node);
-    void make_again(std::size_t node, const std::string& why);
 
+    // scheduler_hand_out.cpp
     void hand_out();
     std::optional<Task> next_for(std::size_t worker);
     std::optional<Task> next_at_home(std::size_t worker, Component& component);
@@ -96,6 +95,8 @@ private:
     bool is_being_computed(const Task& task) const;
     std::string twin_key(const Task& task) const;
     void begin(std::size_t worker, const Task& task);
+
+    // scheduler_jobs.cpp
     u64 memory_limit() const;
     std::string frame_of(std::size_t node) const;
     Job job(const Task& task, std::size_t worker) const;
@@ -104,23 +105,29 @@ private:
     std::vector<JobInput> inputs_of(const RunNode& node) const;
     void limit_time(const Task& task, Job& job) const;
 
+    // scheduler_ends.cpp
     void ended(std::size_t worker, JobReport report, bool lost_values);
     void leave(std::size_t worker);
-    void lost(std::size_t worker, const Task& task, const std::vector<JobInput>& inputs);
-    void gone(std::size_t worker);
-    void charge(std::size_t cell, double seconds);
     void finish_node(std::size_t node, JobReport report);
     void finish_write(const Task& task, JobReport report);
     void skip(const Task& task);
     void task_ended(const Task& task);
-    void count_for_cells(const std::vector<std::size_t>& cells, double seconds);
-    void end_cell(std::size_t cell);
-    Failure out_of_time(std::size_t cell) const;
     void release(const Source& source);
-    void renew(std::size_t worker);
-    const std::vector<std::size_t>& cells_of(const Task& task) const;
+
+    // scheduler_losses.cpp
     bool lost_input(const Task& task, std::size_t worker);
     void ask_no_more(std::size_t node);
+    void make_again(std::size_t node, const std::string& why);
+    void lost(std::size_t worker, const Task& task, const std::vector<JobInput>& inputs);
+    void gone(std::size_t worker);
+    void renew(std::size_t worker);
+
+    // scheduler_cells.cpp
+    const std::vector<std::size_t>& cells_of(const Task& task) const;
+    void count_for_cells(const std::vector<std::size_t>& cells, double seconds);
+    void charge(std::size_t cell, double seconds);
+    void end_cell(std::size_t cell);
+    Failure out_of_time(std::size_t cell) const;
     void skip_the_rest();
 
     FilterLibrary& library_;
