@@ -43,19 +43,16 @@ public:
 private:
     using Place = std::pair<std::size_t, std::string>;  // node and port
 
-    void read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report);
-    bool read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener,
-                        const std::function<void(std::string)>& on_warning, JobReport& report);
     void run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report);
     void expect(const Job& job, const ExpectWork& work, JobReport& report);
     void check_expectations(const PlannedStep& step, const Value& primary, const Place& place, NodeReport& report);
     void write(const Job& job, const WriteWork& work, JobReport& report);
+    bool uses_cache(const JobMemory& memory) const { return cache_ && memory.is_used; }
 
-    std::optional<Outputs> recalled(const StepWork& work, const std::string& run_key, const JobListener& listener,
-                                    JobReport& report) const;
-    void remember(const Job& job, const JobMemory& memory, const std::string& run_key, const std::string& said_of,
-                  double seconds, JobReport& report);
-    void keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report);
+    // workbench_inputs.cpp
+    void read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report);
+    bool read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener,
+                        const std::function<void(std::string)>& on_warning, JobReport& report);
     const Value* find(std::size_t node, const std::string& port) const;
     /// From the bench or the cache.
     std::optional<Value> at_hand(const JobInput& input);
@@ -64,7 +61,13 @@ private:
     std::shared_ptr<const PointStream> stream_for(const StepWork& work, unsigned threads);
     /// From the bench, the cache, or its file; nothing, and a word in the report, when it is lost.
     std::optional<Value> fetch(const JobInput& input, JobReport& report);
-    bool uses_cache(const JobMemory& memory) const { return cache_ && memory.is_used; }
+
+    // workbench_memory.cpp
+    std::optional<Outputs> recalled(const StepWork& work, const std::string& run_key, const JobListener& listener,
+                                    JobReport& report) const;
+    void remember(const Job& job, const JobMemory& memory, const std::string& run_key, const std::string& said_of,
+                  double seconds, JobReport& report);
+    void keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report);
 
     FilterLibrary& library_;
     Cache* cache_;

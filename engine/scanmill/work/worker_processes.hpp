@@ -60,16 +60,18 @@ private:
     };
 
     void ensure(std::size_t worker);
-    void tell_gone(std::size_t worker, const WorkerListener& listener);
-    u64 peak_of(const Place& place, const ProcessEnd& end) const;
     void look_at(std::size_t worker, const WorkerListener& listener);
     void take_messages(std::size_t worker, const WorkerListener& listener);
     void enforce_limits(std::size_t worker, const WorkerListener& listener);
-    void end_by_force(std::size_t worker, const WorkerListener& listener, Cause cause, Error error, int number);
+    Clock::duration until_next_look(std::chrono::milliseconds patience) const;
+
+    // worker_processes_ends.cpp
     void take_report(std::size_t worker, const WorkerListener& listener, JobReport report);
     void end_of_process(std::size_t worker, const WorkerListener& listener);
+    void end_by_force(std::size_t worker, const WorkerListener& listener, Cause cause, Error error, int number);
+    void tell_gone(std::size_t worker, const WorkerListener& listener);
+    u64 peak_of(const Place& place, const ProcessEnd& end) const;
     void tell_end(std::size_t worker, const WorkerListener& listener, JobReport report, bool lost_values);
-    Clock::duration until_next_look(std::chrono::milliseconds patience) const;
 
     WorkerProcessSettings settings_;
     WorkerStart start_;
