@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A value of each kind, with numbers that are easily lost, and a file for them.
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "scanmill/cache/value_file.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+
+inline const double nan = std::numeric_limits<double>::quiet_NaN();
+inline const double infinity = std::numeric_limits<double>::infinity();
+
+template <class T>
+Value value(T object) {
+    return std::make_shared<const T>(std::move(object));
+}
+
+inline Frame some_frame() { return {LengthUnit::millimetre, Vec3(1e6, -0.0, 0.1), "part \xff \"A\""}; }
+
+inline PointCloud cloud() {
+    PointCloud cloud;
+    cloud.frame = some_frame();
+    cloud.positions = {Vec3(0, -0.0, nan), Vec3(infinity, 1e-310, 0.1 + 0.2)};
+    cloud.columns.add(Column("colour", 3, Buffer<u8>{1, 2, 3, 4, 5, 6}));
+    cloud.columns.add(Column("numbers", Buffer<u64>{0, 0, 3}, Buffer<std::int16_t>{-1, 7, 8}));
+    cloud.columns.add(Column("weight", 1, Buffer<float>{0.5f, std::numeric_limits<float>::quiet_NaN()}));
+    return cloud;
+}
+
+inline TriangleMesh mesh() {
+    TriangleMesh mesh;
+    mesh.frame = some_frame();
+    mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+    mesh.triangles = {Triangle{0, 2, 1}, Triangle{0, 1, 3}};
+    mesh.vertex_columns.add(Column("normal", 3, Buffer<double>(Array<double>(12, 0.25))));
+    mesh.face_columns.add(Column("solid", 1, Buffer<u32>{7, 8}));
+    mesh.edges = {Edge{0, 1}};
+    mesh.edge_columns.add(Column("confidence", 1, Buffer<std::int64_t>{std::int64_t(-9007199254740993)}));
+    mesh.sharp_edges = {Edge{0, 1}, Edge{1, 2}};
+    return mesh;
+}
+
+inline TetMesh tets() {
+    TetMesh tets;
+    tets.frame = some_frame();
+    tets.positions = mesh().positions;
+    tets.cells = {Tetrahedron{0, 1, 2, 3}};
+    tets.neighbours = {std::array<u32, 4>{~0u, ~0u, ~0u, ~0u}};
+    tets.inside = {1};
+    tets.weights = {0, -0.0, 0.1 + 0.2, 1e-310};
+    return tets;
+}
+
+inline FeatureGraph features() {
+    FeatureGraph graph;
+    graph.frame = some_frame();
+    graph.positions = mesh().positions;
+    graph.polylines = {{FeatureType::hole, true, 0, 3}, {FeatureType::crease, false, 3, 4}};
+    graph.vertices = {0, 1, 2, 3};
+    graph.left_normals = graph.right_normals = Buffer<Vec3>(Array<Vec3>(4, Vec3(0, 0, 1)));
+    graph.corners = {3};
+    return graph;
+}
+
+inline RigidTransform transform() {
+    RigidTransform transform;
+    transform.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+    transform.translation = Vec3(0.1, 1e300, -0.0);
+    transform.unit = LengthUnit::inch;
+    transform.from = "a";
+    return transform;
+}
+
+inline Metrics metrics() {
+    return {{{"rms", nan, Unit::length}, {"faces", 1e17, Unit::count}, {"gap", -infinity, Unit::ratio}}};
+}
+
+inline std::vector<Value> one_of_each_kind() {
+    return {value(cloud()), value(mesh()), value(tets()), value(features()), value(transform()), value(metrics())};
+}
+
+/// Of everything that the value holds.
+inline std::string key_of(const Value& value) { return EncodedValue(value).content(); }
+
+class ValueFile : public testing::Test {
+protected:
+    Value through_a_file(const Value& value) {
+        EncodedValue(value).write(folder_ / "value");
+        return read_value(folder_ / "value");
+    }
+    TemporaryFolder folder_;
+};
+
+}  // namespace scanmill::test
