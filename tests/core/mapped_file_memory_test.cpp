@@ -31,7 +31,7 @@ protected:
     static constexpr std::size_t size = std::size_t(24) << 20;
     /// Written page by page: the system then keeps it in pages, and maps some around each that is touched. What it
     /// keeps in larger blocks it gives back as a whole.
-    MappedFileMemory() : path_(folder_.write("large", "")) {
+    MappedFileMemory() : path_(std::filesystem::canonical(folder_.write("large", ""))) {
         constexpr std::size_t page = 4096;
         std::ofstream stream(path_, std::ios::binary);
         for (std::size_t written = 0; written < size; written += page) (stream << std::string(page, '\1')).flush();

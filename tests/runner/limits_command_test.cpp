@@ -37,16 +37,16 @@ protected:
 };
 
 TEST_F(Limits, TimeIsOverWhileAScanIsRead_SaysSo) {
-    written(folder_ / "large.ply", helix(300'000));
+    written(folder_ / "large.xyz", without_columns(helix(1'000'000)));
     for (const char* bin_size : {"auto", "0.01 u"}) {  // as a whole, and as a stream
         write_thinning(bin_size);
-        EXPECT_THAT(error_under("{step: {time: 1 ms}}", "time", "large.ply"),
+        EXPECT_THAT(error_under("{step: {time: 1 ms}}", "time", "large.xyz"),
                     AllOf(ContainsRegex("^the time did not suffice: it was ended after [0-9]+\\.[0-9]+ s, the limit of "
                                         "a step is 1 ms\n"),
-                          HasSubstr("\n  while reading 'large.ply'\n  on scan 'large.ply'"), HasSubstr(way_out)));
-        EXPECT_THAT(error_under("{time: 1 ms}", "time", "large.ply"),
+                          HasSubstr("\n  while reading 'large.xyz'\n  on scan 'large.xyz'"), HasSubstr(way_out)));
+        EXPECT_THAT(error_under("{time: 1 ms}", "time", "large.xyz"),
                     AllOf(HasSubstr("the limit of a cell is 1 ms"),
-                          HasSubstr("\n  while reading 'large.ply'\n  on scan 'large.ply'"), HasSubstr(way_out)));
+                          HasSubstr("\n  while reading 'large.xyz'\n  on scan 'large.xyz'"), HasSubstr(way_out)));
     }
 }
 
