@@ -13,6 +13,7 @@
 #include "scanmill/data/points.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/hidden_vertices.hpp"
+#include "scanmill/geometry/size_limits.hpp"
 
 namespace scanmill {
 
@@ -30,11 +31,7 @@ void require_usable(const TetMesh& tets, const AlphaSolidParams& params) {
         throw Error("coverage must be above 0 % and at most 100 %; it is {}", params.coverage.text());
     if (params.alpha && !(params.alpha->value() > 0 && std::isfinite(params.alpha->value())))
         throw Error("alpha must be a length above 0; it is {}", params.alpha->text());
-    const double size = bounding_box(tets.positions.span()).diagonal();
-    if (!(size > 1e-100 && size < 1e100))
-        throw Error(
-            "needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {:.3g}", size)
-            .hint("give it in a larger or smaller unit");
+    require_squares(bounding_box(tets.positions.span()).diagonal(), "needs a scan");
     if (tets.weights.empty()) return;
     const auto [least, largest] = std::ranges::minmax(tets.weights);
     if (!(least >= 0 && largest <= 1e200))

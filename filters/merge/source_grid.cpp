@@ -5,7 +5,8 @@
 #include <bit>
 #include <cmath>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/geometry/size_limits.hpp"
+#include "scanmill/geometry/unit_scale.hpp"
 
 namespace scanmill::merging {
 
@@ -24,14 +25,13 @@ u64 key(u64 x, u64 y, u64 z) { return (((z << bits_per_axis) + y) << bits_per_ax
 SourceGrid::SourceGrid(std::span<const Vec3> positions, std::span<const u32> source, double within)
     : positions_(positions),
       source_(source),
-      squared_distance_(within * within),
+      scale_(unit_scale(within)),
+      squared_distance_((within * scale_) * (within * scale_)),
       cells_(1024),
       next_row_(positions.size()) {
     const BoundingBox box = bounding_box(positions);
+    require_finite_size(box);
     const double extent = (box.high - box.low).maxCoeff();
-    if (!std::isfinite(extent))
-        throw Error("the points reach from {:.6g} to {:.6g} u; distances between them cannot be told",
-                    box.low.minCoeff(), box.high.maxCoeff());
     low_ = box.low;
     cell_size_ = std::max(within * slack, extent / most_cells_per_axis);
     for (int z : {0, -1, 1})
@@ -86,7 +86,7 @@ bool SourceGrid::has_foreign_neighbour(u32 row) const {
              group = groups_[group].next_group) {
             if (groups_[group].source == source_[row]) continue;
             for (u32 other = groups_[group].first_row; other != none; other = next_row_[other])
-                if ((positions_[other] - point).squaredNorm() <= squared_distance_) return true;
+                if (((positions_[other] - point) * scale_).squaredNorm() <= squared_distance_) return true;
         }
     return false;
 }

@@ -13,8 +13,8 @@ namespace scanmill::merging {
 /// are stored. The points of a cube are kept apart by source, so that those of the own source cost nothing.
 class SourceGrid {
 public:
-    /// The set is empty. `positions` and `source` must outlive it. Pre: within > 0. Throws Error when the extent of the
-    /// positions is not finite.
+    /// The set is empty. `positions` and `source` must outlive it. Pre: within > 0. Throws Error for
+    /// positions farther apart than any number.
     SourceGrid(std::span<const Vec3> positions, std::span<const u32> source, double within);
 
     void insert(u32 row);
@@ -39,7 +39,8 @@ private:
 
     std::span<const Vec3> positions_;
     std::span<const u32> source_;
-    double squared_distance_;
+    double scale_;  ///< a power of two that brings `within` near 1, so that squares are numbers
+    double squared_distance_;  ///< scaled
     double cell_size_;
     Vec3 low_;
     std::vector<u64> neighbours_;  // differences of keys, the cell itself first

@@ -7,6 +7,7 @@
 #include "scanmill/data/points.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/parallel.hpp"
+#include "scanmill/geometry/size_limits.hpp"
 #include "sculpt/sculptor.hpp"
 
 namespace scanmill {
@@ -31,11 +32,7 @@ void require_usable(const TetMesh& tets, const SculptParams& params) {
     const double gain = params.min_gain.in_radians();
     if (!(gain >= 0 && std::isfinite(gain)))
         throw Error("min-gain must be an angle of at least 0; it is {}", params.min_gain.text());
-    const double size = bounding_box(tets.positions.span()).diagonal();
-    if (!(size > 1e-100 && size < 1e100))
-        throw Error(
-            "needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {:.3g}", size)
-            .hint("give it in another unit");
+    require_squares(bounding_box(tets.positions.span()).diagonal(), "needs a scan");
 }
 
 void require_manifold(const BoundaryDefects& defects, std::size_t triangles) {

@@ -11,6 +11,7 @@
 #include "scanmill/data/array.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/length_scale.hpp"
+#include "scanmill/geometry/size_limits.hpp"
 #include "virtual_scan/scene.hpp"
 
 namespace scanmill::scan {
@@ -112,6 +113,11 @@ Scene scene_of(const TriangleMesh& mesh) {
     if (!(scene.box.diagonal() > 0))
         throw Error("the mesh has no extent: all {} triangles are one point", mesh.triangles.size())
             .hint("`scanmill info` tells what a file holds");
+    require_finite_size(scene.box);
+    if (const double size = scene.box.diagonal(); !(size >= least_size && size <= largest_size))
+        throw Error("the mesh is {:.3g} u in size; between {} and {} u is needed for products of lengths to be numbers",
+                    size, least_size, largest_size)
+            .hint("give it in another unit, as numbers nearer 1");
     scene.hull.assign(used.positions.begin(), used.positions.end());
     scene.scale.unit = mesh.frame.unit;
     scene.scale.diagonal = [diagonal = scene.box.diagonal()] { return diagonal; };

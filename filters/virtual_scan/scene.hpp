@@ -31,6 +31,10 @@ struct Scene {
     std::function<std::vector<Hit>(const View&)> hits;
 };
 
+/// Between them products of lengths stay finite, of any proportions: discriminants of quadrics hold the fourth power of
+/// height over radius times the square of a length, ten sizes in all.
+constexpr double least_size = 1e-30, largest_size = 1e30;
+
 /// Refers to the mesh. Throws Error for a mesh that cannot be scanned. See rasteriser.cpp.
 Scene scene_of(const TriangleMesh& mesh);
 /// Throws Error for wrong sizes. See shapes.cpp.

@@ -20,10 +20,6 @@ namespace {
 
 using Shape = VirtualScanParams::Shape;
 
-/// Between them the discriminants of the quadrics stay finite, of any proportions: they hold the fourth power of height
-/// over radius times the square of a length, ten sizes in all.
-constexpr double least_dimension = 1e-30, largest_dimension = 1e30;
-
 using FirstHit = std::function<std::optional<Hit>(const Ray&)>;
 
 std::optional<Hit> meet_sphere(const Ray& ray, double radius) {
@@ -140,9 +136,9 @@ double dimension_of(const Length& length, const std::string& name) {
     const double dimension = length.value();
     if (!(dimension > 0) || !std::isfinite(dimension))
         throw Error("{} is {} u; it must be above 0", name, dimension).hint("give it a size, as 1 u");
-    if (!(dimension >= least_dimension && dimension <= largest_dimension))
+    if (!(dimension >= least_size && dimension <= largest_size))
         throw Error("{} is {:.3g} u; between {} and {} u is needed for products of lengths to be numbers", name,
-                    dimension, least_dimension, largest_dimension)
+                    dimension, least_size, largest_size)
             .hint("give all sizes in another unit, as numbers nearer 1");
     return dimension;
 }

@@ -29,12 +29,21 @@ scan::Scene scene_of(const TriangleMesh* mesh, const VirtualScanParams& params) 
     return scan::scene_of(params.shape, params.size);
 }
 
+/// As what is scanned; too fine a resolution takes too many rays, and noise may be as small as it likes.
+void require_within_sizes(std::string_view name, double length) {
+    if (length > scan::largest_size)
+        throw Error("the {} is {:.3g} u; what is scanned is at most {} u in size", name, length, scan::largest_size)
+            .hint("give it as a share of the object: 0.5 %diag");
+}
+
 void require_sound(const VirtualScanParams& params, double resolution, double noise) {
     if (!(resolution > 0) || !std::isfinite(resolution))
         throw Error("the resolution is {} u; it must be above 0", resolution)
             .hint("0.5 %diag puts some 200 points across the object");
+    require_within_sizes("resolution", resolution);
     if (!(noise >= 0) || !std::isfinite(noise))
         throw Error("the noise is {} u; it must be 0 or more", noise).hint("say `noise: 0 u` for none");
+    require_within_sizes("noise", noise);
     const double outliers = params.outliers.value(), overlap = params.overlap.value();
     if (!(outliers >= 0 && outliers <= 10))
         throw Error("outliers is {}; it must be from 0 % to 1000 %", params.outliers.text())

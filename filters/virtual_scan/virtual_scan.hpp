@@ -67,7 +67,8 @@ struct VirtualScanResult {
 /// area, or seen edge on, are never hit; where two triangles are equally near, the lower row counts; rays through a
 /// shared edge or vertex never slip between triangles. Throws Error: a mesh and a shape, or neither; a mesh without
 /// triangles, with indices out of range, with a NaN or infinite vertex, without extent; a wrong number of sizes or
-/// views, a direction of length 0; a parameter out of its range; more than 2^28 rays; not a single point.
+/// views, a direction of length 0; a parameter out of its range, noise or resolution above 1e30 u; a mesh not between
+/// 1e-30 and 1e30 u in size; more than 2^28 rays; not a single point.
 /// Deterministic: bytes depend on the seed, not on the number of threads; views are scanned in parallel.
 /// Cost: time O(rays + pixels of the triangles' boxes), 48 bytes per point and, for
 /// meshes, 12 per ray of the views under way.

@@ -38,7 +38,8 @@ TEST_F(StreamedRun, RefusesWhatReadingWholeRefuses) {
     expect_the_same(scan("one.xyz", "1 2 3\n"), "bin-size: 1 %diag");
     EXPECT_THAT(run_thin("bin-size: 1e-9 u", ply).cells[0].failure.text, HasSubstr("bins"));
     expect_the_same(scan("same.xyz", "1 2 3\n1 2 3\n"), "bin-size: 1 %diag");
-    EXPECT_THAT(run_thin("bin-size: 1 %diag", scan("one.xyz", "1 2 3\n")).cells[0].failure.text, HasSubstr("no size"));
+    EXPECT_THAT(run_thin("bin-size: 1 %diag", scan("one.xyz", "1 2 3\n")).cells[0].failure.text,
+                HasSubstr("the diagonal is 0"));
 }
 
 TEST_F(StreamedRun, FileThatTurnsOutToNeedIt_IsReadWhole) {

@@ -119,7 +119,7 @@ TEST(AlphaSolid, TetrahedralisationWithoutCells_IsRefused) {
 }
 
 TEST(AlphaSolid, SizesWhoseSquaresAreNoNumbers_AreRefused) {
-    EXPECT_THAT(refusal(tets_of(lattice_cube(1, 1e-120)), {}), HasSubstr("between 1e-100 and 1e100 in size"));
+    EXPECT_THAT(refusal(tets_of(lattice_cube(1, 1e-120)), {}), HasSubstr("between 1e-100 and 1e100 u in size"));
     EXPECT_NEAR(solid_of(lattice_cube(2, 1e-90)).alpha / 1e-90, 1 / std::numbers::sqrt2, 1e-9);
     EXPECT_NEAR(solid_of(lattice_cube(2, 1e90)).alpha / 1e90, 1 / std::numbers::sqrt2, 1e-9);
 }

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "filters/features_laws.hpp"
+#include "scanmill/geometry/surface_box.hpp"
+#include "scanmill/geometry/unit_scale.hpp"
 
 namespace scanmill {
 namespace {
@@ -55,6 +57,33 @@ TEST_P(FeatureLaws, LinesAgreeWithAnIndependentCount) {
 }
 
 TEST_P(FeatureLaws, NormalsAreUnitAndAtRightAnglesToTheirSegments) { expect_normals(features_of(GetParam().mesh)); }
+
+/// Times a power of two.
+TriangleMesh scaled(const TriangleMesh& mesh, double scale) {
+    TriangleMesh result = mesh;
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+    for (Vec3& p : positions) p *= scale;
+    result.positions = std::move(positions);
+    return result;
+}
+
+TEST_P(FeatureLaws, LinesAreTheSame_AtAnyScale) {
+    const TriangleMesh mesh = scaled(GetParam().mesh, unit_scale(surface_box(GetParam().mesh).diagonal()));
+    FeatureParams params;
+    for (const double min_length : {0.0, 0.3}) {
+        params.min_length = min_length;
+        FeatureGraph plain = features_of(mesh, params).graph;
+        const Array<Vec3> places(plain.positions.begin(), plain.positions.end());
+        for (const int exponent : {-330, -300, -270, -262, -254, -200, -100, 100, 200, 248, 256, 270, 300, 330}) {
+            const double scale = std::ldexp(1.0, exponent);
+            params.min_length = min_length * scale;
+            Array<Vec3> there = places;
+            for (Vec3& p : there) p *= scale;
+            plain.positions = std::move(there);
+            EXPECT_TRUE(same_graph(features_of(scaled(mesh, scale), params).graph, plain)) << exponent;
+        }
+    }
+}
 
 INSTANTIATE_TEST_SUITE_P(Shapes, FeatureLaws,
                          testing::Values(Named{"cube", cube()}, Named{"l_block", l_block()},

@@ -67,6 +67,11 @@ TEST(FeaturesRefuse, AVertexThatIsNotFinite_OnlyWhereATriangleUsesIt) {
 TEST(FeaturesRefuse, SizesWhoseSquaresAreNoNumbers) {
     for (const double size : {1e-120, 1e120})
         EXPECT_THAT(features_refusal(cube(size)), HasSubstr("squares of lengths"));
+    EXPECT_THAT(features_refusal(cube(1e120)), HasSubstr("needs a mesh between 1e-100 and 1e100 u in size"));
+    TriangleMesh wide = cube();
+    wide.positions = {Vec3(-1.5e308, 0, 0), Vec3(1.5e308, 0, 0), Vec3(0, 1, 0)};
+    wide.triangles = {{0, 1, 2}};
+    EXPECT_THAT(features_refusal(wide), HasSubstr("it is beyond 1.8e+308 u"));
     for (const double size : {1e-60, 1e60}) EXPECT_EQ(features_of(cube(size)).counts.creases, 12u);
 }
 

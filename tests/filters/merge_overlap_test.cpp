@@ -76,6 +76,16 @@ TEST(MergeOverlap, ExactlyAsFar_IsWithin) {
     EXPECT_THAT(merged(clouds, within(std::nextafter(1.0, 0.0))).kept, ElementsAre(0u, 1u));
 }
 
+TEST(MergeOverlap, CoordinatesWhoseSquaresAreNoNumbers_AreComparedLikeOthers) {
+    for (const int exponent : {-1060, -600, -540, 500, 512, 520, 1000}) {
+        const auto far = [&](double x) { return Vec3(std::ldexp(x, exponent), 0, 0); };
+        const double one = std::ldexp(1.0, exponent);
+        const Clouds clouds{cloud_of({far(0)}), cloud_of({far(1), far(1.5), far(4)})};
+        EXPECT_THAT(merged(clouds, within(one)).kept, ElementsAre(0u, 2u, 3u)) << exponent;
+        EXPECT_THAT(merged(clouds, within(1.5 * one)).kept, ElementsAre(0u, 3u)) << exponent;
+    }
+}
+
 TEST(MergeOverlap, PointsOfOneInput_NeverDropEachOther) {
     const Clouds clouds{cloud_of({{0, 0, 0}, {0, 0, 0}, {0.1, 0, 0}}), cloud_of({{9, 0, 0}, {9, 0, 0}})};
     EXPECT_EQ(merged(clouds, within(1)).dropped, 0u);

@@ -85,7 +85,7 @@ TEST(MergeRefusals, PoseOutOfThisWorld_IsRefused) {
 
 TEST(MergeRefusals, PointsTooFarApartToMeasure_AreRefused) {
     EXPECT_THAT(refusal({cloud_of({{-1.5e308, 0, 0}}), cloud_of({{1.5e308, 0, 0}})}, within(1)).sentence(),
-                HasSubstr("distances between them cannot be told"));
+                HasSubstr("from -1.5e+308 to 1.5e+308 lie farther apart than the largest number"));
 }
 
 TEST(MergeRefusals, MissingUncertainty_IsNamed) {

@@ -146,6 +146,49 @@ TEST(VirtualScanRefusals, SizesWithoutProducts) {
     }
 }
 
+TEST(VirtualScanRefusals, NoiseAndResolutionBeyondAnySize) {
+    for (const double extreme : {1.01e30, 1e155, 1e300, 1.7e308}) {
+        EXPECT_THAT(refusal(sphere(extreme)), HasSubstr(fmt::format("the resolution is {:.3g} u", extreme)));
+        VirtualScanParams params = sphere(0.1);
+        params.noise = extreme;
+        EXPECT_THAT(refusal(params), AllOf(HasSubstr(fmt::format("the noise is {:.3g} u", extreme)),
+                                           HasSubstr("at most 1e+30 u"), HasSubstr("%diag")));
+        const TriangleMesh mesh = cube();
+        params.shape = Shape::none;
+        EXPECT_THAT(refusal(params, &mesh), HasSubstr("the noise is"));
+    }
+    VirtualScanParams params = sphere(0.1);
+    params.noise = 1e30;
+    Context context;
+    EXPECT_NO_THROW(require_finite(virtual_scan(nullptr, params, context).points.positions.span(), "points"));
+}
+
+TEST(VirtualScanRefusals, MeshesWithoutProducts) {
+    for (const double edge : {1e-300, 1e-160, 0.5e-30, 1e30, 1e160, 1e308}) {
+        const TriangleMesh mesh = cube(edge);
+        EXPECT_THAT(refusal({}, &mesh), AllOf(HasSubstr("the mesh is"), HasSubstr("between 1e-30 and 1e+30 u")));
+    }
+    TriangleMesh mesh = cube();
+    mesh.positions = {Vec3(-1.5e308, 0, 0), Vec3(1.25e308, 0, 0), Vec3(0, 1e308, 0)};
+    mesh.triangles = {{0, 1, 2}};
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("from -1.5e+308 to 1.25e+308 lie farther apart"));
+}
+
+TEST(VirtualScanRefusals, MeshesNearTheLimits_GiveThePointsOfAnyOther) {
+    const TriangleMesh plain_mesh = cube();
+    VirtualScanParams params;
+    params.resolution = Length::percent_of_diagonal(5);
+    Context context;
+    const Buffer<Vec3> plain = virtual_scan(&plain_mesh, params, context).points.positions;
+    ASSERT_GT(plain.size(), 500u);
+    for (const double unit : {0x1p-99, 0x1p98}) {
+        const TriangleMesh mesh = cube(unit);
+        const Buffer<Vec3> scaled = virtual_scan(&mesh, params, context).points.positions;
+        ASSERT_EQ(scaled.size(), plain.size());
+        for (std::size_t i = 0; i < plain.size(); ++i) ASSERT_EQ(scaled[i], Vec3(unit * plain[i]));
+    }
+}
+
 TEST(VirtualScanRefusals, SizesNearTheLimits_GiveThePointsOfAnyOther) {
     for (const auto& [shape, second] : {std::pair(Shape::hyperboloid, 0.75), std::pair(Shape::torus, 0.4)})
         for (const double unit : {0x1p-97, 0x1p99}) {  // powers of two, so that nothing is rounded otherwise

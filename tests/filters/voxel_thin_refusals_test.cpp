@@ -13,6 +13,7 @@ namespace scanmill::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 std::string refusal(const PointCloud& cloud, const VoxelThinParams& params) {
     try {
@@ -81,6 +82,17 @@ TEST(VoxelThinRefusals, TooFineBins_NamedSmallestSizeFits) {
     ASSERT_TRUE(parse_number(text.substr(at + 8, text.find(" u", at) - at - 8), smallest)) << text;
     EXPECT_EQ(thin(cloud, bins_of(smallest)).kept.size(), 2u);
     EXPECT_NE(refusal(cloud, bins_of(smallest * 0.999)), "no refusal");
+}
+
+TEST(VoxelThinRefusals, CloudLargerThanNumbersGo_IsRefusedWithItsRange) {
+    const PointCloud cloud = cloud_of({{-1.5e308, 0, 0}, {1.25e308, 0, 0}});
+    for (const VoxelThinParams& params : {bins_of(1e300), bins_of(1e-300), bins_of(1e308), within(1)}) {
+        EXPECT_THAT(refusal(cloud, params), HasSubstr("from -1.5e+308 to 1.25e+308 lie farther apart"));
+        EXPECT_THAT(refusal(cloud, params), Not(HasSubstr("inf")));
+        EXPECT_THAT(refusal(cloud, params), HasSubstr("hint: "));
+    }
+    EXPECT_THAT(refusal(cloud_of({{-8e307, 0, 0}, {8e307, 0, 0}}), bins_of(1e300)),
+                HasSubstr("hint: bins of 7.6294e+301 u and larger fit"));
 }
 
 TEST(VoxelThinRefusals, DistantGridOrigin_IsRefused) {

@@ -171,49 +171,16 @@ TEST(VoxelThin, DenseSphere_OccupiesThreeHalvesOfItsAreaInBins) {
     EXPECT_NEAR(static_cast<double>(result.kept.size()) / bins, 1, 0.02);
 }
 
-TEST(VoxelThin, Columns_AreCarriedWithTheirRows) {
-    PointCloud cloud = cloud_of({{0, 0, 0}, {0.5, 0.5, 0.5}, {7, 7, 7}});
-    cloud.frame = {LengthUnit::millimetre, Vec3(100, 0, 0), "part"};
-    cloud.columns.add(Column("weight", 1, Buffer<float>{1.f, 2.f, 3.f}));
-    cloud.columns.add(Column("colour", 3, Buffer<u8>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
-    const VoxelThinResult result = thin(cloud, bins_of(1));
-    EXPECT_EQ(result.points.frame, cloud.frame);
-    EXPECT_THAT(result.points.columns.find("weight")->values<float>(), ElementsAre(2.f, 3.f));
-    EXPECT_THAT(result.points.columns.find("colour")->values<u8>(), ElementsAre(4, 5, 6, 7, 8, 9));
-}
-
-TEST(VoxelThin, BinSize_IsAColumnOfEveryKeptPoint) {
-    const VoxelThinResult once = thin(cloud_of({{0, 0, 0}, {0.5, 0.5, 0.5}, {7, 7, 7}}), bins_of(0.7));
-    EXPECT_THAT(column<double>(once, "bin-size"), ElementsAre(0.7, 0.7));
-    // Thinning again says the bins of the last time, and that the older ones gave way.
-    Context context;
-    const VoxelThinResult twice = voxel_thin(once.points, bins_of(3.5), context);
-    EXPECT_THAT(column<double>(twice, "bin-size"), ElementsAre(3.5, 3.5));
-    EXPECT_EQ(twice.points.columns.size(), 1u);
-    EXPECT_THAT(context.warnings(), ElementsAre(::testing::HasSubstr("`bin-size`")));
-}
-
-TEST(VoxelThin, BinSize_OfEarlierLargerBinsStays) {
-    PointCloud cloud = cloud_of({{0, 0, 0}, {5, 5, 5}, {7, 7, 7}});
-    cloud.columns.add(Column("bin-size", 1, Buffer<float>{2.f, 1.f, 4.f}));
-    Context context;
-    const VoxelThinResult again = voxel_thin(cloud, bins_of(1.5), context);
-    EXPECT_THAT(column<double>(again, "bin-size"), ElementsAre(2, 1.5, 4));
-    EXPECT_THAT(context.warnings(),
-                ElementsAre(::testing::HasSubstr("2 of 3 kept points were thinned with larger bins before"),
-                            ::testing::HasSubstr("gives way")));
-    // Of a column in which any number is no size, none is believed.
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const double nothing : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
-        PointCloud other = cloud_of({{0, 0, 0}, {5, 5, 5}, {7, 7, 7}});
-        other.columns.add(Column("bin-size", 1, Buffer<double>{2, nothing, 4}));
-        EXPECT_THAT(column<double>(thin(other, bins_of(1.5)), "bin-size"), ::testing::Each(1.5)) << nothing;
+TEST(VoxelThin, PowersOfTwo_ScaleTheResultAndNothingElse) {
+    const PointCloud cloud = random_cube(2000, 6);
+    const VoxelThinResult plain = thin(cloud, bins_of(0.17));
+    ASSERT_LT(plain.kept.size(), 400u);
+    for (const int exponent : {-1000, -600, -500, 500, 600, 1000}) {
+        Array<Vec3> scaled;
+        for (const Vec3& p : cloud.positions) scaled.push_back(p * std::ldexp(1.0, exponent));
+        const VoxelThinResult result = thin({{}, std::move(scaled), {}}, bins_of(std::ldexp(0.17, exponent)));
+        EXPECT_EQ(result.kept, plain.kept) << exponent;
     }
-}
-
-TEST(VoxelThin, BinSize_OfADerivedSizeIsThatSize) {
-    const VoxelThinResult result = thin(random_sphere(20'000, 1), within(0.02));
-    EXPECT_THAT(column<double>(result, "bin-size"), ::testing::Each(result.bin_size));
 }
 
 TEST(VoxelThin, Metrics_SayWhatHappened) {

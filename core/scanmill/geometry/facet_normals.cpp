@@ -7,6 +7,7 @@
 
 #include "scanmill/filter/parallel.hpp"
 #include "scanmill/geometry/sides.hpp"
+#include "scanmill/geometry/unit_scale.hpp"
 
 namespace scanmill {
 
@@ -112,6 +113,14 @@ FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> twins,
     return result;
 }
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+double angle_between(const Vec3& a, const Vec3& b) {
+    // The norm of the product holds the fourth power of length.
+    const double one = a.cwiseAbs().maxCoeff(), other = b.cwiseAbs().maxCoeff();
+    const auto is_usual = [](double length) { return length > 0x1p-100 && length < 0x1p100; };
+    if (is_usual(one) && is_usual(other)) return std::atan2(a.cross(b).norm(), a.dot(b));
+    if (one == 0 || other == 0) return 0;
+    const Vec3 u = a * unit_scale(one), v = b * unit_scale(other);
+    return std::atan2(u.cross(v).norm(), u.dot(v));
+}
 
 }  // namespace scanmill

@@ -12,6 +12,7 @@
 #include "scanmill/geometry/facet_normals.hpp"
 #include "scanmill/geometry/feature_net.hpp"
 #include "scanmill/geometry/sides.hpp"
+#include "scanmill/geometry/size_limits.hpp"
 #include "scanmill/geometry/surface_box.hpp"
 
 namespace scanmill {
@@ -36,12 +37,7 @@ void require_measurable(const TriangleMesh& mesh) {
                 throw Error("vertex {} of triangle {} is not finite; features need the place of every vertex", vertex,
                             t)
                     .hint("take the triangles at such vertices off");
-    const double size = surface_box(mesh).diagonal();
-    if (size != 0 && !(size > 1e-100 && size < 1e100))
-        throw Error(
-            "needs a mesh between 1e-100 and 1e100 u in size, so that squares of lengths are numbers; it is {:.3g}",
-            size)
-            .hint("give it in another unit");
+    if (const double size = surface_box(mesh).diagonal(); size != 0) require_squares(size, "needs a mesh");
 }
 
 /// Marks both sides of the mesh's own sharp edges; those on the boundary are feature lines anyhow.
