@@ -159,6 +159,15 @@ TEST(PointStream, OfText_IsTheFileReadWhole) {
     expect_as_read_whole(folder.write("a.txt", "\xef\xbb\xbf  1 2 3\n"));
 }
 
+TEST(PointStream, OfManyComments_DeclaresWhatTheFileReadWholeDoes) {
+    const TemporaryFolder folder;
+    std::string between = "# unit m\n";
+    for (int row = 0; row < 40'000; ++row) between += "1 2 " + std::to_string(row) + (row % 8 ? "\n" : " # remark\n");
+    for (const char* last :
+         {"", "# unit mm\n# frame part\n", "# unit parsec\n", "# unit m\n# unit mm\n1 2 3 # unit in\n"})
+        expect_as_read_whole(folder.write("a.xyz", between + last + between.substr(9)));
+}
+
 TEST(PointStream, TellsWhatReadingTells) {
     const TemporaryFolder folder;
     const auto path = folder.write("a.xyz", "# unit furlong\n1 2 3\n");

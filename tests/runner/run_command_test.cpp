@@ -64,7 +64,8 @@ TEST(RunCommand, OnePoint_IsThinnedByABinSizeThatNeedsNoTolerance) {
     derived.insert(derived.end(), {"--set", "size=auto"});
     const ProgramResult refused = scanmill_program(derived, {.folder = folder.path()});
     EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_THAT(refused.err, HasSubstr("%diag means nothing here: the diagonal is 0, as the only point is at one place"));
+    EXPECT_THAT(refused.err,
+                HasSubstr("%diag means nothing here: the diagonal is 0, as the only point is at one place"));
     EXPECT_THAT(refused.err, HasSubstr("in the parameter 'tolerance'"));
 }
 

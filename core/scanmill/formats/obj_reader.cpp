@@ -176,7 +176,7 @@ private:
         LoadedFile loaded;
         loaded.format = "OBJ";
         loaded.encoding = "ascii";
-        loaded.comments = text_.comments();
+        loaded.comments = text_.comments().texts();
         TriangleMesh mesh;
         mesh.frame = declared_frame(loaded.comments, options_);
         tell_left_out();

@@ -170,7 +170,7 @@ private:
         LoadedFile loaded;
         loaded.format = "OFF";
         loaded.encoding = "ascii";
-        loaded.comments = text_.comments();
+        loaded.comments = text_.comments().texts();
         TriangleMesh mesh;
         mesh.frame = declared_frame(loaded.comments, options_);
         move_near_origin(positions_, bounding_box(positions_), mesh.frame);

@@ -8,23 +8,6 @@
 
 namespace scanmill {
 
-namespace {
-
-/// What follows `keyword` and a blank in `line`, without blanks around it; empty when the line does not begin so.
-std::string_view declared(std::string_view line, std::string_view keyword) {
-    const auto trim = [&line] {
-        while (!line.empty() && (line.front() == ' ' || line.front() == '\t')) line.remove_prefix(1);
-        while (!line.empty() && (line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
-    };
-    trim();
-    if (!line.starts_with(keyword) || line.size() == keyword.size() || line[keyword.size()] != ' ') return {};
-    line.remove_prefix(keyword.size());
-    trim();
-    return line;
-}
-
-}  // namespace
-
 std::string quote(std::string_view bytes) {
     constexpr std::size_t longest = 40;
     std::string text = "'";
@@ -54,20 +37,34 @@ std::string_view without_byte_order_mark(std::string_view text) {
     return text;
 }
 
+std::string_view declaration_in(std::string_view comment, std::string_view keyword) {
+    const auto trim = [&comment] {
+        while (!comment.empty() && (comment.front() == ' ' || comment.front() == '\t')) comment.remove_prefix(1);
+        while (!comment.empty() && (comment.back() == ' ' || comment.back() == '\t')) comment.remove_suffix(1);
+    };
+    trim();
+    if (!comment.starts_with(keyword) || comment.size() == keyword.size() || comment[keyword.size()] != ' ') return {};
+    comment.remove_prefix(keyword.size());
+    trim();
+    return comment;
+}
+
+bool is_prose(std::string_view unit) { return unit.find(' ') != std::string_view::npos; }
+
 Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions& options) {
     Frame frame;
     for (const std::string& comment : comments) {
-        if (const std::string_view text = declared(comment, "unit"); !text.empty()) {
+        if (const std::string_view text = declaration_in(comment, "unit"); !text.empty()) {
             if (const auto unit = length_unit(text)) {
                 if (frame.unit != LengthUnit::unknown && frame.unit != *unit)
                     warn(options.on_warning, "the file says both 'unit {}' and 'unit {}'; the last counts",
                          symbol(frame.unit), symbol(*unit));
                 frame.unit = *unit;
-            } else if (text.find(' ') == std::string_view::npos)  // else it is prose that happens to begin with "unit"
+            } else if (!is_prose(text))
                 warn(options.on_warning, "the unit {} is unknown and was passed over; known are {}", quote(text),
                      length_unit_symbols());
         }
-        if (const std::string_view name = declared(comment, "frame"); !name.empty()) frame.name = name;
+        if (const std::string_view name = declaration_in(comment, "frame"); !name.empty()) frame.name = name;
     }
     if (options.unit != LengthUnit::unknown) {
         if (frame.unit != LengthUnit::unknown && frame.unit != options.unit)

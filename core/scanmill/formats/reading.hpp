@@ -27,6 +27,11 @@ std::string counted(u64 count, std::string_view singular, std::string_view plura
 /// Text editors of Windows begin a file with a mark of three bytes.
 std::string_view without_byte_order_mark(std::string_view text);
 
+/// What follows `keyword` and a blank in a comment, without blanks around it; empty when the comment does not begin so.
+std::string_view declaration_in(std::string_view comment, std::string_view keyword);
+/// Whether what follows "unit" is a sentence that happens to begin so.
+bool is_prose(std::string_view unit);
+
 /// Unit and name as declared by lines "unit mm" and "frame NAME" among the comments; the options' unit counts more. A
 /// unit that is none is told.
 Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions& options);

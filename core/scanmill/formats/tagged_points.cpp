@@ -66,7 +66,7 @@ LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options)
     LoadedFile loaded;
     loaded.format = "XYZ";
     loaded.encoding = "ascii";
-    loaded.comments = cursor.comments();
+    loaded.comments = cursor.comments().texts();
     PointCloud cloud;
     cloud.frame = declared_frame(loaded.comments, options);
     move_near_origin(positions, bounding_box(positions), cloud.frame);

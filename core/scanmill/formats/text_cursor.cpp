@@ -54,11 +54,10 @@ std::pair<std::string_view, std::string_view> TextCursor::mixed_separators() con
 }
 
 void TextCursor::pass_comment() {
-    constexpr std::size_t most_comments = 1000;
     at_ += *at_ == '/' ? 2 : 1;
     const char* const begin = at_;
     while (at_ != end_ && !ends_line(*at_)) ++at_;
-    if (comments_.size() < most_comments) comments_.emplace_back(begin, at_);
+    comments_.add({begin, at_});
 }
 
 void TextCursor::pass_continuation() {

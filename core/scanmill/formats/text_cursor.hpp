@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "scanmill/formats/kept_comments.hpp"
+
 namespace scanmill {
 
 struct TextRules {
@@ -66,8 +68,8 @@ public:
 
     /// Number of the current line.
     std::size_t line() const { return line_; }
-    /// The comments passed so far, without their sign; at most the first thousand.
-    const std::vector<std::string>& comments() const { return comments_; }
+    /// The comments passed so far, without their sign.
+    const KeptComments& comments() const { return comments_; }
 
 private:
     // Bits of gaps_; the first four and line_end are also what a character is.
@@ -121,7 +123,7 @@ private:
     unsigned gaps_ = 0;
     bool begun_ = false;
     std::string_view last_token_;
-    std::vector<std::string> comments_;
+    KeptComments comments_;
 };
 
 inline bool TextCursor::more() {

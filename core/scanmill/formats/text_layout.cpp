@@ -88,7 +88,8 @@ private:
 
     /// "//X Y Z Intensity" and "# x y z nx ny nz" are comments to most programs and names to some.
     void look_into_comments() {
-        for (const std::string& comment : std::views::reverse(text_.comments())) {
+        layout_.unread_comments = text_.comments().others();
+        for (const std::string& comment : std::views::reverse(text_.comments().texts())) {
             std::vector<std::string> names = split_names(comment, most_columns);
             const auto axes = axes_among(names);
             if (!axes) continue;

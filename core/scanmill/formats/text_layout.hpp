@@ -23,6 +23,9 @@ struct TextLayout {
     std::array<std::size_t, 3> axes{0, 1, 2};  ///< which of them are x, y, z
     /// A comment that speaks of x, y and z but does not name every column; empty when there is none.
     std::string passed_over;
+    /// Comments before the first row of numbers that were too many to be looked through for names; 0 where a row
+    /// has the names.
+    std::size_t unread_comments = 0;
 };
 
 /// Moves the cursor, which is at the text's beginning, to the first row of numbers, and looks at it. The names are a

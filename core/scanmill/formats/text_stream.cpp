@@ -17,7 +17,6 @@ constexpr std::size_t most_rows = std::size_t(1) << 16, shortest_row = std::stri
 constexpr std::size_t piece_size = std::size_t(1) << 18;
 /// A text whose lines end otherwise than with LF is one long line to us.
 constexpr std::size_t longest_piece = most_rows * shortest_row;
-constexpr std::size_t most_comments = 1000;
 
 /// Thrown and caught here: something in the text needs a word, which whoever reads it whole has.
 struct Unusual {};
@@ -33,7 +32,7 @@ Vec3 parse_row(TextCursor& text, const std::array<std::size_t, 3>& axes) {
 
 /// Whether there is nothing to be said of the columns, nor any beside x, y and z.
 bool is_streamed(const TextLayout& layout) {
-    return layout.width == 3 && !layout.promised && layout.passed_over.empty();
+    return layout.width == 3 && !layout.promised && layout.passed_over.empty() && layout.unread_comments == 0;
 }
 
 class TextStream : public PointStream {
@@ -51,7 +50,7 @@ public:
         while (first_row > 0 && text[first_row - 1] != '\n' && text[first_row - 1] != '\r') --first_row;
         if (!cut(text.substr(first_row))) return false;
         if (!look_over(threads, on_positions)) return false;
-        frame_ = declared_frame(comments_, options);
+        frame_ = declared_frame(comments_.texts(), options);
         choose_origin();
         return true;
     }
@@ -79,7 +78,7 @@ private:
         struct Room {
             Array<Vec3> positions;
             FiniteBounds bounds;
-            std::vector<std::string> comments;
+            KeptComments comments;
         };
         std::size_t rows = 0;
         for_each_in_order<Room>(
@@ -92,8 +91,7 @@ private:
                 world_.add(room.bounds);
                 pieces_.push_back(rows);
                 rows += room.positions.size();
-                for (std::string& comment : room.comments)
-                    if (comments_.size() < most_comments) comments_.push_back(std::move(comment));
+                comments_.append(room.comments);
                 if (on_positions) on_positions(room.positions);
             });
         pieces_.push_back(rows);
@@ -150,7 +148,7 @@ private:
     std::unique_ptr<MappedFile> file_;
     std::array<std::size_t, 3> axes_{0, 1, 2};
     std::vector<std::string_view> texts_;  // of the pieces
-    std::vector<std::string> comments_;
+    KeptComments comments_;
 };
 
 }  // namespace

@@ -30,6 +30,11 @@ public:
             warn(options_.on_warning,
                  "the comment {} was passed over: it does not name x, y, z and then the rest of {}",
                  quote(layout_.passed_over), counted(layout_.width, "column", "columns"));
+        if (layout_.unread_comments > 0)
+            warn(options_.on_warning,
+                 "{} before the numbers, behind the first {}, {} not looked through for the names of columns",
+                 counted(layout_.unread_comments, "comment", "comments"), KeptComments::most,
+                 layout_.unread_comments == 1 ? "was" : "were");
         read_rows();
         std::optional<Column> normals = normals_behind_points();
         if (!normals) require_promised();
@@ -38,7 +43,7 @@ public:
         LoadedFile loaded;
         loaded.format = "XYZ";
         loaded.encoding = "ascii";
-        loaded.comments = text_.comments();
+        loaded.comments = text_.comments().texts();
         PointCloud cloud;
         cloud.frame = declared_frame(loaded.comments, options_);
         move_near_origin(positions_, bounding_box(positions_), cloud.frame);

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// What comments declare counts wherever it stands, however many there are.
+#include "formats_support.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::string comments(std::size_t count) {
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i) text += "# remark " + std::to_string(i) + "\n";
+    return text;
+}
+
+Frame frame_in(const std::string& text, const char* name, Told* told = nullptr) {
+    return *frame_of(read_bytes(text, name, told ? told->reading() : ReadOptions{}).value);
+}
+
+struct Content {
+    const char* name;
+    std::string begin, rest;
+};
+const std::vector<Content> contents{
+    {"a.xyz", "", "1 2 3\n4 5 6\n"},
+    {"a.csv", "", "x,y,z,weight\n1,2,3,4\n"},
+    {"a.off", "OFF\n", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+    {"a.obj", "", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+    {"a.xyz", "", "p 1 2 3\np 4 5 6\n"},
+};
+
+TEST(ManyComments, UnitAndFrameBehindTheThousandth_Count) {
+    for (const std::size_t count : {0u, 998u, 999u, 1000u, 1001u, 1500u})
+        for (const Content& content : contents) {
+            const std::string declared = comments(count) + "# unit mm\n# frame part\n" + comments(7);
+            for (const std::string& text :
+                 {content.begin + declared + content.rest, content.begin + content.rest + declared}) {
+                const Frame frame = frame_in(text, content.name);
+                EXPECT_EQ(frame.unit, LengthUnit::millimetre) << content.name << " " << count;
+                EXPECT_EQ(frame.name, "part") << content.name << " " << count;
+            }
+        }
+}
+
+TEST(ManyComments, OfSeveralUnits_TheLastCounts_AndDifferentOnesAreTold) {
+    for (const std::size_t count : {0u, 1500u}) {
+        Told told;
+        const std::string text =
+            "# unit m\n" + comments(count) + "# unit cm\n# unit parsec\n# unit of measure\n" + comments(3) + "1 2 3\n";
+        EXPECT_EQ(frame_in(text, "a.xyz", &told).unit, LengthUnit::centimetre);
+        EXPECT_THAT(told.sentences, Contains(HasSubstr("both 'unit m' and 'unit cm'; the last counts"))) << count;
+        EXPECT_THAT(told.sentences, Contains(HasSubstr("the unit 'parsec' is unknown"))) << count;
+    }
+}
+
+TEST(ManyComments, NamesBehindTheThousandth_AreToldToBePassedOver) {
+    const std::string names = "# x y z weight\n", row = "1 2 3 4\n";
+    Told told;
+    const auto near = points_in(comments(999) + names + row, "a.xyz", &told);
+    EXPECT_NE(near->columns.find("weight"), nullptr);
+    EXPECT_THAT(told.sentences, IsEmpty());
+    const auto far = points_in(comments(1000) + names + row, "a.xyz", &told);
+    EXPECT_NE(far->columns.find("c4"), nullptr);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 comment before the numbers, behind the first 1000, was not "
+                                                      "looked through for the names of columns")));
+    told.sentences.clear();
+    points_in(comments(1000) + "x y z weight\n" + row, "a.xyz", &told);
+    points_in(row + comments(5000), "a.xyz", &told);
+    EXPECT_THAT(told.sentences, IsEmpty()) << "names in a row need none, and comments behind the first row have none";
+}
+
+TEST(ManyComments, TakeLittleMemory) {
+    std::string text = comments(1000) + "1 2 3\n";
+    for (std::size_t i = 0; i < 5000; ++i) text += "# unit mm\n# unit m\n# frame a\n# unit parsec\n# other\n";
+    EXPECT_EQ(read_bytes(text, "a.xyz").comments.size(), 1003u);
+}
+
+}  // namespace
+}  // namespace scanmill::test
