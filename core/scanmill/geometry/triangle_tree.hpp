@@ -54,6 +54,7 @@ public:
 
 private:
     static constexpr std::size_t arity = 4;
+    static constexpr unsigned deepest = 16;  ///< 4^16 leaves hold any u32
     struct Node {
         /// Of the four children: low.x, low.y, low.z, high.x, high.y, high.z. Empty ones: low infinite, high minus it.
         alignas(16) float bounds[6][arity];
@@ -62,7 +63,9 @@ private:
         Vec3 a, b, c;
     };
 
-    std::size_t begin_of(std::size_t node_in_level, unsigned level) const;
+    std::size_t begin_of(std::size_t node_in_level, unsigned level) const {
+        return static_cast<std::size_t>(static_cast<u64>(node_in_level) * rows_.size() >> (2 * level));
+    }
     void sort_triangles(std::span<const Vec3> positions, std::span<const Triangle> triangles, unsigned threads);
     void bound_nodes(unsigned threads);
     void bound_node(std::size_t node);
