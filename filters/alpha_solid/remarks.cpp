@@ -9,6 +9,8 @@
 
 #include "alpha_solid/selection.hpp"
 
+#include "scanmill/filter/counted.hpp"
+
 namespace scanmill::alpha {
 
 namespace {
@@ -22,10 +24,6 @@ double number(std::string_view text) {
     double value = 0;
     std::from_chars(text.data(), text.data() + text.size(), value);
     return value;
-}
-
-std::string counted(std::size_t count, std::string_view one, std::string_view many) {
-    return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 std::string_view unit_of(const AlphaSolidResult& result) { return symbol(result.tets.frame.unit); }
@@ -43,7 +41,8 @@ std::string too_many_outside(const AlphaSolidResult& result, const AlphaSolidPar
     const std::size_t outside = result.uncovered_points.size();
     const std::size_t allowed = points - needed_points(params.coverage.value(), points);
     if (outside <= allowed) return {};
-    const std::string text = fmt::format("{} of {} points are outside of it", outside, result.tets.positions.size());
+    const std::string text = fmt::format("{} of {} points {} outside of it", outside, result.tets.positions.size(),
+                                         by_count(outside, "is", "are"));
     if (params.coverage.value() == 1) return text;
     return text + fmt::format(", more than the {} that coverage {} allows", allowed, params.coverage.text());
 }
@@ -124,8 +123,9 @@ std::string ambiguity(const AlphaSolidResult& result) {
     std::vector<std::string> signs;
     if (result.choice != AlphaChoice::given) signs = doubts(result);
     if (!result.interior_points.empty())
-        signs.push_back(fmt::format("{} of {} points lie inside the solid instead of on its boundary",
-                                    result.interior_points.size(), result.tets.positions.size()));
+        signs.push_back(fmt::format("{} of {} points {} inside the solid instead of on its boundary",
+                                    result.interior_points.size(), result.tets.positions.size(),
+                                    by_count(result.interior_points.size(), "lies", "lie")));
     if (signs.empty()) return {};
     return joined(signs) +
            ": what is narrower than 2 alpha may be filled, gaps between parts too; sculpt opens what it can, and more "
@@ -139,8 +139,8 @@ std::string missing_from(const AlphaSolidResult& result) {
     const std::string of_others =
         counted(cells, "cell of other solids was", "cells of other solids were") + " left out";
     if (points == 0) return cells == 0 ? "" : of_others;
-    return fmt::format("{} of {} points are not in or on the solid{}", points, result.tets.positions.size(),
-                       cells == 0 ? "" : "; " + of_others);
+    return fmt::format("{} of {} points {} not in or on the solid{}", points, result.tets.positions.size(),
+                       by_count(points, "is", "are"), cells == 0 ? "" : "; " + of_others);
 }
 
 /// That no alpha-solid was valid as it is, and what was made of one instead.

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/suggestion.hpp"
 
@@ -22,7 +23,7 @@ const Column& column_named(const PointCloud& cloud, const std::string& name) {
     if (const Column* column = cloud.columns.find(name)) {
         if (column->components() == 1) return *column;
         throw Error("weights need a column of one number per point; '{}' has {}{}", name,
-                    column->is_list() ? "lists" : fmt::format("{} numbers", column->components()),
+                    column->is_list() ? "lists" : counted(column->components(), "number", "numbers"),
                     single_columns(cloud))
             .hint("`weights: spacing` needs no column");
     }

@@ -7,6 +7,7 @@
 #include "delaunay/flatness.hpp"
 #include "delaunay/point_weights.hpp"
 #include "delaunay/triangulate.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/geometry/hidden_vertices.hpp"
 
 namespace scanmill {
@@ -38,9 +39,9 @@ std::size_t mark_hidden(TetMesh& tets, Context& context) {
     if (hidden.empty()) return 0;
     tets.vertex_columns = with_hidden(tets.vertex_columns, tets.positions.size(), hidden, context);
     context.warn(
-        fmt::format("{} of {} points are hidden by the weights of others and in no cell; the column "
+        fmt::format("{} of {} points {} hidden by the weights of others and in no cell; the column "
                     "'hidden' marks them; smaller weights hide fewer",
-                    hidden.size(), tets.positions.size()));
+                    hidden.size(), tets.positions.size(), by_count(hidden.size(), "is", "are")));
     return hidden.size();
 }
 

@@ -6,8 +6,10 @@
 #include <limits>
 
 #include "scanmill/data/array.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/parallel.hpp"
+#include "scanmill/geometry/size_limits.hpp"
 
 namespace scanmill {
 
@@ -82,11 +84,8 @@ void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsign
     if (positions.size() < 4)
         throw Error("needs at least 4 points that are not coplanar; the cloud has {}", positions.size())
             .hint(std::string(few_points));
+    require_finite_size(bounding_box(positions));
     const Extents found = extents(positions, frame.origin, threads);
-    if (!std::isfinite(found.from_point))
-        throw Error("needs points whose distances are finite numbers; the cloud has {} points up to {:.2g} {} apart",
-                    positions.size(), found.from_point, symbol(frame.unit))
-            .hint("give it in a larger unit");
     if (found.from_point <= found.rounding) refuse_flat(positions, 0, found.from_point, frame);
     if (found.from_line <= found.rounding) refuse_flat(positions, 1, found.from_line, frame);
     if (found.from_plane <= found.rounding) refuse_flat(positions, 2, found.from_plane, frame);
@@ -94,8 +93,9 @@ void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsign
 
 void refuse_flat(std::span<const Vec3> positions, int dimension, double distance, const Frame& frame) {
     if (const std::size_t distinct = distinct_places(positions); distinct < 4)
-        throw Error("needs at least 4 points that are not coplanar; the cloud has {} points at {} distinct place{}",
-                    positions.size(), distinct, distinct == 1 ? "" : "s")
+        throw Error("needs at least 4 points that are not coplanar; the cloud has {} at {}",
+                    counted(positions.size(), "point", "points"),
+                    counted(distinct, "distinct place", "distinct places"))
             .hint(std::string(few_points));
     const std::string_view shape = dimension == 0 ? "one place" : dimension == 1 ? "one line" : "one plane";
     throw Error("needs at least 4 points that are not coplanar; the cloud has {}, all within {:.2g} {} of {}{}",

@@ -7,6 +7,7 @@
 
 #include "delaunay/column_weights.hpp"
 #include "delaunay/spacing_weights.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill {
@@ -84,8 +85,8 @@ PointWeights point_weights(const PointCloud& cloud, const DelaunayParams& params
                     std::sqrt(largest_weight))
             .hint("give it in a larger unit");
     if (const std::size_t different = merge_places(cloud.positions.span(), points); different > 0)
-        context.warn(fmt::format("at {} places points with different weights were merged; the largest weight counts",
-                                 different));
+        context.warn(fmt::format("at {} points with different weights were merged; the largest weight counts",
+                                 counted(different, "place", "places")));
     return points;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "features/features.hpp"
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/feature_doubts.hpp"
 
@@ -10,8 +11,8 @@ namespace {
 
 void warn_of_short_creases(const FeatureCounts& counts, const FeatureParams& params, Context& context) {
     if (counts.dropped > 0)
-        context.warn(fmt::format("{} crease{} shorter than {:.6g} u: left out", counts.dropped,
-                                 counts.dropped == 1 ? "" : "s", params.min_length.value()));
+        context.warn(fmt::format("{} shorter than {:.6g} u: left out", counted(counts.dropped, "crease", "creases"),
+                                 params.min_length.value()));
 }
 
 }  // namespace

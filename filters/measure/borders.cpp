@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/borders.hpp"
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/sides.hpp"
 #include "scanmill/geometry/triangle_distance.hpp"
@@ -55,8 +56,9 @@ std::size_t leave_out_borders(NearestDistances& nearest, std::span<const Vec3> p
         ++kept;
     }
     if (kept == 0)
-        throw Error("all {} points of the truth are nearest to a border of the mesh; none is left to measure it by",
-                    points.size())
+        throw Error("{} nearest to a border of the mesh; none is left to measure it by",
+                    points.size() == 1 ? "the only point of the truth is"
+                                       : fmt::format("all {} points of the truth are", points.size()))
             .hint("say borders: include");
     nearest.distances.resize(kept);
     nearest.triangles.resize(kept);

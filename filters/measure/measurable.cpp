@@ -4,8 +4,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/length_scale.hpp"
+#include "scanmill/geometry/size_limits.hpp"
 #include "scanmill/geometry/surface_box.hpp"
 
 namespace scanmill::measuring {
@@ -35,6 +37,7 @@ std::vector<double> thresholds_for(const TriangleMesh& mesh, const MeasureParams
 }
 
 void require_squares(const BoundingBox& box, std::string_view name) {
+    require_finite_size(box);
     const double size = box.diagonal();
     if (!(size > 1e-60 && size < 1e60))
         throw Error("the {} is {:.3g} in size; between 1e-60 and 1e60 is needed for its squares to be numbers", name,
@@ -44,8 +47,8 @@ void require_squares(const BoundingBox& box, std::string_view name) {
 
 void require_surface(const TriangleMesh& mesh, std::string_view name) {
     if (mesh.triangles.empty())
-        throw Error("the {} has no triangles ({} vertices); there is no surface to measure", name,
-                    mesh.positions.size())
+        throw Error("the {} has no triangles ({}); there is no surface to measure", name,
+                    counted(mesh.positions.size(), "vertex", "vertices"))
             .hint("make a surface of the points first; only the truth may be points");
     require_consistent(mesh);
     require_finite(mesh.positions.span(), fmt::format("vertices of the {}", name));
@@ -54,8 +57,10 @@ void require_surface(const TriangleMesh& mesh, std::string_view name) {
         const Vec3& origin = mesh.positions[a];
         if ((mesh.positions[b] - origin).cross(mesh.positions[c] - origin).squaredNorm() > 0) return;
     }
-    throw Error("none of the {} triangles of the {} has an area; there is no surface to measure", mesh.triangles.size(),
-                name)
+    throw Error("{} of the {} has {} area; there is no surface to measure",
+                mesh.triangles.size() == 1 ? "the only triangle"
+                                           : fmt::format("none of the {} triangles", mesh.triangles.size()),
+                name, by_count(mesh.triangles.size(), "no", "an"))
         .hint("`scanmill info` tells what a file holds");
 }
 

@@ -11,6 +11,7 @@
 #include "measure/nearest_distances.hpp"
 #include "measure/self_intersections.hpp"
 #include "measure/surface_samples.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/surface_box.hpp"
 
@@ -133,8 +134,8 @@ Measurement measure(const TriangleMesh& mesh, const TriangleMesh& given_truth, c
     require_surface(mesh, "mesh");
     require_surface(given_truth, "truth");
     if (params.borders == MeasureParams::Borders::exclude)
-        throw Error("borders are excluded for points as truth, and the truth is a mesh of {} triangles",
-                    given_truth.triangles.size())
+        throw Error("borders are excluded for points as truth, and the truth is a mesh of {}",
+                    counted(given_truth.triangles.size(), "triangle", "triangles"))
             .hint("say borders: include, or give the scan as truth");
     const std::vector<double> thresholds = thresholds_for(mesh, params);
     TriangleMesh truth = given_truth;
@@ -179,7 +180,8 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
             .hint("`scanmill info` tells what a file holds");
     require_finite(truth.positions.span(), "points of the truth");
     if (params.certify)
-        throw Error("the Hausdorff distance of surfaces is certified, and the truth is {} points", truth.size())
+        throw Error("the Hausdorff distance of surfaces is certified, and the truth is {}",
+                    counted(truth.size(), "point", "points"))
             .hint("leave certify out, or give a mesh as truth");
     const Buffer<Vec3> points = in_frame_of(mesh.frame, truth.frame, truth.positions);
     const BoundingBox box = bounding_box(points.span());

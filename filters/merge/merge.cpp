@@ -8,6 +8,7 @@
 #include "merge/merged_columns.hpp"
 #include "merge/overlap.hpp"
 #include "merge/placed_points.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill {
@@ -51,7 +52,8 @@ void require_sound(Inputs inputs, const MergeParams& params) {
     if (!(within >= 0) || !std::isfinite(within))
         throw Error("the distance `within` is {} u; it must be 0 or more", within);
     if (!params.poses.empty() && params.poses.size() != inputs.size())
-        throw Error("there are {} poses for {} inputs; every input needs one", params.poses.size(), inputs.size());
+        throw Error("there {} {} for {}; every input needs one", by_count(params.poses.size(), "is", "are"),
+                    counted(params.poses.size(), "pose", "poses"), counted(inputs.size(), "input", "inputs"));
 }
 
 /// The column's numbers, checked, of all inputs end to end.

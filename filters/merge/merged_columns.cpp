@@ -7,6 +7,7 @@
 #include <string>
 
 #include "merge/joined_column.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/geometry/placed.hpp"
 
 namespace scanmill::merging {
@@ -61,7 +62,7 @@ private:
             if (const Column* column = table.find(name)) parts.push_back(*column);
         if (const std::size_t without = tables_.size() - parts.size(); without > 0) {
             context_.warn(fmt::format("the column '{}' is left out: {} of {} inputs {} it", name, without,
-                                      tables_.size(), without == 1 ? "lacks" : "lack"));
+                                      tables_.size(), by_count(without, "lacks", "lack")));
             return {};
         }
         const Column& first = parts.front();
@@ -108,8 +109,9 @@ ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> cl
         if (clouds[cloud]->columns.find(newest)) ++with_source;
     }
     if (with_source > 0)
-        context.warn(fmt::format("{} of {} inputs {} a column 'source' already; it is called 'source{}' now",
-                                 with_source, clouds.size(), with_source == 1 ? "has" : "have", older));
+        context.warn(fmt::format("{} of {} {} a column 'source' already; it is called 'source{}' now", with_source,
+                                 counted(clouds.size(), "input", "inputs"), by_count(with_source, "has", "have"),
+                                 older));
     ColumnTable result = Merger(std::move(tables), context).merged();
     result.add(source_column(clouds));
     return result;

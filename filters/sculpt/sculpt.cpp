@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scanmill/data/points.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/parallel.hpp"
 #include "scanmill/geometry/size_limits.hpp"
@@ -38,9 +39,10 @@ void require_usable(const TetMesh& tets, const SculptParams& params) {
 void require_manifold(const BoundaryDefects& defects, std::size_t triangles) {
     if (defects.vertices.empty()) return;
     throw Error(
-        "needs a solid whose boundary is a 2-manifold; of this one's {} triangles, {} edges have more than two, and at "
-        "{} vertices (first {}) they do not form one closed fan",
-        triangles, defects.edges, defects.vertices.size(), defects.vertices.front())
+        "needs a solid whose boundary is a 2-manifold; of this one's {} triangles, {} more than two, and at {} "
+        "(first {}) they do not form one closed fan",
+        triangles, counted(defects.edges, "edge has", "edges have"),
+        counted(defects.vertices.size(), "vertex", "vertices"), defects.vertices.front())
         .hint("'alpha-solid: {alpha: auto}' gives a manifold boundary");
 }
 
@@ -95,14 +97,16 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
     const TetMesh& tets = result.tets;
     if (!result.blocked_points.empty())
         context.warn(fmt::format(
-            "{} of {} points stay inside the solid, because removing any cell over them would make its boundary touch "
+            "{} of {} points {} inside the solid, because removing any cell over them would make its boundary touch "
             "itself or leave a point outside: at {}; the sampling is too sparse or too noisy there",
-            result.blocked_points.size(), tets.positions.size(), places_of_first(tets, result.blocked_points)));
+            result.blocked_points.size(), tets.positions.size(),
+            by_count(result.blocked_points.size(), "stays", "stay"), places_of_first(tets, result.blocked_points)));
     if (!result.deep_points.empty())
         context.warn(fmt::format(
-            "{} of {} points stay inside the solid, more than two cells below its boundary: at {}; a smaller alpha "
-            "may reach them",
-            result.deep_points.size(), tets.positions.size(), places_of_first(tets, result.deep_points)));
+            "{} of {} points {} inside the solid, more than two cells below its boundary: at {}; a smaller alpha "
+            "may reach {}",
+            result.deep_points.size(), tets.positions.size(), by_count(result.deep_points.size(), "stays", "stay"),
+            places_of_first(tets, result.deep_points), by_count(result.deep_points.size(), "it", "them")));
     if (static_cast<double>(result.removals.size()) > much * static_cast<double>(cells_before))
         context.warn(fmt::format(
             "{} of {} cells had to be removed: the points fill the solid rather than sample its surface, or the "

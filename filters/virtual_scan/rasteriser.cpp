@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "scanmill/data/array.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/geometry/length_scale.hpp"
 #include "scanmill/geometry/size_limits.hpp"
@@ -104,14 +105,16 @@ Scene scene_of(const TriangleMesh& mesh) {
     require_consistent(mesh);
     require_finite(mesh.positions.span(), "vertices");
     if (mesh.triangles.empty())
-        throw Error("the mesh has {} vertices and no triangles to scan", mesh.positions.size())
+        throw Error("the mesh has {} and no triangles to scan", counted(mesh.positions.size(), "vertex", "vertices"))
             .hint("make a mesh of them first, or scan a shape: `shape: sphere`");
     Scene scene;
     scene.frame = mesh.frame;
     const TriangleMesh used = without_unused_vertices(mesh);
     scene.box = bounding_box(used.positions.span());
     if (!(scene.box.diagonal() > 0))
-        throw Error("the mesh has no extent: all {} triangles are one point", mesh.triangles.size())
+        throw Error("the mesh has no extent: {} one point",
+                    mesh.triangles.size() == 1 ? "its only triangle is"
+                                               : fmt::format("all {} triangles are", mesh.triangles.size()))
             .hint("`scanmill info` tells what a file holds");
     require_finite_size(scene.box);
     if (const double size = scene.box.diagonal(); !(size >= least_size && size <= largest_size))

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "virtual_scan/first_root.hpp"
 #include "virtual_scan/holed_block.hpp"
@@ -146,8 +147,9 @@ double dimension_of(const Length& length, const std::string& name) {
 std::vector<double> dimensions_of(const Kind& kind, std::span<const Length> size) {
     if (size.empty()) return kind.defaults;
     if (size.size() != kind.dimensions.size())
-        throw Error("a {} has {} dimensions ({}); size has {}", kind.name, kind.dimensions.size(),
-                    fmt::join(kind.dimensions, ", "), size.size())
+        throw Error("a {} has {} ({}); size has {}", kind.name,
+                    counted(kind.dimensions.size(), "dimension", "dimensions"), fmt::join(kind.dimensions, ", "),
+                    size.size())
             .hint(fmt::format("say `size: [{} u]`, or leave size out", fmt::join(kind.defaults, " u, ")));
     std::vector<double> dimensions;
     for (std::size_t i = 0; i < size.size(); ++i)

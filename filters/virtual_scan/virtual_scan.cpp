@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/parallel.hpp"
 #include "virtual_scan/scene.hpp"
@@ -57,20 +58,39 @@ void require_sound(const VirtualScanParams& params, double resolution, double no
             .hint("90 deg keeps every point that is seen");
 }
 
-std::vector<scan::View> views_over(const scan::Scene& scene, const std::vector<Vec3>& directions, double resolution,
-                                   std::size_t& rays) {
+std::vector<scan::View> views_at(const scan::Scene& scene, const std::vector<Vec3>& directions, double resolution) {
     const Vec3 centre = 0.5 * scene.box.low + 0.5 * scene.box.high;
     std::vector<scan::View> views;
+    for (const Vec3& direction : directions) views.push_back(scan::view_from(direction, centre, resolution));
+    return views;
+}
+
+double rays_over(std::span<const scan::View> views, const scan::Scene& scene) {
     double total = 0;
-    for (const Vec3& direction : directions) {
-        views.push_back(scan::view_from(direction, centre, resolution));
-        total += scan::rays_over(views.back(), scene.hull);
-    }
+    for (const scan::View& view : views) total += scan::rays_over(view, scene.hull);
+    return total;
+}
+
+/// Said by the rays that another resolution takes.
+std::string resolution_that_fits(const scan::Scene& scene, const std::vector<Vec3>& directions, double resolution) {
+    const double total = rays_over(views_at(scene, directions, resolution), scene);
+    return fmt::format("a resolution of {:.3g} u or coarser fits", 1.01 * resolution * std::sqrt(total / most_rays));
+}
+
+std::vector<scan::View> views_over(const scan::Scene& scene, const std::vector<Vec3>& directions, double resolution,
+                                   std::size_t& rays) {
+    std::vector<scan::View> views = views_at(scene, directions, resolution);
+    const double total = rays_over(views, scene);
+    if (!std::isfinite(total))
+        throw Error("{} at a resolution of {:.6g} u {} more rays than can be counted; at most {} are possible",
+                    counted(views.size(), "view", "views"), resolution, by_count(views.size(), "takes", "take"),
+                    most_rays)
+            .hint(resolution_that_fits(scene, directions, 1e-6 * scene.box.diagonal()));
     if (!(total <= most_rays))
-        throw Error("{} views at a resolution of {:.6g} u take {:.6g} rays; at most {} are possible", views.size(),
-                    resolution, total, most_rays)
-            .hint(fmt::format("a resolution of {:.3g} u or coarser fits",
-                              1.01 * resolution * std::sqrt(total / most_rays)));
+        throw Error("{} at a resolution of {:.6g} u {} {:.6g} rays; at most {} are possible",
+                    counted(views.size(), "view", "views"), resolution, by_count(views.size(), "takes", "take"), total,
+                    most_rays)
+            .hint(resolution_that_fits(scene, directions, resolution));
     for (scan::View& view : views) view = scan::covering(view, scene.hull);
     rays = static_cast<std::size_t>(total);
     return views;
@@ -165,7 +185,8 @@ VirtualScanResult virtual_scan(const TriangleMesh* mesh, const VirtualScanParams
         }
     }
     if (samples.positions.empty())
-        throw Error("none of {} rays in {} views came back from the surface", result.rays, views.size())
+        throw Error("none of {} in {} came back from the surface", counted(result.rays, "ray", "rays"),
+                    counted(views.size(), "view", "views"))
             .hint("use a finer resolution, more views, or a larger max-angle");
     result.outliers = static_cast<std::size_t>(
         std::floor(params.outliers.value() * static_cast<double>(samples.positions.size()) + 0.5));

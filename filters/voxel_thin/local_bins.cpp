@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 
 namespace scanmill::voxel {
@@ -38,8 +39,8 @@ void require_sound(const BoundingBox& box, const VoxelThinParams& params) {
 
 void require_places(std::size_t places, u32 neighbours) {
     if (places > neighbours) return;
-    throw Error("the cloud has {} distinct {}; curvature from {} neighbours needs at least {}", places,
-                places == 1 ? "place" : "places", neighbours, u64(neighbours) + 1)
+    throw Error("the cloud has {}; curvature from {} neighbours needs at least {}",
+                counted(places, "distinct place", "distinct places"), neighbours, u64(neighbours) + 1)
         .hint("give a bin-size, or fewer neighbours (at least 6)");
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "voxel_thin/added_columns.hpp"
 
@@ -50,8 +51,9 @@ Vec3 grid_origin(const BoundingBox& box, const VoxelThinParams& params) {
 
 void require_some(const NearestRows& rows, std::size_t points, u32 min_points) {
     if (!rows.kept.empty()) return;
-    throw Error("all {} points lie in {} bins with fewer than {} points each; nothing would be left", points, rows.bins,
-                min_points)
+    throw Error("{} in {} with fewer than {} points each; nothing would be left",
+                points == 1 ? "the only point lies" : fmt::format("all {} points lie", points),
+                counted(rows.bins, "bin", "bins"), min_points)
         .hint("lower min-points or enlarge the bins");
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/quantity.hpp"
 #include "scanmill/formats/reading.hpp"
@@ -99,7 +100,8 @@ private:
     void read_viewpoint() {
         constexpr std::array<double, 7> nowhere{0, 0, 0, 1, 0, 0, 0};
         if (words_.size() != nowhere.size() + 1)
-            throw Error("line {}: VIEWPOINT has {} numbers; expected {}", line_, words_.size() - 1, nowhere.size());
+            throw Error("line {}: VIEWPOINT has {}; expected {}", line_,
+                        counted(words_.size() - 1, "number", "numbers"), nowhere.size());
         for (std::size_t i = 0; i < nowhere.size(); ++i) {
             double number = 0;
             if (!parse_number(words_[i + 1], number))
@@ -138,8 +140,8 @@ private:
     void finish() {
         if (counts_.empty()) counts_.assign(fields_, 1);
         if (fields_ == 0 || sizes_.size() != fields_ || counts_.size() != fields_)
-            throw Error("its header names {} fields and gives {} sizes and {} counts", fields_, sizes_.size(),
-                        counts_.size());
+            throw Error("its header names {} and gives {} and {}", counted(fields_, "field", "fields"),
+                        counted(sizes_.size(), "size", "sizes"), counted(counts_.size(), "count", "counts"));
         for (std::size_t field = 0; field < fields_; ++field) {
             if (sizes_[field] != 1 && sizes_[field] != 2 && sizes_[field] != 4 && sizes_[field] != 8)
                 throw Error("its header gives field {} the size {}; expected 1, 2, 4 or 8", field, sizes_[field]);
@@ -155,8 +157,8 @@ private:
         header_.points = header_.width * header_.height;
         require_countable(header_.points, "points");
         if (promised_ && *promised_ != header_.points)
-            throw Error("its header promises {} points, and {} × {} of them", *promised_, header_.width,
-                        header_.height);
+            throw Error("its header promises {}, and {} × {} of them", counted(*promised_, "point", "points"),
+                        header_.width, header_.height);
         if (padded_ && header_.encoding == PcdHeader::Encoding::compressed)
             throw Error("its compressed points have padding (the field _), which PCL does not read rightly")
                 .hint("save it as binary or ascii");
@@ -169,8 +171,8 @@ private:
         const u64 promised = header_.points * header_.row_bytes;
         const auto require = [&](bool fits) {
             if (!fits)
-                throw Error("its header promises {} points of {} bytes; {} bytes follow it", header_.points,
-                            header_.row_bytes, left)
+                throw Error("its header promises {} of {}; {} it", counted(header_.points, "point", "points"),
+                            counted(header_.row_bytes, "byte", "bytes"), counted(left, "byte follows", "bytes follow"))
                     .hint("the file is truncated or its header is wrong: fetch or export it again");
         };
         switch (header_.encoding) {
@@ -187,8 +189,9 @@ private:
                 require(left - sizeof sizes >= sizes[0]);
                 header_.bytes_behind = without_padding(left - sizeof sizes - sizes[0]);
                 if (sizes[1] != promised || promised > best_ratio * sizes[0])
-                    throw Error("its header promises {} points of {} bytes; the compressed block says {} bytes in {}",
-                                header_.points, header_.row_bytes, sizes[1], sizes[0])
+                    throw Error("its header promises {} of {}; the compressed block says {} in {}",
+                                counted(header_.points, "point", "points"), counted(header_.row_bytes, "byte", "bytes"),
+                                counted(sizes[1], "byte", "bytes"), sizes[0])
                         .hint("the file is damaged: fetch or export it again");
             }
         }

@@ -8,6 +8,7 @@
 #include "pcd/pcd_fields.hpp"
 #include "pcd/pcd_header.hpp"
 #include "pcd/pcd_rows.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/reading.hpp"
 
@@ -26,7 +27,8 @@ void require_fields_inside(const pcl::PCLPointCloud2& cloud, const PcdHeader& he
         fits = fits && field.offset + u64(field.count) * size_of(*type) <= cloud.point_step;
     }
     if (!fits)
-        throw Error("its header names fields that do not add up to {} bytes per point", header.row_bytes)
+        throw Error("its header names fields that do not add up to {} per point",
+                    counted(header.row_bytes, "byte", "bytes"))
             .hint("SIZE, TYPE and COUNT must have an entry for every field");
 }
 
@@ -49,8 +51,8 @@ pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) 
                                         static_cast<unsigned int>(header.body));
     }
     if (trouble < 0)
-        throw Error("PCL cannot make {} points of {} bytes of {} data", header.points, bytes.size() - header.body,
-                    name_of(header.encoding))
+        throw Error("PCL cannot make {} of {} of {} data", counted(header.points, "point", "points"),
+                    counted(bytes.size() - header.body, "byte", "bytes"), name_of(header.encoding))
             .hint("the file is damaged: fetch or export it again");
     return cloud;
 }

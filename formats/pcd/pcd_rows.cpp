@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "pcd/pcd_fields.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/formats/reading.hpp"
 #include "scanmill/formats/text_cursor.hpp"
@@ -30,7 +31,8 @@ void read_rows(std::string_view bytes, const PcdHeader& header, pcl::PCLPointClo
     TextCursor text(bytes.substr(header.body), {.line = header.lines + 1});
     for (u64 row = 0; row < header.points; ++row) {
         if (!text.next_row())
-            throw Error("its header promises {} points; {} follow", header.points, row)
+            throw Error("its header promises {}; {} {}", counted(header.points, "point", "points"), row,
+                        by_count(row, "follows", "follow"))
                 .hint("the file is truncated: fetch or export it again");
         u64 numbers = 0;
         for (const pcl::PCLPointField& field : cloud.fields) {
@@ -43,7 +45,9 @@ void read_rows(std::string_view bytes, const PcdHeader& header, pcl::PCLPointClo
             throw Error("line {}: found {}; a point has {}", text.line(), counted(numbers, "number", "numbers"),
                         header.row_numbers);
     }
-    if (text.next_row()) throw Error("line {}: more rows than the {} points of the header", text.line(), header.points);
+    if (text.next_row())
+        throw Error("line {}: more rows than the {} of the header", text.line(),
+                    counted(header.points, "point", "points"));
 }
 
 }  // namespace scanmill::pcd

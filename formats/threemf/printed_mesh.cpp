@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/quantity.hpp"
 #include "scanmill/formats/reading.hpp"
@@ -94,13 +95,13 @@ void require_solid(const TriangleMesh& mesh) {
     const MeshTopology found = topology(mesh);
     if (!found.closed)
         throw Error(
-            "3MF holds closed, oriented manifolds only; the mesh has {} boundary edges in {} loops, {} edges in three "
-            "or "
-            "more triangles, {} edges whose two triangles disagree, {} vertices of several fans and {} triangles that "
-            "name "
-            "a vertex twice",
-            found.boundary_edges, found.boundary_loops, found.nonmanifold_edges, found.misoriented_edges,
-            found.nonmanifold_vertices, found.degenerate_triangles)
+            "3MF holds closed, oriented manifolds only; the mesh has {} in {}, {} in three or more triangles, {} "
+            "disagree, {} of several fans and {} a vertex twice",
+            counted(found.boundary_edges, "boundary edge", "boundary edges"),
+            counted(found.boundary_loops, "loop", "loops"), counted(found.nonmanifold_edges, "edge", "edges"),
+            counted(found.misoriented_edges, "edge whose two triangles", "edges whose two triangles"),
+            counted(found.nonmanifold_vertices, "vertex", "vertices"),
+            counted(found.degenerate_triangles, "triangle that names", "triangles that name"))
             .hint("STL, GLB and VTP hold open meshes; alpha-solid makes closed ones from points");
     const double volume = six_volumes(mesh) / 6;
     if (!std::isfinite(volume) || volume == 0)

@@ -129,7 +129,7 @@ TEST(ColumnTable, OtherNumberOfRows_IsRefusedWithBothNumbers) {
     EXPECT_EQ(sentence_of([&] {
                   table.add(Column("normal", 3, Buffer<float>{0, 0, 1}));
               }),
-              "column 'normal' has 1 rows, the others have 2");
+              "column 'normal' has 1 row, the others have 2");
     EXPECT_EQ(table.size(), 1u);
 }
 

@@ -71,7 +71,7 @@ const std::vector<Defect> defects{
      "line 2: expected the keyword OFF or the numbers of vertices, faces and edges, found 'three'"},
     {"no_vertices.off", "holds no points"},
     {"vertices_2_to_40.off", "1099511627776 vertices"},
-    {"faces_2_to_40.off", "line 2 promises 1 vertices and 1099511627776 faces"},
+    {"faces_2_to_40.off", "line 2 promises 1 vertex and 1099511627776 faces"},
     {"truncated_vertices.off", "ends after 3 of 4 vertices"},
     {"truncated_faces.off", "ends after 1 of 2 faces"},
     {"vertex_of_two_numbers.off", "line 4: vertex 1 ends before its coordinates"},

@@ -71,7 +71,7 @@ TEST(StlReader_Binary, DegenerateFacets_AreKeptAndCounted) {
     facets.push_back({{{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}}});
     const auto mesh = mesh_in(binary(facets), "a.stl", &told);
     EXPECT_EQ(mesh->triangles[2], (Triangle{0, 1, 0}));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 of 3 facets are degenerate")));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 of 3 facets is degenerate")));
 }
 
 TEST(StlReader_Binary, InvalidCoordinates_AreReadAsTheyAre) {

@@ -108,7 +108,7 @@ TEST(PwnLayout, NormalsOfOtherLengths_AreTold_AndInAnotherFileAWrongCount) {
     Told told;
     EXPECT_EQ(points_in("1\n1 2 3\n0 0 5\n", "a.pwn", &told)->size(), 1u);
     EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("not all normals have unit length")));
-    EXPECT_THAT(refusal_of("1\n1 2 3\n0 0 5\n", "a.xyz"), HasSubstr("line 1 promises 1 points; 2 follow"));
+    EXPECT_THAT(refusal_of("1\n1 2 3\n0 0 5\n", "a.xyz"), HasSubstr("line 1 promises 1 point; 2 follow"));
     EXPECT_THAT(refusal_of("2\n1 2 3\n4 5 6\n0 0 1\n", "a.pwn"), HasSubstr("line 1 promises 2 points; 3 follow"));
 }
 

@@ -47,6 +47,18 @@ TEST(LengthResolution, RelativeLengths_AreMeasuredOnTheScan) {
     EXPECT_DOUBLE_EQ(on(scan_in(LengthUnit::unknown), "3 spacing"), 0.75);
 }
 
+TEST(LengthResolution, LongerThanAnyNumber_IsRefused) {
+    const auto refusal = [](const LengthScale& scale, const char* text) {
+        return sentence_of([&] { on(scale, text); });
+    };
+    EXPECT_EQ(refusal(scan_in(LengthUnit::unknown, 1e200), "1e200 %diag"),
+              "1e+200 %diag comes to more than the largest number, 1.8e+308 u");
+    EXPECT_EQ(on(scan_in(LengthUnit::unknown), "1.6e308 spacing"), 4e307);
+    EXPECT_THAT(refusal(scan_in(LengthUnit::unknown, 1, 2), "1e308 spacing"), HasSubstr("1e+308 spacing comes to"));
+    EXPECT_THAT(refusal(scan_in(LengthUnit::micrometre), "1e308 m"), HasSubstr("1e+308 m comes to"));
+    EXPECT_DOUBLE_EQ(on(scan_in(LengthUnit::unknown, 1e300), "1 %diag"), 1e298);
+}
+
 TEST(LengthResolution, ScanUnits_NeedNothingOfTheScan) {
     EXPECT_EQ(Length::parse("0.5 u").resolved(LengthScale{}), Length(0.5));
     EXPECT_EQ(on(scan_in(LengthUnit::metre), "0.5 u"), 0.5);

@@ -154,7 +154,7 @@ TEST(ParameterList, OfGivenSize_HasThatSize) {
                   read_list(list_of(Type::number, 3), {"0", "0", "0", "1"});
               }),
               "has 4 values; expected a list of 3 values, each a number");
-    EXPECT_EQ(refusal(list_of(Type::number, 3), "1"), "has 1 values; expected a list of 3 values, each a number");
+    EXPECT_EQ(refusal(list_of(Type::number, 3), "1"), "has 1 value; expected a list of 3 values, each a number");
 }
 
 TEST(ParameterList, InPlaceOfAValue_IsRefused) {

@@ -174,7 +174,7 @@ TEST(RequireSound, Default_LiesInItsOwnRange) {
                   spec.parameters[0].size = 3;
                   spec.parameters[0].default_value = std::vector<ParameterScalar>{1.0};
               }),
-              "filter voxel-thin: the default of 'bin-size': has 1 values; expected a list of 3 values, each a number");
+              "filter voxel-thin: the default of 'bin-size': has 1 value; expected a list of 3 values, each a number");
 }
 
 TEST(RequireSound, NoDefault_IsSound) {

@@ -112,7 +112,7 @@ const std::vector<Mistake> mistakes{
      "axis: has 2 values"},
     {steps("  - thin: {axis: [1, $, 0]}\n"), "steps 0 thin axis: ", "'$' names no parameter"},
     {"parameters: {n: [1, $m]}\n" + steps("  - thin: {axis: $n}\n"), "parameters n: ", "cannot refer to another"},
-    {steps("  - thin: {axis: 1}\n"), "steps 0 thin axis: Value type not permitted", "axis: has 1 values"},
+    {steps("  - thin: {axis: 1}\n"), "steps 0 thin axis: Value type not permitted", "axis: has 1 value"},
     {steps("  - thin: {count: {sweep: []}}\n"), "steps 0 thin count sweep: Array should contain no fewer than 1",
      "a sweep over no values"},
     {steps("  - thin: {count: {sweep: [0]}}\n"),

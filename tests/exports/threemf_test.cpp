@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 3MF: what assimp and lib3mf's own reader find, and which meshes are no solids.
-
-#include <Model/COM/NMR_DLLInterfaces.h>
+// 3MF: what assimp and lib3mf's own reader find.
 
 #include <fmt/format.h>
 
 #include "exports/assimp_support.hpp"
+#include "exports/cube_in_unit.hpp"
+#include "exports/threemf_package.hpp"
 #include "scanmill/filter/quantity.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"
@@ -18,63 +18,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-/// The one object of a package, with what assimp does not tell.
-struct SeenBy3mf {
-    DWORD unit = 99;
-    std::string name, uuid;
-    Vec3 place = Vec3::Zero();
-    std::vector<Vec3> vertices;  ///< without the place
-};
-
-std::string bytes_of_3mf(const TriangleMesh& mesh, Told* told = nullptr) {
-    return write_bytes("a.3mf", std::make_shared<const TriangleMesh>(mesh), told ? told->writing() : WriteOptions{});
-}
-
-/// lib3mf's objects are left to the end of the program.
-SeenBy3mf read_by_3mf(std::string bytes) {
-    using namespace NMR;
-    SeenBy3mf seen;
-    PLib3MFModel* model = nullptr;
-    PLib3MFModelReader* reader = nullptr;
-    PLib3MFModelBuildItemIterator* items = nullptr;
-    PLib3MFModelBuildItem* item = nullptr;
-    PLib3MFModelObjectResource* object = nullptr;
-    BOOL found = 0;
-    MODELTRANSFORM place;
-    DWORD count = 0;
-    char text[200] = "";
-    ULONG length = 0;
-    EXPECT_EQ(lib3mf_createmodel(&model), 0);
-    EXPECT_EQ(lib3mf_model_queryreader(model, "3mf", &reader), 0);
-    EXPECT_EQ(lib3mf_reader_setstrictmodeactive(reader, 1), 0);
-    EXPECT_EQ(lib3mf_reader_readfrombuffer(reader, reinterpret_cast<BYTE*>(bytes.data()), bytes.size()), 0);
-    EXPECT_EQ(lib3mf_model_getunit(model, &seen.unit), 0);
-    EXPECT_EQ(lib3mf_model_getbuilditems(model, &items), 0);
-    EXPECT_EQ(lib3mf_builditemiterator_movenext(items, &found), 0);
-    EXPECT_TRUE(found);
-    EXPECT_EQ(lib3mf_builditemiterator_getcurrent(items, &item), 0);
-    EXPECT_EQ(lib3mf_builditem_getobjecttransform(item, &place), 0);
-    EXPECT_EQ(lib3mf_builditem_getobjectresource(item, &object), 0);
-    EXPECT_EQ(lib3mf_object_getnameutf8(object, text, sizeof text, &length), 0);
-    seen.name = text;
-    EXPECT_EQ(lib3mf_object_getuuidutf8(object, &found, text), 0);
-    seen.uuid = text;
-    EXPECT_EQ(lib3mf_meshobject_getvertexcount(object, &count), 0);
-    for (DWORD i = 0; i < count; ++i) {
-        MODELMESHVERTEX v;
-        EXPECT_EQ(lib3mf_meshobject_getvertex(object, i, &v), 0);
-        seen.vertices.emplace_back(v.m_fPosition[0], v.m_fPosition[1], v.m_fPosition[2]);
-    }
-    for (int axis = 0; axis < 3; ++axis) seen.place[axis] = place.m_fFields[axis][3];
-    return seen;
-}
-
-TriangleMesh cube_in(LengthUnit unit, double edge = 1) {
-    TriangleMesh mesh = cube(edge);
-    mesh.frame.unit = unit;
-    return mesh;
-}
 
 TEST(ThreemfWriter, Cube_IsACubeForOthers) {
     Told told;
@@ -131,13 +74,6 @@ TEST(ThreemfWriter, VertexOfNoTriangle_IsLeftOutAndMovesNothing) {
     EXPECT_LT((box.high - Vec3(4.321e8 + 2000, 5.421e8 + 2000, 2000)).cwiseAbs().maxCoeff(), 2e-3);
 }
 
-TEST(ThreemfWriter, SolidBelowSixDecimals_IsRefused) {
-    EXPECT_THAT(sentence_of([] { bytes_of_3mf(cube_in(LengthUnit::millimetre, 3e-7)); }),
-                HasSubstr("nothing is left of the object: its diagonal is 5.2e-07 mm"));
-    EXPECT_THAT(sentence_of([] { bytes_of_3mf(cube_in(LengthUnit::millimetre, 1e-160)); }),
-                HasSubstr("comes to 0 mm³"));
-}
-
 TEST(ThreemfWriter, EveryUnit_IsDeclared) {
     for (const auto& [unit, declared] : {std::pair(LengthUnit::micrometre, NMR::MODELUNIT_MICROMETER),
                                          {LengthUnit::millimetre, NMR::MODELUNIT_MILLIMETER},
@@ -188,50 +124,6 @@ TEST(ThreemfWriter, FarFromZero_PlaceAndVerticesAddUp) {
     for (std::size_t i = 0; i < 8; ++i)
         EXPECT_LT((seen.place + seen.vertices[i] - (mesh.frame.origin + mesh.positions[i])).norm(), 3e-6) << i;
     EXPECT_NE(seen.place, Vec3::Zero());
-}
-
-TEST(ThreemfWriter_Losses, AreToldByName) {
-    TriangleMesh mesh = cube_in(LengthUnit::millimetre);
-    mesh.vertex_columns.add(Column("colour", 3, Buffer<u8>(Array<u8>(24, u8(9)))));
-    mesh.face_columns.add(Column("group", 1, Buffer<u8>(Array<u8>(12, u8(1)))));
-    mesh.sharp_edges = {{0, 1}, {1, 2}};
-    Told told;
-    bytes_of_3mf(mesh, &told);
-    EXPECT_THAT(told.sentences,
-                ElementsAre(HasSubstr("3MF left out 1 column of the vertices (colour)"),
-                            HasSubstr("3MF left out 1 column of the faces (group)"), HasSubstr("2 edges are sharp")));
-}
-
-TEST(ThreemfWriter_Refuses, WhatIsNoSolid_WithNumbers) {
-    const auto refusal = [](const TriangleMesh& mesh) { return sentence_of([&] { bytes_of_3mf(mesh); }); };
-    EXPECT_THAT(refusal(without_triangles(cube(1), {0})),
-                HasSubstr("3 boundary edges in 1 loops, 0 edges in three or more triangles"));
-    TriangleMesh turned = cube(2);
-    Array<Triangle> triangles(turned.triangles.begin(), turned.triangles.end());
-    for (Triangle& triangle : triangles) std::swap(triangle[0], triangle[1]);
-    turned.triangles = triangles;
-    EXPECT_THAT(refusal(turned), AllOf(HasSubstr("encloses the volume -8"), HasSubstr("do not face outwards")));
-    TriangleMesh disagreeing = cube(1);
-    triangles.assign(disagreeing.triangles.begin(), disagreeing.triangles.end());
-    std::swap(triangles[0][0], triangles[0][1]);
-    disagreeing.triangles = triangles;
-    EXPECT_THAT(refusal(disagreeing), HasSubstr("3 edges whose two triangles disagree"));
-    TriangleMesh empty = cube(1);
-    empty.triangles = {};
-    EXPECT_THAT(refusal(empty), HasSubstr("has no triangles, and 3MF holds solids only"));
-    TriangleMesh unfinite = cube(1);
-    Array<Vec3> positions(unfinite.positions.begin(), unfinite.positions.end());
-    positions[3].x() = INFINITY;
-    unfinite.positions = positions;
-    EXPECT_THAT(refusal(unfinite), HasSubstr("1 of 8 vertices have a NaN or an infinity"));
-    EXPECT_THAT(refusal(cube(3e9)), HasSubstr("has the coordinate 3e+09, and 3MF's library takes none beyond 1e+09"));
-}
-
-TEST(ThreemfWriter_Refuses, OtherKinds_AndToRead) {
-    EXPECT_THAT(error_of([] { write_bytes("a.3mf", std::make_shared<const PointCloud>(random_cube(9, 1))); }).what(),
-                AllOf(HasSubstr("points cannot be written with the extension '.3mf'"), HasSubstr("ply, xyz")));
-    EXPECT_THAT(refusal_of(bytes_of_3mf(cube_in(LengthUnit::millimetre)), "a.3mf"),
-                HasSubstr("3MF is written for other programs, and not read"));
 }
 
 TEST(ThreemfWriter, EqualValues_GiveEqualBytes_AndOthersOtherUuids) {

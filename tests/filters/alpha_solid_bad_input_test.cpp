@@ -59,7 +59,7 @@ TEST(AlphaSolidOfBadInput, NaNAndInfinitePositions_AreRefusedWithTheFirst) {
         positions[41].z() = bad;
         cloud.positions = std::move(positions);
         EXPECT_THAT(through_both(cloud).refused,
-                    HasSubstr("1 of 100 points have a NaN or an infinity, the first is number 41"));
+                    HasSubstr("1 of 100 points has a NaN or an infinity, the first is number 41"));
     }
 }
 
@@ -124,7 +124,7 @@ TEST(AlphaSolidOfBadInput, OneOutlierAThousandDiagonalsAway_IsCoveredAndSaidOrLe
     expect_closed(most.solid, 999, 2);
     EXPECT_LT(most.solid.alpha, 0.12);
     EXPECT_THAT(most.solid.uncovered_points.span(), ElementsAre(999));
-    EXPECT_THAT(most.warnings, ElementsAre(HasSubstr("1 of 1000 points are not in or on the solid")));
+    EXPECT_THAT(most.warnings, ElementsAre(HasSubstr("1 of 1000 points is not in or on the solid")));
 }
 
 }  // namespace

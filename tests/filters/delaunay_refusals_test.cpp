@@ -37,6 +37,11 @@ std::string refusal(const PointCloud& cloud) {
     return "accepted";
 }
 
+TEST(Delaunay, FartherApartThanNumbersGo_IsRefusedWithTheRange) {
+    const PointCloud cloud = cloud_of({{-1.5e308, 0, 0}, {1.25e308, 0, 0}, {0, 1e308, 0}, {0, 0, 1e308}});
+    EXPECT_THAT(refusal(cloud), AllOf(HasSubstr("from -1.5e+308 to 1.25e+308 lie farther apart"), HasSubstr("hint")));
+}
+
 TEST(Delaunay, NaNOrInfinity_IsRefusedWithItsPlace) {
     PointCloud cloud = random_cube(10, 1);
     Array<Vec3> positions(cloud.positions.begin(), cloud.positions.end());

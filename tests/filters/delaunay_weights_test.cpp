@@ -59,7 +59,7 @@ TEST(DelaunayWeights, APointInTheMiddle_IsHiddenByHeavyCorners_AndNotByLightOnes
     EXPECT_THAT(hides.tets.weights.span(), ElementsAre(3.5, 3.5, 3.5, 3.5, 0.25));
     EXPECT_EQ(context.metrics().find("hidden")->value, 1);
     ASSERT_EQ(context.warnings().size(), 1u);
-    EXPECT_THAT(context.warnings()[0], HasSubstr("1 of 5 points are hidden"));
+    EXPECT_THAT(context.warnings()[0], HasSubstr("1 of 5 points is hidden"));
     // The factor counts: 0.5 · (3.5 - 0.25) is below 3.
     EXPECT_EQ(weighted(with_weights(cloud, {3.5, 3.5, 3.5, 3.5, 0.25}), weighted_by("w", 0.5)).hidden, 0u);
 }

@@ -57,11 +57,13 @@ TEST(MeasureRefusals, NotFinite_IsRefusedWithItsSide) {
 
 TEST(MeasureRefusals, NoArea_IsRefused) {
     const TriangleMesh line = soup({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}});
-    EXPECT_EQ(refusal(line, line), "none of the 1 triangles of the mesh has an area; there is no surface to measure");
+    EXPECT_EQ(refusal(line, line), "the only triangle of the mesh has no area; there is no surface to measure");
     EXPECT_THAT(refusal(soup({{1, 1, 1}}, {{0, 0, 0}}), cube()), HasSubstr("the mesh is 0 in size"));
 }
 
 TEST(MeasureRefusals, SizesWithoutSquares_AreRefused) {
+    EXPECT_THAT(refusal(soup({{-1.5e308, 0, 0}, {1.5e308, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}), cube()),
+                HasSubstr("from -1.5e+308 to 1.5e+308 lie farther apart"));
     EXPECT_THAT(refusal(scaled(cube(), 1e80), cube()), HasSubstr("between 1e-60 and 1e60"));
     EXPECT_THAT(refusal(cube(), scaled(cube(), 1e-80)), HasSubstr("the truth is 1.73e-80 in size"));
 }

@@ -47,7 +47,7 @@ TEST(SculptRefuses, BoundaryThatTouchesItself) {
     tets.inside = std::move(inside);
     EXPECT_THAT(sculpt_refusal(tets),
                 testing::AllOf(HasSubstr("boundary is a 2-manifold"), HasSubstr("0 edges have more than two"),
-                               HasSubstr("at 1 vertices")));
+                               HasSubstr("at 1 vertex (first")));
 }
 
 TEST(SculptRefuses, NegativeMinGain) {

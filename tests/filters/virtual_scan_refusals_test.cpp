@@ -15,6 +15,7 @@ namespace {
 using Shape = VirtualScanParams::Shape;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 VirtualScanParams sphere(double resolution) {
     VirtualScanParams params;
@@ -51,7 +52,9 @@ TEST(VirtualScanRefusals, MeshWithoutTriangles) {
 TEST(VirtualScanRefusals, MeshWithoutExtent) {
     TriangleMesh mesh = cube();
     mesh.positions = Array<Vec3>(8, Vec3(1, 2, 3));
-    EXPECT_THAT(refusal({}, &mesh), HasSubstr("no extent"));
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("no extent: all 12 triangles are one point"));
+    mesh.triangles = {{0, 1, 2}};
+    EXPECT_THAT(refusal({}, &mesh), HasSubstr("no extent: its only triangle is one point"));
 }
 
 TEST(VirtualScanRefusals, MeshOfSliversOnly) {
@@ -85,7 +88,14 @@ TEST(VirtualScanRefusals, TooManyRays_WithAResolutionThatFits) {
     const std::string text = refusal(sphere(1e-5));
     EXPECT_THAT(text, HasSubstr("12 views"));
     EXPECT_THAT(text, HasSubstr("at most 268435456"));
-    EXPECT_THAT(refusal(sphere(1e-300)), HasSubstr("rays"));
+    const std::string countless = refusal(sphere(1e-300));
+    EXPECT_THAT(countless, AllOf(HasSubstr("12 views at a resolution of 1e-300 u take more rays than can be counted"),
+                                 Not(HasSubstr("inf"))));
+    const auto hint_of = [](const std::string& what) { return what.substr(what.find("hint")); };
+    EXPECT_EQ(hint_of(countless), hint_of(text)) << "whatever was asked for";
+    VirtualScanParams params = sphere(1e-5);
+    params.views = {1};
+    EXPECT_THAT(refusal(params), HasSubstr("1 view at a resolution of 1e-05 u takes"));
 }
 
 TEST(VirtualScanRefusals, ParametersOutOfRange) {
@@ -123,7 +133,7 @@ TEST(VirtualScanRefusals, ViewsThatAreNone) {
 TEST(VirtualScanRefusals, SizesThatFitNoShape) {
     VirtualScanParams params = sphere(0.1);
     params.size = {1.0, 2.0};
-    EXPECT_THAT(refusal(params), HasSubstr("a sphere has 1 dimensions (radius); size has 2"));
+    EXPECT_THAT(refusal(params), HasSubstr("a sphere has 1 dimension (radius); size has 2"));
     params.size = {-1.0};
     EXPECT_THAT(refusal(params), HasSubstr("the radius of the sphere is -1 u"));
     params.shape = Shape::torus;

@@ -107,6 +107,7 @@ TEST(VoxelThinRefusals, NothingButNoise_IsRefused) {
     VoxelThinParams params = bins_of(1);
     params.min_points = 2;
     EXPECT_THAT(refusal(cloud_of({{0, 0, 0}, {5, 0, 0}}), params), HasSubstr("all 2 points lie in 2 bins"));
+    EXPECT_THAT(refusal(cloud_of({{0, 0, 0}}), params), HasSubstr("the only point lies in 1 bin with fewer than 2"));
 }
 
 TEST(VoxelThinRefusals, ToleranceNotAboveZero_IsRefused) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/data/columns.hpp"
+#include "scanmill/filter/counted.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -75,7 +76,7 @@ bool Column::operator==(const Column& other) const {
 void ColumnTable::add(Column column) {
     if (find(column.name())) throw Error("two columns are called '{}'; names must differ", column.name());
     if (!columns_.empty() && columns_.front().rows() != column.rows())
-        throw Error("column '{}' has {} rows, the others have {}", column.name(), column.rows(),
+        throw Error("column '{}' has {}, the others have {}", column.name(), counted(column.rows(), "row", "rows"),
                     columns_.front().rows());
     columns_.push_back(std::move(column));
 }

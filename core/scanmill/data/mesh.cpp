@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/data/mesh.hpp"
+#include "scanmill/filter/counted.hpp"
 
 #include "scanmill/filter/error.hpp"
 
@@ -12,7 +13,8 @@ constexpr u32 unused = ~u32(0);
 void require_rows(const ColumnTable& columns, std::size_t rows, std::string_view element) {
     for (const Column& column : columns)
         if (column.rows() != rows)
-            throw Error("column '{}' has {} rows for {} {}", column.name(), column.rows(), rows, element);
+            throw Error("column '{}' has {} for {} {}", column.name(), counted(column.rows(), "row", "rows"), rows,
+                        element);
 }
 
 template <class Simplex>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/data/points.hpp"
+#include "scanmill/filter/counted.hpp"
 
 #include <cmath>
 
@@ -31,8 +32,8 @@ void require_finite(std::span<const Vec3> positions, std::string_view what) {
     if (bad == 0) return;
     const Vec3& p = positions[first];
     const int axis = !std::isfinite(p.x()) ? 0 : !std::isfinite(p.y()) ? 1 : 2;
-    throw Error("needs finite coordinates; {} of {} {} have a NaN or an infinity, the first is number {} ({} is {})",
-                bad, positions.size(), what, first, "xyz"[axis], p[axis])
+    throw Error("needs finite coordinates; {} of {} {} {} a NaN or an infinity, the first is number {} ({} is {})", bad,
+                positions.size(), what, by_count(bad, "has", "have"), first, "xyz"[axis], p[axis])
         .hint("'scanmill convert --drop-invalid IN OUT' writes a copy without them");
 }
 

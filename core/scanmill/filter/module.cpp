@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/module.hpp"
+#include "scanmill/filter/counted.hpp"
 
 #include <dlfcn.h>
 #include <link.h>
@@ -33,8 +34,8 @@ void require_whole(const std::filesystem::path& module) {
     const std::uintmax_t size = std::filesystem::file_size(module, unknown);
     const auto require = [&](std::uintmax_t begin, std::uintmax_t length) {
         if (unknown || begin > size || length > size - begin)
-            throw Error("module '{}' was cut short: it has {} bytes and promises {}", module.string(), size,
-                        begin + length);
+            throw Error("module '{}' was cut short: it has {} and promises {}", module.string(),
+                        counted(size, "byte", "bytes"), begin + length);
     };
     require(header.e_phoff, header.e_phnum * sizeof(ElfW(Phdr)));
     stream.seekg(static_cast<std::streamoff>(header.e_phoff));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/parameter.hpp"
+#include "scanmill/filter/counted.hpp"
 
 #include <algorithm>
 #include <array>
@@ -188,7 +189,7 @@ ParameterValue parse(const ParameterSpec& spec, const WrittenParameter& written)
     };
     if (!spec.list) return item(written.items.front());
     if (spec.size && written.items.size() != *spec.size)
-        throw Error("has {} values; expected {}", written.items.size(), expectation(spec));
+        throw Error("has {}; expected {}", counted(written.items.size(), "value", "values"), expectation(spec));
     std::vector<ParameterScalar> values;
     for (const std::string& text : written.items) values.push_back(item(text));
     return values;

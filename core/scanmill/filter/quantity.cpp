@@ -102,12 +102,19 @@ double Length::value() const {
 }
 
 Length Length::resolved(const LengthScale& scale) const {
+    const auto finite = [&](double length) {
+        if (!std::isfinite(length))
+            throw Error("{} comes to more than the largest number, {:.3g} u", text(),
+                        std::numeric_limits<double>::max())
+                .hint("give a shorter length");
+        return Length(length);
+    };
     const auto times = [&](const std::function<double()>& reference, double factor, std::string_view what) {
         const double length = reference ? reference() : 0;
         if (!(length > 0) || !std::isfinite(length))
             throw Error("{} cannot be resolved: the scan's {} is {}", text(), what, length)
                 .hint("give the length in the scan's unit, as 0.5 u");
-        return Length(amount_ * factor * length);
+        return finite(amount_ * factor * length);
     };
     if (in_ == In::scan_unit) return *this;
     if (in_ == In::percent_of_diagonal) return times(scale.diagonal, 0.01, "bounding-box diagonal");
@@ -119,7 +126,7 @@ Length Length::resolved(const LengthScale& scale) const {
             .hint(
                 "say `--unit mm`, or `inputs: {scan: {kind: points, unit: mm}}` in the workflow, or write the length "
                 "in the scan's own unit, as 0.5 u");
-    return Length(in_unit(amount_, suffix.unit, scale.unit));
+    return finite(in_unit(amount_, suffix.unit, scale.unit));
 }
 
 std::string Length::text() const { return number_text(amount_) + " " + std::string(suffix_of(in_).text); }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/mapped_file.hpp"
+#include "scanmill/filter/counted.hpp"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -66,7 +67,8 @@ MappedFile::MappedFile(const std::filesystem::path& path, bool whole) {
     // One call that maps all pages beats a fault for every few of them.
     data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | (whole ? MAP_POPULATE : 0), file.number, 0);
     if (data_ == MAP_FAILED)
-        throw Error("its {} bytes cannot be mapped: {}", size_, std::generic_category().message(errno));
+        throw Error("its {} cannot be mapped: {}", counted(size_, "byte", "bytes"),
+                    std::generic_category().message(errno));
 }
 
 void MappedFile::fetch(std::string_view part) const noexcept {

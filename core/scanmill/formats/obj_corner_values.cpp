@@ -62,8 +62,8 @@ void ObjCornerValues::add_column(ColumnTable& columns, std::span<const u32> corn
     if (std::ranges::all_of(value_of_, [](u32 value) { return value == none; })) {
         if (count() == 0) return;
         if (count() != vertices)
-            return warn(on_warning, "the {} {} were left out: no face names them, and there are {} vertices", count(),
-                        what_, vertices);
+            return warn(on_warning, "the {} {} were left out: no face names them, and there {} {}", count(), what_,
+                        by_count(vertices, "is", "are"), counted(vertices, "vertex", "vertices"));
         if (!corners.empty())
             warn(on_warning, "no face names the {} {}: they were given to the vertices of equal number", count(),
                  what_);

@@ -142,8 +142,9 @@ private:
         // The first missing one is larger than all before it, so it is in the list.
         for (const Ahead& ahead : ahead_)
             if (ahead.index >= positions_.size())
-                throw Error("line {}: a face names vertex {}; there are {} vertices, numbered from 1", ahead.line,
-                            ahead.index + 1, positions_.size())
+                throw Error("line {}: a face names vertex {}; there {} {}, numbered from 1", ahead.line,
+                            ahead.index + 1, by_count(positions_.size(), "is", "are"),
+                            counted(positions_.size(), "vertex", "vertices"))
                     .hint("the file is truncated or wrong: fetch or export it again");
     }
 

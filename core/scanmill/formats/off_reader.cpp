@@ -94,8 +94,9 @@ private:
         // A vertex takes at least "0 0 0" and a line end, a face "3 0 0 0"; a face of one corner is "1 0".
         constexpr u64 least_vertex = 6, least_face = 2;
         if (vertices_ > bytes_.size() / least_vertex || faces_ > bytes_.size() / least_face)
-            throw Error("line {} promises {} vertices and {} faces; the file has only {} bytes", text_.line(),
-                        vertices_, faces_, bytes_.size())
+            throw Error("line {} promises {} and {}; the file has only {}", text_.line(),
+                        counted(vertices_, "vertex", "vertices"), counted(faces_, "face", "faces"),
+                        counted(bytes_.size(), "byte", "bytes"))
                 .hint("the file is truncated or its header is wrong: fetch or export it again");
     }
 
@@ -151,12 +152,13 @@ private:
             for (u64 i = 0; i < length; ++i) {
                 u64 vertex = 0;
                 if (!text_.more())
-                    throw Error("line {}: face {} has {} of its {} corners", text_.line(), row, i, length);
+                    throw Error("line {}: face {} has {} of its {}", text_.line(), row, i,
+                                counted(length, "corner", "corners"));
                 const bool is_number = text_.number(vertex);
                 if (!is_number || vertex >= vertices_)
-                    throw Error("line {}: face {} names vertex {}; there are {} vertices, numbered from 0",
-                                text_.line(), row, is_number ? std::to_string(vertex) : quote(text_.last_token()),
-                                vertices_);
+                    throw Error("line {}: face {} names vertex {}; there {} {}, numbered from 0", text_.line(), row,
+                                is_number ? std::to_string(vertex) : quote(text_.last_token()),
+                                by_count(vertices_, "is", "are"), counted(vertices_, "vertex", "vertices"));
                 corners.push_back(static_cast<u32>(vertex));
             }
             offsets.push_back(corners.size());

@@ -200,10 +200,9 @@ void require_room(const PlyElement& element, PlyEncoding encoding, std::size_t l
     // The last row of a text needs no line end.
     const u64 fitting = (left + (encoding == PlyEncoding::ascii ? 1 : 0)) / row;
     if (element.count > fitting)
-        throw Error(
-            "the header promises {} rows of element {}, each at least {} bytes long; the {} bytes that follow "
-            "hold at most {}",
-            element.count, quote(element.name), row, left, fitting)
+        throw Error("the header promises {} of element {}, each at least {} long; the {} that follow hold at most {}",
+                    counted(element.count, "row", "rows"), quote(element.name), counted(row, "byte", "bytes"),
+                    counted(left, "byte", "bytes"), fitting)
             .hint("the file is truncated or its header is wrong: fetch or export it again");
 }
 

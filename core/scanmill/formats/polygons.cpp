@@ -13,7 +13,8 @@ namespace {
 
 template <class T>
 [[noreturn]] void throw_bad_index(std::string_view element, std::size_t row, T index, std::size_t vertices) {
-    throw Error("{} {} names vertex {}; there are {} vertices, numbered from 0", element, row, +index, vertices);
+    throw Error("{} {} names vertex {}; there {} {}, numbered from 0", element, row, +index,
+                by_count(vertices, "is", "are"), counted(vertices, "vertex", "vertices"));
 }
 
 template <class T>

@@ -48,8 +48,8 @@ private:
         Eigen::RowVector<double, size> numbers;
         for (int i = 0; i < size; ++i) {
             if (!text_.more())
-                throw Error("line {}: the {} of scan {} has {} numbers in a row; {} are needed", text_.line(), what,
-                            scan_, i, size);
+                throw Error("line {}: the {} of scan {} has {} in a row; {} are needed", text_.line(), what, scan_,
+                            counted(static_cast<u64>(i), "number", "numbers"), size);
             if (!text_.number(numbers[i]))
                 throw Error("line {}: {} is no number for the {} of scan {}", text_.line(), quote(text_.last_token()),
                             what, scan_);
@@ -64,8 +64,8 @@ private:
         constexpr u64 least_cell = 8;  // "0 0 0 0" and a line end
         const u64 most = text_size / least_cell + 1;
         if (header_.rows > 0 && header_.columns > most / header_.rows)
-            throw Error("line {}: scan {} promises {} x {} cells; the file has only {} bytes", header_.line, scan_,
-                        header_.columns, header_.rows, text_size)
+            throw Error("line {}: scan {} promises {} x {} cells; the file has only {}", header_.line, scan_,
+                        header_.columns, header_.rows, counted(text_size, "byte", "bytes"))
                 .hint("the file is truncated or its header is wrong: fetch or export it again");
     }
 

@@ -39,8 +39,8 @@ private:
         has_colours_.reset();
         for (u64 cell = 0; cell < header.cells(); ++cell) {
             if (!text_.next_row())
-                throw Error("line {}: the text ends after {} of the {} cells of scan {}", text_.line(), cell,
-                            header.cells(), scans_)
+                throw Error("line {}: the text ends after {} of the {} of scan {}", text_.line(), cell,
+                            counted(header.cells(), "cell", "cells"), scans_)
                     .hint("the file is truncated: fetch or export it again");
             read_cell(header);
         }

@@ -27,10 +27,6 @@ std::string shell_word(const std::filesystem::path& path) {
     return word + "'";
 }
 
-std::string counted(u64 count, std::string_view singular, std::string_view plural) {
-    return fmt::format("{} {}", count, count == 1 ? singular : plural);
-}
-
 std::string_view without_byte_order_mark(std::string_view text) {
     constexpr std::string_view mark = "\xef\xbb\xbf";
     if (text.starts_with(mark)) text.remove_prefix(mark.size());

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/formats/format.hpp"
 
 namespace scanmill {
@@ -20,9 +21,6 @@ std::string quote(std::string_view bytes);
 
 /// The path as one word of a shell's command line, for hints that hold a command.
 std::string shell_word(const std::filesystem::path& path);
-
-/// "1 face", "12 faces".
-std::string counted(u64 count, std::string_view singular, std::string_view plural);
 
 /// Text editors of Windows begin a file with a mark of three bytes.
 std::string_view without_byte_order_mark(std::string_view text);

@@ -42,9 +42,10 @@ LoadedFile assembled(Soup soup, std::vector<std::string> comments, std::string e
     if (soup.triangles.empty()) throw Error("holds no points: the STL file has no facets");
     const auto degenerate = std::ranges::count_if(
         soup.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
-    if (degenerate > 0)
-        warn(options.on_warning, "{} of {} facets are degenerate (two corners at one place); they are kept", degenerate,
-             soup.triangles.size());
+    if (const auto count = static_cast<u64>(degenerate); count > 0)
+        warn(options.on_warning, "{} of {} {} degenerate (two corners at one place); {} kept", degenerate,
+             counted(soup.triangles.size(), "facet", "facets"), by_count(count, "is", "are"),
+             by_count(count, "it is", "they are"));
     TriangleMesh mesh;
     mesh.frame = declared_frame(comments, options);
     Array<Vec3> positions = soup.merger.take_positions();
@@ -58,13 +59,14 @@ LoadedFile assembled(Soup soup, std::vector<std::string> comments, std::string e
 LoadedFile read_binary(std::string_view bytes, const ReadOptions& options) {
     constexpr std::size_t body = stl_header_size + 4;
     if (bytes.size() < body)
-        throw Error("is {} bytes long; a binary STL file has a header of {} bytes and a count of 4", bytes.size(),
-                    stl_header_size);
+        throw Error("is {} long; a binary STL file has a header of {} bytes and a count of 4",
+                    counted(bytes.size(), "byte", "bytes"), stl_header_size);
     const std::size_t facets = little_endian<u32>(bytes.data() + stl_header_size);
     const std::size_t fitting = (bytes.size() - body) / stl_facet_size;
     if (facets > fitting)
-        throw Error("the STL header promises {} facets of {} bytes; the {} bytes that follow hold {}", facets,
-                    stl_facet_size, bytes.size() - body, fitting)
+        throw Error("the STL header promises {} of {} bytes; the {} that follow hold {}",
+                    counted(facets, "facet", "facets"), stl_facet_size, counted(bytes.size() - body, "byte", "bytes"),
+                    fitting)
             .hint("the file is truncated or no STL at all: fetch or export it again");
     if (const std::size_t rest = bytes.size() - body - facets * stl_facet_size; rest > 0)
         warn(options.on_warning, "{} after the last facet passed over at the file's end",

@@ -34,7 +34,7 @@ public:
             warn(options_.on_warning,
                  "{} before the numbers, behind the first {}, {} not looked through for the names of columns",
                  counted(layout_.unread_comments, "comment", "comments"), KeptComments::most,
-                 layout_.unread_comments == 1 ? "was" : "were");
+                 by_count(layout_.unread_comments, "was", "were"));
         read_rows();
         std::optional<Column> normals = normals_behind_points();
         if (!normals) require_promised();
@@ -139,7 +139,8 @@ private:
         if (blocks_.empty()) return;
         const Block& block = blocks_.back();
         if (const std::size_t found = positions_.size() - block.first; found != block.promised)
-            throw Error("line {} promises {} points; {} follow", block.line, block.promised, found)
+            throw Error("line {} promises {}; {} {}", block.line, counted(block.promised, "point", "points"), found,
+                        by_count(found, "follows", "follow"))
                 .hint(std::string(count_hint));
     }
 
