@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scanmill/filter/counted.hpp"
+
 namespace scanmill::voxel {
 
 namespace {
@@ -47,8 +49,9 @@ void add_bin_sizes(PointCloud& thinned, std::span<const double> edges, double gr
                 ++older;
             }
     if (older > 0)
-        context.warn(fmt::format("{} of {} kept points were thinned with larger bins before; their `bin-size` stays",
-                                 older, sizes.size()));
+        context.warn(fmt::format("{} of {} {} thinned with larger bins before; {} `bin-size` stays", older,
+                                 counted(sizes.size(), "kept point", "kept points"), by_count(older, "was", "were"),
+                                 by_count(older, "its", "their")));
     add_columns(thinned, {Column("bin-size", 1, Buffer<double>(std::move(sizes)))}, context);
 }
 

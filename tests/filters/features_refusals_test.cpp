@@ -77,9 +77,14 @@ TEST(FeaturesRefuse, SizesWhoseSquaresAreNoNumbers) {
 
 TEST(FeaturesRefuse, SharpEdgesThatNoTriangleHas) {
     TriangleMesh mesh = cube();
-    mesh.sharp_edges = {{0, 1}, {0, 7}, {1, 6}};
-    const std::string sentence = features_refusal(mesh);
-    EXPECT_THAT(sentence, AllOf(HasSubstr("of the mesh's 3 sharp edges"), HasSubstr("edges of no triangle")));
+    mesh.sharp_edges = {{0, 1}, {0, 7}, {1, 2}};
+    EXPECT_THAT(features_refusal(mesh),
+                HasSubstr("1 of the mesh's 3 sharp edges is an edge of no triangle; the first is "
+                          "between vertices 0 and 7"));
+    mesh.sharp_edges = {{0, 7}, {2, 4}, {0, 1}};
+    EXPECT_THAT(features_refusal(mesh), HasSubstr("2 of the mesh's 3 sharp edges are edges of no triangle"));
+    mesh.sharp_edges = {{0, 7}};
+    EXPECT_THAT(features_refusal(mesh), HasSubstr("1 of the mesh's 1 sharp edge is an edge of no triangle"));
 }
 
 TEST(FeaturesRefuse, IndicesOutOfRange) {

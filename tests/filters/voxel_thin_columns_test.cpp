@@ -11,6 +11,7 @@
 namespace scanmill::test {
 namespace {
 
+using ::testing::Contains;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -45,6 +46,9 @@ TEST(VoxelThinColumns, BinSize_OfEarlierLargerBinsStays) {
     EXPECT_THAT(column<double>(again, "bin-size"), ElementsAre(2, 1.5, 4));
     EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("2 of 3 kept points were thinned with larger bins before"),
                                                 HasSubstr("gives way")));
+    Context one;
+    voxel_thin(again.points, bins_of(3), one);
+    EXPECT_THAT(one.warnings(), Contains(HasSubstr("1 of 3 kept points was thinned with larger bins before; its")));
     // Of a column in which any number is no size, none is believed.
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double nothing : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {

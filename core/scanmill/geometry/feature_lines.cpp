@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "scanmill/data/points.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/parallel.hpp"
 #include "scanmill/geometry/boundary_loops.hpp"
@@ -61,8 +62,9 @@ void mark_own(const TriangleMesh& mesh, std::span<const u32> twins, std::vector<
     const auto missing = std::ranges::count(own, false, &Own::found);
     if (missing == 0) return;
     const Edge& first = std::ranges::find(own, false, &Own::found)->edge;
-    throw Error("{} of the mesh's {} sharp edges are edges of no triangle; the first is between vertices {} and {}",
-                missing, own.size(), first[0], first[1])
+    throw Error("{} of the mesh's {} {} of no triangle; the first is between vertices {} and {}", missing,
+                counted(own.size(), "sharp edge", "sharp edges"),
+                by_count(static_cast<std::size_t>(missing), "is an edge", "are edges"), first[0], first[1])
         .hint("write the mesh again with the sharp edges of its own triangles, or without any");
 }
 
