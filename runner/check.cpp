@@ -9,8 +9,8 @@
 #include "plan_output.hpp"
 #include "scanmill/batch/plan_batch.hpp"
 #include "scanmill/engine/workflow_file.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
-#include "scanmill/formats/reading.hpp"
 
 namespace scanmill::runner {
 

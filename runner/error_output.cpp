@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "printable.hpp"
-#include "scanmill/formats/reading.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "stderr_text.hpp"
 
 namespace scanmill::runner {

@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "scanmill/engine/byte_size.hpp"
-#include "scanmill/formats/reading.hpp"
+#include "scanmill/filter/counted.hpp"
 
 namespace scanmill::runner {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scanmill/engine/streaming.hpp"
-#include "scanmill/formats/reading.hpp"
+#include "scanmill/filter/counted.hpp"
 
 namespace scanmill::runner {
 

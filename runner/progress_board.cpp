@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "scanmill/formats/reading.hpp"
+#include "scanmill/filter/counted.hpp"
 
 namespace scanmill::runner {
 

@@ -8,8 +8,8 @@
 
 #include "failure_json.hpp"
 #include "scanmill/engine/facts.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/formats/metrics_json.hpp"
-#include "scanmill/formats/reading.hpp"
 #include "table.hpp"
 
 namespace scanmill::runner {

@@ -7,6 +7,7 @@
 
 #include "region_grow/search_radii.hpp"
 #include "region_grow/small_holes.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/geometry/feature_doubts.hpp"
 
 namespace scanmill::growing {
@@ -55,7 +56,7 @@ void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, d
     context.warn(fmt::format(
         "{} of {} boundary loops {} where two sides are nearer to each other than {} bins, the nearest {:.3g} {} with "
         "bins of {:.3g} {}: the surface may go on there; thin less, or scan more densely",
-        thin.loops, result.loops, thin.loops == 1 ? "lies" : "lie", thin_in_bins, thin.least / scale, unit,
+        thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_bins, thin.least / scale, unit,
         thin.bin / scale, unit));
 }
 

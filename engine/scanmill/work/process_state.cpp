@@ -9,7 +9,7 @@
 #include <clocale>
 #include <filesystem>
 
-#include "scanmill/formats/reading.hpp"
+#include "scanmill/filter/counted.hpp"
 #include "scanmill/work/resource_use.hpp"
 
 namespace scanmill {
