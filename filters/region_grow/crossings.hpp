@@ -19,12 +19,12 @@ bool meet(std::span<const Vec3> positions, const Triangle& one, const Triangle& 
 /// The surface's triangles round somewhere, gathered once.
 class NearTriangles {
 public:
-    /// All that may meet a filling between these corners. Pre: since the first call the surface's triangles were only
-    /// appended to.
+    /// All that may meet a filling between these corners. Pre: since the first call the surface's list of triangles was
+    /// only appended to; its fans may have lost some, and got them back.
     void gather_round(const Surface& surface, std::span<const u32> corners);
-    /// Those at the triangle's corners and at the nearest places of each.
+    /// Those at the triangle's corners and at the nearest places of each, as far as they may meet the triangle.
     void gather_near(const Surface& surface, const Triangle& triangle);
-    /// Whether the triangle meets one of those gathered, another than itself.
+    /// Whether the triangle meets one of those gathered, another than itself. Pre: it lies within what was asked for.
     bool meet(const Surface& surface, const Triangle& triangle) const;
 
 private:

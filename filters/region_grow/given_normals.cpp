@@ -46,13 +46,36 @@ std::vector<std::optional<Vec3>> directions_of(const Column& column, const Sampl
     return directions;
 }
 
-/// Turns a principal normal to where the given ones around it point.
-void turn_like_neighbours(const Neighbourhoods& neighbourhoods, const std::vector<bool>& given, u32 place,
-                          Array<Vec3>& directions) {
-    double sum = 0;
-    for (u32 other : neighbourhoods.of(place))
-        if (given[other]) sum += directions[other].dot(directions[place]);
-    if (sum < 0) directions[place] = -directions[place];
+/// Turns principal normals to where the given ones near them point, from neighbour to neighbour outwards. Where no
+/// given one is reached, the lowest place's sign decides.
+void turn_like_neighbours(const Neighbourhoods& neighbourhoods, std::vector<bool> known, Array<Vec3>& directions) {
+    Array<double> agreement(known.size());
+    std::ranges::fill(agreement, 0);
+    std::vector<bool> asked = known;
+    std::vector<u32> ring, next;
+    for (u32 place = 0; place < known.size(); ++place)
+        if (known[place]) ring.push_back(place);
+    for (u32 lowest = 0;; ring.swap(next)) {
+        next.clear();
+        for (u32 place : ring)
+            for (u32 other : neighbourhoods.of(place)) {
+                if (known[other]) continue;
+                agreement[other] += directions[place].dot(directions[other]);
+                if (asked[other]) continue;
+                asked[other] = true;
+                next.push_back(other);
+            }
+        while (next.empty() && lowest < known.size()) {
+            if (!known[lowest]) next.push_back(lowest);
+            ++lowest;
+        }
+        if (next.empty()) return;
+        std::ranges::sort(next);
+        for (u32 place : next) {
+            known[place] = asked[place] = true;
+            if (agreement[place] < 0) directions[place] = -directions[place];
+        }
+    }
 }
 
 /// Whether a given normal lies in the surface rather than across it: far from the principal one, and its neighbours
@@ -89,44 +112,49 @@ void require_across(std::size_t lying, std::size_t given, Context& context) {
 
 }  // namespace
 
-bool take_given_normals(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
-                        PointNormals& normals, Context& context) {
+GivenNormals take_given_normals(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
+                                PointNormals& normals, Context& context) {
     const Column* column = cloud.columns.find("normal");
-    if (!column) return false;
+    if (!column) return {};
     require_vectors(*column, cloud.size());
     const std::vector<std::optional<Vec3>> directions = directions_of(*column, samples);
     std::vector<bool> given(samples.size(), false);
-    std::size_t missing = 0, lying = 0;
+    std::size_t lying = 0, count = 0;
     for (u32 place = 0; place < samples.size(); ++place) {
-        if (!directions[place]) {
-            ++missing;
-            continue;
-        }
+        if (!directions[place]) continue;
         const Vec3& normal = *directions[place];
         if (lies_in_surface(samples, neighbourhoods, place, normal, normals.directions[place])) ++lying;
         normals.directions[place] = normal;
         given[place] = true;
+        ++count;
     }
-    if (missing == samples.size()) {
+    const std::size_t missing = samples.size() - count;
+    if (count == 0) {
         context.warn(
             fmt::format("none of the {} normals has a direction; they are taken from the neighbours", missing));
-        return false;
+        return {};
     }
-    require_across(lying, samples.size() - missing, context);
+    require_across(lying, count, context);
+    const bool are_few = missing > count;
     if (missing > 0)
-        context.warn(fmt::format("{} of {} normals are zero or not finite; they are taken from the neighbours", missing,
-                                 samples.size()));
+        context.warn(fmt::format("{} of {} normals are zero or not finite; they are taken from the neighbours{}",
+                                 missing, samples.size(),
+                                 are_few ? ", and the others only tell which way the surface faces" : ""));
     const OpposedNormals opposed = opposed_normals(samples, neighbourhoods, normals.directions, given);
-    if (opposed.are_mixed(samples.size() - missing)) {
+    const bool are_mixed = opposed.are_mixed(count);
+    if (are_mixed)
         context.warn(fmt::format(
             "{} of {} normals of the column 'normal' point the other way than their nearest neighbour's, as where "
-            "nobody oriented them, or two sides touch; their directions are used, their signs are not",
-            opposed.count, samples.size() - missing));
-        return false;
+            "nobody oriented them, or two sides touch; their signs only tell which way most of the surface faces",
+            opposed.count, count));
+    if (!are_few && !are_mixed) {
+        turn_like_neighbours(neighbourhoods, given, normals.directions);
+        return {true, {}};
     }
+    Array<Vec3> doubtful(samples.size());
     for (u32 place = 0; place < samples.size(); ++place)
-        if (!given[place]) turn_like_neighbours(neighbourhoods, given, place, normals.directions);
-    return true;
+        doubtful[place] = given[place] ? normals.directions[place] : Vec3(Vec3::Zero());
+    return {false, std::move(doubtful)};
 }
 
 }  // namespace scanmill::growing

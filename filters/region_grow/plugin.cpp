@@ -47,8 +47,8 @@ SCANMILL_FILTER() {
         .metric("holes", Unit::count, "Of these, such as go round a hole.")
         .metric(
             "thin-loops", Unit::count,
-            "Loops where two sides are nearer to each other than three bins, so that the surface may go on there; none "
-            "when normals are given.")
+            "Loops where two sides are nearer to each other than three bins, so that the surface may go on there; not "
+            "counted with a `search-radius`, nor where given normals tell the sides.")
         .metric("unused-points", Unit::count, "Distinct points in no triangle: noise, or too near others.", headline)
         .metric("near-twins", Unit::count, "Of these, such as gave way to a near twin: scans laid over each other.")
         .metric("duplicates", Unit::count, "Points that repeat the place of an earlier one.")

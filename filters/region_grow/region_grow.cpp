@@ -12,6 +12,7 @@
 #include "region_grow/given_normals.hpp"
 #include "region_grow/narrow_holes.hpp"
 #include "region_grow/near_twins.hpp"
+#include "region_grow/normal_signs.hpp"
 #include "region_grow/pieces.hpp"
 #include "region_grow/pinches.hpp"
 #include "region_grow/refusals.hpp"
@@ -98,7 +99,8 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     context.check_cancelled();
     context.progress(0.3);
     PointNormals normals = principal_normals(samples, neighbourhoods, context.threads());
-    const bool oriented = take_given_normals(cloud, samples, neighbourhoods, normals, context);
+    const GivenNormals given = take_given_normals(cloud, samples, neighbourhoods, normals, context);
+    const bool oriented = given.signs_count;
     std::span<const Vec3> facing;
     if (oriented) facing = normals.directions;
     Array<u8> twins = count_near_twins(samples, neighbourhoods, facing, context.threads());
@@ -131,6 +133,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     context.check_cancelled();
     const Pieces pieces = find_pieces(surface);
     if (!oriented) face_outwards(surface, pieces, groups);
+    if (!given.doubtful.empty()) face_as_given(surface, pieces, given.doubtful);
 
     FinishedMesh finished = finish_mesh(cloud, surface, patch_edges, params.sharp_angle);
     FeatureParams feature_params;
@@ -143,7 +146,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.features = std::move(lines.graph);
     result.loops = lines.counts.holes + lines.counts.boundaries;
     result.holes = lines.counts.holes;
-    const ThinParts thin = find_thin_parts(surface, pieces);
+    const ThinParts thin = params.search_radius ? ThinParts() : find_thin_parts(surface, pieces, context);
     result.thin_loops = thin.loops;
     result.creases = lines.counts.creases;
     result.corners = lines.counts.corners;

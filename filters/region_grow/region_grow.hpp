@@ -75,12 +75,12 @@ struct RegionGrowResult {
 /// Grows a surface over the cloud, as many pieces as it takes.
 ///
 /// Points should be thinned: of even density, at least locally. A column `normal` (three numbers per row) is used as it
-/// is, sign and all, unless the signs are mixed (see normal_signs.hpp), then without them; a normal that is zero or not
-/// finite is replaced by the principal one. Without the column normals
+/// is, sign and all, unless the signs are mixed or few (see given_normals.hpp): then it tells directions and which way
+/// the pieces face. A normal that is zero or not finite is replaced by the principal one. Without the column normals
 /// are principal directions of the 12 nearest neighbours. A column `bin-size` (a number per row, in the scan's unit;
-/// what is not above 0 or not finite counts as unknown) tells the bins of a thinning. Of rows in one place the
-/// least bin counts, and the normal first by x, y, z. Where most points have near twins (see near_twins.hpp), as scans
-/// laid over each other do, one of each is used.
+/// what is not above 0 or not finite counts as unknown) tells the bins of a thinning. Of rows in one place the least
+/// bin counts, and the normal first by x, y, z. Where most points have near twins (see near_twins.hpp), as scans laid
+/// over each other do, one of each is used.
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, a
@@ -92,9 +92,9 @@ struct RegionGrowResult {
 /// but for those of pass 4, which bend by up to 172 degrees. No triangle in doubt, nor one that closes a hole, passes
 /// through those that are near it. Angles of triangles of pass 0 keep the limits; later passes relax them (see the
 /// page). Pieces that enclose a volume face outwards; so do open ones that bulge, flat ones face up. With a normal
-/// column whose signs count they face as it says. Ties: equal scores (to 1e-9) by place, along a space-filling curve
-/// through the cloud's box. So the mesh depends neither on the order of the points, up to numbering, nor on the number
-/// of threads.
+/// column they face as it says, where three quarters of it agree. Ties: equal scores (to 1e-9) by place, along a
+/// space-filling curve through the cloud's box. So the mesh depends neither on the order of the points, up to
+/// numbering, nor on the number of threads.
 ///
 /// Cost: O(n log n) time where the nearest 16 places decide, about 450 bytes per point beside the result. An edge where
 /// they do not, or that finds nothing, asks the places within its search radius that are still open, and if one of them
@@ -103,8 +103,8 @@ struct RegionGrowResult {
 /// `auto` there. Metrics: see plugin.cpp.
 ///
 /// Warns when more than half a percent of the places stay unused, when most points lie too dense for their `bin-size`,
-/// of normals whose signs are mixed, of loops at thin parts, and of what find_features() could not tell. Source: Wang
-/// 2006, chapter 4, made robust; the choice by empty circles after Delaunay.
+/// of normals whose signs are mixed or end the surface, of loops at thin parts, and of what find_features() could not
+/// tell. Source: Wang 2006, chapter 4, made robust; the choice by empty circles after Delaunay.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill

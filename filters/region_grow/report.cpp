@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "region_grow/normal_signs.hpp"
 #include "region_grow/search_radii.hpp"
 #include "region_grow/small_holes.hpp"
 #include "scanmill/filter/counted.hpp"
@@ -53,11 +54,23 @@ void warn_of_unused(const RegionGrowResult& result, const Surface& surface, Cont
 void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, double scale, Context& context) {
     if (thin.loops == 0) return;
     const std::string_view unit = symbol(result.mesh.frame.unit);
-    context.warn(fmt::format(
-        "{} of {} boundary loops {} where two sides are nearer to each other than {} bins, the nearest {:.3g} {} with "
-        "bins of {:.3g} {}: the surface may go on there; thin less, or scan more densely",
-        thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_bins, thin.least / scale, unit,
-        thin.bin / scale, unit));
+    context.warn(
+        fmt::format("{} of {} boundary loops {} where two sides, or layers, are nearer to each other than {} bins, the "
+                    "nearest {:.3g} "
+                    "{} with bins of {:.3g} {}: the surface may go on there; thin less where the object is thin, more "
+                    "where the scan "
+                    "is noisy",
+                    thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_bins, thin.least / scale,
+                    unit, thin.bin / scale, unit));
+}
+
+void warn_of_seams(const Surface& surface, Context& context) {
+    if (!surface.oriented) return;
+    if (const std::size_t places = places_at_seams(surface); places > 2)
+        context.warn(fmt::format(
+            "the surface ends at {} points where normals of the column 'normal' turn to the opposite from one point to "
+            "the next, as those do that were turned towards a camera; drop the column if it goes on there",
+            places));
 }
 
 }  // namespace
@@ -67,6 +80,7 @@ void report(const RegionGrowResult& result, const FeatureCounts& lines, const Su
     count_all(result, context);
     warn_of_unused(result, surface, context);
     warn_of_doubts(lines, context);
+    warn_of_seams(surface, context);
     warn_of_thin_parts(result, thin, surface.samples.scale, context);
 }
 

@@ -59,7 +59,7 @@ private:
 
 }  // namespace
 
-ThinParts find_thin_parts(const Surface& surface, const Pieces& pieces) {
+ThinParts find_thin_parts(const Surface& surface, const Pieces& pieces, const Context& context) {
     ThinParts parts;
     if (surface.oriented) return parts;
     OtherSides sides(surface, pieces);
@@ -67,6 +67,7 @@ ThinParts find_thin_parts(const Surface& surface, const Pieces& pieces) {
     std::vector<bool> passed(surface.states.size(), false);
     for (u32 begin = 0; begin < passed.size(); ++begin) {
         if (surface.states[begin] != PlaceState::front || passed[begin]) continue;
+        context.check_cancelled();
         bool is_thin = false;
         for (u32 vertex = begin; !passed[vertex]; vertex = surface.next_on_border(vertex)) {
             passed[vertex] = true;

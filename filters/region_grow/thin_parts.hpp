@@ -4,6 +4,7 @@
 /// so far apart to tell them from one.
 
 #include "region_grow/pieces.hpp"
+#include "scanmill/filter/context.hpp"
 
 namespace scanmill::growing {
 
@@ -18,11 +19,12 @@ struct ThinParts {
 };
 
 /// The other side: a place of the surface that faces the other way, by more than 120 degrees, and lies across the
-/// surface from here rather than beside. Which way a piece faces beside another is not known, so there facing the same
-/// way counts as well. Given normals tell sides apart however near they are: with them no loop is thin. The bin is what
-/// the search radius follows from. Of equally near ones the one with the smaller bin is told.
+/// surface from here rather than beside; past a sharp fold it may be nearer over the surface. Which way a piece faces
+/// beside another is not known, so there facing the same way counts as well. The bin is what the search radius follows
+/// from. Of equally near ones the one with the smaller bin is told. Where given normals tell the sides, no loop is
+/// counted.
 ///
-/// Pre: every place has one fan. Cost: a search round every place on a border.
-ThinParts find_thin_parts(const Surface& surface, const Pieces& pieces);
+/// Pre: every place has one fan; search radii follow from bins. Cost: a search round every place on a border.
+ThinParts find_thin_parts(const Surface& surface, const Pieces& pieces, const Context& context);
 
 }  // namespace scanmill::growing

@@ -13,7 +13,8 @@ namespace scanmill::growing {
 class WideTriangles {
 public:
     /// Takes in what the surface got since the last call; the first call decides what is large: the largest 64, or one
-    /// in 1024. Pre: between calls triangles are only appended.
+    /// in 1024. Pre: between calls the list of triangles is only
+    /// appended to.
     /// Cost: linear in the triangles once, then in the new ones.
     void update(const Surface& surface);
 

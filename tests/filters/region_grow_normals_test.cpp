@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// region-grow and normals that came with the points but lie in the surface, or nobody oriented.
+/// region-grow and normals that came with the points but lie in the surface.
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
-#include "filters/region_grow_cases.hpp"
+#include "filters/region_grow_given.hpp"
 #include "support/point_sets.hpp"
 
 namespace scanmill {
@@ -16,23 +15,6 @@ using namespace test;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-template <class NormalAt>
-PointCloud with_normals(PointCloud cloud, NormalAt&& normal_at) {
-    Array<double> numbers;
-    for (const Vec3& p : cloud.positions) {
-        const Vec3 normal = normal_at(p);
-        numbers.insert(numbers.end(), normal.begin(), normal.end());
-    }
-    cloud.columns.add(Column("normal", 3, Buffer<double>(std::move(numbers))));
-    return cloud;
-}
-
-std::vector<std::string> warnings_of(const PointCloud& cloud) {
-    Context context;
-    region_grow(cloud, {}, context);
-    return context.warnings();
-}
 
 TEST(RegionGrow_NormalsInTheSurface, AreRefusedAsSuch) {
     const PointCloud flat = with_normals(grid(20, 20), [](const Vec3&) { return Vec3(1, 0, 0); });
@@ -82,47 +64,6 @@ TEST(RegionGrow_NormalsInTheSurface, OfScanLinesFarApartTheirOwnAreNone) {
 
 TEST(RegionGrow_NormalsInTheSurface, TrueOnesOfACoarseSphereAreNone) {
     EXPECT_THAT(warnings_of(with_normals(fibonacci_sphere(60), [](const Vec3& p) { return p; })), IsEmpty());
-}
-
-/// Every k-th, or whichever are chosen, points the other way.
-template <class Flips>
-PointCloud flipped(PointCloud cloud, Flips&& flips) {
-    u32 row = 0;
-    return with_normals(std::move(cloud), [&](const Vec3& p) -> Vec3 { return flips(row++) ? -p : p; });
-}
-
-TEST(RegionGrow_NormalsOfMixedSign, KeepTheirDirectionsOnly) {
-    const PointCloud sphere = fibonacci_sphere(3000);
-    for (const u32 every : {2u, 5u, 50u}) {
-        std::mt19937 random(every);
-        const PointCloud mixed = flipped(sphere, [&](u32) { return random() % every == 0; });
-        Context context;
-        const RegionGrowResult result = region_grow(mixed, {}, context);
-        EXPECT_EQ(result.mesh.triangles.size(), 2 * 3000 - 4) << every;
-        EXPECT_EQ(result.unused_points, 0u) << every;
-        EXPECT_THAT(context.warnings(),
-                    testing::ElementsAre(AllOf(HasSubstr("of 3000 normals of the column 'normal' point the other way"),
-                                               HasSubstr("their signs are not"))));
-    }
-}
-
-TEST(RegionGrow_NormalsOfMixedSign, AreNoneWhereOneInAHundredIsOpposed) {
-    // Two turned over, each opposed to those whose nearest it is and to its own.
-    EXPECT_THAT(warnings_of(flipped(fibonacci_sphere(3000), [](u32 row) { return row == 700 || row == 2000; })),
-                testing::Not(testing::Contains(HasSubstr("signs"))));
-}
-
-TEST(RegionGrow_NormalsOfMixedSign, AreNotThoseOfASheetsTwoSides) {
-    // Nearly every nearest neighbour is on the other side: behind, as a sheet has it, or in front, as a slit.
-    for (const double outwards : {1.0, -1.0}) {
-        PointCloud sides = grid(20, 20);
-        std::vector<Vec3> both(sides.positions.begin(), sides.positions.end());
-        for (const Vec3& p : sides.positions) both.push_back(p + Vec3(0.3, 0.2, 0.4));
-        const PointCloud sheet =
-            with_normals(cloud_from(both), [&](const Vec3& p) { return Vec3(0, 0, p.z() > 0 ? outwards : -outwards); });
-        EXPECT_THAT(warnings_of(sheet), testing::Not(testing::Contains(HasSubstr("signs"))));
-        EXPECT_EQ(grown(sheet).components, 2u);
-    }
 }
 
 }  // namespace
