@@ -92,7 +92,7 @@ bool NeighbourSearch::choose(const BoxTree::Point& from, double squared, Neighbo
     std::size_t found = 0;
     for (std::size_t i = 0; i < size; ++i) {
         buffer_.found[found] = {buffer_.squares[i], buffer_.numbers[i]};
-        found += (buffer_.squares[i] <= squared) & (buffer_.numbers[i] != from.number);
+        found += unsigned{buffer_.squares[i] <= squared} & unsigned{buffer_.numbers[i] != from.number};
     }
     if (found < count_) return false;
     choose_sorted(std::span(buffer_.found).first(found), squared, into);
