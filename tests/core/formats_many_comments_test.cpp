@@ -56,6 +56,18 @@ TEST(ManyComments, OfSeveralUnits_TheLastCounts_AndDifferentOnesAreTold) {
     }
 }
 
+TEST(ManyComments, OfUnitsAllBehindTheThousandth_DifferentOnesAreTold) {
+    const auto told_of = [](const std::string& units) {
+        Told told;
+        EXPECT_EQ(frame_in("1 2 3\n" + comments(1500) + units, "a.xyz", &told).unit, LengthUnit::centimetre) << units;
+        return told.sentences;
+    };
+    EXPECT_THAT(told_of("# unit cm\n# unit cm\n"), IsEmpty());
+    for (const char* units : {"# unit mm\n# unit cm\n", "# unit mm\n# unit cm\n# unit cm\n",
+                              "# unit cm\n# unit mm\n# unit cm\n", "# unit m\n# unit mm\n# unit mm\n# unit cm\n"})
+        EXPECT_THAT(told_of(units), ElementsAre(HasSubstr("both 'unit mm' and 'unit cm'; the last counts"))) << units;
+}
+
 TEST(ManyComments, NamesBehindTheThousandth_AreToldToBePassedOver) {
     const std::string names = "# x y z weight\n", row = "1 2 3 4\n";
     Told told;
@@ -75,7 +87,7 @@ TEST(ManyComments, NamesBehindTheThousandth_AreToldToBePassedOver) {
 TEST(ManyComments, TakeLittleMemory) {
     std::string text = comments(1000) + "1 2 3\n";
     for (std::size_t i = 0; i < 5000; ++i) text += "# unit mm\n# unit m\n# frame a\n# unit parsec\n# other\n";
-    EXPECT_EQ(read_bytes(text, "a.xyz").comments.size(), 1003u);
+    EXPECT_EQ(read_bytes(text, "a.xyz").comments.size(), 1004u);
 }
 
 }  // namespace

@@ -47,6 +47,12 @@ TEST(LengthResolution, RelativeLengths_AreMeasuredOnTheScan) {
     EXPECT_DOUBLE_EQ(on(scan_in(LengthUnit::unknown), "3 spacing"), 0.75);
 }
 
+TEST(LengthResolution, ShorterThanAnyNumber_IsRefused) {
+    EXPECT_EQ(sentence_of([&] { on(scan_in(LengthUnit::unknown, 1e-320), "1e-10 %diag"); }),
+              "1e-10 %diag comes to less than the smallest number");
+    EXPECT_EQ(on(scan_in(LengthUnit::unknown), "0 %diag"), 0);
+}
+
 TEST(LengthResolution, LongerThanAnyNumber_IsRefused) {
     const auto refusal = [](const LengthScale& scale, const char* text) {
         return sentence_of([&] { on(scale, text); });

@@ -125,6 +125,16 @@ TEST(PointSpacing, AnyScaleThatDoublesHave_ScalesIt) {
         EXPECT_DOUBLE_EQ(point_spacing(scaled(points, exponent)), std::ldexp(plain, exponent)) << "2^" << exponent;
 }
 
+TEST(PointSpacing, ManyPointsWhoseSquaresAreNone_TakeNoLongerThanOthers) {
+    // Asked one against all, these would take minutes.
+    const PointCloud cube = random_cube(100000, 11);
+    const double usual = point_spacing(cube.positions.span());
+    Array<Vec3> points = scaled(cube.positions.span(), -700);
+    EXPECT_DOUBLE_EQ(point_spacing(points), std::ldexp(usual, -700));
+    points.push_back(Vec3(1, 1, 1));
+    EXPECT_NEAR(std::ldexp(point_spacing(points), 700) / usual, 1, 0.01);
+}
+
 TEST(PointSpacing, StrayPoint_HoweverFar_HidesNothing) {
     for (const double far : {1e100, 1e154, 1e155, 1e200, 1.7e308}) {
         // Of four distances the upper of the middle two, 2; the stray ones' own are larger.

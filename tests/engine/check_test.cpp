@@ -132,6 +132,13 @@ TEST_F(Check, WorkflowParameters_AreTypedWhereTheyAreUsed) {
                 ElementsAre(HasSubstr("no step uses the parameter 's'"), HasSubstr("no parameter 't'; it has s")));
 }
 
+TEST_F(Check, WorkflowParameterThatOnlyTextsMention_IsUsedByNoStep) {
+    EXPECT_THAT(
+        findings("scanmill: 1\nsummary: $s\ninputs: {scan: points}\nparameters:\n  s: {default: 2, help: $s}\nsteps:\n"
+                 "  - thin: {count: 3}\n"),
+        ElementsAre(HasSubstr("no step uses the parameter 's'")));
+}
+
 TEST_F(Check, DollarWithoutAName_IsAnError) {
     EXPECT_THAT(steps("  - thin: {size: $}\n"),
                 ElementsAre(AllOf(StartsWith("w:4:18: "), HasSubstr("'$' names no parameter"))));

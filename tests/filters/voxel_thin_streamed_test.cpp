@@ -128,7 +128,9 @@ TEST(VoxelThinOfAStream, OfManyShortRows_TakesTheMemoryOfFewPieces) {
         const auto peak = peak_of([&] { kept = thinned_stream(path, bins_of(1), threads).result.kept.size(); });
         EXPECT_EQ(kept, 100u);
         if (!peak) GTEST_SKIP() << "the system does not tell peaks of memory";
+#ifndef __SANITIZE_THREAD__  // which remembers who touched what
         EXPECT_LT(*peak, 80 << 20) << threads << " threads";  // 76 as the header says, and the stack of a thread
+#endif
     }
 }
 

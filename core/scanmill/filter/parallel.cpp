@@ -65,6 +65,9 @@ void for_each_chunk(unsigned threads, std::size_t count, std::size_t chunk,
 }
 
 void within_thread_budget(unsigned threads, const std::function<void()>& body) {
+#ifdef __SANITIZE_THREAD__
+    threads = 1;  // as above
+#endif
     // More threads than the machine has would only make the library complain.
     tbb::task_arena arena(std::clamp(static_cast<int>(threads), 1, tbb::info::default_concurrency()));
     arena.execute(body);

@@ -107,6 +107,8 @@ Length Length::resolved(const LengthScale& scale) const {
             throw Error("{} comes to more than the largest number, {:.3g} u", text(),
                         std::numeric_limits<double>::max())
                 .hint("give a shorter length");
+        if (length == 0 && amount_ != 0)
+            throw Error("{} comes to less than the smallest number", text()).hint("give a longer length");
         return Length(length);
     };
     const auto times = [&](const std::function<double()>& reference, double factor, std::string_view what) {

@@ -9,6 +9,8 @@ namespace scanmill {
 
 namespace {
 
+std::optional<LengthUnit> unit_of(std::string_view comment) { return length_unit(declaration_in(comment, "unit")); }
+
 /// 0 to 2, for what the comment declares.
 std::optional<std::size_t> kind_of(std::string_view comment) {
     if (!declaration_in(comment, "frame").empty()) return 2;
@@ -28,11 +30,20 @@ void KeptComments::add(std::string_view comment) {
     const std::optional<std::size_t> kind = kind_of(comment);
     if (!kind) return;
     std::size_t& place = places_[*kind];
+    if (*kind == 0 && place != 0 && unit_of(texts_[place]) != unit_of(comment)) keep_other_unit();
     if (place == 0) {
         place = texts_.size();
         texts_.emplace_back();
     }
     texts_[place] = comment;
+}
+
+void KeptComments::keep_other_unit() {
+    if (other_unit_ == 0) {
+        other_unit_ = places_[0];
+        places_[0] = 0;
+    } else
+        texts_[other_unit_] = texts_[places_[0]];
 }
 
 void KeptComments::append(const KeptComments& following) {

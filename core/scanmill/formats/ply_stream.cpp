@@ -75,7 +75,7 @@ private:
         return rows_.substr(first * row_size_, count * row_size_);
     }
 
-    /// Slots of x, y and z that store doubles from `positions` on.
+    /// Slots of x, y and z that store doubles from `positions` on. Pre: there are some.
     static void place_axes(std::span<PlySlot> slots, Vec3* positions) {
         for (PlySlot& slot : slots) {
             const auto axis = std::ranges::find(axes, slot.property->name);
@@ -131,7 +131,7 @@ private:
         kept.count = rows.size();
         PlyTable table(kept, header_.comments, axes);
         Array<Vec3> positions(rows.size());
-        place_axes(table.slots(), positions.data());
+        if (!rows.empty()) place_axes(table.slots(), positions.data());
         constexpr std::size_t block = 1 << 14;
         for_each_chunk(threads, rows.size(), block, [&](std::size_t begin, std::size_t end) {
             std::vector<PlySlot> slots(table.slots().begin(), table.slots().end());

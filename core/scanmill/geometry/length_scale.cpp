@@ -55,6 +55,7 @@ double spacing_of(const Value& value) {
     const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value);
     const bool has_edges = mesh && !(*mesh)->triangles.empty();
     const double spacing = has_edges ? edge_spacing(**mesh) : point_spacing(positions_of(value));
+    if (!(spacing > 0)) require_finite(positions_of(value));
     if (!std::isfinite(spacing)) require_finite_size(bounding_box(positions_of(value)));
     return spacing;
 }

@@ -9,8 +9,9 @@ namespace scanmill {
 
 void require_finite_size(const BoundingBox& box) {
     if (std::isfinite(box.diagonal())) return;
-    throw Error("coordinates from {:.6g} to {:.6g} lie farther apart than the largest number, {:.3g}",
-                box.low.minCoeff(), box.high.maxCoeff(), std::numeric_limits<double>::max())
+    throw Error(
+        "the corners of the box of coordinates from {:.6g} to {:.6g} lie farther apart than the largest number, {:.3g}",
+        box.low.minCoeff(), box.high.maxCoeff(), std::numeric_limits<double>::max())
         .hint(
             "such coordinates are stray ones, or numbers whose bytes are in the wrong order: see how the file was "
             "written");

@@ -106,7 +106,8 @@ public:
 
     /// Pre: no other point is at this one's place.
     double from(std::size_t point) {
-        if (squared_)
+        // Where one square is none, most are none, and a tree over them finds everything equally near.
+        if (squared_ && !unsquared_)
             if (const double squared = squared_->to_nearest_other(point); squared >= least_square)
                 return std::sqrt(squared);
         if (!unsquared_) {

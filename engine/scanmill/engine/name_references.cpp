@@ -24,7 +24,7 @@ public:
             if (std::ranges::any_of(given.values, is_list)) lists_.insert(parameter.name);
         }
         look_at(workflow.steps);
-        // Where a name stands in what could not be read, or where it must not, that is said, and nothing else is wrong.
+        // Where a name stands in what could not be read, or where it must not, that is said already.
         for (const WorkflowParameter& parameter : workflow.parameters)
             if (!workflow.mentions.contains(parameter.name))
                 diagnostics_.warning(parameter.position,

@@ -61,8 +61,11 @@ Workflow WorkflowParser::workflow(const YamlNode& root) {
     workflow.summary = keys.text("summary");
     each_entry(keys.find("inputs"), "a map of inputs, as {scan: points}",
                [&](const YamlEntry& entry) { input(entry, workflow); });
-    each_entry(keys.find("parameters"), "a map of parameters, as {max-error: 0.1 %diag}",
-               [&](const YamlEntry& entry) { parameter(entry, workflow); });
+    each_entry(keys.find("parameters"), "a map of parameters, as {max-error: 0.1 %diag}", [&](const YamlEntry& entry) {
+        parameter(entry, workflow);
+        const YamlNode* value = entry.value.is_map() ? entry.value.find("default") : &entry.value;
+        if (value) add_mentions(*value, workflow.mentions);
+    });
     if (const YamlEntry* entry = keys.find("steps"))
         workflow.steps = parse_steps(entry->value, diagnostics_);
     else
@@ -70,7 +73,8 @@ Workflow WorkflowParser::workflow(const YamlNode& root) {
     each_entry(keys.find("outputs"), "a map from file names to steps, as {\"{scan}.stl\": decimate}",
                [&](const YamlEntry& entry) { output(entry, workflow); });
     keys.complain_of_others();
-    if (!workflow.parameters.empty()) add_mentions(root, workflow.mentions);
+    for (const char* key : {"steps", "outputs"})
+        if (const YamlNode* part = root.find(key)) add_mentions(*part, workflow.mentions);
     return workflow;
 }
 

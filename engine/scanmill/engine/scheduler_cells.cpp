@@ -60,7 +60,7 @@ void Scheduler::end_cell(std::size_t index) {
 /// Of a cell that was given up, with the first that it did not come to.
 Failure Scheduler::out_of_time(std::size_t index) const {
     const RunCell& cell = graph_.cells[index];
-    Error error("the time did not suffice: the limit of a cell is {}, {:.2f} s were spent and this is not done",
+    Error error("the time did not suffice: the limit of a cell is {}, {:.3f} s were spent and this is not done",
                 duration_text(settings_.limits.cell_seconds), report_.cells[index].seconds);
     const auto left = std::ranges::find_if(
         cell.nodes, [&](std::size_t node) { return report_.nodes[node].outcome != Outcome::done; });

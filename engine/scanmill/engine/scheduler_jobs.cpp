@@ -33,7 +33,7 @@ void Scheduler::limit_time(const Task& task, Job& job) const {
         if (!cells_[cell].is_given_up) left = std::max(left, limits.cell_seconds - report_.cells[cell].seconds);
     if (limits.step_seconds > 0 && limits.step_seconds <= left) return;
     job.seconds_limit = left;
-    job.limit_text = fmt::format("the limit of a cell is {}, of which {:.2f} s were spent before",
+    job.limit_text = fmt::format("the limit of a cell is {}, of which {:.3f} s were spent before",
                                  duration_text(limits.cell_seconds), limits.cell_seconds - left);
 }
 

@@ -123,7 +123,7 @@ struct Workflow {
     std::vector<WorkflowParameter> parameters;
     std::vector<StepItem> steps;
     std::vector<WorkflowOutput> outputs;
-    /// Names that the file has as `$name` anywhere, also in what could not be read.
+    /// Names that stand as `$name` in steps, outputs and defaults, also in what could not be read.
     std::set<std::string> mentions;
 };
 

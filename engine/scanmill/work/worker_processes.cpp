@@ -190,7 +190,7 @@ void WorkerProcesses::enforce_limits(std::size_t worker, const WorkerListener& l
     if (job.seconds_limit > 0 && place.is_ready &&
         now - place.begun >= std::chrono::duration<double>(job.seconds_limit))
         return end_by_force(worker, listener, Cause::time,
-                            Error("the time did not suffice: it was ended after {:.2f} s, {}",
+                            Error("the time did not suffice: it was ended after {:.3f} s, {}",
                                   std::chrono::duration<double>(now - place.begun).count(), job.limit_text)
                                 .hint("raise the limit, or thin the scan first"),
                             0);
