@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <string_view>
 
-#include "commands.hpp"
-#include "error_output.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/suggestion.hpp"
-#include "scanmill/work/serve.hpp"
-#include "stderr_text.hpp"
+#include "commands/commands.hpp"
+#include "output/error_output.hpp"
+#include "output/stderr_text.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/worker/serve.hpp"
 
 int main(int argc, char** argv) {
     using namespace scanmill::runner;

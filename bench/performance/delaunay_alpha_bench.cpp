@@ -25,9 +25,9 @@
 
 #include "alpha_solid/alpha_solid.hpp"
 #include "delaunay/delaunay.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/topology.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 #include "support/point_sets.hpp"
 
 namespace {

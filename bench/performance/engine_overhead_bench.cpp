@@ -25,9 +25,9 @@
 #include <thread>
 #include <vector>
 
-#include "scanmill/filter/library.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/length_scale.hpp"
+#include "scanmill/kinds/length_scale.hpp"
+#include "scanmill/plugin/library.hpp"
 
 namespace {
 
@@ -67,7 +67,7 @@ int run_filters(double percent, const fs::path& folder, const std::vector<fs::pa
     scanmill::ContextOptions options;
     options.threads = std::max(1u, std::thread::hardware_concurrency());
     scanmill::Context context(std::move(options));
-    scanmill::FilterLibrary library(scanmill::plugin_folders(), scanmill::FirstLoad::at_once);
+    scanmill::FilterLibrary library(scanmill::plugin_folders());
     for (const fs::path& scan : scans)
         run_filters(library, context, percent, scan, folder / scan.stem().concat(".stl"));
     return 0;

@@ -21,10 +21,10 @@
 #include <vector>
 
 #include "measure/measure.hpp"
-#include "scanmill/filter/parallel.hpp"
-#include "scanmill/filter/random.hpp"
-#include "scanmill/geometry/spatial_order.hpp"
-#include "scanmill/geometry/triangle_tree.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/base/random.hpp"
+#include "scanmill/geometry/spatial/spatial_order.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 #include "support/shapes.hpp"
 
 namespace {

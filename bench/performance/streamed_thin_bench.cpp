@@ -27,7 +27,8 @@
 #include <string>
 #include <vector>
 
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
+#include "scanmill/formats/open_point_stream.hpp"
 #include "voxel_thin/streamed_thin.hpp"
 
 namespace {

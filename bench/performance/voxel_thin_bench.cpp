@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace {

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <vector>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/filter/manifest.hpp"
-#include "scanmill/filter/module.hpp"
-#include "scanmill/formats/format_modules.hpp"
+#include "scanmill/plugin/format_modules.hpp"
+#include "scanmill/plugin/module.hpp"
 
 namespace {
 

@@ -10,10 +10,10 @@
 #include "alpha_solid/pieces.hpp"
 #include "alpha_solid/remarks.hpp"
 #include "alpha_solid/selection.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/hidden_vertices.hpp"
 #include "scanmill/geometry/size_limits.hpp"
+#include "scanmill/geometry/tets/hidden_vertices.hpp"
 
 namespace scanmill {
 

@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "scanmill/data/mesh.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/data/tets.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/quantity.hpp"
 
 namespace scanmill {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "alpha_solid/weighted_spheres.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill::alpha {
 

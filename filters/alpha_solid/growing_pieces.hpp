@@ -8,8 +8,8 @@
 #include <span>
 
 #include "alpha_solid/labels.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/data/tets.hpp"
-#include "scanmill/geometry/disjoint_sets.hpp"
 
 namespace scanmill::alpha {
 

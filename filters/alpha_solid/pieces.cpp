@@ -5,7 +5,7 @@
 #include <atomic>
 #include <span>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill::alpha {
 

@@ -9,7 +9,7 @@
 
 #include "alpha_solid/selection.hpp"
 
-#include "scanmill/filter/counted.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill::alpha {
 

@@ -7,7 +7,7 @@
 #include "alpha_solid/alpha_solid.hpp"
 #include "alpha_solid/flood.hpp"
 #include "alpha_solid/labels.hpp"
-#include "scanmill/geometry/solid_boundary.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill::alpha {
 

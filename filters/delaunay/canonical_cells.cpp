@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill {
 

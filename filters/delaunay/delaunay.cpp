@@ -7,8 +7,8 @@
 #include "delaunay/flatness.hpp"
 #include "delaunay/point_weights.hpp"
 #include "delaunay/triangulate.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/geometry/hidden_vertices.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/tets/hidden_vertices.hpp"
 
 namespace scanmill {
 

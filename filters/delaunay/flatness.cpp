@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/data/array.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
 #include "scanmill/geometry/size_limits.hpp"
 
 namespace scanmill {

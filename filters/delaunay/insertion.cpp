@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill {
 

@@ -5,7 +5,7 @@
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill {
 

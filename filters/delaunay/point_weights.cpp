@@ -7,8 +7,8 @@
 
 #include "delaunay/column_weights.hpp"
 #include "delaunay/spacing_weights.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill {
 

@@ -6,8 +6,8 @@
 
 #include "delaunay/canonical_cells.hpp"
 #include "delaunay/triangulate.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill {
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "scanmill/data/array.hpp"
-#include "scanmill/data/watched_memory.hpp"
 
 namespace scanmill {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "scanmill/filter/parallel.hpp"
-#include "scanmill/geometry/point_tree.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/spatial/point_tree.hpp"
 
 namespace scanmill {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "features/features.hpp"
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/feature_doubts.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill {
 
@@ -23,7 +23,7 @@ FeatureLines features(const TriangleMesh& mesh, const FeatureParams& params, Con
             .hint("`scanmill info` tells what a file holds");
     context.check_cancelled();
     FeatureLines lines = find_features(mesh, params, context.threads());
-    warn_of_doubts(lines.counts, context);
+    for (std::string& sentence : doubts(lines.counts)) context.warn(std::move(sentence));
     warn_of_short_creases(lines.counts, params, context);
 
     const auto metric = [&](std::string_view name, std::size_t count) {

@@ -4,7 +4,7 @@
 /// finds them, in geometry/feature_lines.hpp, because filters that grow a mesh give the same lines.
 
 #include "scanmill/filter/context.hpp"
-#include "scanmill/geometry/feature_lines.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/borders.hpp"
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/sides.hpp"
-#include "scanmill/geometry/triangle_distance.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/spatial/triangle_distance.hpp"
 
 namespace scanmill::measuring {
 

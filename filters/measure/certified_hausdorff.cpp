@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "measure/certify_piece.hpp"
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill {
 

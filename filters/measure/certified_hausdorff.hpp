@@ -3,7 +3,7 @@
 /// Bounds of the Hausdorff distance between two meshes that hold for every point of both surfaces, not for samples.
 
 #include "scanmill/filter/context.hpp"
-#include "scanmill/geometry/triangle_tree.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "scanmill/geometry/triangle_tree.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill::measuring {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill::measuring {
 

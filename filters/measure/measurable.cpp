@@ -4,11 +4,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/length_scale.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/mesh.hpp"
 #include "scanmill/geometry/size_limits.hpp"
-#include "scanmill/geometry/surface_box.hpp"
+#include "scanmill/kinds/length_scale.hpp"
 
 namespace scanmill::measuring {
 

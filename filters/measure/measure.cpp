@@ -11,9 +11,9 @@
 #include "measure/nearest_distances.hpp"
 #include "measure/self_intersections.hpp"
 #include "measure/surface_samples.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/surface_box.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/mesh.hpp"
 
 namespace scanmill {
 

@@ -15,8 +15,8 @@
 #include "measure/mesh_numbers.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/quantity.hpp"
 
 namespace scanmill {
 

@@ -12,9 +12,9 @@
 
 #include "measure/compensated_sum.hpp"
 #include "measure/distance_numbers.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/data/mesh.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/filter/parallel.hpp"
-#include "scanmill/geometry/surface_box.hpp"
 
 namespace scanmill {
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "scanmill/filter/parallel.hpp"
-#include "scanmill/geometry/spatial_order.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/spatial/spatial_order.hpp"
 
 namespace scanmill::measuring {
 

@@ -3,7 +3,7 @@
 /// The distances from many points to one surface.
 
 #include "scanmill/filter/context.hpp"
-#include "scanmill/geometry/triangle_tree.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill::measuring {
 

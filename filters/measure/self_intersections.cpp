@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill {
 

@@ -4,7 +4,7 @@
 
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/geometry/triangle_tree.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "measure/compensated_sum.hpp"
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill::measuring {
 

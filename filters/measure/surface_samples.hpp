@@ -2,8 +2,8 @@
 #pragma once
 /// Points spread evenly over the area of a mesh.
 
+#include "scanmill/base/random.hpp"
 #include "scanmill/data/mesh.hpp"
-#include "scanmill/filter/random.hpp"
 
 namespace scanmill::measuring {
 

@@ -8,8 +8,8 @@
 #include "merge/merged_columns.hpp"
 #include "merge/overlap.hpp"
 #include "merge/placed_points.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill {
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/data/transform.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/quantity.hpp"
 
 namespace scanmill {
 

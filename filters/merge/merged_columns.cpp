@@ -7,8 +7,8 @@
 #include <string>
 
 #include "merge/joined_column.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/geometry/placed.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/kinds/placed.hpp"
 
 namespace scanmill::merging {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "merge/placed_points.hpp"
 
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/placed.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/kinds/placed.hpp"
 
 namespace scanmill::merging {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <map>
 
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/suggestion.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill::merging {
 

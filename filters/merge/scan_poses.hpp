@@ -7,7 +7,7 @@
 
 #include "scanmill/data/frame.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/formats/poses.hpp"
+#include "scanmill/formats/poses/poses.hpp"
 
 namespace scanmill::merging {
 

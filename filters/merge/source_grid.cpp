@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "scanmill/geometry/fit/unit_scale.hpp"
 #include "scanmill/geometry/size_limits.hpp"
-#include "scanmill/geometry/unit_scale.hpp"
 
 namespace scanmill::merging {
 

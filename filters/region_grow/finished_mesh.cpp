@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scanmill/geometry/facet_normals.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
 
 namespace scanmill::growing {
 

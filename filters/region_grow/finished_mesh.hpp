@@ -4,7 +4,7 @@
 
 #include "region_grow/patch_edges.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/filter/quantity.hpp"
+#include "scanmill/data/quantity.hpp"
 
 namespace scanmill::growing {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "region_grow/normal_signs.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill::growing {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill::growing {
 

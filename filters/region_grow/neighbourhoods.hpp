@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "region_grow/samples.hpp"
-#include "scanmill/geometry/point_tree.hpp"
+#include "scanmill/geometry/spatial/point_tree.hpp"
 
 namespace scanmill::growing {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scanmill/geometry/disjoint_sets.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
 
 namespace scanmill::growing {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "scanmill/filter/parallel.hpp"
-#include "scanmill/geometry/scatter.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/fit/covariance.hpp"
 
 namespace scanmill::growing {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "region_grow/search_radii.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill::growing {
 

@@ -24,7 +24,7 @@
 #include "region_grow/thinned_bins.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/geometry/feature_lines.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill {
 

@@ -8,8 +8,8 @@
 #include "region_grow/normal_signs.hpp"
 #include "region_grow/search_radii.hpp"
 #include "region_grow/small_holes.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/geometry/feature_doubts.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill::growing {
 
@@ -79,7 +79,7 @@ void report(const RegionGrowResult& result, const FeatureCounts& lines, const Su
             Context& context) {
     count_all(result, context);
     warn_of_unused(result, surface, context);
-    warn_of_doubts(lines, context);
+    for (std::string& sentence : doubts(lines)) context.warn(std::move(sentence));
     warn_of_seams(surface, context);
     warn_of_thin_parts(result, thin, surface.samples.scale, context);
 }

@@ -5,7 +5,7 @@
 #include "region_grow/region_grow.hpp"
 #include "region_grow/surface.hpp"
 #include "region_grow/thin_parts.hpp"
-#include "scanmill/geometry/feature_lines.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill::growing {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scanmill/data/points.hpp"
-#include "scanmill/geometry/spatial_order.hpp"
+#include "scanmill/geometry/spatial/spatial_order.hpp"
 
 namespace scanmill::growing {
 

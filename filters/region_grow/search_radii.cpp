@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "region_grow/median.hpp"
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill::growing {
 

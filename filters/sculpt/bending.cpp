@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "scanmill/base/parallel.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/filter/parallel.hpp"
 
 namespace scanmill::sculpting {
 

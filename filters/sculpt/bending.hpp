@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "scanmill/geometry/solid_boundary.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
 #include "sculpt/carved_solid.hpp"
 #include "sculpt/sculpt.hpp"
 

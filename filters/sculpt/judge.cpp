@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill::sculpting {
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
 #include "scanmill/geometry/size_limits.hpp"
 #include "sculpt/sculptor.hpp"
 

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <limits>
 
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/data/array.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/length_scale.hpp"
 #include "scanmill/geometry/size_limits.hpp"
+#include "scanmill/kinds/length_scale.hpp"
 #include "virtual_scan/scene.hpp"
 
 namespace scanmill::scan {

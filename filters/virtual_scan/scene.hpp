@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scanmill/data/mesh.hpp"
-#include "scanmill/filter/quantity.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "virtual_scan/view.hpp"
 #include "virtual_scan/virtual_scan.hpp"
 

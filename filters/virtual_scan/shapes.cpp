@@ -7,8 +7,8 @@
 #include <numeric>
 #include <optional>
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "virtual_scan/first_root.hpp"
 #include "virtual_scan/holed_block.hpp"
 #include "virtual_scan/hyperboloid.hpp"

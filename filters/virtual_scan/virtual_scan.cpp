@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/base/text.hpp"
 #include "virtual_scan/scene.hpp"
 #include "virtual_scan/seen_points.hpp"
 #include "virtual_scan/view.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scanmill/filter/counted.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill::voxel {
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/geometry/fit/unit_scale.hpp"
 #include "scanmill/geometry/size_limits.hpp"
-#include "scanmill/geometry/unit_scale.hpp"
 
 namespace scanmill::voxel {
 

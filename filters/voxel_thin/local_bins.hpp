@@ -7,7 +7,7 @@
 /// at most Ω long. That is Wang's M1 + 2 M2 + M3 (equation 3.2) in the directions where M2 vanishes and the sum is
 /// least.
 
-#include "scanmill/geometry/local_surface.hpp"
+#include "scanmill/geometry/fit/local_surface.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill::voxel {

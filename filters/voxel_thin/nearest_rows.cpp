@@ -6,7 +6,7 @@
 #include <cassert>
 #include <numeric>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill::voxel {
 

@@ -2,7 +2,7 @@
 #pragma once
 /// Thinning a file of any size, in memory for what is kept.
 
-#include "scanmill/formats/point_stream.hpp"
+#include "scanmill/data/point_stream.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "voxel_thin/added_columns.hpp"
 
 namespace scanmill::voxel {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/geometry/size_limits.hpp"
 #include "voxel_thin/octree.hpp"
 #include "voxel_thin/surface_columns.hpp"

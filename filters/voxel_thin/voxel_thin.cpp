@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "scanmill/filter/parallel.hpp"
-#include "scanmill/geometry/finite_bounds.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/data/bounds.hpp"
 #include "voxel_thin/thin_pieces.hpp"
 #include "voxel_thin/tolerance_thin.hpp"
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/quantity.hpp"
-#include "scanmill/geometry/local_surface.hpp"
+#include "scanmill/geometry/fit/local_surface.hpp"
 
 namespace scanmill {
 

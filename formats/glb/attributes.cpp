@@ -7,8 +7,8 @@
 #include <limits>
 #include <optional>
 
-#include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/written_names.hpp"
+#include "scanmill/formats/common/column_names.hpp"
+#include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill::glb {
 

@@ -16,7 +16,7 @@
 /// Refused: NaN and infinite positions, meshes without triangles, more than 2^32 bytes. Source: glTF 2.0 specification,
 /// Khronos 2021.
 
-#include "scanmill/formats/format.hpp"
+#include "scanmill/formats/common/format.hpp"
 
 namespace scanmill::glb {
 

@@ -4,8 +4,8 @@
 #include <ostream>
 #include <streambuf>
 
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/written_names.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/formats/common/column_names.hpp"
 
 namespace scanmill::glb {
 

@@ -5,7 +5,7 @@
 #include <tiny_gltf.h>
 
 #include "scanmill/data/frame.hpp"
-#include "scanmill/formats/output_buffer.hpp"
+#include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill::glb {
 

@@ -4,9 +4,9 @@
 #include "glb/attributes.hpp"
 #include "glb/glb.hpp"
 #include "glb/glb_model.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/writing.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
 
 namespace scanmill::glb {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "glb/glb.hpp"
-#include "scanmill/formats/format_plugin.hpp"
+#include "scanmill/plugin/format_modules.hpp"
 
 SCANMILL_FORMAT() {
     using namespace scanmill;

@@ -14,7 +14,7 @@
 /// list columns, and columns that need another name, are told. Cost: the file is copied once, and its rows are walked
 /// once per field.
 
-#include "scanmill/formats/format.hpp"
+#include "scanmill/formats/common/format.hpp"
 
 namespace scanmill::pcd {
 

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <set>
 
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/reading.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill::pcd {
 

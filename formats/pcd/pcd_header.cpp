@@ -8,10 +8,10 @@
 #include <set>
 #include <span>
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/quantity.hpp"
-#include "scanmill/formats/reading.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill::pcd {
 

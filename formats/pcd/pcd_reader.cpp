@@ -8,9 +8,9 @@
 #include "pcd/pcd_fields.hpp"
 #include "pcd/pcd_header.hpp"
 #include "pcd/pcd_rows.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/reading.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill::pcd {
 

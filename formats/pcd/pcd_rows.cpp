@@ -4,10 +4,10 @@
 #include <cstring>
 
 #include "pcd/pcd_fields.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/text_cursor.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/text_cursor.hpp"
 
 namespace scanmill::pcd {
 

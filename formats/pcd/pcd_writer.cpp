@@ -3,10 +3,10 @@
 
 #include "pcd/pcd.hpp"
 #include "pcd/pcd_fields.hpp"
-#include "scanmill/formats/output_buffer.hpp"
-#include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/writing.hpp"
-#include "scanmill/formats/written_names.hpp"
+#include "scanmill/formats/common/column_names.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
+#include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill::pcd {
 

@@ -8,7 +8,7 @@
 
 #include <string_view>
 
-#include "scanmill/formats/output_buffer.hpp"
+#include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill::threemf {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/formats/format_plugin.hpp"
+#include "scanmill/plugin/format_modules.hpp"
 #include "threemf/threemf.hpp"
 
 SCANMILL_FORMAT() {

@@ -4,13 +4,13 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/quantity.hpp"
-#include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/writing.hpp"
-#include "scanmill/geometry/surface_box.hpp"
-#include "scanmill/geometry/topology.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 
 namespace scanmill::threemf {
 

@@ -12,7 +12,7 @@
 /// Equal values give equal bytes: the package is of 1980-01-01, and the UUIDs that 3MF wants are made from the
 /// geometry. Source: 3MF core specification 1.2, production extension 1.1.
 
-#include "scanmill/formats/format.hpp"
+#include "scanmill/formats/common/format.hpp"
 
 namespace scanmill::threemf {
 

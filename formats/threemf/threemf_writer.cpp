@@ -4,11 +4,11 @@
 
 #include <cstring>
 
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/output_buffer.hpp"
-#include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/writing.hpp"
-#include "scanmill/formats/written_names.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/formats/common/column_names.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
+#include "scanmill/io/output_buffer.hpp"
 #include "threemf/plain_zip.hpp"
 #include "threemf/printed_mesh.hpp"
 #include "threemf/threemf.hpp"

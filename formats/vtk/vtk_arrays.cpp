@@ -12,9 +12,9 @@
 #include <limits>
 #include <numeric>
 
-#include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/writing.hpp"
-#include "scanmill/formats/written_names.hpp"
+#include "scanmill/formats/common/column_names.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
 
 namespace scanmill::vtk {
 

@@ -22,7 +22,7 @@
 #include "scanmill/data/columns.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/formats/output_buffer.hpp"
+#include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill::vtk {
 

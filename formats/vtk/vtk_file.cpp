@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <vtkCommand.h>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "vtk/vtk_arrays.hpp"
 
 namespace scanmill::vtk {

@@ -16,7 +16,7 @@
 /// data `type_names`: 0 outer boundary, 1 hole, 2 crease, 3 corner; and `closed`, 0 or 1. Vertices that neither a
 /// polyline nor a corner names are left out, and told.
 
-#include "scanmill/formats/format.hpp"
+#include "scanmill/formats/common/format.hpp"
 
 namespace scanmill::vtk {
 

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 
-#include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/writing.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
 #include "vtk/vtk_arrays.hpp"
 #include "vtp/vtp.hpp"
 

@@ -5,7 +5,7 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataWriter.h>
 
-#include "scanmill/formats/writing.hpp"
+#include "scanmill/formats/common/writing.hpp"
 #include "vtk/vtk_arrays.hpp"
 #include "vtp/vtp.hpp"
 

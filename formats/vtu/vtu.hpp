@@ -6,7 +6,7 @@
 /// bytes of their text, since meshio reads no file that has strings. Cell data: `inside`, 1 or
 /// 0, when the cells are labelled. Neighbours are not written: the cells say which share a facet.
 
-#include "scanmill/formats/format.hpp"
+#include "scanmill/formats/common/format.hpp"
 
 namespace scanmill::vtk {
 

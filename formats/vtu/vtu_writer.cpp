@@ -6,7 +6,7 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
-#include "scanmill/formats/writing.hpp"
+#include "scanmill/formats/common/writing.hpp"
 #include "vtk/vtk_arrays.hpp"
 #include "vtu/vtu.hpp"
 

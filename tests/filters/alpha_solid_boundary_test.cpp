@@ -10,8 +10,8 @@
 #include "alpha_solid/growing_solid.hpp"
 #include "alpha_solid/pieces.hpp"
 #include "filters/alpha_solid_cases.hpp"
-#include "scanmill/geometry/solid_boundary.hpp"
-#include "scanmill/geometry/topology.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 

@@ -13,8 +13,8 @@
 
 #include "alpha_solid/alpha_solid.hpp"
 #include "delaunay/delaunay.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/topology.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 #include "support/point_sets.hpp"
 
 namespace scanmill::test {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "filters/alpha_solid_cases.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 

@@ -9,7 +9,7 @@
 #include "delaunay/delaunay.hpp"
 #include "filters/known_models.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/topology.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill {

@@ -4,7 +4,7 @@
 #include "alpha_solid/alpha_solid.hpp"
 #include "delaunay/delaunay.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/topology.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"
 

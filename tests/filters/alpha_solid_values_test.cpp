@@ -7,7 +7,7 @@
 
 #include "alpha_solid/descending_queue.hpp"
 #include "alpha_solid/facet_values.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 
 namespace scanmill::alpha {
 namespace {

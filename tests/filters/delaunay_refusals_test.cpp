@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "delaunay/delaunay.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "delaunay/slab_allocator.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 
 namespace scanmill {
 namespace {

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "filters/delaunay_checks.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/formats/files.hpp"
 #include "support/point_sets.hpp"
 #include "support/real_data.hpp"

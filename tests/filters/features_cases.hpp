@@ -12,7 +12,7 @@
 #include <tuple>
 
 #include "features/features.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"
 

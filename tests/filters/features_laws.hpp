@@ -8,7 +8,7 @@
 #include <set>
 
 #include "filters/features_cases.hpp"
-#include "scanmill/geometry/disjoint_sets.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
 
 namespace scanmill::test {
 

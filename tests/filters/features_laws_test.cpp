@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 
 #include "filters/features_laws.hpp"
-#include "scanmill/geometry/surface_box.hpp"
-#include "scanmill/geometry/unit_scale.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/geometry/fit/unit_scale.hpp"
 
 namespace scanmill {
 namespace {

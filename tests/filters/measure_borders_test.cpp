@@ -4,7 +4,7 @@
 
 #include "filters/measure_cases.hpp"
 #include "measure/measured_metrics.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill::test {
 namespace {

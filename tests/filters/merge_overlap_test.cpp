@@ -7,7 +7,7 @@
 #include <set>
 
 #include "filters/merge_cases.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 

@@ -6,7 +6,7 @@
 #include "merge/merge.hpp"
 #include "region_grow/point_normals.hpp"
 #include "region_grow/search_radii.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "scanmill/formats/files.hpp"
 #include "support/temporary_folder.hpp"
 #include "voxel_thin/voxel_thin.hpp"

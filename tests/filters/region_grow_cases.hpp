@@ -12,8 +12,8 @@
 #include <set>
 
 #include "region_grow/region_grow.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/topology.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "filters/region_grow_cases.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill {

@@ -6,7 +6,7 @@
 
 #include "filters/region_grow_cases.hpp"
 #include "region_grow/live_places.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 
 namespace scanmill {
 namespace {

@@ -6,7 +6,7 @@
 #include "filters/region_grow_patch.hpp"
 #include "region_grow/narrow_holes.hpp"
 #include "region_grow/pinches.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill {

@@ -6,7 +6,7 @@
 
 #include "filters/region_grow_cases.hpp"
 #include "measure/measure.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill {

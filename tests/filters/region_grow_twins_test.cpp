@@ -4,7 +4,7 @@
 
 #include "filters/region_grow_cases.hpp"
 #include "region_grow/near_twins.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "filters/alpha_solid_cases.hpp"
-#include "scanmill/geometry/solid_boundary.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
 #include "sculpt/sculpt.hpp"
 #include "support/shapes.hpp"
 

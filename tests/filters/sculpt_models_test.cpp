@@ -7,7 +7,7 @@
 #include "filters/known_models.hpp"
 #include "filters/sculpt_cases.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/topology.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 
 namespace scanmill {
 namespace {

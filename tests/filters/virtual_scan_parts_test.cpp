@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "virtual_scan/virtual_scan.hpp"
 
 namespace scanmill::test {

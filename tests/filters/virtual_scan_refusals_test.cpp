@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"
 #include "virtual_scan/virtual_scan.hpp"

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "filters/voxel_thin_cases.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "scanmill/formats/files.hpp"
 #include "support/point_sets.hpp"
 #include "support/real_data.hpp"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "filters/voxel_thin_cases.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 

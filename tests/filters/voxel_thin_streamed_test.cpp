@@ -8,7 +8,8 @@
 #include <fstream>
 
 #include "filters/voxel_thin_cases.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/formats/open_point_stream.hpp"
 #include "support/peak_memory.hpp"
 #include "support/real_data.hpp"
 #include "support/same_points.hpp"

@@ -6,7 +6,7 @@
 
 #include "delaunay/delaunay.hpp"
 #include "filters/alpha_solid_cases.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill::test {

@@ -10,7 +10,7 @@
 #include "alpha_solid/flood.hpp"
 #include "filters/orthogonal_spheres.hpp"
 #include "filters/weighted_cases.hpp"
-#include "scanmill/geometry/solid_boundary.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill::alpha {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "filters/orthogonal_spheres.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 
 namespace scanmill::alpha {
 namespace {

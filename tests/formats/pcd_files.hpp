@@ -2,7 +2,7 @@
 #pragma once
 /// PCD files as texts.
 
-#include "core/formats_support.hpp"
+#include "core/formats/support.hpp"
 
 namespace scanmill::test {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/formats_support.hpp"
+#include "core/formats/support.hpp"
 #include "support/real_data.hpp"
 
 namespace scanmill::test {

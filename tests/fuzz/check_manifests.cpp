@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fuzz/targets.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/filter/manifest.hpp"
-#include "scanmill/formats/format_spec.hpp"
+#include "scanmill/plugin/format_manifest.hpp"
 
 namespace scanmill::test {
 

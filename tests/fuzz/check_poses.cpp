@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fuzz/targets.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/poses.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/formats/poses/poses.hpp"
 
 namespace scanmill::test {
 

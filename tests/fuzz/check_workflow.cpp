@@ -2,9 +2,9 @@
 #include <algorithm>
 
 #include "fuzz/targets.hpp"
-#include "scanmill/engine/output_template.hpp"
-#include "scanmill/engine/plan.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/plan/output_template.hpp"
+#include "scanmill/plan/plan.hpp"
 #include "support/declared_filters.hpp"
 
 namespace scanmill::test {

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "fuzz/targets.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/format.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/formats/registry.hpp"
 
 namespace scanmill::test {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "fuzz/targets.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/point_stream.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/formats/open_point_stream.hpp"
 #include "support/same_points.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "core/las_support.hpp"
-#include "scanmill/formats/output_buffer.hpp"
+#include "core/formats/las/las_support.hpp"
+#include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill::test {
 

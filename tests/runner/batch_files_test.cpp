@@ -2,7 +2,7 @@
 // Which file belongs to which cell of a batch, and which may not be written.
 
 #include "runner/batch_fixture.hpp"
-#include "scanmill/work/sha256.hpp"
+#include "scanmill/worker/file_description.hpp"
 
 namespace scanmill::test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "support/declared_filters.hpp"
 
-#include "scanmill/filter/module.hpp"
+#include "scanmill/plugin/module.hpp"
 
 namespace scanmill::test {
 

@@ -2,7 +2,7 @@
 #pragma once
 /// A library of filters that exist only as declarations: checking a workflow loads no code, so its tests need none.
 
-#include "scanmill/filter/library.hpp"
+#include "scanmill/plugin/library.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace scanmill::test {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 
 namespace scanmill::test {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 
 namespace scanmill::test {
 

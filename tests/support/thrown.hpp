@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill::test {
 

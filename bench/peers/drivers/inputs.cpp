@@ -19,9 +19,9 @@
 
 #include "answer.hpp"
 #include "delaunay/spacing_weights.hpp"
-#include "scanmill/data/value.hpp"
-#include "scanmill/filter/random.hpp"
+#include "scanmill/base/random.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/kinds/value.hpp"
 #include "support/point_sets.hpp"
 
 namespace {

@@ -12,7 +12,7 @@
 #include "measure/nearest_distances.hpp"
 #include "region_grow/region_grow.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/local_surface.hpp"
+#include "scanmill/geometry/fit/local_surface.hpp"
 #include "sculpt/sculpt.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 

@@ -5,8 +5,6 @@
 
 #include <cassert>
 
-#include "scanmill/data/watched_memory.hpp"
-
 namespace scanmill {
 
 namespace {

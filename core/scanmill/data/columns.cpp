@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/data/columns.hpp"
-#include "scanmill/filter/counted.hpp"
+#include "scanmill/base/text.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cstring>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 

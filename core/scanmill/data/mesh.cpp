@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/data/mesh.hpp"
-#include "scanmill/filter/counted.hpp"
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill {
 
@@ -75,6 +75,18 @@ TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
     result.edge_columns = mesh.edge_columns.gather(kept_edges);
     result.sharp_edges = renumbered(mesh.sharp_edges, new_index, kept_sharp_edges);
     return result;
+}
+
+BoundingBox surface_box(const TriangleMesh& mesh) {
+    BoundingBox box;
+    for (const Triangle& triangle : mesh.triangles)
+        for (const u32 vertex : triangle) {
+            const Vec3& position = mesh.positions[vertex];
+            if (!position.allFinite()) continue;
+            box.low = box.low.cwiseMin(position);
+            box.high = box.high.cwiseMax(position);
+        }
+    return box;
 }
 
 }  // namespace scanmill

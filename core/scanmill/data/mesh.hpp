@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "scanmill/data/bounds.hpp"
 #include "scanmill/data/columns.hpp"
 #include "scanmill/data/frame.hpp"
 
@@ -37,5 +38,9 @@ void require_consistent(const TriangleMesh& mesh);
 /// The triangles over only those vertices that they use, in vertex order, columns carried; the mesh's edges and sharp
 /// edges keep those between used vertices.
 TriangleMesh without_unused_vertices(const TriangleMesh& mesh);
+
+/// Of the vertices that triangles use: one that no triangle names is no part of the surface, wherever it lies.
+/// Non-finite vertices are passed over; empty without triangles.
+BoundingBox surface_box(const TriangleMesh& mesh);
 
 }  // namespace scanmill

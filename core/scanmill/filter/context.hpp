@@ -1,51 +1,40 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What a running algorithm may ask of its surroundings: report, be cancelled, draw random numbers, use threads and a
-/// scratch folder. There are no globals; a C++ program that calls an algorithm directly makes a `Context context;`.
+/// What a running filter may ask of its surroundings: what every Execution offers, and warnings, metrics, random
+/// numbers and a scratch folder. There are no globals; a C++ program that calls an algorithm directly makes a `Context
+/// context;`.
 
 #include <filesystem>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "scanmill/base/execution.hpp"
+#include "scanmill/base/random.hpp"
 #include "scanmill/data/metrics.hpp"
-#include "scanmill/filter/random.hpp"
 
 namespace scanmill {
 
-/// Thrown by check_cancelled(); passes through algorithms untouched.
-struct __attribute__((visibility("default"))) Cancelled {};
-
-struct ContextOptions {
-    /// At least 1. Results never depend on it.
-    unsigned threads = 1;
+struct ContextOptions : ExecutionOptions {
     std::uint64_t seed = 0;
     /// Exists while the algorithm runs; empty: none was given.
     std::filesystem::path scratch;
     /// Called from any thread, one call at a time.
-    std::function<void(double fraction)> on_progress;
     std::function<void(std::string_view text)> on_warning;
-    std::function<bool()> is_cancelled;
 };
 
-class Context {
+class Context : public Execution {
 public:
     explicit Context(ContextOptions options = {});
 
-    /// `fraction` in [0, 1]; callable from any thread.
-    void progress(double fraction);
-    bool cancelled() const;
-    /// Throws Cancelled when somebody asked to stop. Cheap enough for every chunk of work.
-    void check_cancelled() const;
-    /// One sentence about something the user should know although the result stands; callable from any thread. After
-    /// most_warnings of them only that there were more is kept.
+    /// One sentence about something the user should know although the result is valid; callable from any thread. After
+    /// most_warnings of them, one sentence reports that there were more.
     void warn(std::string text);
     void metric(std::string_view name, double value, Unit unit = Unit::count);
     /// A generator for this run's seed; every call returns the same state, so split it with stream().
-    Random random() const { return Random(options_.seed); }
-    unsigned threads() const { return options_.threads; }
-    const std::filesystem::path& scratch() const { return options_.scratch; }
+    Random random() const { return Random(seed_); }
+    const std::filesystem::path& scratch() const { return scratch_; }
 
     static constexpr std::size_t most_warnings = 1000;
 
@@ -53,8 +42,9 @@ public:
     const std::vector<std::string>& warnings() const { return warnings_; }
 
 private:
-    ContextOptions options_;
-    mutable std::mutex mutex_;
+    std::uint64_t seed_;
+    std::filesystem::path scratch_;
+    std::function<void(std::string_view)> on_warning_;
     Metrics metrics_;
     std::vector<std::string> warnings_;
 };

@@ -149,7 +149,7 @@ public:
         return *this;
     }
     /// `body(scan, params, context)` returns what run() would, byte for byte, of a scan file that is read piece by
-    /// piece (scanmill/formats/point_stream.hpp): called instead of run() when all parameters of `given` have a value,
+    /// piece (scanmill/data/point_stream.hpp): called instead of run() when all parameters of `given` have a value,
     /// and nobody else needs the scan in memory. For filters with one input.
     template <class Body>
         requires std::is_invocable_r_v<Outputs, Body, const PointStream&, const Params&, Context&>

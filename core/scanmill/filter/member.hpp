@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/filter/parameter.hpp"
 
 namespace scanmill {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/parameter.hpp"
-#include "scanmill/filter/counted.hpp"
+#include "scanmill/base/text.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/suggestion.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "scanmill/filter/quantity.hpp"
+#include "scanmill/data/quantity.hpp"
 
 namespace scanmill {
 

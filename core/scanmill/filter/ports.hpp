@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scanmill/data/value.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 

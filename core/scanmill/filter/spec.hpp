@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "scanmill/data/value.hpp"
 #include "scanmill/filter/parameter.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/files.hpp"
 
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/atomic_file.hpp"
-#include "scanmill/formats/convert.hpp"
-#include "scanmill/formats/format.hpp"
-#include "scanmill/formats/mapped_file.hpp"
-#include "scanmill/formats/output_buffer.hpp"
-#include "scanmill/formats/reading.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/data/conversions.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/registry.hpp"
+#include "scanmill/io/atomic_file.hpp"
+#include "scanmill/io/mapped_file.hpp"
+#include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill {
 

@@ -19,25 +19,9 @@
 #include <string_view>
 #include <vector>
 
-#include "scanmill/data/value.hpp"
+#include "scanmill/formats/common/format.hpp"
 
 namespace scanmill {
-
-struct ReadOptions {
-    /// Called with one sentence for everything that was left out, changed or looked doubtful. May be empty.
-    std::function<void(std::string)> on_warning;
-    /// When known, the unit of the coordinates, whatever the file says of itself.
-    LengthUnit unit = LengthUnit::unknown;
-};
-
-struct LoadedFile {
-    /// A PointCloud or a TriangleMesh, whichever the file holds; never null, never without points.
-    Value value;
-    std::string format;  ///< "PLY"
-    std::string encoding;  ///< "binary little-endian", "ascii"
-    /// The file's own remarks, in order: comment and obj_info lines, `#` lines, the text of an STL header.
-    std::vector<std::string> comments;
-};
 
 /// Reads what the file holds. A mesh file without a single face is a point cloud.
 LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& options = {});
@@ -50,13 +34,6 @@ std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path,
 
 /// Throws Error when the file holds points only.
 std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
-
-struct WriteOptions {
-    /// Called with one sentence for everything that the format cannot carry. May be empty.
-    std::function<void(std::string)> on_warning;
-    /// Called with all that goes into the file, piece by piece, in order. May be empty.
-    std::function<void(std::string_view)> on_bytes = {};
-};
 
 /// Writes in the format that the extension names. The file appears whole or not at all, and on an exception nothing is
 /// left beside it; an existing file is replaced. World coordinates are written (frame.origin added back), unit and

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 

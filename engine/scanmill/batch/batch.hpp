@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A batch as its file says it: which scans, under which workflows, with which values, limits, truth and gate.
-///
-/// Paths are relative to the batch file. Scans are named by globs: `*`, `?` and `[…]` within a name, `**` for any
-/// number of folders, never what begins with a dot. What `scans` has found stands here, sorted, every file once.
+/// What work on a scan may cost before it is stopped, and how often it may be tried again.
 
 #include <filesystem>
 #include <optional>
@@ -11,12 +8,26 @@
 #include <vector>
 
 #include "scanmill/batch/gate.hpp"
-#include "scanmill/batch/limits.hpp"
+#include "scanmill/data/array.hpp"
 #include "scanmill/data/transform.hpp"
-#include "scanmill/engine/expand.hpp"
-#include "scanmill/filter/library.hpp"
+#include "scanmill/plan/expand.hpp"
+#include "scanmill/plugin/library.hpp"
 
 namespace scanmill {
+
+/// A cell is one scan under one variant of a workflow. 0: no limit.
+struct Limits {
+    u64 cell_memory = 0, step_memory = 0;  ///< bytes
+    double cell_seconds = 0, step_seconds = 0;
+    unsigned retries = 0;  ///< after the first attempt
+
+    bool operator==(const Limits&) const = default;
+};
+
+// A batch as its file says it: which scans, under which workflows, with which values, limits, truth and gate.
+//
+// Paths are relative to the batch file. Scans are named by globs: `*`, `?` and `[…]` within a name, `**` for any
+// number of folders, never what begins with a dot. What `scans` has found stands here, sorted, every file once.
 
 struct BatchScan {
     std::filesystem::path file;

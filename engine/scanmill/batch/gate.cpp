@@ -7,10 +7,10 @@
 #include <cmath>
 #include <set>
 
-#include "scanmill/engine/facts.hpp"
-#include "scanmill/engine/grammar.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/suggestion.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/plan/properties.hpp"
+#include "scanmill/workflow/grammar.hpp"
 
 namespace scanmill {
 

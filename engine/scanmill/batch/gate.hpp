@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
-#include "scanmill/engine/document.hpp"
-#include "scanmill/filter/library.hpp"
+#include "scanmill/plugin/library.hpp"
+#include "scanmill/workflow/document.hpp"
 
 namespace scanmill {
 

@@ -3,7 +3,7 @@
 /// The parts of a batch that are plain numbers: `limits` and `measure`.
 
 #include "scanmill/batch/batch.hpp"
-#include "scanmill/engine/document.hpp"
+#include "scanmill/workflow/document.hpp"
 
 namespace scanmill {
 

@@ -7,12 +7,12 @@
 #include <array>
 #include <cmath>
 
-#include "scanmill/engine/grammar.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/quantity.hpp"
-#include "scanmill/filter/suggestion.hpp"
-#include "scanmill/formats/reading.hpp"
-#include "scanmill/formats/rotation.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/poses/rotation.hpp"
+#include "scanmill/workflow/grammar.hpp"
 
 namespace scanmill {
 

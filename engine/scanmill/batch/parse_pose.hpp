@@ -6,8 +6,8 @@
 #include <map>
 #include <optional>
 
-#include "scanmill/engine/document.hpp"
-#include "scanmill/formats/poses.hpp"
+#include "scanmill/formats/poses/poses.hpp"
+#include "scanmill/workflow/document.hpp"
 
 namespace scanmill {
 

@@ -2,8 +2,8 @@
 #pragma once
 /// `set`: values for the parameters of workflows.
 
-#include "scanmill/engine/document.hpp"
-#include "scanmill/engine/expand.hpp"
+#include "scanmill/plan/expand.hpp"
+#include "scanmill/workflow/document.hpp"
 
 namespace scanmill {
 

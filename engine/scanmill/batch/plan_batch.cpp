@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <set>
 
-#include "scanmill/engine/key.hpp"
-#include "scanmill/engine/workflow_file.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/suggestion.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/hash.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/workflow/document.hpp"
 
 namespace scanmill {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scanmill/batch/batch.hpp"
-#include "scanmill/engine/plan.hpp"
+#include "scanmill/plan/plan.hpp"
 
 namespace scanmill {
 

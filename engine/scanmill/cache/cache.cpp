@@ -10,10 +10,10 @@
 #include <fstream>
 #include <vector>
 
-#include "scanmill/cache/checked_file.hpp"
-#include "scanmill/engine/key.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/module.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/hash.hpp"
+#include "scanmill/cache/value_file.hpp"
+#include "scanmill/graph/keys.hpp"
 
 namespace scanmill {
 

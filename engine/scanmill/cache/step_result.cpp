@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "scanmill/cache/metrics_rows.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 

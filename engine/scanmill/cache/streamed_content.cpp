@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "scanmill/base/parallel.hpp"
 #include "scanmill/cache/value_fields.hpp"
-#include "scanmill/filter/waves.hpp"
 
 namespace scanmill {
 

@@ -4,9 +4,8 @@
 
 #include <functional>
 
-#include "scanmill/cache/arrays_hash.hpp"
 #include "scanmill/cache/value_file.hpp"
-#include "scanmill/formats/point_stream.hpp"
+#include "scanmill/data/point_stream.hpp"
 
 namespace scanmill {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scanmill/data/value.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill {
 

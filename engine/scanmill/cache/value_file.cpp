@@ -1,19 +1,71 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/cache/value_file.hpp"
 
+#include <fmt/format.h>
 #include <xxhash.h>
-
 #include <bit>
 #include <cstring>
+#include <fstream>
 #include <memory>
+#include <sstream>
 
-#include "scanmill/cache/arrays_hash.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/cache/value_fields.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/formats/atomic_file.hpp"
-#include "scanmill/formats/mapped_file.hpp"
+#include "scanmill/io/atomic_file.hpp"
+#include "scanmill/io/mapped_file.hpp"
 
 namespace scanmill {
+
+namespace {
+
+std::string head_of(const std::filesystem::path& file, std::string_view kind, std::string_view content) {
+    const XXH128_hash_t hash = XXH3_128bits(content.data(), content.size());
+    return fmt::format("scanmill {} {} {:016x}{:016x}\n", kind, file.filename().string(), hash.high64, hash.low64);
+}
+
+}  // namespace
+
+void write_checked(const std::filesystem::path& file, std::string_view kind, std::string_view content) {
+    AtomicFile target(file);
+    target.write(head_of(file, kind, content));
+    target.write(content);
+    target.commit(AtomicFile::Sync::no);
+}
+
+std::optional<std::string> read_checked(const std::filesystem::path& file, std::string_view kind) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return std::nullopt;
+    std::ostringstream text;
+    text << stream.rdbuf();
+    const std::string bytes = std::move(text).str();
+    const std::size_t end = bytes.find('\n');
+    const std::string content = end == std::string::npos ? std::string() : bytes.substr(end + 1);
+    if (!stream || bytes.substr(0, end + 1) != head_of(file, kind, content))
+        throw Error("'{}' is damaged: its bytes are not those that were written under this name", file.string());
+    return content;
+}
+
+ArraysHash::ArraysHash() : state_(XXH3_createState()) { XXH3_128bits_reset(state_.get()); }
+ArraysHash::~ArraysHash() = default;
+
+void ArraysHash::Free::operator()(XXH3_state_s* state) const { XXH3_freeState(state); }
+
+void ArraysHash::add(std::span<const std::byte> part) {
+    XXH3_128bits_update(state_.get(), part.data(), part.size());
+    array_bytes_ += part.size();
+}
+
+void ArraysHash::end_array() {
+    constexpr std::array<std::byte, value_alignment> zeros{};
+    XXH3_128bits_update(state_.get(), zeros.data(), aligned(array_bytes_) - array_bytes_);
+    array_bytes_ = 0;
+}
+
+std::array<std::byte, 16> ArraysHash::digest() const {
+    XXH128_canonical_t bytes;
+    XXH128_canonicalFromHash(&bytes, XXH3_128bits_digest(state_.get()));
+    return std::bit_cast<std::array<std::byte, 16>>(bytes);
+}
 
 namespace {
 

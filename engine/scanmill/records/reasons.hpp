@@ -2,7 +2,7 @@
 #pragma once
 /// Why a step runs that ran before: what of it changed since the last run of the same workflow into this folder.
 
-#include "scanmill/engine/foresight.hpp"
+#include "scanmill/cache/prediction.hpp"
 #include "scanmill/records/run_records.hpp"
 
 namespace scanmill {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "scanmill/engine/run.hpp"
 #include "scanmill/records/run_records.hpp"
+#include "scanmill/run/run.hpp"
 
 namespace scanmill {
 

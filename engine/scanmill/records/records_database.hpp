@@ -8,7 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/records/run_records.hpp"
 
 namespace scanmill {

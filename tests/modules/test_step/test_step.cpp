@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 

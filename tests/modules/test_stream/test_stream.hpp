@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "scanmill/data/point_stream.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/quantity.hpp"
-#include "scanmill/formats/point_stream.hpp"
 
 namespace scanmill {
 

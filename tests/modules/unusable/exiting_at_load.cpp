@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "scanmill/filter/plugin.hpp"
+#include "scanmill/plugin/plugin.hpp"
 
 namespace {
 

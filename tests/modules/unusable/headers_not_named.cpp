@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "scanmill/filter/plugin.hpp"
+#include "scanmill/plugin/plugin.hpp"
 
 #undef SCANMILL_ABI_TEXT
 #define SCANMILL_ABI_TEXT                                                                                         \

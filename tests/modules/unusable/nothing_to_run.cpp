@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A declaration without .run(…).
 
-#include "scanmill/filter/plugin.hpp"
+#include "scanmill/plugin/plugin.hpp"
 
 struct Nothing {};
 

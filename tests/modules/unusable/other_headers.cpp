@@ -6,6 +6,6 @@
 
 #include <cstdlib>
 
-#include "scanmill/filter/plugin.hpp"
+#include "scanmill/plugin/plugin.hpp"
 
 SCANMILL_FILTER() { std::abort(); }

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "scanmill/filter/plugin.hpp"
+#include "scanmill/plugin/plugin.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Its descriptor says two-names, its declaration something else.
 
-#include "scanmill/filter/plugin.hpp"
+#include "scanmill/plugin/plugin.hpp"
 
 struct Nothing {};
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/base/error.hpp"
+
+namespace scanmill {
+
+Error::Error(std::string sentence) : sentence_(std::move(sentence)), text_(sentence_) {}
+Error::~Error() = default;
+
+Error& Error::add_frame(std::string frame) {
+    frames_.push_back(std::move(frame));
+    compose();
+    return *this;
+}
+
+Error& Error::set_hint(std::string hint) {
+    hint_ = std::move(hint);
+    compose();
+    return *this;
+}
+
+Error&& Error::hint(std::string text) && {
+    set_hint(std::move(text));
+    return std::move(*this);
+}
+
+void Error::compose() {
+    text_ = sentence_;
+    for (const std::string& frame : frames_) text_ += "\n  " + frame;
+    if (!hint_.empty()) text_ += "\nhint: " + hint_;
+}
+
+}  // namespace scanmill

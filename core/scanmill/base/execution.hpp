@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What long-running code may ask of its caller: report progress, be cancelled, use threads.
+
+#include <algorithm>
+#include <functional>
+#include <mutex>
+
+namespace scanmill {
+
+/// Thrown by check_cancelled(); passes through algorithms untouched.
+struct __attribute__((visibility("default"))) Cancelled {};
+
+struct ExecutionOptions {
+    /// At least 1. Results never depend on it.
+    unsigned threads = 1;
+    /// Called from any thread, one call at a time.
+    std::function<void(double fraction)> on_progress;
+    std::function<bool()> is_cancelled;
+};
+
+class Execution {
+public:
+    explicit Execution(ExecutionOptions options = {}) : options_(std::move(options)) {
+        options_.threads = std::max(1u, options_.threads);
+    }
+    Execution(const Execution&) = delete;
+    Execution& operator=(const Execution&) = delete;
+
+    unsigned threads() const { return options_.threads; }
+    /// `fraction` in [0, 1]; NaN, the progress of no work, counts as 0. Callable from any thread.
+    void progress(double fraction) {
+        if (!options_.on_progress) return;
+        const std::scoped_lock lock(mutex_);
+        options_.on_progress(fraction > 0 ? std::min(fraction, 1.0) : 0.0);
+    }
+    bool cancelled() const { return options_.is_cancelled && options_.is_cancelled(); }
+    /// Throws Cancelled when the caller asked to stop. Cheap enough for every chunk of work.
+    void check_cancelled() const {
+        if (cancelled()) throw Cancelled{};
+    }
+
+protected:
+    std::mutex mutex_;  ///< every call of a callback holds it
+
+private:
+    ExecutionOptions options_;
+};
+
+}  // namespace scanmill

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// 128-bit XXH3 content hashes, as 32 hexadecimal digits.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace scanmill {
+
+/// The hash of a sequence of fields. Each field is hashed as name length, name, value length, value, so two different
+/// sequences never hash the same bytes.
+class KeyBuilder {
+public:
+    KeyBuilder& field(std::string_view name, std::string_view value);
+    std::string key() const;
+
+private:
+    std::string bytes_;
+};
+
+/// The hash of a file's bytes. Throws Error when the file cannot be read. Cost: one pass over the file.
+std::string content_hash(const std::filesystem::path& file);
+
+}  // namespace scanmill

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/data/bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scanmill {
+
+namespace {
+
+/// The smallest power of two that is not below `value`, a positive number. Exact, unlike the C library's log2, whose
+/// last bit depends on the processor.
+double power_of_two_from(double value) {
+    int exponent = 0;
+    const double fraction = std::frexp(value, &exponent);
+    return std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
+}
+
+}  // namespace
+
+BoundingBox bounding_box(std::span<const Vec3> positions) {
+    BoundingBox box;
+    for (const Vec3& p : positions) {
+        if (!p.allFinite()) continue;
+        box.low = box.low.cwiseMin(p);
+        box.high = box.high.cwiseMax(p);
+    }
+    return box;
+}
+
+Vec3 distant_origin(const BoundingBox& box) {
+    Vec3 origin = Vec3::Zero();
+    const double diagonal = box.diagonal();
+    if (box.empty() || !box.low.allFinite() || !box.high.allFinite() || !std::isfinite(diagonal)) return origin;
+    constexpr double far = 16;  // diagonals away from zero; nearer, doubles have bits to spare
+    for (int axis = 0; axis < 3; ++axis) {
+        const double middle = 0.5 * box.low[axis] + 0.5 * box.high[axis];
+        if (!(std::abs(middle) > far * diagonal)) continue;
+        // A multiple of a power of two at least as coarse as any coordinate's last bit: the difference of two such
+        // numbers that lie this close together has a short mantissa, so no bit is lost.
+        // Not below the normal numbers: a step of zero would make the origin NaN.
+        const double last_bit = std::max(std::ldexp(std::abs(middle), -50), std::numeric_limits<double>::min());
+        const double step = power_of_two_from(std::max(diagonal, last_bit));
+        origin[axis] = std::round(middle / step) * step;
+    }
+    return origin;
+}
+
+void FiniteBounds::add(const FiniteBounds& more) {
+    box.low = box.low.cwiseMin(more.box.low);
+    box.high = box.high.cwiseMax(more.box.high);
+    finite = finite && more.finite;
+}
+
+bool FiniteBounds::are_within(const BoundingBox& outer) const {
+    return finite && (box.low.array() >= outer.low.array()).all() && (box.high.array() <= outer.high.array()).all();
+}
+
+FiniteBounds finite_bounds(std::span<const Vec3> positions) {
+    FiniteBounds bounds;
+    Vec3 zero = Vec3::Zero();  // unless some x * 0 is NaN
+    for (const Vec3& p : positions) {
+        bounds.box.low = bounds.box.low.cwiseMin(p);
+        bounds.box.high = bounds.box.high.cwiseMax(p);
+        zero += p * 0.0;
+    }
+    bounds.finite = zero == Vec3::Zero();
+    return bounds;
+}
+
+}  // namespace scanmill

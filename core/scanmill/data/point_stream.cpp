@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/data/point_stream.hpp"
+
+#include "scanmill/base/error.hpp"
+
+namespace scanmill {
+
+PointStream::~PointStream() = default;
+
+void PointStream::read(std::size_t piece, Array<Vec3>& room) const {
+    const FiniteBounds world = read_world(piece, room);
+    if (room.size() != pieces_[piece + 1] - pieces_[piece] || !world.are_within(world_.box)) throw_changed();
+    if (frame_.origin == Vec3::Zero()) return;
+    for (Vec3& p : room) p -= frame_.origin;
+}
+
+PointCloud PointStream::gather(std::span<const u32> rows, unsigned threads) const {
+    PointCloud cloud = gather_world(rows, threads);
+    if (!finite_bounds(cloud.positions.span()).are_within(world_.box)) throw_changed();
+    cloud.frame = frame_;
+    if (frame_.origin != Vec3::Zero()) cloud.positions = translated(cloud.positions, -frame_.origin);
+    return cloud;
+}
+
+void PointStream::throw_changed() { throw Error("the scan's file changed while it was read").hint("run it again"); }
+
+void PointStream::choose_origin() {
+    frame_.origin = distant_origin(world_.box);
+    bounds_.low = world_.box.low - frame_.origin;
+    bounds_.high = world_.box.high - frame_.origin;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Source: ASPRS, LAS specification 1.4 revision 15; its earlier versions 1.0 to 1.3.
+#include "scanmill/formats/las/detail/las_header.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "scanmill/base/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::array<std::size_t, 11> point_sizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+constexpr std::string_view truncated_hint = "the file is truncated or its header is wrong: fetch or export it again";
+
+/// Text of a fixed width: up to the first zero, printable.
+std::string text_at(std::string_view bytes, std::size_t begin, std::size_t width) {
+    std::string text;
+    for (const char c : bytes.substr(begin, width)) {
+        if (c == '\0') break;
+        text += c >= ' ' && c <= '~' ? c : '?';
+    }
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    return text;
+}
+
+Vec3 vector_at(const char* source) {
+    Vec3 vector;
+    for (int axis = 0; axis < 3; ++axis) vector[axis] = little_endian<double>(source + 8 * axis);
+    return vector;
+}
+
+std::size_t least_header(u32 minor_version) { return minor_version < 3 ? 227 : minor_version == 3 ? 235 : 375; }
+
+void require_sense(const LasHeader& header, std::string_view bytes) {
+    if (header.point_format >= point_sizes.size())
+        throw Error("has points of format {}; LAS knows 0 to {}", header.point_format, point_sizes.size() - 1);
+    if (header.points_begin < header.size || header.points_begin > bytes.size())
+        throw Error("the points begin at byte {}, by the header of {}; the file has {}", header.points_begin,
+                    counted(header.size, "byte", "bytes"), counted(bytes.size(), "byte", "bytes"))
+            .hint(std::string(truncated_hint));
+    if (header.is_compressed) return;  // the sizes of points are another's business
+    if (header.point_size < las_point_size(header.point_format))
+        throw Error("points of format {} take {} bytes or more; the header says {}", header.point_format,
+                    las_point_size(header.point_format), header.point_size)
+            .hint(std::string(truncated_hint));
+    for (int axis = 0; axis < 3; ++axis)
+        if (!std::isfinite(header.scale[axis]) || header.scale[axis] == 0 || !std::isfinite(header.offset[axis]))
+            throw Error("the scale {} and the offset {} of {} make no coordinates", header.scale[axis],
+                        header.offset[axis], "xyz"[axis])
+                .hint(std::string(truncated_hint));
+}
+
+}  // namespace
+
+bool LasHeader::has_colour() const {
+    constexpr std::array<u32, 6> formats{2, 3, 5, 7, 8, 10};
+    return std::ranges::find(formats, point_format) != formats.end();
+}
+
+bool LasHeader::has_wave_packets() const {
+    constexpr std::array<u32, 4> formats{4, 5, 9, 10};
+    return std::ranges::find(formats, point_format) != formats.end();
+}
+
+std::size_t las_point_size(u32 point_format) { return point_sizes.at(point_format); }
+
+LasHeader read_las_header(std::string_view bytes) {
+    constexpr std::size_t versions_end = 96;
+    if (bytes.size() < versions_end)
+        throw Error("is {} long; the header of a LAS file takes {} or more", counted(bytes.size(), "byte", "bytes"),
+                    least_header(0));
+    const char* const at = bytes.data();
+    LasHeader header;
+    const u32 major = little_endian<u8>(at + 24);
+    header.minor_version = little_endian<u8>(at + 25);
+    if (major != 1 || header.minor_version > 4)
+        throw Error("is of LAS version {}.{}; 1.0 to 1.4 are read", major, header.minor_version);
+    header.size = little_endian<std::uint16_t>(at + 94);
+    const std::size_t least = least_header(header.minor_version);
+    if (header.size < least || header.size > bytes.size())
+        throw Error("the header of LAS 1.{} takes {} bytes or more; it says {}, and the file has {}",
+                    header.minor_version, least, header.size, bytes.size())
+            .hint(std::string(truncated_hint));
+
+    header.system = text_at(bytes, 26, 32);
+    header.software = text_at(bytes, 58, 32);
+    header.points_begin = little_endian<u32>(at + 96);
+    header.records = little_endian<u32>(at + 100);
+    const u32 format = little_endian<u8>(at + 104);
+    constexpr u32 compression_bits = 0xc0;
+    header.is_compressed = (format & compression_bits) != 0;
+    header.point_format = format & ~compression_bits;
+    header.point_size = little_endian<std::uint16_t>(at + 105);
+    header.points = little_endian<u32>(at + 107);
+    header.scale = vector_at(at + 131);
+    header.offset = vector_at(at + 155);
+    if (header.minor_version >= 4) {
+        header.extended_records = little_endian<u32>(at + 243);
+        // Files of many points leave the old field of 32 bits zero; some writers fill only the old one.
+        if (const u64 points = little_endian<u64>(at + 247); points > 0) header.points = points;
+    }
+    require_sense(header, bytes);
+    return header;
+}
+
+void require_las_points(const LasHeader& header, std::string_view bytes) {
+    const std::size_t room = bytes.size() - header.points_begin;
+    if (header.points == 0)
+        throw Error("holds no points: its header says 0, and {} follow it", counted(room, "byte", "bytes"));
+    if (header.points > room / header.point_size)
+        throw Error("promises {} of {} bytes; the {} from byte {} on hold {}",
+                    counted(header.points, "point", "points"), header.point_size, counted(room, "byte", "bytes"),
+                    header.points_begin, room / header.point_size)
+            .hint(std::string(truncated_hint));
+    require_countable(header.points, "points");
+}
+
+std::vector<LasRecord> read_las_records(const LasHeader& header, std::string_view bytes, const ReadOptions& options) {
+    constexpr std::size_t record_header = 54;
+    std::vector<LasRecord> records;
+    std::size_t at = header.size;
+    for (u32 i = 0; i < header.records; ++i) {
+        const std::size_t room = header.points_begin - at;
+        const std::size_t length = room < record_header ? 0 : little_endian<std::uint16_t>(bytes.data() + at + 20);
+        if (room < record_header || length > room - record_header) {
+            warn(options.on_warning,
+                 "variable length record {} of {} runs into the points; it and those behind it were left out", i + 1,
+                 header.records);
+            break;
+        }
+        records.push_back({text_at(bytes, at + 2, 16), little_endian<std::uint16_t>(bytes.data() + at + 18),
+                           bytes.substr(at + record_header, length)});
+        at += record_header + length;
+    }
+    return records;
+}
+
+bool holds_geo_keys(const LasRecord& record) { return record.user == "LASF_Projection" && record.id == 34735; }
+
+LengthUnit las_unit(const std::vector<LasRecord>& records, const ReadOptions& options) {
+    constexpr u32 model_type = 1024, linear_unit = 3076, height_unit = 4099;
+    constexpr u32 geographic = 2, metre = 9001, foot = 9002;
+    u32 model = 0, unit = 0, height = 0;
+    for (const LasRecord& record : records) {
+        if (!holds_geo_keys(record)) continue;
+        // Four numbers of 16 bits each: key, where its value is (0: here), how many, the value.
+        for (std::size_t at = 8; at + 8 <= record.content.size(); at += 8) {
+            const auto number = [&](std::size_t i) -> u32 {
+                return little_endian<std::uint16_t>(record.content.data() + at + 2 * i);
+            };
+            if (number(1) != 0) continue;
+            if (number(0) == model_type) model = number(3);
+            if (number(0) == linear_unit) unit = number(3);
+            if (number(0) == height_unit) height = number(3);
+        }
+    }
+    if (model == geographic) {
+        warn(options.on_warning,
+             "x and y are degrees of longitude and latitude by the file's GeoTIFF keys, not lengths: project them "
+             "first");
+        return options.unit;
+    }
+    if (options.unit != LengthUnit::unknown) return options.unit;
+    if (unit == 0) return LengthUnit::unknown;
+    if (height != 0 && height != unit) {
+        warn(options.on_warning,
+             "lengths are of unit {} but heights of unit {} by the GeoTIFF keys; the unit stays unknown", unit, height);
+        return LengthUnit::unknown;
+    }
+    if (unit == metre) return LengthUnit::metre;
+    if (unit == foot) return LengthUnit::foot;
+    warn(options.on_warning,
+         "the unit {} of the GeoTIFF keys is neither metre ({}) nor foot ({}); the unit stays unknown", unit, metre,
+         foot);
+    return LengthUnit::unknown;
+}
+
+}  // namespace scanmill

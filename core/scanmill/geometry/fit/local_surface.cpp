@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/fit/local_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "scanmill/geometry/fit/covariance.hpp"
+#include "scanmill/geometry/fit/quadric.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t fewest_samples = 6;
+constexpr double most_deviations = 3;
+/// A neighbourhood whose width is less than about a thirtieth of its length shows a curve, not a surface.
+constexpr double least_width = 1e-3;  // squared
+
+/// Two unit vectors across a unit normal and each other.
+std::pair<Vec3, Vec3> directions_across(const Vec3& normal) {
+    const Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
+    return {u, normal.cross(u)};
+}
+
+/// Turns samples about the point at `origin` around in the frame of the plane.
+void take_samples(std::span<const Vec3> offsets, std::size_t origin, const Vec3& normal,
+                  Array<QuadricSample>& samples) {
+    const auto [along, across] = directions_across(normal);
+    samples.clear();
+    double sum = 0;
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+        if (i == origin) continue;
+        const Vec3 offset = offsets[i] - offsets[origin];
+        const double u = offset.dot(along), v = offset.dot(across);
+        samples.push_back({u, v, offset.dot(normal), u * u + v * v});
+        sum += u * u + v * v;
+    }
+    const double mean = sum / static_cast<double>(samples.size());
+    for (QuadricSample& sample : samples) sample.weight = 1 / (sample.weight + mean);
+}
+
+double error_of(const QuadricSample& sample, const Quadric& quadric) {
+    return sample.s - quadric.at(sample.u, sample.v);
+}
+
+double mean_error(std::span<const QuadricSample> samples, const Quadric& quadric) {
+    double sum = 0;
+    for (const QuadricSample& sample : samples) sum += std::abs(error_of(sample, quadric));
+    return sum / static_cast<double>(samples.size());
+}
+
+/// Fits again without those that are too far off; tells how many that are.
+u32 reject_outliers(std::span<const QuadricSample> samples, Inclination inclination, Array<QuadricSample>& kept,
+                    Quadric& quadric) {
+    double squares = 0;
+    for (const QuadricSample& sample : samples) squares += error_of(sample, quadric) * error_of(sample, quadric);
+    const double variance = squares / static_cast<double>(samples.size() - 5);
+    const double most = most_deviations * most_deviations * variance;
+    const auto is_outlier = [&](const QuadricSample& sample) {
+        return error_of(sample, quadric) * error_of(sample, quadric) > most;
+    };
+    kept.clear();
+    for (const QuadricSample& sample : samples)
+        if (!is_outlier(sample)) kept.push_back(sample);
+    if (kept.size() == samples.size() || kept.size() < fewest_samples) return 0;
+    const std::optional<Quadric> without = fit_quadric(kept, inclination);
+    if (!without) return 0;
+    quadric = *without;
+    return static_cast<u32>(samples.size() - kept.size());
+}
+
+/// The memory of a fit, to be used again by the next one.
+struct Fit {
+    Array<Vec3> offsets;  // from the point, which is the first; at most 1 in size
+    Array<QuadricSample> samples, kept;
+};
+
+/// Scales the neighbours around `point` by a power of two so that the largest coordinate is between 1/2 and 1.
+/// Returns its exponent.
+template <class PositionOf>
+int take_offsets(const Vec3& point, std::size_t count, PositionOf&& position_of, Array<Vec3>& offsets) {
+    offsets.resize(count + 1);
+    offsets[0] = Vec3::Zero();
+    double largest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        offsets[i + 1] = position_of(i) - point;
+        largest = std::max(largest, offsets[i + 1].cwiseAbs().maxCoeff());
+    }
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    if (std::abs(exponent) < 1000) {
+        const double scale = std::ldexp(1.0, -exponent);
+        for (Vec3& offset : offsets) offset *= scale;
+    } else {
+        for (Vec3& offset : offsets)
+            for (int axis = 0; axis < 3; ++axis) offset[axis] = std::ldexp(offset[axis], -exponent);
+    }
+    return exponent;
+}
+
+std::size_t nearest_to(const Vec3& centre, std::span<const Vec3> points) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < points.size(); ++i)
+        if ((points[i] - centre).squaredNorm() < (points[best] - centre).squaredNorm()) best = i;
+    return best;
+}
+
+LocalSurface fitted(Fit& fit, int exponent, LocalSurfaceParams::Origin origin) {
+    const Scatter scatter = scatter_of(fit.offsets);
+    LocalSurface surface;
+    surface.normal = scatter.normal;
+    const bool at_point = origin == LocalSurfaceParams::Origin::nearest;
+    const std::size_t from = at_point ? 0 : nearest_to(scatter.centroid, fit.offsets);
+    const Inclination inclination = at_point ? Inclination::none : Inclination::free;
+    take_samples(fit.offsets, from, scatter.normal, fit.samples);
+    Quadric quadric;
+    if (fit.samples.size() >= fewest_samples && scatter.flatness > least_width)
+        if (const std::optional<Quadric> first = fit_quadric(fit.samples, inclination)) {
+            surface.is_curved = true;
+            quadric = *first;
+            surface.outliers = reject_outliers(fit.samples, inclination, fit.kept, quadric);
+            const auto [along, across] = directions_across(scatter.normal);
+            surface.normal = with_positive_sign((scatter.normal - quadric.d * along - quadric.e * across).normalized());
+            const PrincipalCurvatures curvatures = principal_curvatures(quadric);
+            const double sign = surface.normal.dot(scatter.normal) < 0 ? -1 : 1;
+            surface.first_curvature = sign * std::ldexp(curvatures.first, -exponent);
+            surface.second_curvature = sign * std::ldexp(curvatures.second, -exponent);
+        }
+    if (fit.offsets.size() > 1) surface.spacing = std::ldexp(std::sqrt(fit.offsets[1].squaredNorm()), exponent);
+    if (!fit.samples.empty()) surface.fit_error = std::ldexp(mean_error(fit.samples, quadric), exponent);
+    return surface;
+}
+
+}  // namespace
+
+LocalSurface local_surface(const Vec3& point, std::span<const Vec3> neighbours, LocalSurfaceParams::Origin origin) {
+    Fit fit;
+    const int exponent = take_offsets(
+        point, neighbours.size(), [&](std::size_t i) { return neighbours[i]; }, fit.offsets);
+    return fitted(fit, exponent, origin);
+}
+
+Array<LocalSurface> local_surfaces(const PointTree& tree, const LocalSurfaceParams& params,
+                                   const Execution& execution) {
+    const std::span<const Vec3> places = tree.places();
+    Array<LocalSurface> surfaces(places.size());
+    tree.for_each_nearest(params.neighbours, execution.threads(), [&](const NeighbourBatch& batch) {
+        execution.check_cancelled();
+        Fit fit;
+        for (std::size_t i = 0; i < batch.places.size(); ++i) {
+            const std::span<const Neighbour> neighbours = batch.of(i);
+            const u32 place = batch.places[i];
+            const int exponent = take_offsets(
+                places[place], neighbours.size(), [&](std::size_t n) { return places[neighbours[n].place]; },
+                fit.offsets);
+            surfaces[place] = fitted(fit, exponent, params.origin);
+        }
+    });
+    return surfaces;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/mesh/feature_net.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <tuple>
+
+#include "scanmill/geometry/mesh/boundary_loops.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr u32 none = ~u32(0);
+
+}  // namespace
+
+FeatureNet::FeatureNet(const TriangleMesh& mesh, std::span<const u32> twins, const std::vector<bool>& sharp,
+                       double corner_angle)
+    : mesh_(mesh),
+      twins_(twins),
+      loops_(boundary_loops(mesh, twins)) {
+    number_vertices(sharp);
+    find_creases(sharp);
+    find_corners(corner_angle);
+    for (Array<u32>& loop : loops_) begin_at_the_lowest(loop);
+}
+
+u32 FeatureNet::number_at_start(u32 side) const { return number_[sides::start(mesh_, side)]; }
+u32 FeatureNet::number_at_end(u32 side) const { return number_[sides::end(mesh_, side)]; }
+
+void FeatureNet::number_vertices(const std::vector<bool>& sharp) {
+    number_.assign(mesh_.positions.size(), none);
+    for (u32 side = 0; side < twins_.size(); ++side) {
+        if (twins_[side] != sides::boundary && !sharp[side]) continue;
+        for (const u32 vertex : {sides::start(mesh_, side), sides::end(mesh_, side)}) {
+            if (number_[vertex] == none) vertices_.push_back(vertex);
+            number_[vertex] = 0;
+        }
+    }
+    const auto place = [&](u32 vertex) {
+        const Vec3& p = mesh_.positions[vertex];
+        return std::tuple(p.x(), p.y(), p.z(), vertex);
+    };
+    std::ranges::sort(vertices_, {}, place);
+    for (u32 number = 0; number < vertices_.size(); ++number) number_[vertices_[number]] = number;
+}
+
+void FeatureNet::find_creases(const std::vector<bool>& sharp) {
+    // An edge leaves both its ends: once with each of its two sides.
+    begin_.assign(vertices_.size() + 1, 0);
+    for (u32 side = 0; side < twins_.size(); ++side)
+        if (sharp[side]) ++begin_[number_at_start(side)];
+    std::exclusive_scan(begin_.begin(), begin_.end(), begin_.begin(), u32(0));
+    creases_.resize(begin_.back());
+    Array<u32> next(begin_.begin(), begin_.end() - 1);
+    for (u32 side = 0; side < twins_.size(); ++side)
+        if (sharp[side]) creases_[next[number_at_start(side)]++] = {number_at_end(side), side};
+    for (std::size_t number = 0; number < vertices_.size(); ++number)
+        std::sort(creases_.begin() + begin_[number], creases_.begin() + begin_[number + 1],
+                  [](const Crease& a, const Crease& b) { return a.end < b.end; });
+}
+
+std::span<const FeatureNet::Crease> FeatureNet::creases_at(u32 number) const {
+    return std::span(creases_).subspan(begin_[number], begin_[number + 1] - begin_[number]);
+}
+
+bool FeatureNet::turns(u32 before, u32 at, u32 after, double corner_angle) const {
+    const Vec3& here = mesh_.positions[vertices_[at]];
+    const Vec3 arriving = here - mesh_.positions[vertices_[before]], leaving = mesh_.positions[vertices_[after]] - here;
+    return angle_between(arriving, leaving) > corner_angle;
+}
+
+void FeatureNet::find_corners(double corner_angle) {
+    is_corner_.assign(vertices_.size(), false);
+    boundary_edges_.assign(vertices_.size(), 0);
+    for (const Array<u32>& loop : loops_)
+        for (const u32 side : loop) {
+            ++boundary_edges_[number_at_start(side)];
+            ++boundary_edges_[number_at_end(side)];
+        }
+    for (u32 number = 0; number < vertices_.size(); ++number) {
+        const std::span<const Crease> creases = creases_at(number);
+        if (creases.size() + boundary_edges_[number] != 2)
+            is_corner_[number] = true;
+        else if (creases.size() == 2)
+            is_corner_[number] = turns(creases[0].end, number, creases[1].end, corner_angle);
+    }
+    for (const Array<u32>& loop : loops_)
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const u32 arriving = loop[i], leaving = loop[i + 1 == loop.size() ? 0 : i + 1];
+            const u32 here = number_at_start(leaving);
+            if (turns(number_at_start(arriving), here, number_at_end(leaving), corner_angle)) is_corner_[here] = true;
+        }
+}
+
+void FeatureNet::begin_at_the_lowest(Array<u32>& loop) const {
+    const auto rank = [&](u32 side) {
+        const u32 start = number_at_start(side);
+        return std::tuple(!is_corner_[start], start, number_at_end(side));
+    };
+    std::ranges::rotate(loop, std::ranges::min_element(loop, {}, rank));
+}
+
+FeatureLine FeatureNet::crease_from(const Crease& first, std::vector<bool>& seen) const {
+    FeatureLine line{FeatureType::crease, false, {}};
+    const u32 begin = number_at_start(first.side);
+    for (Crease crease = first;;) {
+        assert(!seen[crease.side]);
+        seen[crease.side] = seen[twins_[crease.side]] = true;
+        line.sides.push_back(crease.side);
+        line.closed = crease.end == begin;
+        if (line.closed || is_corner_[crease.end]) return line;
+        const std::span<const Crease> two = creases_at(crease.end);
+        crease = two[0].side == twins_[crease.side] ? two[1] : two[0];
+    }
+}
+
+std::vector<FeatureLine> FeatureNet::lines() const {
+    std::vector<FeatureLine> lines;
+    for (const Array<u32>& loop : loops_) lines.push_back({FeatureType::outer_boundary, true, loop});
+    std::vector<bool> seen(twins_.size(), false);
+    for (const bool at_corners : {true, false})  // what is left between corners are rings: from their lowest vertex
+        for (u32 number = 0; number < vertices_.size(); ++number) {
+            if (is_corner_[number] != at_corners) continue;
+            for (const Crease& crease : creases_at(number))
+                if (!seen[crease.side]) lines.push_back(crease_from(crease, seen));
+        }
+    std::ranges::sort(lines, {}, [&](const FeatureLine& line) {
+        return std::tuple(line.type, number_at_start(line.sides[0]), number_at_end(line.sides[0]));
+    });
+    return lines;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/spatial/detail/outward_floats.hpp"
+#include "scanmill/geometry/spatial/triangle_distance.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t largest_leaf = 4;
+/// Of the scaled extent: far above the rounding of a distance in doubles, far below that of a float.
+constexpr double widening = 0x1p-40;
+
+struct Centroid {
+    float at[3];
+    u32 row;
+};
+
+/// Puts the `middle - first` smallest along the longest axis first; equal ones by row.
+void split(Centroid* first, Centroid* middle, Centroid* last) {
+    if (middle == first || middle == last) return;
+    float low[3], high[3];
+    std::copy_n(first->at, 3, low);
+    std::copy_n(first->at, 3, high);
+    for (const Centroid* c = first; c != last; ++c)
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], c->at[axis]);
+            high[axis] = std::max(high[axis], c->at[axis]);
+        }
+    int longest = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
+    std::nth_element(first, middle, last, [longest](const Centroid& a, const Centroid& b) {
+        return a.at[longest] != b.at[longest] ? a.at[longest] < b.at[longest] : a.row < b.row;
+    });
+}
+
+}  // namespace
+
+TriangleTree::TriangleTree(std::span<const Vec3> positions, std::span<const Triangle> triangles, unsigned threads) {
+    assert(!triangles.empty() && triangles.size() < ~u32(0));
+    BoundingBox box;
+    for (const Triangle& triangle : triangles)
+        for (u32 vertex : triangle) {
+            box.low = box.low.cwiseMin(positions[vertex]);
+            box.high = box.high.cwiseMax(positions[vertex]);
+        }
+    centre_ = box.low + (box.high - box.low) / 2;
+    if (const double extent = (box.high - box.low).maxCoeff(); extent > 0)
+        scale_ = std::ldexp(1.0, -std::ilogb(extent));
+
+    while (triangles.size() > largest_leaf << (2 * depth_)) ++depth_;
+    assert(depth_ <= deepest);
+    sort_triangles(positions, triangles, threads);
+    bound_nodes(threads);
+}
+
+void TriangleTree::sort_triangles(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                  unsigned threads) {
+    constexpr std::size_t chunk = 1 << 14;
+    const std::size_t count = triangles.size();
+    Array<Centroid> centroids(count);
+    for_each_chunk(threads, count, chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+            const auto& [a, b, c] = triangles[row];
+            const Vec3 third = scaled(positions[a]) + scaled(positions[b]) + scaled(positions[c]);
+            for (int axis = 0; axis < 3; ++axis) centroids[row].at[axis] = static_cast<float>(third[axis]);
+            centroids[row].row = static_cast<u32>(row);
+        }
+    });
+    rows_.resize(count);
+    for (unsigned level = 0; level < depth_; ++level)
+        for_each_chunk(threads, std::size_t(1) << (2 * level), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t node = begin; node < end; ++node) {
+                std::array<Centroid*, arity + 1> cut;
+                for (std::size_t i = 0; i <= arity; ++i)
+                    cut[i] = centroids.data() + begin_of(arity * node + i, level + 1);
+                split(cut[0], cut[2], cut[4]);
+                split(cut[0], cut[1], cut[2]);
+                split(cut[2], cut[3], cut[4]);
+            }
+        });
+    corners_.resize(count);
+    for_each_chunk(threads, count, chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t place = begin; place < end; ++place) {
+            rows_[place] = centroids[place].row;
+            const auto& [a, b, c] = triangles[rows_[place]];
+            corners_[place] = {positions[a], positions[b], positions[c]};
+        }
+    });
+}
+
+void TriangleTree::bound_nodes(unsigned threads) {
+    std::size_t first = ((std::size_t(1) << (2 * depth_)) - 1) / 3;
+    nodes_.resize(first);
+    while (first > 0) {
+        const std::size_t end = first;
+        first = (first - 1) / arity;
+        for_each_chunk(threads, end - first, 256, [&](std::size_t from, std::size_t to) {
+            for (std::size_t node = first + from; node < first + to; ++node) bound_node(node);
+        });
+    }
+}
+
+void TriangleTree::bound_node(std::size_t node) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < arity; ++i) {
+        float low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
+        const std::size_t child = arity * node + 1 + i;
+        if (child < nodes_.size()) {
+            for (int axis = 0; axis < 3; ++axis) {
+                low[axis] = *std::ranges::min_element(nodes_[child].bounds[axis]);
+                high[axis] = *std::ranges::max_element(nodes_[child].bounds[axis + 3]);
+            }
+        } else {
+            const std::size_t leaf = child - nodes_.size();
+            for (std::size_t place = begin_of(leaf, depth_); place < begin_of(leaf + 1, depth_); ++place) {
+                const Corners& corners = corners_[place];
+                for (const Vec3& corner : {corners.a, corners.b, corners.c})
+                    for (int axis = 0; axis < 3; ++axis) {
+                        const double at = scaled(corner)[axis];
+                        low[axis] = std::min(low[axis], rounded_down(at - widening));
+                        high[axis] = std::max(high[axis], rounded_up(at + widening));
+                    }
+            }
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            nodes_[node].bounds[axis][i] = low[axis];
+            nodes_[node].bounds[axis + 3][i] = high[axis];
+        }
+    }
+}
+
+TriangleTree tree_of_points(std::span<const Vec3> positions, unsigned threads) {
+    Array<Triangle> triangles(positions.size());
+    for (u32 i = 0; i < triangles.size(); ++i) triangles[i] = {i, i, i};
+    return TriangleTree(positions, triangles, threads);
+}
+
+// The questions to a TriangleTree; triangle_tree.cpp builds it.
+
+namespace {
+
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+
+Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
+Float4 all(float value) { return Float4{value, value, value, value}; }
+Float4 load(const float* values) { return Float4{values[0], values[1], values[2], values[3]}; }
+
+/// A point as an interval of floats that holds it.
+struct FloatPoint {
+    explicit FloatPoint(const Vec3& point) {
+        for (int axis = 0; axis < 3; ++axis) {
+            // Far outside, a point held nearer is still outside, and its square is a float.
+            const double held = std::clamp(point[axis], -1e18, 1e18);
+            low[axis] = all(rounded_down(held));
+            high[axis] = all(rounded_up(held));
+        }
+    }
+    /// Squared distances to four boxes, from below but for a few roundings.
+    Float4 squared_distances(const float (&bounds)[6][4]) const {
+        Float4 sum = all(0);
+        for (int axis = 0; axis < 3; ++axis) {
+            const Float4 below = load(bounds[axis]) - high[axis];
+            const Float4 above = low[axis] - load(bounds[axis + 3]);
+            const Float4 outside = larger(larger(below, above), all(0));
+            sum += outside * outside;
+        }
+        return sum;
+    }
+    Float4 low[3], high[3];
+};
+
+/// No box nearer than this can hold a triangle as near as `squared`: more than all roundings together.
+float reach(double squared, double scale) {
+    return static_cast<float>(std::min(squared * (scale * scale) * (1 + 0x1p-18), 1e38)) + 1e-36f;
+}
+
+}  // namespace
+
+Vec3 TriangleTree::nearest_point(const Vec3& point, u32 place) const {
+    const Corners& corners = corners_[place];
+    return nearest_on_triangle(point, corners.a, corners.b, corners.c);
+}
+
+NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
+    assert(point.allFinite());
+    struct Waiting {
+        float bound;
+        u32 node;
+    };
+    std::array<Waiting, (arity - 1) * deepest + 1> stack;
+    std::size_t waiting = 0;
+    NearestTriangle best;
+    float limit = std::numeric_limits<float>::infinity();
+    const auto offer = [&](std::size_t place) {
+        const double squared = squared_distance(point, static_cast<u32>(place));
+        if (squared < best.squared_distance || (squared == best.squared_distance && rows_[place] < best.triangle)) {
+            best = {rows_[place], static_cast<u32>(place), squared};
+            limit = reach(squared, scale_);
+        }
+    };
+    if (hint < corners_.size()) offer(hint);
+
+    const FloatPoint query(scaled(point));
+    stack[waiting++] = {0, 0};
+    while (waiting > 0) {
+        const Waiting next = stack[--waiting];
+        if (next.bound > limit) continue;
+        if (next.node >= nodes_.size()) {
+            const std::size_t leaf = next.node - nodes_.size();
+            for (std::size_t place = begin_of(leaf, depth_); place < begin_of(leaf + 1, depth_); ++place)
+                if (place != hint) offer(place);
+            continue;
+        }
+        const Float4 bounds = query.squared_distances(nodes_[next.node].bounds);
+        // Kept in descending order, so that the nearest is popped first.
+        const std::size_t bottom = waiting;
+        for (u32 i = 0; i < arity; ++i) {
+            if (!(bounds[i] <= limit)) continue;
+            std::size_t at = waiting++;
+            for (; at > bottom && stack[at - 1].bound < bounds[i]; --at) stack[at] = stack[at - 1];
+            stack[at] = {bounds[i], static_cast<u32>(arity * next.node + 1 + i)};
+        }
+    }
+    assert(best.triangle != NearestTriangle::none);
+    return best;
+}
+
+void TriangleTree::meeting(const BoundingBox& box, Array<u32>& rows) const {
+    float low[3], high[3];
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = rounded_down(scaled(box.low)[axis]);
+        high[axis] = rounded_up(scaled(box.high)[axis]);
+    }
+    std::array<u32, (arity - 1) * deepest + 1> stack;
+    std::size_t waiting = 0;
+    stack[waiting++] = 0;
+    while (waiting > 0) {
+        const u32 node = stack[--waiting];
+        if (node < nodes_.size()) {
+            Int4 meets = {-1, -1, -1, -1};
+            for (int axis = 0; axis < 3; ++axis)
+                meets &= (load(nodes_[node].bounds[axis]) <= all(high[axis])) &
+                         (load(nodes_[node].bounds[axis + 3]) >= all(low[axis]));
+            for (u32 i = 0; i < arity; ++i)
+                if (meets[i]) stack[waiting++] = static_cast<u32>(arity * node + 1 + i);
+            continue;
+        }
+        const std::size_t leaf = node - nodes_.size();
+        for (std::size_t place = begin_of(leaf, depth_); place < begin_of(leaf + 1, depth_); ++place) {
+            const Corners& at = corners_[place];
+            const Vec3 least = at.a.cwiseMin(at.b).cwiseMin(at.c), most = at.a.cwiseMax(at.b).cwiseMax(at.c);
+            if ((least.array() <= box.high.array()).all() && (most.array() >= box.low.array()).all())
+                rows.push_back(rows_[place]);
+        }
+    }
+}
+
+}  // namespace scanmill

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/tets/solid_boundary.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+
+#include "scanmill/base/parallel.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t chunk = 1 << 14;
+constexpr u8 solid = 1;
+
+/// The edge that starts at `vertex`, or nullptr. Pre: when there are more than a few, they ascend by `from`.
+constexpr std::size_t few = 32;
+const LinkEdge* starting_at(std::span<const LinkEdge> link, u32 vertex) {
+    const auto found = link.size() <= few ? std::ranges::find(link, vertex, &LinkEdge::from)
+                                          : std::ranges::lower_bound(link, vertex, {}, &LinkEdge::from);
+    return found == link.end() || found->from != vertex ? nullptr : &*found;
+}
+
+bool is_one_cycle(std::span<const LinkEdge> link) {
+    std::size_t walked = 1;
+    for (u32 at = link[0].to; at != link[0].from; ++walked) {
+        const LinkEdge* edge = starting_at(link, at);
+        // Where several edges start at one vertex the walk takes always the same, so it misses one or never ends.
+        if (edge == nullptr || walked > link.size()) return false;
+        at = edge->to;
+    }
+    return walked == link.size();
+}
+
+/// Link vertices beyond `centre` at which several edges start: each edge with surplus triangles is counted at its
+/// smaller end.
+std::size_t surplus_edges(std::span<LinkEdge> link, u32 centre) {
+    std::ranges::sort(link, {}, &LinkEdge::from);
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < link.size(); ++i)
+        count +=
+            link[i].from > centre && link[i].from == link[i - 1].from && (i == 1 || link[i - 2].from != link[i].from);
+    return count;
+}
+
+}  // namespace
+
+Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labels, unsigned threads) {
+    const std::size_t cells = tets.cells.size();
+    // The labels beyond the facets are looked up once: per cell a bit for each corner whose facet is on the boundary.
+    Array<u8> open(cells);
+    Array<std::size_t> starts((cells + chunk - 1) / chunk);
+    for_each_chunk(threads, cells, chunk, [&](std::size_t begin, std::size_t end) {
+        std::size_t count = 0;
+        for (std::size_t c = begin; c < end; ++c) {
+            unsigned mask = 0;
+            if (labels[c] == solid)
+                for (int corner = 0; corner < 4; ++corner) {
+                    const u32 across = tets.neighbours[c][corner];
+                    const bool at_hull = across == TetMesh::outside_hull;
+                    // Without a branch: which facets are on the boundary cannot be foreseen.
+                    const unsigned is_open = unsigned(at_hull) | unsigned(labels[at_hull ? 0 : across] != solid);
+                    mask |= is_open << corner;
+                    count += is_open;
+                }
+            open[c] = static_cast<u8>(mask);
+        }
+        starts[begin / chunk] = count;
+    });
+    std::size_t total = 0;
+    for (std::size_t& entry : starts) total += std::exchange(entry, total);
+
+    Array<Triangle> triangles(total);
+    for_each_chunk(threads, cells, chunk, [&](std::size_t begin, std::size_t end) {
+        std::size_t next = starts[begin / chunk];
+        for (std::size_t c = begin; c < end; ++c)
+            for (unsigned left = open[c]; left != 0; left &= left - 1) {
+                const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(std::countr_zero(left))];
+                triangles[next++] = {tets.cells[c][i], tets.cells[c][j], tets.cells[c][k]};
+            }
+    });
+    return triangles;
+}
+
+TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles) {
+    TriangleMesh mesh;
+    mesh.frame = tets.frame;
+    mesh.positions = tets.positions;
+    mesh.vertex_columns = tets.vertex_columns;
+    mesh.triangles = std::move(triangles);
+    return without_unused_vertices(mesh);
+}
+
+BoundaryLinks::BoundaryLinks(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads)
+    : ends_(vertices),
+      edges_(3 * triangles.size()) {
+    std::ranges::fill(ends_, 0);
+    const auto claim = [&, alone = threads <= 1](u32 vertex) {
+        return alone ? ends_[vertex]++ : std::atomic_ref(ends_[vertex]).fetch_add(1, std::memory_order_relaxed);
+    };
+    for_each_chunk(threads, triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t)
+            for (u32 corner : triangles[t]) claim(corner);
+    });
+    u32 start = 0;
+    for (u32& entry : ends_) start += std::exchange(entry, start);
+    // Filling moves every start to the next vertex's.
+    for_each_chunk(threads, triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const auto& [a, b, c] = triangles[t];
+            edges_[claim(a)] = {b, c};
+            edges_[claim(b)] = {c, a};
+            edges_[claim(c)] = {a, b};
+        }
+    });
+}
+
+BoundaryDefects boundary_defects(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads) {
+    BoundaryLinks links(triangles, vertices, threads);
+    return boundary_defects(links, threads);
+}
+
+BoundaryDefects boundary_defects(BoundaryLinks& links, unsigned threads) {
+    std::vector<BoundaryDefects> per_chunk((links.vertices() + chunk - 1) / chunk);
+    for_each_chunk(threads, links.vertices(), chunk, [&](std::size_t begin, std::size_t end) {
+        BoundaryDefects& defects = per_chunk[begin / chunk];
+        for (std::size_t vertex = begin; vertex < end; ++vertex) {
+            const std::span<LinkEdge> link = links.of(vertex);
+            if (link.empty()) continue;
+            if (link.size() > few) std::ranges::sort(link, {}, &LinkEdge::from);
+            if (is_one_cycle(link)) continue;
+            defects.vertices.push_back(static_cast<u32>(vertex));
+            defects.edges += surplus_edges(link, static_cast<u32>(vertex));
+        }
+    });
+    BoundaryDefects all;
+    for (const BoundaryDefects& part : per_chunk) {
+        all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
+        all.edges += part.edges;
+    }
+    return all;
+}
+
+std::size_t join_vertices(std::span<const Triangle> triangles, DisjointSets& vertices) {
+    for (const auto& [a, b, c] : triangles) {
+        vertices.unite(a, b);
+        vertices.unite(a, c);
+    }
+    Array<u32> roots;
+    for (const Triangle& triangle : triangles)
+        if (const u32 root = vertices.find(triangle[0]); roots.empty() || roots.back() != root) roots.push_back(root);
+    std::ranges::sort(roots);
+    return std::ranges::unique(roots).begin() - roots.begin();
+}
+
+}  // namespace scanmill

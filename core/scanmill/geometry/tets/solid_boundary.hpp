@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The boundary of a set of cells, and whether it is a 2-manifold.
+
+#include <span>
+
+#include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/tets.hpp"
+
+namespace scanmill {
+
+/// The facets between cells labelled 1 and others, outward, in vertices of `tets`; ascending by cell, then by corner.
+Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labels, unsigned threads);
+/// These triangles as a mesh over only the vertices that they use, in vertex order, columns carried.
+TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles);
+
+/// A triangle seen from one of its corners: the opposite edge, in the triangle's direction.
+struct LinkEdge {
+    u32 from, to;
+};
+
+/// The triangles round every vertex, as the edges opposite to it; in no order that could be relied on.
+/// Cost: linear, 24 bytes per triangle.
+class BoundaryLinks {
+public:
+    BoundaryLinks(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads);
+
+    std::size_t vertices() const { return ends_.size(); }
+    std::span<LinkEdge> of(std::size_t vertex) {
+        const u32 first = vertex == 0 ? 0 : ends_[vertex - 1];
+        return {edges_.data() + first, ends_[vertex] - first};
+    }
+
+private:
+    Array<u32> ends_;
+    Array<LinkEdge> edges_;
+};
+
+struct BoundaryDefects {
+    /// Vertices whose triangles are not exactly one closed fan, ascending.
+    Array<u32> vertices;
+    /// Edges with more than two triangles.
+    std::size_t edges = 0;
+};
+
+/// Pre: triangles bound a set of cells: every directed edge occurs as often as its reverse.
+/// Cost: linear, 24 bytes per triangle for the links.
+BoundaryDefects boundary_defects(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads);
+/// The same; sorts the longer links by `from`.
+BoundaryDefects boundary_defects(BoundaryLinks& links, unsigned threads);
+
+/// The triangles' vertices joined along them; the return value is the number of sets that have a triangle.
+std::size_t join_vertices(std::span<const Triangle> triangles, DisjointSets& vertices);
+
+}  // namespace scanmill

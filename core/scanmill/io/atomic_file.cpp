@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <system_error>
+
+#include "scanmill/base/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason_of(int number) { return std::generic_category().message(number); }
+
+fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
+
+fs::path temporary_name(const fs::path& folder, unsigned attempt) {
+    return folder / fmt::format(".scanmill-{}-{}.part", ::getpid(), attempt);
+}
+
+/// The rename itself must survive a power cut. Some network file systems cannot sync a folder: then nothing is lost
+/// that could be saved.
+void sync_folder(const fs::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    ::fsync(descriptor);
+    ::close(descriptor);
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
+    const fs::path folder = folder_of(target_);
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored))
+        throw Error("cannot be written: there is no folder '{}'", folder.string()).hint("make the folder first");
+    const fs::file_status status = fs::symlink_status(target_, ignored);
+    if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_symlink(status))
+        throw Error("cannot be written: a {} has this name", fs::is_directory(status) ? "folder" : "pipe or device");
+
+    // Without /proc the file could not be named afterwards.
+    if (::access("/proc/self/fd", X_OK) == 0)
+        descriptor_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) open_named(folder);
+}
+
+void AtomicFile::open_named(const fs::path& folder) {
+    // O_EXCL instead of mkstemp(): the file gets the permissions that the user's umask gives any new file.
+    for (unsigned attempt = 0;; ++attempt) {
+        temporary_ = temporary_name(folder, attempt);
+        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor_ >= 0) return;
+        if (errno != EEXIST) {
+            temporary_.clear();
+            throw Error("cannot be written in '{}': {}", folder.string(), reason_of(errno));
+        }
+    }
+}
+
+AtomicFile::~AtomicFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+}
+
+/// Gives the file without a name this one; false when it is taken.
+bool AtomicFile::link_to(const fs::path& name) const {
+    const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);
+    if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
+    if (errno == EEXIST) return false;
+    throw Error("cannot be written in '{}': {}", folder_of(name).string(), reason_of(errno));
+}
+
+void AtomicFile::commit(Sync sync) {
+    if (sync == Sync::yes && ::fsync(descriptor_) != 0)
+        throw Error("writing failed: {}; the file was not made", reason_of(errno));
+    const bool is_named = temporary_.empty() && link_to(target_);
+    // linkat() replaces nothing, so the way to a name that is taken is by another one.
+    for (unsigned attempt = 0; !is_named && temporary_.empty(); ++attempt) {
+        const fs::path name = temporary_name(folder_of(target_), attempt);
+        if (link_to(name)) temporary_ = name;
+    }
+    const int closed = ::close(descriptor_);
+    descriptor_ = -1;
+    if (closed != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
+    if (!is_named && ::rename(temporary_.c_str(), target_.c_str()) != 0)
+        throw Error("cannot be written: {}", reason_of(errno));
+    temporary_.clear();
+    if (sync == Sync::yes) sync_folder(folder_of(target_));
+}
+
+void remove_abandoned_parts(const fs::path& folder) {
+    constexpr std::string_view prefix = ".scanmill-", suffix = ".part";
+    std::error_code gone;
+    for (fs::directory_iterator entry(folder, gone), end; !gone && entry != end; entry.increment(gone)) {
+        const std::string name = entry->path().filename().string();
+        if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
+        const int process = std::atoi(name.c_str() + prefix.size());
+        if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) continue;
+        // Another machine, which counts its processes for itself, would be writing.
+        constexpr std::chrono::minutes settled(1);
+        std::error_code ignored;
+        const auto written = fs::last_write_time(entry->path(), ignored);
+        if (!ignored && fs::file_time_type::clock::now() - written > settled) fs::remove(entry->path(), ignored);
+    }
+}
+
+}  // namespace scanmill

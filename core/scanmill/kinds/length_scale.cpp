@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/kinds/length_scale.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/point_stream.hpp"
+#include "scanmill/geometry/size_limits.hpp"
+
+namespace scanmill {
+
+namespace {
+
+std::span<const Vec3> positions_of(const Value& value) {
+    return std::visit(
+        []<class T>(const std::shared_ptr<const T>& object) -> std::span<const Vec3> {
+            if constexpr (requires { object->positions; })
+                return object->positions.span();
+            else
+                return {};
+        },
+        value);
+}
+
+BoundingBox box_of(const Value& value) {
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value);
+        mesh && !(*mesh)->triangles.empty())
+        return surface_box(**mesh);
+    return bounding_box(positions_of(value));
+}
+
+/// The diagonal of `box`, which `points` finite ones lie in. Throws Error for one that no length is a share of.
+double usable_diagonal(const BoundingBox& box, std::size_t points) {
+    const double diagonal = box.diagonal();
+    if (!(diagonal > 0))
+        throw Error("%diag means nothing here: the diagonal is 0, as {} at one place",
+                    points == 1 ? "the only point is" : fmt::format("all {} points are", points))
+            .hint("give a length instead, as 0.5 u");
+    require_finite_size(box);
+    return diagonal;
+}
+
+double diagonal_of(const Value& value) {
+    const std::span<const Vec3> positions = positions_of(value);
+    if (positions.empty()) return 0;
+    const BoundingBox box = box_of(value);
+    if (!(box.diagonal() > 0)) require_finite(positions);
+    return usable_diagonal(box, positions.size());
+}
+
+double spacing_of(const Value& value) {
+    const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value);
+    const bool has_edges = mesh && !(*mesh)->triangles.empty();
+    const double spacing = has_edges ? edge_spacing(**mesh) : point_spacing(positions_of(value));
+    if (!(spacing > 0)) require_finite(positions_of(value));
+    if (!std::isfinite(spacing)) require_finite_size(bounding_box(positions_of(value)));
+    return spacing;
+}
+
+/// Computes at most once, however often it is copied or asked.
+std::function<double()> memoised(std::function<double()> compute) {
+    return [memo = std::make_shared<std::optional<double>>(), compute = std::move(compute)] {
+        if (!*memo) *memo = compute();
+        return **memo;
+    };
+}
+
+LengthScale scale_beside(const std::shared_ptr<const Metrics>& metrics) {
+    return {metrics->unit,
+            [metrics] {
+                const Metric* diagonal = metrics->find("diagonal");
+                if (!diagonal)
+                    throw Error("%diag means nothing here: no metric `diagonal` says how large the object is")
+                        .hint("give the length in a unit, or in u");
+                return diagonal->value;
+            },
+            []() -> double {
+                throw Error("spacing means nothing beside metrics").hint("give the length in a unit, in u or in %diag");
+            }};
+}
+
+}  // namespace
+
+LengthScale length_scale(const PointStream& scan) {
+    return {scan.frame().unit, [box = scan.bounds(), points = scan.size()] { return usable_diagonal(box, points); },
+            []() -> double { throw Error("spacing takes all points to measure, which a stream never has"); }};
+}
+
+LengthScale length_scale(const Value& value) {
+    if (const auto* metrics = std::get_if<std::shared_ptr<const Metrics>>(&value)) return scale_beside(*metrics);
+    const Frame* frame = frame_of(value);
+    return {frame ? frame->unit : LengthUnit::unknown, memoised([value] { return diagonal_of(value); }),
+            memoised([value] { return spacing_of(value); })};
+}
+
+}  // namespace scanmill

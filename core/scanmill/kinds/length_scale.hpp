@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The two lengths that relative parameters refer to: the bounding box's diagonal and the spacing of the samples.
+
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/geometry/spatial/spacing.hpp"
+#include "scanmill/kinds/value.hpp"
+
+namespace scanmill {
+
+/// What `%diag` and `spacing` mean for this value. The diagonal is that of all its positions, of a mesh those that its
+/// triangles use; the spacing of points is by point_spacing, of meshes by edge_spacing, of everything else by its
+/// positions. Both are computed at most once, on demand; whoever asks gets an Error where one is larger than any
+/// double, or where all positions are at one place and the diagonal is 0. Metrics know the diagonal that they report,
+/// no spacing.
+LengthScale length_scale(const Value& value);
+
+class PointStream;
+/// The same of a scan that is streamed. Its spacing would take all points: whoever asks gets an Error.
+LengthScale length_scale(const PointStream& scan);
+
+}  // namespace scanmill

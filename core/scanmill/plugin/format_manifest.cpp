@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/format_manifest.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/filter/manifest_json.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr int manifest_version = 1;
+
+}  // namespace
+
+std::string to_json_text(const FormatManifest& manifest) {
+    const FormatSpec& spec = manifest.spec;
+    Json json{{"scanmill-format", manifest_version},
+              {"abi", manifest.abi},
+              {"name", spec.name},
+              {"extensions", spec.extensions},
+              {"begins", spec.begins},
+              {"writes", Json::array()},
+              {"reads", spec.reads}};
+    for (const Kind kind : spec.writes) json["writes"].push_back(name_of(kind));
+    return json.dump(2) + "\n";
+}
+
+FormatManifest parse_format_manifest(std::string_view text) try {
+    const Json json = Json::parse(text);
+    require_manifest_version(json, "scanmill-format", manifest_version);
+    FormatManifest manifest;
+    manifest.abi = json.at("abi");
+    FormatSpec& spec = manifest.spec;
+    spec.name = json.at("name");
+    spec.extensions = json.at("extensions").get<std::vector<std::string>>();
+    spec.begins = json.at("begins").get<std::vector<std::string>>();
+    for (const std::string name : json.at("writes")) {
+        const std::optional<Kind> kind = kind_named(name);
+        if (!kind) throw Error("'{}' is no kind", name);
+        spec.writes.push_back(*kind);
+    }
+    spec.reads = json.value("reads", true);
+    if (spec.name.empty() || spec.extensions.empty()) throw Error("names no format, or no extension");
+    return manifest;
+} catch (const Json::exception& error) {
+    throw Error("is no manifest: {}", error.what());
+}
+
+}  // namespace scanmill

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The filters that are at hand: manifests read from the module folders, modules loaded when first used.
+///
+/// Folders are searched in order and the first module of a name counts. A manifest that cannot be read is remembered
+/// with its reason; it is an error only for who asks for that filter. Not thread-safe.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scanmill/filter/declare.hpp"
+#include "scanmill/filter/manifest.hpp"
+#include "scanmill/plugin/module.hpp"
+
+namespace scanmill {
+
+/// The installed modules' folder, then those of SCANMILL_PLUGIN_PATH (separated by colons). Entries that are not
+/// absolute are passed over: they would depend on the working folder. `ignored` receives them.
+std::vector<std::filesystem::path> plugin_folders(std::vector<std::string>* ignored = nullptr);
+
+struct UnusableModule {
+    std::string name;  ///< from the file's name
+    std::filesystem::path manifest;
+    std::string reason;
+};
+
+class FilterLibrary {
+public:
+    explicit FilterLibrary(const std::vector<std::filesystem::path>& folders);
+
+    /// nullptr when there is no usable filter of that name.
+    const FilterSpec* find(std::string_view name) const;
+    /// Sorted.
+    std::vector<std::string> names() const;
+    const std::vector<UnusableModule>& unusable() const { return unusable_; }
+    /// The module's file. Pre: find(name).
+    const std::filesystem::path& module_file(std::string_view name) const;
+    /// Content hash of the module, computed once. Pre: find(name).
+    const std::string& build_id(std::string_view name);
+    /// Loads the module on first use. Throws Error when it cannot be loaded or differs from its manifest.
+    /// Pre: find(name).
+    const FilterDeclaration& load(std::string_view name);
+
+private:
+    struct Entry {
+        Manifest manifest;
+        std::filesystem::path module;
+        std::string build_id;
+        FilterDeclaration declaration;
+    };
+    Entry& entry(std::string_view name);
+    void read_folder(const std::filesystem::path& folder);
+
+    std::map<std::string, Entry, std::less<>> entries_;
+    std::vector<UnusableModule> unusable_;
+};
+
+}  // namespace scanmill

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/describe/filter_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::string_view generated = "<!-- Written by `scanmill docs` from the filters' declarations. -->\n";
+
+bool is_readable(Kind kind) { return kind == Kind::points || kind == Kind::mesh; }
+
+/// A value that the parameter would take, for examples of required ones.
+std::string sample(const ParameterSpec& parameter) {
+    switch (parameter.type) {
+        case ParameterType::boolean: return "true";
+        case ParameterType::choice: return parameter.choices.front().name;
+        case ParameterType::length: return "1 %diag";
+        case ParameterType::angle: return "40 deg";
+        case ParameterType::ratio: return "5 %";
+        case ParameterType::text: return "text";
+        case ParameterType::path: return "file";
+        case ParameterType::integer:
+        case ParameterType::number: break;
+    }
+    return number_text(parameter.low ? parameter.low->value + (parameter.low->inclusive ? 0 : 1) : 1);
+}
+
+/// In a cell of a table a bar would end it.
+std::string cell(std::string_view text) {
+    std::string escaped;
+    for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+    return escaped;
+}
+
+std::string code(std::string_view text) { return text.empty() ? "" : "`" + cell(text) + "`"; }
+
+std::string ports_table(std::string_view title, std::string_view column, const std::vector<PortSpec>& ports) {
+    if (ports.empty()) return {};
+    std::string table = fmt::format("\n## {}\n\n| {} | kind | what it is |\n|---|---|---|\n", title, column);
+    for (const PortSpec& port : ports)
+        table += fmt::format("| {} | {}{}{} | {} |\n", code(port.name), kinds_text(port),
+                             port.list ? ", any number" : "", port.optional ? ", optional" : "", cell(port.help));
+    return table;
+}
+
+std::string parameters_table(const std::vector<ParameterSpec>& parameters) {
+    if (parameters.empty()) return {};
+    std::string table = "\n## Parameters\n\n| parameter | default | takes | what it means |\n|---|---|---|---|\n";
+    for (const ParameterSpec& parameter : parameters) {
+        std::string meaning = parameter.help;
+        for (const Choice& choice : parameter.choices) meaning += fmt::format("<br>`{}`: {}", choice.name, choice.help);
+        const std::string value = text(parameter.default_value);
+        table += fmt::format("| {} | {} | {} | {} |\n", code(parameter.name),
+                             parameter.required ? "required"
+                             : value.empty()    ? "none"
+                                                : code(value),
+                             cell(expectation(parameter)), cell(meaning));
+    }
+    return table;
+}
+
+std::string metrics_table(const std::vector<MetricSpec>& metrics) {
+    if (metrics.empty()) return {};
+    std::string table = "\n## Metrics\n\n| metric | unit | what it says |\n|---|---|---|\n";
+    for (const MetricSpec& metric : metrics)
+        table += fmt::format("| {} | {} | {} |\n", code(metric.name) + (metric.numbered ? ", `…@2`" : ""),
+                             name_of(metric.unit), cell(metric.help));
+    return table;
+}
+
+std::string remarks(const FilterSpec& spec) {
+    std::string list;
+    if (!spec.ties.empty()) list += fmt::format("- Ties: {}\n", spec.ties);
+    if (!spec.not_finite.empty()) list += fmt::format("- NaN and infinity: {}\n", spec.not_finite);
+    if (spec.streams) list += fmt::format("- Large scans: {}\n", stream_text(spec));
+    return list.empty() ? list : "\n" + list;
+}
+
+/// The first filter that makes values of this kind from what files hold.
+const FilterSpec* maker_of(Kind kind, const FilterLibrary& library) {
+    for (const std::string& name : library.names()) {
+        const FilterSpec* spec = library.find(name);
+        const auto can_be_fed = [](const PortSpec& port) { return port.optional || is_readable(port.kind); };
+        if (spec->outputs.front().kind == kind && std::ranges::all_of(spec->inputs, can_be_fed)) return spec;
+    }
+    return nullptr;
+}
+
+/// The step with its required parameters, or with all of them.
+std::string example_step(const FilterSpec& spec, bool whole) {
+    std::string step = fmt::format("  - {}:\n", spec.name);
+    for (const ParameterSpec& parameter : spec.parameters) {
+        const std::string value = text(parameter.default_value);
+        if (!whole && !parameter.required) continue;
+        const bool given = !value.empty() || parameter.required;
+        step += fmt::format("      {}{}: {}\n", given ? "" : "# ", parameter.name,
+                            value.empty() ? sample(parameter) : value);
+    }
+    return step;
+}
+
+/// `in:` for a filter with a port that is not wired without it; every port is fed by the input of its name.
+std::string example_wiring(const FilterSpec& spec) {
+    if (std::ranges::all_of(spec.inputs, [](const PortSpec& port) { return port.also.empty(); })) return {};
+    std::string wiring;
+    for (const PortSpec& port : spec.inputs)
+        wiring += fmt::format("{}{}: {}", wiring.empty() ? "" : ", ", port.name, port.name);
+    return fmt::format("    in: {{{}}}\n", wiring);
+}
+
+/// The steps that lead to this one and what is read from files for them.
+struct ExampleSteps {
+    std::vector<const FilterSpec*> steps;
+    std::vector<const PortSpec*> inputs;
+};
+
+void add_step(ExampleSteps& example, const FilterSpec& spec, const FilterLibrary& library) {
+    const bool is_last = example.steps.empty();
+    example.steps.push_back(&spec);  // backwards
+    for (const PortSpec& port : spec.inputs) {
+        if (is_readable(port.kind)) {
+            if (is_last || !port.optional) example.inputs.push_back(&port);
+            continue;
+        }
+        const FilterSpec* maker = port.maker.empty() ? maker_of(port.kind, library) : library.find(port.maker);
+        if (maker && std::ranges::find(example.steps, maker) == example.steps.end()) add_step(example, *maker, library);
+    }
+}
+
+}  // namespace
+
+std::string example_workflow(const FilterSpec& spec, const FilterLibrary& library) {
+    ExampleSteps chain;
+    add_step(chain, spec, library);
+    auto& [steps, inputs] = chain;
+    std::ranges::reverse(steps);
+    std::string example = fmt::format("scanmill: 1\nname: {}-example\n", spec.name);
+    std::set<std::string_view> fed;
+    if (!inputs.empty()) example += "inputs:\n";
+    for (const PortSpec* port : inputs)
+        if (fed.insert(port->name).second)
+            example += fmt::format(
+                "  {}: {}\n", port->name,
+                port->list ? "[" + std::string(name_of(port->kind)) + "]" : std::string(name_of(port->kind)));
+    example += "steps:\n";
+    for (const FilterSpec* step : steps) example += example_step(*step, step == &spec) + example_wiring(*step);
+    const Kind kind = spec.outputs.front().kind;
+    if (is_readable(kind) || kind == Kind::metrics || kind == Kind::features)
+        example += fmt::format("outputs:\n  \"{{scan}}.{}\": {}\n", is_readable(kind) ? "ply" : "json", spec.name);
+    return example;
+}
+
+std::string filter_page(const FilterSpec& spec, const FilterLibrary& library) {
+    return fmt::format("# {}\n\n{}\n{}\n\nSource: {}. Version {}.\n", spec.name, generated, spec.summary, spec.source,
+                       spec.version) +
+           remarks(spec) + ports_table("Takes", "port", spec.inputs) +
+           ports_table("Gives (the first is what the step's name alone means)", "port", spec.outputs) +
+           parameters_table(spec.parameters) + metrics_table(spec.metrics) + "\n## Example\n\n```yaml\n" +
+           example_workflow(spec, library) + "```\n";
+}
+
+std::string stream_text(const FilterSpec& spec) {
+    std::string given;
+    for (const std::string& name : spec.streams->given) given += (given.empty() ? "" : " and ") + name;
+    return fmt::format("{} a scan that no other step needs whole is read piece by piece, and never is in memory.",
+                       given.empty() ? "As the first step," : fmt::format("With {} given,", given));
+}
+
+bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }
+
+std::string filter_index(const std::vector<FilterSpec>& specs) {
+    std::string page = fmt::format("# Filters\n\n{}\n| filter | what it does |\n|---|---|\n", generated);
+    for (const FilterSpec& spec : specs)
+        page += fmt::format("| [{0}]({0}.md) | {1} |\n", spec.name, cell(spec.summary));
+    return page;
+}
+
+}  // namespace scanmill

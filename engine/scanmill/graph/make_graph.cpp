@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/formats/common/format.hpp"
+#include "scanmill/formats/files.hpp"
+#include "scanmill/graph/file_contents.hpp"
+#include "scanmill/graph/graph.hpp"
+#include "scanmill/graph/keys.hpp"
+#include "scanmill/graph/output_files.hpp"
+#include "scanmill/graph/streaming.hpp"
+#include "scanmill/io/regular_file.hpp"
+#include "scanmill/plan/output_template.hpp"
+#include "scanmill/plan/step_parameters.hpp"
+#include "scanmill/workflow/grammar.hpp"
+
+namespace scanmill {
+
+const FileContent& FileContents::of(const std::filesystem::path& file) {
+    const auto [known, is_new] = known_.try_emplace(file.string());
+    FileContent& content = known->second;
+    if (!is_new) return content;
+    try {
+        if (const std::optional<Error> other = why_no_file(file)) throw *other;
+        content.hash = hash_(file);
+    } catch (const Error& error) {
+        content = {"unreadable " + file.string(), error.sentence() + (error.hint().empty() ? "" : "; " + error.hint())};
+    }
+    return content;
+}
+
+// Plans laid out over scans, cell by cell.
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the folder that the file lies in.
+std::string folder_name(const fs::path& file) {
+    std::error_code gone;
+    const std::string name = fs::absolute(file, gone).lexically_normal().parent_path().filename().string();
+    return name.empty() ? "root" : name;
+}
+
+class GraphBuilder {
+public:
+    GraphBuilder(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash)
+        : contents_(hash),
+          library_(library),
+          parts_(parts),
+          base_(key_base(parts.front().request.seed)),
+          output_files_(parts.front().request.output_folder) {
+        graph_.seed = parts.front().request.seed;
+    }
+
+    RunGraph build() {
+        for (const GraphPart& part : parts_) {
+            require_fits(part.request, *part.plan);
+            protect_inputs(part);
+        }
+        for (const GraphPart& part : parts_) add_part(part);
+        mark_streams(graph_);
+        return std::move(graph_);
+    }
+
+private:
+    void protect_inputs(const GraphPart& part) {
+        output_files_.protect(part.plan->workflow.file);
+        for (const ScanFile& scan : part.request.scans) output_files_.protect(scan.path);
+        for (const auto& [name, files] : part.request.inputs)
+            for (const fs::path& file : files) output_files_.protect(file);
+        for (const fs::path& file : part.request.protected_files) output_files_.protect(file);
+        for (const PlannedStep& step : part.plan->steps)
+            for (const auto& [name, value] : step.parameters.values)
+                if (names_files(step.spec, name))
+                    key_text_of_paths(value, [this](const fs::path& file) {
+                        output_files_.protect(file);
+                        return std::string();
+                    });
+    }
+
+    void add_part(const GraphPart& part) {
+        plan_ = part.plan.get();
+        request_ = &part.request;
+        graph_.plans.push_back(part.plan);
+        const std::vector<WorkflowInput>& inputs = plan_->workflow.inputs;
+        if (inputs.empty() || inputs.front().list) {
+            add_cells(scan_index(workflow_name(*plan_)), nullptr);
+            return;
+        }
+        for (const ScanFile& scan : request_->scans) add_cells(scan_index(scan.path.string()), &scan);
+    }
+
+    /// Scans that several parts name are one.
+    std::size_t scan_index(const std::string& name) {
+        const auto [known, is_new] = scan_of_name_.emplace(name, graph_.scan_names.size());
+        if (is_new) graph_.scan_names.push_back(name);
+        return known->second;
+    }
+
+    /// `file` is the scan; none when there is none, or a list of them.
+    void add_cells(std::size_t scan, const ScanFile* file) {
+        const std::string& scan_name = graph_.scan_names[scan];
+        for (std::size_t variant = 0; variant < plan_->variants.size(); ++variant) {
+            const PlannedVariant& planned = plan_->variants[variant];
+            if (!request_->only.empty() && std::ranges::find(request_->only, planned.name) == request_->only.end())
+                continue;
+            if (!request_->until.empty() && !planned.steps_by_name.contains(request_->until)) continue;
+            RunCell cell{graph_.plans.size() - 1, scan, variant, {}, {}};
+            std::map<std::size_t, std::size_t> node_of_step;
+            for (const std::size_t step : steps_to_run(planned)) {
+                node_of_step[step] = add_step(step, node_of_step, scan, file, cell);
+                add_to(cell, node_of_step[step]);
+            }
+            const TemplateValues values{file ? file->path.stem().string() : scan_name, planned.name,
+                                        workflow_name(*plan_), file ? folder_name(file->path) : scan_name};
+            for (const auto& [name, source] : outputs(planned)) {
+                if (source.step && !node_of_step.contains(*source.step)) continue;  // beyond --until
+                const std::size_t node = sources_of(source, node_of_step, scan, file, cell).front();
+                const std::string writer =
+                    fmt::format("scan '{}' under variant '{}'{}", scan_name, planned.name,
+                                parts_.size() > 1 ? " of workflow '" + values.workflow + "'" : "");
+                const std::string content = fmt::format("{} {} {}", node, scan, plan_->workflow.file);
+                const fs::path target =
+                    output_files_.add(expand_template(name, values), {content, source.port}, writer);
+                output_files_.add(description_of(expand_template(name, values)), {content, source.port + " described"},
+                                  writer);
+                cell.outputs.push_back({target, node, source.port});
+            }
+            graph_.cells.push_back(std::move(cell));
+        }
+    }
+
+    std::vector<std::size_t> steps_to_run(const PlannedVariant& variant) const {
+        const auto last = variant.steps_by_name.find(request_->until);
+        if (last == variant.steps_by_name.end()) return variant.steps;
+        const auto end = std::ranges::find(variant.steps, last->second);
+        return {variant.steps.begin(), end == variant.steps.end() ? end : end + 1};
+    }
+
+    /// The variant's outputs and what --save adds, as file templates.
+    std::vector<std::pair<std::string, ValueSource>> outputs(const PlannedVariant& variant) const {
+        std::vector<std::pair<std::string, ValueSource>> all;
+        for (const PlannedOutput& output : variant.outputs) all.emplace_back(output.file, output.source);
+        for (const std::string& wanted : request_->save) {
+            const std::size_t dot = wanted.find('.');
+            const auto step = variant.steps_by_name.find(wanted.substr(0, dot));
+            if (step == variant.steps_by_name.end()) continue;  // a step of another variant
+            const FilterSpec& spec = plan_->steps[step->second].spec;
+            const std::string port = dot == std::string::npos ? spec.outputs.front().name : wanted.substr(dot + 1);
+            if (!spec.output(port)) throw Error("--save {}: the step has no output port '{}'", wanted, port);
+            const Kind kind = spec.output(port)->kind;
+            if (!can_write("ply", kind))
+                throw Error("--save {}: {} cannot be written to a file yet", wanted, name_of(kind));
+            const std::string variant_part = plan_->variants.size() > 1 ? ".{variant}" : "";
+            all.emplace_back("{scan}" + variant_part + "." + wanted + ".ply", ValueSource{step->second, 0, port});
+        }
+        return all;
+    }
+
+    std::size_t add_step(std::size_t step, const std::map<std::size_t, std::size_t>& node_of_step, std::size_t scan,
+                         const ScanFile* file, RunCell& cell) {
+        const PlannedStep& planned = plan_->steps[step];
+        RunNode node;
+        node.plan = graph_.plans.size() - 1;
+        node.step = step;
+        node.scan = scan;
+        const auto content = [&](const fs::path& parameter) {
+            const FileContent& found = contents_.of(parameter);
+            node.parameter_files.push_back({parameter, found.hash});
+            node.is_uncacheable = node.is_uncacheable || !found.why_unreadable.empty();
+            return found.hash;
+        };
+        std::vector<std::pair<std::string, std::string>> ports;
+        for (const PlannedInput& input : planned.inputs)
+            for (const ValueSource& source : input.sources)
+                for (const std::size_t from : sources_of(source, node_of_step, scan, file, cell)) {
+                    node.inputs.push_back({input.port, from, source.port});
+                    node.is_uncacheable = node.is_uncacheable || graph_.nodes[from].is_uncacheable;
+                    ports.emplace_back(input.port, graph_.nodes[from].key + "." + source.port);
+                }
+        const StepKeys keys = keys_of_step(planned, library_.build_id(planned.spec.name), base_, content, ports);
+        node.code = keys.code;
+        node.key = keys.plan;
+        return add_node(std::move(node));
+    }
+
+    std::vector<std::size_t> sources_of(const ValueSource& source,
+                                        const std::map<std::size_t, std::size_t>& node_of_step, std::size_t scan,
+                                        const ScanFile* file, RunCell& cell) {
+        if (source.step) return {node_of_step.at(*source.step)};
+        const WorkflowInput& input = plan_->workflow.inputs[source.input];
+        if (source.input == 0 && !input.list) return {add_leaf(0, scan, *file, cell)};
+        std::vector<std::size_t> leaves;
+        if (source.input == 0)
+            for (const ScanFile& each : request_->scans) leaves.push_back(add_leaf(0, scan, each, cell));
+        else
+            for (const fs::path& each : request_->inputs.at(input.name))
+                leaves.push_back(add_leaf(source.input, scan, each, cell));
+        return leaves;
+    }
+
+    std::size_t add_leaf(std::size_t input, std::size_t scan, const ScanFile& file, RunCell& cell) {
+        const WorkflowInput& declared = plan_->workflow.inputs[input];
+        RunNode node;
+        node.plan = graph_.plans.size() - 1;
+        node.is_scan = input == 0;
+        node.scan = scan;
+        node.leaf.file = file.path;
+        const FileContent& content = contents_.of(file.path);
+        node.leaf.content = content.hash;
+        node.unreadable = content.why_unreadable;
+        node.leaf.kind = declared.kind;
+        node.leaf.unit = file.unit != LengthUnit::unknown        ? file.unit
+                         : request_->unit != LengthUnit::unknown ? request_->unit
+                                                                 : declared.unit;
+        node.leaf.frame = !file.frame.empty() ? file.frame : frame_of_file(declared.frame, file.path);
+        node.leaf.pose = file.pose;
+        node.is_uncacheable = !node.unreadable.empty();
+        node.key = key_of_leaf(node.leaf, base_);
+        const std::size_t index = add_node(std::move(node));
+        add_to(cell, index);
+        return index;
+    }
+
+    std::size_t add_node(RunNode node) {
+        // Steps that do the same and expect different things are not one node.
+        std::string identity = node.key;
+        if (node.step)
+            for (const PlannedExpectation& expectation : plan_->steps[*node.step].expectations)
+                identity += "\n" + expectation.text;
+        const auto [known, is_new] = node_of_key_.emplace(std::move(identity), graph_.nodes.size());
+        if (is_new) graph_.nodes.push_back(std::move(node));
+        return known->second;
+    }
+
+    static void add_to(RunCell& cell, std::size_t node) {
+        if (std::ranges::find(cell.nodes, node) == cell.nodes.end()) cell.nodes.push_back(node);
+    }
+
+    FileContents contents_;
+    FilterLibrary& library_;
+    const std::vector<GraphPart>& parts_;
+    const Plan* plan_ = nullptr;  // of the part that is being added
+    const RunRequest* request_ = nullptr;
+    KeyBase base_;
+    OutputFiles output_files_;
+    RunGraph graph_;
+    std::map<std::string, std::size_t> node_of_key_;  // and its expectations
+    std::map<std::string, std::size_t> scan_of_name_;
+};
+
+}  // namespace
+
+RunGraph make_graph(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash) {
+    return GraphBuilder(parts, library, hash).build();
+}
+
+RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request, const HashOfFile& hash) {
+    return make_graph({{std::make_shared<const Plan>(plan), request}}, library, hash);
+}
+
+}  // namespace scanmill

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The files that a run will write, checked against each other, the inputs and the output folder before it begins.
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+namespace scanmill {
+
+/// What a file will hold: one output port of one node, for one scan under one workflow.
+struct OutputContent {
+    std::string node;
+    std::string port;
+    bool operator==(const OutputContent&) const = default;
+};
+
+class OutputFiles {
+public:
+    explicit OutputFiles(const std::filesystem::path& folder);
+
+    /// No output may replace this file. Pre: nothing was added yet.
+    void protect(const std::filesystem::path& file) { inputs_.insert(identity(file)); }
+
+    /// The absolute path of `name` (relative to the output folder, in normal form). `writer` says in messages who
+    /// writes it. Throws Error when another content has the same path, when one output's path is another's folder, when
+    /// the file would replace an input, and when it would leave the output folder through a link.
+    std::filesystem::path add(const std::string& name, const OutputContent& content, const std::string& writer);
+
+private:
+    struct Entry {
+        OutputContent content;
+        std::string writer;
+    };
+    using Identity = std::pair<std::uintmax_t, std::uintmax_t>;  // device and inode
+
+    static Identity identity(const std::filesystem::path& file);
+    void require_no_clash(const std::filesystem::path& file, const std::string& writer) const;
+
+    std::filesystem::path folder_;
+    std::map<std::filesystem::path, Entry> files_;
+    std::map<std::filesystem::path, std::string> folders_;  // a folder of files_ → who writes into it
+    std::set<Identity> inputs_;
+};
+
+/// The JSON file beside an output that describes it: `<output>.json`.
+std::filesystem::path description_of(const std::filesystem::path& file);
+
+}  // namespace scanmill

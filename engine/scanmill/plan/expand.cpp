@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plan/expand.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "scanmill/base/text.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t most_variants = 10'000;
+constexpr std::size_t most_steps = 500'000;  // of all variants together: each takes time and memory, shared or not
+
+std::string file_safe(std::string_view text) {
+    std::string safe;
+    for (char c : text) {
+        if (c == '%')
+            safe += "pct";
+        else if (std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-' || c == '=')
+            safe += c;
+        else if (c == ',' || c == '/')
+            safe += '_';
+    }
+    return safe;
+}
+
+std::string written_text(const WrittenParameter& value) {
+    std::string text;
+    for (const std::string& item : value.items) text += (text.empty() ? "" : ",") + item;
+    return text;
+}
+
+/// Says at every fork which way to go.
+class Choices {
+public:
+    virtual ~Choices() = default;
+    /// One of 0 … count - 1; `fork` tells one fork of the workflow from another.
+    virtual std::size_t choose(const void* fork, std::size_t count) = 0;
+};
+
+/// Every combination once, the last fork fastest.
+class EveryCombination : public Choices {
+public:
+    std::size_t choose(const void*, std::size_t count) override {
+        if (count <= 1) return 0;
+        if (next_ == made_.size()) made_.push_back({0, count});
+        return made_[next_++].choice;
+    }
+    /// Goes on to the next combination; false after the last.
+    bool advance() {
+        next_ = 0;
+        while (!made_.empty() && made_.back().choice + 1 == made_.back().count) made_.pop_back();
+        if (made_.empty()) return false;
+        ++made_.back().choice;
+        return true;
+    }
+
+private:
+    struct Made {
+        std::size_t choice, count;
+    };
+    std::vector<Made> made_;
+    std::size_t next_ = 0;  // the fork that is asked for next
+};
+
+/// At every fork the first way, then, whenever it is reached again, the next: each way of each fork at least once.
+class EachOnce : public Choices {
+public:
+    std::size_t choose(const void* fork, std::size_t count) override {
+        Fork& known = forks_.try_emplace(fork, Fork{0, count}).first->second;
+        return known.reached++ % count;
+    }
+    bool advance() {
+        const auto is_done = [](const auto& fork) { return fork.second.reached >= fork.second.count; };
+        return ++rounds_ < most_variants && !std::ranges::all_of(forks_, is_done);
+    }
+
+private:
+    struct Fork {
+        std::size_t reached, count;
+    };
+    std::map<const void*, Fork> forks_;
+    std::size_t rounds_ = 0;
+};
+
+/// One way through the workflow's forks.
+class Walk {
+public:
+    Walk(const Workflow& workflow, const Settings& settings, Choices& choices)
+        : workflow_(workflow),
+          settings_(settings),
+          choices_(choices) {}
+
+    Variant variant() {
+        follow(workflow_.steps);
+        for (const std::string& part : name_parts_) variant_.name += (variant_.name.empty() ? "" : "+") + part;
+        if (variant_.name.empty()) variant_.name = "default";
+        return std::move(variant_);
+    }
+
+private:
+    void follow(const std::vector<StepItem>& items) {
+        for (const StepItem& item : items) {
+            if (const auto* step = std::get_if<StepSyntax>(&item.item))
+                variant_.steps.push_back({step, arguments(*step), {}});
+            else
+                follow(std::get<OneOfSyntax>(item.item));
+        }
+    }
+
+    void follow(const OneOfSyntax& fork) {
+        if (fork.alternatives.empty()) return;
+        const AlternativeSyntax& taken = fork.alternatives[choices_.choose(&fork, fork.alternatives.size())];
+        if (!taken.name.empty()) name_parts_.push_back(file_safe(taken.name));
+        const std::size_t before = variant_.steps.size();
+        follow(taken.steps);
+        if (!fork.id.empty() && variant_.steps.size() > before) variant_.steps.back().aliases.push_back(fork.id);
+    }
+
+    std::vector<ChosenArgument> arguments(const StepSyntax& step) {
+        std::vector<ChosenArgument> all;
+        for (const NamedExpression& parameter : step.parameters) {
+            const std::vector<WrittenValue>& values = parameter.value.values;
+            if (values.empty()) continue;  // its text was wrong
+            const WrittenValue& written = values[choices_.choose(&values, values.size())];
+            const std::size_t told = name_parts_.size();
+            std::optional<ChosenArgument> argument = replaced(step, parameter, written);
+            if (!argument) continue;  // an unknown parameter, or one whose text was wrong
+            const bool is_told =
+                !written.literal.list && name_parts_.size() > told;  // by the name of what it stands for
+            if (parameter.value.sweep && !is_told) tell_swept(step, parameter.name, argument->value);
+            all.push_back(std::move(*argument));
+        }
+        return all;
+    }
+
+    std::optional<ChosenArgument> replaced(const StepSyntax& step, const NamedExpression& parameter,
+                                           const WrittenValue& written) {
+        ChosenArgument argument{&parameter, &written, written.literal, {}};
+        for (const NameUse& use : written.uses) {
+            const WrittenValue* value = referenced(step, use.name);
+            if (!value || (written.literal.list && value->literal.list)) return std::nullopt;
+            argument.replaced.push_back({&use, value});
+            if (written.literal.list)
+                argument.value.items[use.item] = value->literal.items.front();
+            else
+                argument.value = value->literal;
+        }
+        return argument;
+    }
+
+    /// What `$name` stands for; a swept parameter keeps the value that was chosen where it is first used.
+    const WrittenValue* referenced(const StepSyntax& step, const std::string& name) {
+        if (const auto bound = bound_.find(name); bound != bound_.end()) return bound->second;
+        const auto setting = settings_.find(name);
+        const auto parameter = std::ranges::find(workflow_.parameters, name, &WorkflowParameter::name);
+        if (parameter == workflow_.parameters.end()) return nullptr;
+        const std::vector<WrittenValue>& values =
+            setting != settings_.end() ? setting->second.values : parameter->value.values;
+        if (values.empty()) return nullptr;
+        const WrittenValue* chosen = &values[choices_.choose(&values, values.size())];
+        if (values.size() > 1) {
+            bound_.emplace(name, chosen);
+            tell_swept(step, name, chosen->literal);
+        }
+        return chosen;
+    }
+
+    void tell_swept(const StepSyntax& step, const std::string& name, const WrittenParameter& value) {
+        // A second sweep of the same name tells whose it is.
+        const std::string label = swept_.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
+        swept_.insert(name);
+        name_parts_.push_back(file_safe(label + "=" + written_text(value)));
+    }
+
+    const Workflow& workflow_;
+    const Settings& settings_;
+    Choices& choices_;
+    Variant variant_;
+    std::vector<std::string> name_parts_;
+    std::set<std::string> swept_;                       // names that appear in name_parts_
+    std::map<std::string, const WrittenValue*> bound_;  // swept workflow parameters, once chosen
+};
+
+/// What there is too many of, as "more than 7 variants"; empty when there is not.
+std::string excess(const Workflow& workflow, const Settings& settings) {
+    EveryCombination choices;
+    std::size_t variants = 0, steps = 0;
+    do {
+        steps += Walk(workflow, settings, choices).variant().steps.size();
+        if (++variants > most_variants) return fmt::format("more than {} variants", most_variants);
+        if (steps > most_steps) return fmt::format("more than {} steps in all its variants", most_steps);
+    } while (choices.advance());
+    return {};
+}
+
+template <class Order>
+void visit_all(const Workflow& workflow, const Settings& settings, const std::function<void(const Variant&)>& visit) {
+    Order choices;
+    std::size_t steps = 0;
+    do {
+        const Variant variant = Walk(workflow, settings, choices).variant();
+        visit(variant);
+        steps += variant.steps.size();
+    } while (steps <= most_steps && choices.advance());
+}
+
+}  // namespace
+
+std::vector<std::string> undeclared(const Settings& settings, const Workflow& workflow) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : settings)
+        if (std::ranges::find(workflow.parameters, name, &WorkflowParameter::name) == workflow.parameters.end())
+            names.push_back(name);
+    return names;
+}
+
+void expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics,
+            const std::function<void(const Variant&)>& visit) {
+    check_references(workflow, settings, diagnostics);
+    if (const std::string too_much = excess(workflow, settings); !too_much.empty()) {
+        diagnostics.error({}, "has " + too_much + "; sweep over fewer values");
+        visit_all<EachOnce>(workflow, settings, visit);
+        return;
+    }
+    std::set<std::string> names;
+    bool told = false;  // one pair is enough: a value that stands twice in a sweep makes many
+    visit_all<EveryCombination>(workflow, settings, [&](const Variant& variant) {
+        if (!names.insert(variant.name).second && !std::exchange(told, true))
+            diagnostics.error(
+                variant.steps.empty() ? Position{} : variant.steps.back().syntax->position,
+                fmt::format("two variants are called '{}'; give their alternatives different names", variant.name));
+        visit(variant);
+    });
+}
+
+namespace {
+
+class References {
+public:
+    References(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
+        : diagnostics_(diagnostics) {
+        for (const WorkflowParameter& parameter : workflow.parameters) {
+            names_.push_back(parameter.name);
+            const auto setting = settings.find(parameter.name);
+            const ValueExpression& given = setting != settings.end() ? setting->second : parameter.value;
+            const auto is_list = [](const WrittenValue& value) { return value.literal.list; };
+            if (std::ranges::any_of(given.values, is_list)) lists_.insert(parameter.name);
+        }
+        look_at(workflow.steps);
+        // Where a name stands in what could not be read, or where it must not, that is said already.
+        for (const WorkflowParameter& parameter : workflow.parameters)
+            if (!workflow.mentions.contains(parameter.name))
+                diagnostics_.warning(parameter.position,
+                                     fmt::format("no step uses the parameter '{}'", parameter.name));
+    }
+
+    void require_known(const std::string& name, Position position) const {
+        if (std::ranges::find(names_, name) != names_.end()) return;
+        diagnostics_.error(position, fmt::format("the workflow has no parameter '{}'; {}{}", name,
+                                                 names_.empty() ? "it declares none" : "it has " + enumerated(names_),
+                                                 did_you_mean(name, names_)));
+    }
+
+private:
+    void look_at(const std::vector<StepItem>& items) {
+        for (const StepItem& item : items) {
+            if (const auto* fork = std::get_if<OneOfSyntax>(&item.item)) {
+                for (const AlternativeSyntax& alternative : fork->alternatives) look_at(alternative.steps);
+                continue;
+            }
+            for (const NamedExpression& parameter : std::get<StepSyntax>(item.item).parameters)
+                for (const WrittenValue& written : parameter.value.values)
+                    for (const NameUse& use : written.uses) {
+                        require_known(use.name, use.position);
+                        if (written.literal.list) require_single(use, parameter.name);
+                    }
+        }
+    }
+
+    void require_single(const NameUse& use, const std::string& parameter) const {
+        if (lists_.contains(use.name))
+            diagnostics_.error(use.position, fmt::format("${0} is a list, which cannot stand within a list; expected a "
+                                                         "single value, or the whole list as `{1}: ${0}`",
+                                                         use.name, parameter));
+    }
+
+    Diagnostics& diagnostics_;
+    std::vector<std::string> names_;
+    std::set<std::string> lists_;
+};
+
+}  // namespace
+
+void check_references(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics) {
+    const References references(workflow, settings, diagnostics);
+    for (const auto& [name, value] : settings) references.require_known(name, {});
+}
+
+}  // namespace scanmill

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plan/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/hash.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/formats/files.hpp"
+#include "scanmill/plan/expectation.hpp"
+#include "scanmill/plan/output_template.hpp"
+#include "scanmill/plan/step_parameters.hpp"
+#include "scanmill/plan/wiring.hpp"
+
+namespace scanmill {
+
+namespace {
+
+class Planner {
+public:
+    Planner(Workflow workflow, const FilterLibrary& library, Diagnostics& diagnostics,
+            Diagnostics* settings_diagnostics)
+        : library_(library),
+          diagnostics_(diagnostics),
+          settings_diagnostics_(settings_diagnostics) {
+        plan_.workflow = std::move(workflow);
+    }
+
+    Plan plan(const Settings& settings) {
+        settings_ = &settings;
+        expand(plan_.workflow, settings, diagnostics_,
+               [this](const Variant& variant) { plan_.variants.push_back(plan_variant(variant)); });
+        for (const WorkflowOutput& output : plan_.workflow.outputs)
+            check_template(output.file, output.position, diagnostics_);
+        complain_of_shared_files();
+        complain_of_folders();
+        return std::move(plan_);
+    }
+
+private:
+    /// What one variant's names stand for, while it is being planned.
+    struct Names {
+        std::map<std::string, std::size_t> steps;
+        std::map<std::string, std::string> unusable;  // name → why; empty: already reported
+
+        void add(const std::string& name, std::size_t step) {
+            if (unusable.contains(name)) return;
+            if (!steps.emplace(name, step).second && steps[name] != step) {
+                steps.erase(name);
+                unusable[name] = fmt::format("'{}' stands for several steps; give the one you mean an id", name);
+            }
+        }
+    };
+
+    PlannedVariant plan_variant(const Variant& variant) {
+        PlannedVariant planned;
+        planned.name = variant.name;
+        Names names;
+        bool uncertain = false;
+        std::set<std::string> ids;
+        for (const ExpandedStep& step : variant.steps) {
+            complain_of_id(step, ids);
+            const FilterSpec* spec = find_filter(*step.syntax);
+            if (!spec) {
+                uncertain = true;
+                for (const std::string& name : names_of(step)) names.unusable.emplace(name, "");
+                continue;
+            }
+            const WiringScope scope{plan_, library_, planned.steps, names.steps, names.unusable, uncertain};
+            const std::size_t index = add_step(step, *spec, scope);
+            planned.steps.push_back(index);
+            for (const std::string& name : names_of(step)) names.add(name, index);
+        }
+        const WiringScope scope{plan_, library_, planned.steps, names.steps, names.unusable, uncertain};
+        for (const WorkflowOutput& output : plan_.workflow.outputs) plan_output(output, scope, planned);
+        planned.steps_by_name = names.steps;
+        return planned;
+    }
+
+    static std::vector<std::string> names_of(const ExpandedStep& step) {
+        std::vector<std::string> names = step.aliases;
+        names.push_back(step.syntax->id.empty() ? step.syntax->filter : step.syntax->id);
+        return names;
+    }
+
+    void complain_of_id(const ExpandedStep& step, std::set<std::string>& ids) {
+        for (const std::string& name : names_of(step)) {
+            const bool given = name == step.syntax->id || std::ranges::find(step.aliases, name) != step.aliases.end();
+            if (!given || name.empty()) continue;  // empty: neither id nor filter could be read, and that is reported
+            if (!ids.insert(name).second)
+                diagnostics_.error(step.syntax->position, fmt::format("the id '{}' is given twice", name));
+            if (std::ranges::find(plan_.workflow.inputs, name, &WorkflowInput::name) != plan_.workflow.inputs.end())
+                diagnostics_.error(step.syntax->position,
+                                   fmt::format("the id '{}' is already the name of an input", name));
+        }
+    }
+
+    const FilterSpec* find_filter(const StepSyntax& step) {
+        if (step.filter.empty()) return nullptr;  // reported by the parser
+        if (const FilterSpec* spec = library_.find(step.filter)) return spec;
+        for (const UnusableModule& module : library_.unusable())
+            if (module.name == step.filter) {
+                diagnostics_.error(step.position, fmt::format("the filter '{}' cannot be used: '{}' {}", step.filter,
+                                                              module.manifest.string(), module.reason));
+                return nullptr;
+            }
+        const std::vector<std::string> names = library_.names();
+        diagnostics_.error(step.position,
+                           fmt::format("there is no filter '{}'; `scanmill list` shows the {} there are{}", step.filter,
+                                       names.size(), did_you_mean(step.filter, names)));
+        return nullptr;
+    }
+
+    std::size_t add_step(const ExpandedStep& step, const FilterSpec& spec, const WiringScope& scope) {
+        ParameterSet set =
+            step_parameters(step, spec, {plan_.workflow.file, *settings_, diagnostics_, settings_diagnostics_});
+        std::vector<PlannedInput> inputs = wire(*step.syntax, spec, scope, diagnostics_);
+        std::string key = structure_key(spec, set, inputs);
+        const auto [place, is_new] = step_of_key_.emplace(key, plan_.steps.size());
+        if (is_new)
+            plan_.steps.push_back({step.syntax->id.empty() ? spec.name : step.syntax->id,
+                                   step.syntax->position,
+                                   spec,
+                                   std::move(set),
+                                   std::move(inputs),
+                                   {},
+                                   std::move(key)});
+        std::vector<PlannedExpectation>& expectations = plan_.steps[place->second].expectations;
+        for (const Expectation& written : step.syntax->expect) {
+            if (std::ranges::find(expectations, written.position, &PlannedExpectation::position) != expectations.end())
+                continue;  // of the same step in an earlier variant
+            if (auto expectation = plan_expectation(written, spec, diagnostics_))
+                expectations.push_back(std::move(*expectation));
+        }
+        return place->second;
+    }
+
+    std::string structure_key(const FilterSpec& spec, const ParameterSet& parameters,
+                              const std::vector<PlannedInput>& inputs) const {
+        KeyBuilder key;
+        key.field("filter", spec.name).field("version", std::to_string(spec.version));
+        for (const auto& [name, value] : parameters.values) key.field("parameter " + name, canonical_text(value));
+        for (const PlannedInput& input : inputs)
+            for (const ValueSource& source : input.sources)
+                key.field("port " + input.port, source.step
+                                                    ? plan_.steps[*source.step].structure_key + "." + source.port
+                                                    : "input " + plan_.workflow.inputs[source.input].name);
+        return key.key();
+    }
+
+    void plan_output(const WorkflowOutput& output, const WiringScope& scope, PlannedVariant& variant) {
+        const std::optional<ValueSource> source = resolve(output.source, scope, diagnostics_);
+        if (!source) return;
+        if (!source->step && plan_.workflow.inputs[source->input].list) {
+            diagnostics_.error(output.source.position,
+                               fmt::format("'{}' is a list; a file holds one value", output.source.text));
+            return;
+        }
+        const Kind kind = kind_of(plan_, *source);
+        const std::string extension = std::filesystem::path(output.file).extension().string();
+        if (!can_write(extension, kind)) {
+            const std::string writable = writable_extensions(kind), unusable = why_unusable(extension);
+            diagnostics_.error(output.position, fmt::format("'{}' is {}, which no '{}' file can hold; {}",
+                                                            output.source.text, name_of(kind), extension,
+                                                            !unusable.empty()  ? unusable
+                                                            : writable.empty() ? "this kind cannot be written yet"
+                                                                               : "expected " + writable));
+        }
+        variant.outputs.push_back({output.file, output.position, *source});
+    }
+
+    void complain_of_shared_files() {
+        struct Writer {
+            const PlannedVariant* variant;
+            const PlannedOutput* output;
+            bool told = false;
+        };
+        std::map<std::string_view, Writer> last_writers;
+        for (const PlannedVariant& variant : plan_.variants)
+            for (const PlannedOutput& output : variant.outputs) {
+                if (mentions(output.file, "variant")) continue;
+                const auto [place, is_new] = last_writers.emplace(output.file, Writer{&variant, &output});
+                Writer& last = place->second;
+                if (!is_new && !last.told && last.output->source != output.source) {
+                    last.told = true;
+                    diagnostics_.error(output.position,
+                                       fmt::format("the variants '{}' and '{}' would both write '{}'; put "
+                                                   "{{variant}} into the name",
+                                                   last.variant->name, variant.name, output.file));
+                }
+                last.variant = &variant;
+                last.output = &output;
+            }
+    }
+
+    void complain_of_folders() {
+        std::set<std::string_view> files;
+        for (const WorkflowOutput& output : plan_.workflow.outputs) files.insert(output.file);
+        for (const WorkflowOutput& output : plan_.workflow.outputs) {
+            const std::string folder = output.file + "/";
+            if (const auto file = files.lower_bound(folder); file != files.end() && file->starts_with(folder))
+                diagnostics_.error(output.position,
+                                   fmt::format("'{}' would be a file, and the folder of '{}' too", output.file, *file));
+        }
+    }
+
+    const FilterLibrary& library_;
+    Diagnostics& diagnostics_;
+    Diagnostics* settings_diagnostics_;
+    const Settings* settings_ = nullptr;
+    Plan plan_;
+    std::map<std::string, std::size_t> step_of_key_;
+};
+
+}  // namespace
+
+Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics,
+               Diagnostics* settings_diagnostics) {
+    return Planner(std::move(workflow), library, diagnostics, settings_diagnostics).plan(settings);
+}
+
+std::string workflow_name(const Plan& plan) {
+    return plan.workflow.name.empty() ? std::filesystem::path(plan.workflow.file).stem().string() : plan.workflow.name;
+}
+
+Kind kind_of(const Plan& plan, const ValueSource& source) {
+    return source.step ? plan.steps[*source.step].spec.output(source.port)->kind
+                       : plan.workflow.inputs[source.input].kind;
+}
+
+std::string describe(const Plan& plan, const ValueSource& source) {
+    if (!source.step) return plan.workflow.inputs[source.input].name;
+    const PlannedStep& step = plan.steps[*source.step];
+    return source.port == step.spec.outputs.front().name ? step.label : step.label + "." + source.port;
+}
+
+}  // namespace scanmill

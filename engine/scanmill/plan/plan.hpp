@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The plan of one workflow: the graph of its steps over all variants, equal steps merged, every port wired, every
+/// parameter typed and in range. Making it finds everything that can be wrong before a scan is opened.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scanmill/plan/expand.hpp"
+#include "scanmill/plugin/library.hpp"
+#include "scanmill/workflow/workflow.hpp"
+
+namespace scanmill {
+
+/// Where a value comes from: an output of a planned step, or a workflow input.
+struct ValueSource {
+    std::optional<std::size_t> step;  ///< index into Plan::steps
+    std::size_t input = 0;            ///< index into Workflow::inputs, when there is no step
+    std::string port;                 ///< of the step
+    auto operator<=>(const ValueSource&) const = default;
+};
+
+struct PlannedInput {
+    std::string port;
+    std::vector<ValueSource> sources;
+    bool operator==(const PlannedInput&) const = default;
+};
+
+/// A condition on a step's result; `low` and `high` are typed by the unit of what is asked.
+struct PlannedExpectation {
+    std::string name;
+    Position position;
+    Expectation::Relation relation;
+    Unit unit;
+    ParameterValue low, high;
+    std::string text;  ///< "genus: < 2", for messages
+};
+
+struct PlannedStep {
+    std::string label;  ///< the id, else the filter's name
+    Position position;
+    FilterSpec spec;
+    ParameterSet parameters;  ///< as authored, defaults filled in; lengths unresolved
+    std::vector<PlannedInput> inputs;
+    std::vector<PlannedExpectation> expectations;
+    /// Equal for steps that do the same whatever the inputs hold.
+    std::string structure_key;
+};
+
+struct PlannedOutput {
+    std::string file;  ///< template
+    Position position;
+    ValueSource source;
+};
+
+struct PlannedVariant {
+    std::string name;
+    std::vector<std::size_t> steps;  ///< indices into Plan::steps, each after its inputs
+    std::vector<PlannedOutput> outputs;
+    /// What every name stands for in this variant: ids, filters, aliases.
+    std::map<std::string, std::size_t> steps_by_name;
+};
+
+struct Plan {
+    Workflow workflow;
+    std::vector<PlannedStep> steps;  ///< every step after the steps it reads from
+    std::vector<PlannedVariant> variants;
+};
+
+/// Checks the workflow against the filters at hand; with errors in `diagnostics` the plan must not be run. When
+/// settings stand in a file of their own, `settings_diagnostics` is that file's: a value that its parameter cannot take
+/// is then reported there, at its own place, and relative paths among the values count from that file's folder. Without
+/// it the error is told at the step, and such paths count from the working folder.
+Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics,
+               Diagnostics* settings_diagnostics = nullptr);
+
+/// The workflow's own name, else that of its file.
+std::string workflow_name(const Plan& plan);
+
+/// Kind of the value.
+Kind kind_of(const Plan& plan, const ValueSource& source);
+
+/// "scan", "solid", "solid.tets": for messages and listings.
+std::string describe(const Plan& plan, const ValueSource& source);
+
+}  // namespace scanmill

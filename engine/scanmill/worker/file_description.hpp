@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The SHA-256 of bytes that come piece by piece; the hash that users can check with sha256sum.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "scanmill/graph/graph.hpp"
+#include "scanmill/worker/report.hpp"
+
+struct sha256_ctx;
+
+namespace scanmill {
+
+class Sha256 {
+public:
+    Sha256();
+    ~Sha256();
+
+    void add(std::string_view bytes);
+    /// 64 hexadecimal digits. Once, after everything was added.
+    std::string text();
+
+private:
+    std::unique_ptr<sha256_ctx> context_;
+};
+
+// The small JSON file beside every output, `<output>.json`: what the file is, how it was made, and what is known to be
+// true of it. Equal outputs have equal descriptions, whenever and wherever they were made.
+
+/// How an output comes about, as JSON: workflow and variants, scan, seed, the program's version, what the step that
+/// made it was expected to give, and of every step from the scan to it filter, version, build, key, parameters and
+/// metrics. `cells`: all that share the file.
+std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, std::size_t node,
+                     const std::vector<NodeReport>& reports);
+
+/// Writes the description of a file that was written: `how` (of made_how()), with the file's name, bytes and `sha256`
+/// (of what was written, see Sha256), and the value's unit, frame and facts. Throws Error as AtomicFile.
+void write_description(const std::filesystem::path& file, const std::string& sha256, const std::string& how,
+                       const Value& value, const Metrics& facts);
+
+}  // namespace scanmill

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/worker/open_scans.hpp"
+
+#include <ctime>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/hash.hpp"
+#include "scanmill/worker/step_runner.hpp"
+
+namespace scanmill {
+
+namespace {
+
+bool are_equal(const timespec& a, const timespec& b) { return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec; }
+
+bool are_equal(const struct stat& a, const struct stat& b) {
+    return a.st_dev == b.st_dev && a.st_ino == b.st_ino && a.st_size == b.st_size && are_equal(a.st_mtim, b.st_mtim) &&
+           are_equal(a.st_ctim, b.st_ctim);
+}
+
+}  // namespace
+
+void require_unchanged(const std::filesystem::path& file, const std::string& content) {
+    if (content_hash(file) != content)
+        throw Error("'{}' changed while the run was going on", file.string()).hint("run it again");
+}
+
+UnchangedWhileRead::UnchangedWhileRead(std::filesystem::path file, std::string content, bool beside)
+    : file_(std::move(file)),
+      content_(std::move(content)),
+      before_() {
+    constexpr std::time_t settled = 2;  // no file system's stamps are coarser
+    is_settled_ = ::stat(file_.c_str(), &before_) == 0 && before_.st_ctim.tv_sec < std::time(nullptr) - settled;
+    if (is_settled_ && beside)
+        beside_ = std::async(std::launch::async | std::launch::deferred, scanmill::require_unchanged, file_, content_);
+}
+
+void UnchangedWhileRead::require() {
+    if (beside_.valid()) {
+        beside_.get();
+        is_hashed_ = true;
+    }
+    struct stat after;
+    if (is_hashed_ && is_settled_ && ::stat(file_.c_str(), &after) == 0 && are_equal(before_, after)) return;
+    scanmill::require_unchanged(file_, content_);
+    is_hashed_ = true;
+}
+
+std::shared_ptr<const PointStream> OpenScans::open(std::size_t node, const LeafSource& leaf, unsigned threads,
+                                                   bool is_checked, const std::function<void(std::string)>& on_warning,
+                                                   const OnWorldPositions& on_positions) {
+    Scan scan;
+    if (is_checked) scan.check.emplace(leaf.file, leaf.content, threads > 1);
+    scan.stream = open_leaf(leaf, threads, on_warning, on_positions);
+    if (!scan.stream) return nullptr;
+    return scans_.insert_or_assign(node, std::move(scan)).first->second.stream;
+}
+
+std::shared_ptr<const PointStream> OpenScans::find(std::size_t node) const {
+    const auto found = scans_.find(node);
+    return found == scans_.end() ? nullptr : found->second.stream;
+}
+
+void OpenScans::require_unchanged(std::size_t node) {
+    if (std::optional<UnchangedWhileRead>& check = scans_.at(node).check) check->require();
+}
+
+}  // namespace scanmill

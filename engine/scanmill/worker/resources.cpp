@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/worker/resources.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <algorithm>
+#include <array>
+#include <cfenv>
+#include <clocale>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "scanmill/base/text.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr u64 unlimited = std::numeric_limits<u64>::max();
+
+u64 of_machine() {
+    std::ifstream facts("/proc/meminfo");
+    for (std::string name, unit; facts >> name;) {
+        u64 amount = 0;
+        facts >> amount;
+        std::getline(facts, unit);
+        if (name == "MemAvailable:") return amount * 1024;
+    }
+    return unlimited;
+}
+
+/// Nothing for "max", and where there is no such file.
+std::optional<u64> number_in(const std::string& file) {
+    std::ifstream stream(file);
+    u64 number = 0;
+    return stream >> number ? std::optional(number) : std::nullopt;
+}
+
+u64 of_control_group() {
+    std::ifstream groups("/proc/self/cgroup");
+    u64 least = unlimited;
+    for (std::string line; std::getline(groups, line);) {
+        if (!line.starts_with("0::/")) continue;
+        for (std::string group = line.substr(3);; group.resize(group.rfind('/'))) {
+            const std::string folder = "/sys/fs/cgroup" + group;
+            const std::optional<u64> limit = number_in(folder + "/memory.max");
+            const std::optional<u64> used = number_in(folder + "/memory.current");
+            if (limit && used) least = std::min(least, *limit > *used ? *limit - *used : 0);
+            if (group.empty() || group == "/") break;
+        }
+    }
+    return least;
+}
+
+}  // namespace
+
+u64 available_memory() { return std::min(of_machine(), of_control_group()); }
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+
+MemoryLimit::MemoryLimit(u64, unsigned) {}
+MemoryLimit::~MemoryLimit() = default;
+
+#else
+
+MemoryLimit::MemoryLimit(u64 bytes, unsigned threads) {
+    rlimit limit{};
+    if (bytes == 0) return;
+    constexpr u64 largest_stack = u64(64) << 20;
+    if (::getrlimit(RLIMIT_STACK, &limit) == 0) bytes += threads * std::min<u64>(limit.rlim_cur, largest_stack);
+    if (::getrlimit(RLIMIT_DATA, &limit) != 0 || bytes >= limit.rlim_cur) return;
+    before_ = limit.rlim_cur;
+    limit.rlim_cur = bytes;
+    is_set_ = ::setrlimit(RLIMIT_DATA, &limit) == 0;
+}
+
+MemoryLimit::~MemoryLimit() {
+    if (!is_set_) return;
+    rlimit limit{};
+    ::getrlimit(RLIMIT_DATA, &limit);
+    limit.rlim_cur = before_;
+    ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+#endif
+
+namespace {
+
+/// Of this process until now, all threads together.
+double cpu_seconds() {
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+/// The kernel then counts the peak of resident memory from what is resident now.
+void reset_peak() {
+    const int file = ::open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
+    if (file < 0) return;
+    [[maybe_unused]] const ssize_t ignored = ::write(file, "5", 1);
+    ::close(file);
+}
+
+u64 kibibytes_after(const std::string& text, std::string_view name) {
+    const std::size_t place = text.find(name);
+    return place == std::string::npos ? 0 : std::strtoull(text.c_str() + place + name.size(), nullptr, 10) * 1024;
+}
+
+}  // namespace
+
+ResourceUse::ResourceUse() : start_(std::chrono::steady_clock::now()), cpu_seconds_(scanmill::cpu_seconds()) {
+    reset_peak();
+}
+
+Effort ResourceUse::until_now() const {
+    Effort effort;
+    effort.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    effort.cpu_seconds = scanmill::cpu_seconds() - cpu_seconds_;
+    effort.peak_memory = resident_memory(::getpid()).peak;
+    return effort;
+}
+
+ResidentMemory resident_memory(int process) {
+    std::array<char, 4096> text;
+    const int file = ::open(fmt::format("/proc/{}/status", process).c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return {};
+    const ssize_t length = ::read(file, text.data(), text.size());
+    ::close(file);
+    if (length <= 0) return {};
+    const std::string status(text.data(), static_cast<std::size_t>(length));
+    return {kibibytes_after(status, "VmRSS:"), kibibytes_after(status, "VmHWM:"), kibibytes_after(status, "RssAnon:")};
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::size_t count_open_files() {
+    std::error_code unknown;
+    std::size_t count = 0;
+    for (fs::directory_iterator entry("/proc/self/fd", unknown), end; !unknown && entry != end;
+         entry.increment(unknown))
+        ++count;
+    return count;
+}
+
+std::string all_of_environment() {
+    std::string all;
+    for (char** entry = environ; entry && *entry; ++entry) all.append(*entry).push_back('\0');
+    return all;
+}
+
+unsigned file_mask() {
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    return mask;
+}
+
+}  // namespace
+
+ProcessState ProcessState::now() {
+    ProcessState state;
+    std::error_code gone;
+    state.folder_ = fs::current_path(gone).string();
+    state.locale_ = std::setlocale(LC_ALL, nullptr);
+    state.environment_ = all_of_environment();
+    state.file_mask_ = file_mask();
+    state.rounding_ = std::fegetround();
+    state.open_files_ = count_open_files();
+    return state;
+}
+
+std::string ProcessState::changes_since(const ProcessState& before) const {
+    if (open_files_ > before.open_files_)
+        return counted(open_files_ - before.open_files_, "more file is open", "more files are open");
+    if (open_files_ < before.open_files_) return "files were closed that somebody else had opened";
+    if (folder_ != before.folder_) return "the working folder changed";
+    if (locale_ != before.locale_) return "the locale changed";
+    if (environment_ != before.environment_) return "the environment changed";
+    if (file_mask_ != before.file_mask_) return "the file mask changed";
+    if (rounding_ != before.rounding_) return "the rounding of numbers changed";
+    return {};
+}
+
+u64 anonymous_memory() { return resident_memory(::getpid()).anonymous; }
+
+}  // namespace scanmill

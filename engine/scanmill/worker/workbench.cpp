@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/worker/workbench.hpp"
+
+#include <limits.h>
+#include <algorithm>
+#include <new>
+#include <optional>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/cache/streamed_content.hpp"
+#include "scanmill/formats/files.hpp"
+#include "scanmill/graph/output_files.hpp"
+#include "scanmill/graph/streaming.hpp"
+#include "scanmill/plan/properties.hpp"
+#include "scanmill/plan/step_parameters.hpp"
+#include "scanmill/worker/file_description.hpp"
+#include "scanmill/worker/open_scans.hpp"
+#include "scanmill/worker/resources.hpp"
+#include "scanmill/workflow/sizes.hpp"
+
+namespace scanmill {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Thrown when an input is neither here nor in the cache; the report names it.
+struct InputLost {};
+
+/// Thrown by what asks for expectations.
+struct Unmet {
+    Error error;
+};
+
+fs::path emptied(const fs::path& folder) {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    fs::create_directories(folder);
+    return folder;
+}
+
+Error out_of_memory(u64 limit, u64 peak) {
+    const std::string reached =
+        fmt::format("{} were resident at most, mapped files counted, when more was asked for", byte_size_text(peak));
+    if (limit == 0)
+        return Error("the machine's memory did not suffice: {}", reached)
+            .hint("thin the scan first, or use a machine with more memory");
+    return Error("the memory did not suffice: the limit is {}; {}", byte_size_text(limit), reached)
+        .hint("raise the limit, or thin the scan first");
+}
+
+}  // namespace
+
+Workbench::Workbench(FilterLibrary& library, Cache* cache, KeepRule::Policy policy, fs::path scratch)
+    : library_(library),
+      cache_(cache),
+      rule_(policy),
+      scratch_(std::move(scratch)),
+      folder_(fs::current_path()) {}
+
+JobReport Workbench::perform(const Job& job, const JobListener& listener) {
+    JobReport report;
+    report.node.attempts = 1;
+    const ResourceUse use;
+    const auto fail = [&](Cause cause, Error error) {
+        report.outcome = Outcome::failed;
+        report.node.failure = failure_of(job, cause, std::move(error));
+    };
+    const bool is_write = std::holds_alternative<WriteWork>(job.work);
+    try {
+        const MemoryLimit limit(job.memory_limit, job.threads);
+        if (const auto* reading = std::get_if<ReadWork>(&job.work)) read(job, *reading, listener, report);
+        if (const auto* step = std::get_if<StepWork>(&job.work)) run(job, *step, listener, report);
+        if (const auto* asking = std::get_if<ExpectWork>(&job.work)) expect(job, *asking, report);
+        if (const auto* writing = std::get_if<WriteWork>(&job.work)) write(job, *writing, report);
+        report.outcome = Outcome::done;
+    } catch (const Cancelled&) {
+    } catch (const InputLost&) {
+    } catch (const Unmet& unmet) {
+        fail(Cause::expectation, unmet.error);
+    } catch (const Error& error) {
+        fail(is_write ? Cause::output : Cause::refused, error);
+    } catch (const std::bad_alloc&) {
+        fail(Cause::memory, out_of_memory(job.memory_limit, use.until_now().peak_memory));
+    } catch (const std::exception& error) {
+        fail(Cause::exception, Error("an unexpected error: {}", error.what()));
+    } catch (...) {
+        fail(Cause::exception, Error("something was thrown that is no error and says nothing of itself"));
+    }
+    std::error_code gone;
+    if (fs::current_path(gone) != folder_) fs::current_path(folder_, gone);  // relative paths count from there
+    report.node.effort = use.until_now();
+    report.node.effort.threads = job.threads;
+    report.node.outcome = report.outcome;
+    if (is_write && report.outcome == Outcome::failed) report.output.outcome = Outcome::failed;
+    return report;
+}
+
+void Workbench::run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report) {
+    const std::shared_ptr<const PointStream> scan = stream_for(work, job.threads);
+    std::vector<StepInput> inputs;
+    if (!scan)
+        for (const JobInput& input : work.inputs)
+            if (std::optional<Value> value = fetch(input, report)) inputs.push_back({input.port, std::move(*value)});
+    if (!report.lost.empty()) throw InputLost{};
+
+    const PlannedStep& step = *work.step;
+    ContextOptions options;
+    options.threads = job.threads;
+    options.seed = job.seed;
+    options.scratch = emptied(scratch_ / "step");
+    options.is_cancelled = listener.is_cancelled;
+    options.on_progress = listener.on_progress;
+    options.on_warning = listener.on_warning;
+    std::string run_key;
+    auto start = std::chrono::steady_clock::now();
+    const Recall recall = [&](const ParameterSet& resolved, NodeReport&) -> std::optional<Outputs> {
+        if (!uses_cache(work.memory)) return std::nullopt;
+        run_key = work_key(step, work.memory.code, resolved, work.inputs);
+        std::optional<Outputs> known = recalled(work, run_key, listener, report);
+        start = std::chrono::steady_clock::now();
+        return known;
+    };
+    const auto filter = [&]() -> const FilterDeclaration& {
+        if (library_.build_id(step.spec.name) != work.build)
+            throw Error("the filter {} was built again while the run was going on", step.spec.name)
+                .hint("run it again");
+        return library_.load(step.spec.name);
+    };
+    const Outputs outputs = [&] {
+        if (!scan) return run_step(step, filter, inputs, std::move(options), recall, report.node);
+        try {
+            return run_step(step, filter, *scan, std::move(options), recall, report.node);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (...) {
+            scans_.require_unchanged(work.inputs.front().node);  // if it changed, that is why
+            throw;
+        }
+    }();
+    const double seconds = seconds_since(start);
+    if (scan) scans_.require_unchanged(work.inputs.front().node);
+    if (uses_cache(work.memory))
+        for (const ParameterFile& file : work.parameter_files) require_unchanged(file.path, file.content);
+    std::vector<StepInput>& values = values_[job.node] = {};
+    for (const auto& [port, value] : outputs) values.push_back({port, value});
+    if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
+    if (report.node.origin == Origin::ran) remember(job, work.memory, run_key, "", seconds, report);
+    if (step.expectations.empty()) return;
+    const std::string& primary = step.spec.outputs.front().name;
+    check_expectations(step, *find(job.node, primary), {job.node, primary}, report.node);
+}
+
+void Workbench::expect(const Job&, const ExpectWork& work, JobReport& report) {
+    const std::optional<Value> primary = fetch(work.primary, report);
+    if (!primary) throw InputLost{};
+    report.node.metrics = work.metrics;
+    check_expectations(*work.step, *primary, {work.primary.node, work.primary.from}, report.node);
+}
+
+void Workbench::check_expectations(const PlannedStep& step, const Value& primary, const Place& place,
+                                   NodeReport& report) {
+    try {
+        require_expectations(step, primary, report);
+    } catch (const Error& error) {
+        throw Unmet{error};
+    }
+    facts_[place] = report.facts;
+}
+
+void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
+    OutputReport& written = report.output;
+    written.file = work.file;
+    const std::optional<Value> value = fetch(work.value, report);
+    if (!value) throw InputLost{};
+    written.kind = kind_of(*value);
+    std::error_code trouble;
+    fs::create_directories(work.file.parent_path(), trouble);
+    if (trouble) throw Error("the folder '{}' cannot be made: {}", work.file.parent_path().string(), trouble.message());
+    WriteOptions options;
+    options.on_warning = [&](std::string text) { written.warnings.push_back(std::move(text)); };
+    Sha256 hash;
+    options.on_bytes = [&](std::string_view bytes) { hash.add(bytes); };
+    write_file(work.file, *value, options);
+    const auto known = facts_.find({work.value.node, work.value.from});
+    written.facts = known != facts_.end() ? known->second : facts_of(*value);
+    constexpr std::size_t longest_name = NAME_MAX;
+    if (description_of(work.file).filename().native().size() <= longest_name)
+        write_description(work.file, hash.text(), work.made_how, *value, written.facts);
+    else
+        options.on_warning(fmt::format("'{}' has no description: its name would be too long", work.file.string()));
+    written.outcome = Outcome::done;
+}
+
+// What a bench has and gets: files read or opened, values found again.
+
+namespace {
+
+/// For what is read again: what there is to be said was said when it was read first.
+void said_before(std::string) {}
+
+}  // namespace
+
+void Workbench::read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report) {
+    const auto on_warning = [&](std::string text) {
+        listener.on_warning(text);
+        report.node.warnings.push_back(std::move(text));
+    };
+    if (work.leaf.is_streamed && read_as_stream(job, work, listener, on_warning, report)) return;
+    report.was_read_whole = work.leaf.is_streamed;
+    const auto start = std::chrono::steady_clock::now();
+    std::optional<UnchangedWhileRead> check;
+    if (uses_cache(work.memory)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
+    Value value = read_leaf(work.leaf, on_warning);
+    if (check) check->require();
+    if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&value))
+        report.node.facts.set("points", static_cast<double>((*points)->size()), Unit::count);
+    else if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
+        report.node.facts.set("points", static_cast<double>((*mesh)->positions.size()), Unit::count);
+    values_[job.node] = {{"", std::move(value)}};
+    remember(job, work.memory, work.memory.plan_key, said_of(work.leaf.file), seconds_since(start), report);
+}
+
+/// The scan stays open in place of its value, and is known as the value would be. False when its file must be read as a
+/// whole.
+bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener,
+                               const std::function<void(std::string)>& on_warning, JobReport& report) {
+    const auto start = std::chrono::steady_clock::now();
+    const JobMemory& memory = work.memory;
+    std::optional<StepResult> known = uses_cache(memory) ? cache_->step(memory.plan_key) : std::nullopt;
+    if (known && !known->output("")) known.reset();
+    StreamedContent content;
+    const bool learns = uses_cache(memory) && !known;
+    const auto check_cancelled = [&] {
+        if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
+    };
+    const auto look = [&](std::span<const Vec3> positions) {
+        check_cancelled();
+        if (learns) content.add_world(positions);
+    };
+    const auto scan = scans_.open(job.node, work.leaf, job.threads, uses_cache(memory), on_warning, look);
+    if (!scan) return false;
+    report.node.facts.set("points", static_cast<double>(scan->size()), Unit::count);
+    std::vector<ResultOutput> outputs;
+    if (known) {
+        outputs = known->outputs;
+    } else if (learns) {
+        const ValueName name = content.of(*scan, job.threads, check_cancelled);
+        outputs = {{"", Kind::points, name.content, name.bytes}};
+    }
+    scans_.require_unchanged(job.node);
+    report.result.outputs = std::move(outputs);
+    for (const ResultOutput& output : report.result.outputs)
+        if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
+    remember(job, memory, memory.plan_key, said_of(work.leaf.file), seconds_since(start), report);
+    return true;
+}
+
+const Value* Workbench::find(std::size_t node, const std::string& port) const {
+    const auto of_node = values_.find(node);
+    if (of_node == values_.end()) return nullptr;
+    const auto found = std::ranges::find(of_node->second, port, &StepInput::port);
+    return found == of_node->second.end() ? nullptr : &found->value;
+}
+
+std::optional<Value> Workbench::at_hand(const JobInput& input) {
+    if (const Value* value = find(input.node, input.from)) return *value;
+    std::optional<Value> value = cache_ && !input.content.empty() ? cache_->value(input.content) : std::nullopt;
+    if (value) values_[input.node].push_back({input.from, *value});
+    return value;
+}
+
+std::shared_ptr<const PointStream> Workbench::stream_for(const StepWork& work, unsigned threads) {
+    if (work.inputs.size() != 1 || !can_stream(*work.step)) return nullptr;
+    const JobInput& input = work.inputs.front();
+    if (!input.leaf || !input.leaf->is_streamed) return nullptr;
+    if (const auto scan = scans_.find(input.node)) return scan;
+    if (find(input.node, input.from)) return nullptr;  // its file had to be read as a whole
+    return scans_.open(input.node, *input.leaf, threads, cache_ != nullptr, said_before);
+}
+
+std::optional<Value> Workbench::fetch(const JobInput& input, JobReport& report) {
+    if (std::optional<Value> value = at_hand(input)) return value;
+    std::optional<Value> value;
+    if (input.leaf) {
+        value = read_leaf(*input.leaf, said_before);
+        if (cache_) require_unchanged(input.leaf->file, input.leaf->content);
+    }
+    if (value)
+        values_[input.node].push_back({input.from, *value});
+    else
+        report.lost.push_back(input);
+    return value;
+}
+
+std::string said_of(const std::filesystem::path& file) { return "'" + file.string() + "': "; }
+
+// What a bench and the cache know from each other: results remembered and recalled, values kept.
+
+/// What the cache knows under the run key, if all values that are needed were kept.
+std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::string& run_key,
+                                           const JobListener& listener, JobReport& report) const {
+    std::optional<StepResult> result = cache_->step(run_key);
+    if (!result) return std::nullopt;
+    Outputs outputs;
+    for (const std::string& port : work.memory.needed) {
+        const ResultOutput* output = result->output(port);
+        std::optional<Value> value = output ? cache_->value(output->content) : std::nullopt;
+        if (!value) return std::nullopt;
+        outputs.set(port, std::move(*value));
+    }
+    cache_->keep_run_key(work.memory.plan_key, run_key);
+    adopt(*result, work.step.get(), "", report.node);
+    report.node.origin = Origin::same_inputs;
+    for (const std::string& warning : report.node.warnings) listener.on_warning(warning);
+    for (const ResultOutput& output : result->outputs)
+        if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
+    report.result = std::move(*result);
+    return outputs;
+}
+
+/// Hands the result to the cache, and its values where that is worth it.
+void Workbench::remember(const Job& job, const JobMemory& memory, const std::string& run_key,
+                         const std::string& said_of, double seconds, JobReport& report) {
+    if (!uses_cache(memory)) return;
+    StepResult& result = report.result;
+    const auto* work = std::get_if<StepWork>(&job.work);
+    for (const auto& [name, value] : report.node.resolved.values)
+        if (!std::holds_alternative<std::monostate>(value) && !names_files(work->step->spec, name))
+            result.resolved.emplace_back(name, written(value));
+    result.metrics = report.node.metrics;
+    result.facts = report.node.facts;
+    // Equal files of other names share the result: what is said of reading begins with the name.
+    for (const std::string& warning : report.node.warnings)
+        result.warnings.push_back(warning.starts_with(said_of) ? warning.substr(said_of.size()) : warning);
+    result.seconds = seconds;
+    keep_values(job.node, memory, memory.inputs_cost + seconds, report);
+    if (cache_->keep_step(run_key, result)) cache_->keep_run_key(memory.plan_key, run_key);
+}
+
+void Workbench::keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report) {
+    for (const auto& [port, value] : values_[node]) {
+        const EncodedValue encoded(value);
+        bool kept = cache_->has_value(encoded.content(), encoded.size());
+        if (!kept && (memory.keep_always || rule_.is_worth(cost, encoded.size()))) {
+            const auto start = std::chrono::steady_clock::now();
+            kept = cache_->keep_value(encoded);
+            if (kept) rule_.wrote(encoded.size(), seconds_since(start));
+        }
+        if (kept) report.kept.push_back(port);
+        report.result.outputs.push_back({port, kind_of(value), encoded.content(), encoded.size()});
+    }
+}
+
+void adopt(const StepResult& result, const PlannedStep* step, const std::string& said_of, NodeReport& report) {
+    report.metrics = result.metrics;
+    report.facts = result.facts;
+    report.warnings.clear();
+    for (const std::string& warning : result.warnings) report.warnings.push_back(said_of + warning);
+    if (!step) return;
+    report.resolved = {};
+    for (const auto& [name, value] : step->parameters.values)
+        if (names_files(step->spec, name)) report.resolved.values.emplace_back(name, value);
+    for (const auto& [name, text] : result.resolved)
+        report.resolved.values.emplace_back(name, parse(*step->spec.parameter(name), text));
+}
+
+}  // namespace scanmill

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/workflow/document.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <unordered_map>
+
+#include "scanmill/base/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t most_nodes = 1'000'000;
+constexpr std::size_t most_bytes = std::size_t(64) << 20;
+/// Aliases put trees into trees; whoever walks over them recursively must not run out of stack.
+constexpr std::size_t most_levels = 500;
+
+struct TooMuch {
+    Position position;
+    std::string what;
+};
+
+/// What a tree costs to copy and to walk over.
+struct Extent {
+    std::size_t nodes = 0;   ///< keys are some, too
+    std::size_t bytes = 0;   ///< of all texts
+    std::size_t levels = 0;  ///< of nesting
+};
+
+Position position_of(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
+
+Extent extent_of(const YamlNode& node) {
+    Extent whole{1, node.text.size(), 1};
+    const auto add = [&whole](const Extent& part) {
+        whole.nodes += part.nodes;
+        whole.bytes += part.bytes;
+        whole.levels = std::max(whole.levels, part.levels + 1);
+    };
+    for (const YamlNode& item : node.items) add(extent_of(item));
+    for (const YamlEntry& entry : node.entries) {
+        add({1, entry.key.size(), 0});
+        add(extent_of(entry.value));
+    }
+    return whole;
+}
+
+/// Names with placeholders and wildcards are texts that YAML takes for something else.
+std::string way_out(const std::string& message) {
+    const auto says = [&](const char* words) { return message.find(words) != std::string::npos; };
+    if (says("flow"))
+        return "; within { } and [ ] a text with braces, brackets or commas needs quotes, as \"{stem}.ply\"";
+    if (says("anchor") || says("alias")) return "; a text that begins with * or & needs quotes, as \"*.ply\"";
+    return "";
+}
+
+/// Builds the tree from the parser's events: keys, values and items arrive one after the other.
+class TreeBuilder : public YAML::EventHandler {
+public:
+    explicit TreeBuilder(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+
+    YamlNode root;
+    Position begin;  ///< of the document
+
+    void OnDocumentStart(const YAML::Mark& mark) override { begin = position_of(mark); }
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+        finish({.type = YamlNode::Type::null, .position = position_of(mark), .text = "", .items = {}, .entries = {}},
+               anchor);
+    }
+    void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+        const auto found = anchors_.find(anchor);
+        if (found == anchors_.end()) {
+            diagnostics_.error(position_of(mark), "an alias inside the node that it names; write the value out");
+            finish({}, 0);
+            return;
+        }
+        count(found->second.extent, position_of(mark));
+        YamlNode copy = found->second.node;
+        copy.position = position_of(mark);
+        finish(std::move(copy), 0);
+    }
+    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  const std::string& value) override {
+        // An unquoted ~ or null or nothing is null; quoted ("!" tag) it is text.
+        const bool null = tag == "?" && (value.empty() || value == "~" || value == "null");
+        finish({.type = null ? YamlNode::Type::null : YamlNode::Type::scalar,
+                .position = position_of(mark),
+                .text = value,
+                .items = {},
+                .entries = {}},
+               anchor);
+    }
+    void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                         YAML::EmitterStyle::value) override {
+        open(YamlNode::Type::sequence, mark, anchor);
+    }
+    void OnSequenceEnd() override { close(); }
+    void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                    YAML::EmitterStyle::value) override {
+        open(YamlNode::Type::map, mark, anchor);
+    }
+    void OnMapEnd() override { close(); }
+
+private:
+    struct Open {
+        YamlNode node;
+        YAML::anchor_t anchor;
+        bool has_key = false;
+        std::string key;
+        Position key_position;
+        std::unordered_map<std::string, int> line_of_key;
+    };
+
+    struct Anchored {
+        YamlNode node;
+        Extent extent;
+    };
+
+    /// Before a tree is put, or copied, below the open nodes.
+    void count(const Extent& extent, Position position) {
+        nodes_ += extent.nodes;
+        bytes_ += extent.bytes;
+        if (nodes_ > most_nodes) throw TooMuch{position, fmt::format("unfolds to more than {} nodes", most_nodes)};
+        if (bytes_ > most_bytes) throw TooMuch{position, fmt::format("unfolds to more than {} bytes", most_bytes)};
+        if (stack_.size() + extent.levels > most_levels)
+            throw TooMuch{position, fmt::format("unfolds to more than {} levels", most_levels)};
+    }
+    void open(YamlNode::Type type, const YAML::Mark& mark, YAML::anchor_t anchor) {
+        Open level{.node = {}, .anchor = anchor, .has_key = false, .key = {}, .key_position = {}, .line_of_key = {}};
+        level.node.type = type;
+        level.node.position = position_of(mark);
+        stack_.push_back(std::move(level));
+    }
+    void close() {
+        Open level = std::move(stack_.back());
+        stack_.pop_back();
+        finish(std::move(level.node), level.anchor);
+    }
+    void finish(YamlNode node, YAML::anchor_t anchor) {
+        count({1, node.text.size(), 1}, node.position);
+        if (anchor != 0) {
+            const Extent extent = extent_of(node);
+            count(extent, node.position);  // it is kept a second time
+            anchors_[anchor] = {node, extent};
+        }
+        if (stack_.empty()) {
+            root = std::move(node);
+            return;
+        }
+        Open& parent = stack_.back();
+        if (parent.node.type == YamlNode::Type::sequence)
+            parent.node.items.push_back(std::move(node));
+        else if (parent.has_key)
+            add_entry(parent, std::move(node));
+        else
+            take_key(parent, node);
+    }
+    void take_key(Open& map, const YamlNode& key) {
+        if (!key.is_scalar()) diagnostics_.error(key.position, "a key must be a plain text; found " + key.described());
+        map.key = key.text;
+        map.key_position = key.position;
+        map.has_key = true;
+    }
+    void add_entry(Open& map, YamlNode value) {
+        map.has_key = false;
+        const auto [earlier, is_new] = map.line_of_key.emplace(map.key, map.key_position.line);
+        if (!is_new) {
+            diagnostics_.error(map.key_position,
+                               fmt::format("the key '{}' stands here a second time; it is already at line {}", map.key,
+                                           earlier->second));
+            return;
+        }
+        map.node.entries.push_back({map.key, map.key_position, std::move(value)});
+    }
+
+    Diagnostics& diagnostics_;
+    std::vector<Open> stack_;
+    std::map<YAML::anchor_t, Anchored> anchors_;
+    std::size_t nodes_ = 0, bytes_ = 0;
+};
+
+}  // namespace
+
+const YamlNode* YamlNode::find(std::string_view key) const {
+    const auto found = std::ranges::find(entries, key, &YamlEntry::key);
+    return found == entries.end() ? nullptr : &found->value;
+}
+
+std::string YamlNode::described() const {
+    switch (type) {
+        case Type::null: return "nothing";
+        case Type::scalar:
+            return text.size() <= 60 ? "'" + text + "'" : "a text of " + std::to_string(text.size()) + " bytes";
+        case Type::sequence: return "a list";
+        case Type::map: return "a map";
+    }
+    return "";
+}
+
+YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
+    if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
+        const auto before = std::string_view(text).substr(0, zero);
+        const auto line = 1 + std::ranges::count(before, '\n');
+        const auto column = zero - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+        diagnostics.error({static_cast<int>(line), static_cast<int>(column)}, "a zero byte; a workflow is text");
+        return {};
+    }
+    TreeBuilder builder(diagnostics);
+    try {
+        std::istringstream stream(text);
+        YAML::Parser parser(stream);
+        parser.HandleNextDocument(builder);
+        for (Position last = builder.begin;;) {
+            TreeBuilder next(diagnostics);
+            if (!parser.HandleNextDocument(next)) break;
+            if (next.begin <= last) {  // the parser neither takes what stands here nor complains: `,` outside a list
+                diagnostics.error(next.begin, "is no YAML: what stands here belongs to nothing");
+                break;
+            }
+            if (!next.root.is_null())
+                diagnostics.error(next.root.position, "a second document begins here; expected one");
+            last = next.begin;
+        }
+    } catch (const YAML::Exception& error) {
+        diagnostics.error(position_of(error.mark), "is no YAML: " + error.msg + way_out(error.msg));
+    } catch (const TooMuch& too_much) {
+        diagnostics.error(too_much.position, too_much.what + "; write fewer anchors and aliases");
+    }
+    return std::move(builder.root);
+}
+
+std::string read_workflow_file(const std::filesystem::path& file) {
+    constexpr std::size_t largest = 16u << 20;
+    std::error_code trouble;
+    if (std::filesystem::is_directory(file, trouble))
+        throw Error("'{}' is a folder; expected a workflow file", file.string());
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error("'{}' cannot be opened; expected a workflow file", file.string());
+    std::string text, block(1u << 16, '\0');
+    while (stream.read(block.data(), static_cast<std::streamsize>(block.size())), stream.gcount() > 0) {
+        text.append(block, 0, static_cast<std::size_t>(stream.gcount()));
+        if (text.size() > largest)
+            throw Error("'{}' has more than {} bytes, the most that a workflow may have", file.string(), largest);
+    }
+    return text;
+}
+
+}  // namespace scanmill

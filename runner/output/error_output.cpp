@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "output/error_output.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "output/printable.hpp"
+#include "output/stderr_text.hpp"
+#include "scanmill/base/text.hpp"
+
+namespace scanmill::runner {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void print_json(const Json& json) {
+    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));  // names of files may be no UTF-8
+}
+
+}  // namespace
+
+void print(const Error& error, bool json) {
+    tell("error: {}\n", printable(error.what()));
+    if (!json) return;
+    Json described{{"message", error.sentence()}, {"where", error.frames()}};
+    if (!error.hint().empty()) described["hint"] = error.hint();
+    print_json({{"scanmill", 1}, {"error", std::move(described)}});
+}
+
+void print(const Diagnostics& diagnostics) {
+    for (const Diagnostic& diagnostic : diagnostics.sorted())
+        tell("{}\n", printable_line(text(diagnostic, diagnostics.file())));
+    if (diagnostics.has_errors())
+        tell("{} in '{}'\n", counted(diagnostics.errors(), "error", "errors"), printable_line(diagnostics.file()));
+}
+
+Json to_json(const Diagnostics& diagnostics) {
+    Json list = Json::array();
+    for (const Diagnostic& diagnostic : diagnostics.sorted())
+        list.push_back({{"severity", diagnostic.severity == Diagnostic::Severity::error ? "error" : "warning"},
+                        {"line", diagnostic.position.line},
+                        {"column", diagnostic.position.column},
+                        {"message", diagnostic.message}});
+    return {{"file", diagnostics.file()}, {"ok", !diagnostics.has_errors()}, {"diagnostics", std::move(list)}};
+}
+
+Json unreadable_json(const std::string& file, const Error& error) {
+    Diagnostics diagnostics(file);
+    diagnostics.error({}, error.sentence());
+    return to_json(diagnostics);
+}
+
+void print_files_json(Json files) { print_json({{"scanmill", 1}, {"files", std::move(files)}}); }
+
+}  // namespace scanmill::runner

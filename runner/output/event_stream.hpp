@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What happens, as JSON on stdout while it happens: one object a line.
+///
+/// The first is `run-started`, the last `run-ended`; between them `step-started`, `step-progress` (full percents),
+/// `warning`, `step-ended`, `output-written` and `cell-ended`. Each says after how many seconds.
+
+#include <chrono>
+#include <map>
+#include <mutex>
+
+#include "scanmill/formats/json/metrics_json.hpp"
+#include "scanmill/run/run.hpp"
+
+namespace scanmill::runner {
+
+using Json = nlohmann::ordered_json;
+
+class EventStream : public RunObserver {
+public:
+    explicit EventStream(const RunGraph& graph) : graph_(graph) {}
+
+    /// `run`: its number in the records; 0: it is not recorded.
+    void begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run);
+    void end(const RunReport& report);
+    /// Some events could not be written.
+    bool has_failed() const { return has_failed_; }
+
+    void node_started(const RunNode& node, std::size_t worker) override;
+    void node_progress(const RunNode& node, double fraction) override;
+    void node_warning(const RunNode& node, std::string_view text) override;
+    void node_ended(const RunNode& node, const NodeReport& report) override;
+    void output_written(const RunCell& cell, const OutputReport& report) override;
+    void cell_ended(const RunCell& cell, const CellReport& report) override;
+
+private:
+    Json event(const char* name) const;
+    Json step_event(const char* name, const RunNode& node) const;
+    void say(const Json& event);
+
+    const RunGraph& graph_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    std::map<std::size_t, int> percents_;  // by node
+    bool has_failed_ = false;
+    std::mutex mutex_;
+};
+
+}  // namespace scanmill::runner

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a params struct to a specification.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/filter/declared_params.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(Declare, Declaration_IsSound) { EXPECT_NO_THROW(require_sound(FilterDeclaration(declaration()).spec)); }
+
+TEST(Declare, FilterAndItsPorts_AreAsDeclaredAndInOrder) {
+    const FilterSpec spec = FilterDeclaration(declaration()).spec;
+    EXPECT_EQ(spec.name, "all-sorts");
+    EXPECT_EQ(spec.version, 7);
+    EXPECT_EQ(spec.summary, "Has a parameter of every type.");
+    EXPECT_EQ(spec.ties, "There are none.");
+    EXPECT_EQ(spec.not_finite, help);
+    EXPECT_EQ(spec.source, "Hand-made");
+    EXPECT_THAT(spec.inputs, ElementsAre(PortSpec{"points", Kind::points, help, false, false},
+                                         PortSpec{"mesh", Kind::mesh, help, false, true},
+                                         PortSpec{"others", Kind::points, help, true, false},
+                                         PortSpec{"tets", Kind::tets, help, true, true},
+                                         PortSpec{"truth", Kind::mesh, help, false, false, {Kind::points}}));
+    EXPECT_EQ(kinds_text(spec.inputs.back()), "mesh or points");
+    EXPECT_TRUE(spec.inputs.back().takes(Kind::points));
+    EXPECT_FALSE(spec.inputs.back().takes(Kind::tets));
+    EXPECT_THAT(spec.outputs, ElementsAre(PortSpec{"mesh", Kind::mesh, help, false, false},
+                                          PortSpec{"numbers", Kind::metrics, help, false, false}));
+    EXPECT_THAT(spec.metrics, ElementsAre(MetricSpec{"kept", Unit::count, help, true, true},
+                                          MetricSpec{"error", Unit::length, help, false}));
+}
+
+TEST(Declare, NumberedMetric_IsKnownByItsNumber) {
+    const FilterSpec spec = FilterDeclaration(declaration()).spec;
+    EXPECT_EQ(spec.metric("kept@2"), spec.metric("kept"));
+    EXPECT_EQ(spec.metric("kept@10"), spec.metric("kept"));
+    for (const char* other : {"kep@2", "kept@", "kept@1", "kept@02", "kept@two", "error@2", "@2"})
+        EXPECT_EQ(spec.metric(other), nullptr) << other;
+}
+
+TEST(Declare, PortOfSeveralKinds_GivesWhatIsThere) {
+    Inputs inputs;
+    inputs.add("truth", std::make_shared<const PointCloud>());
+    EXPECT_NE(inputs.find<PointCloud>("truth"), nullptr);
+    EXPECT_EQ(inputs.find<TriangleMesh>("truth"), nullptr);
+}
+
+TEST(Declare, TypesAndDefaults_ComeFromTheMembers) {
+    const FilterDeclaration declared = declaration();
+    using enum ParameterType;
+    const auto expect = [&](std::string_view name, ParameterType type, bool is_list, const ParameterValue& value) {
+        EXPECT_EQ(parameter(declared, name).type, type) << name;
+        EXPECT_EQ(parameter(declared, name).list, is_list) << name;
+        EXPECT_EQ(parameter(declared, name).default_value, value) << name;
+        EXPECT_EQ(parameter(declared, name).help, help) << name;
+    };
+    using List = std::vector<ParameterScalar>;
+    expect("flag", boolean, false, one(true));
+    expect("count", integer, false, one(std::int64_t(3)));
+    expect("seeds", integer, false, one(std::int64_t(8)));
+    expect("big", integer, false, one(std::int64_t(1) << 40));
+    expect("weight", number, false, one(0.25));
+    expect("label", text, false, one(std::string("part")));
+    expect("file", path, false, one(std::string("a/b.txt")));
+    expect("size", length, false, one(Length::percent_of_diagonal(0.1)));
+    expect("bend", angle, false, one(Angle::degrees(40)));
+    expect("share", ratio, false, one(Ratio::percent(5)));
+    expect("rule", choice, false, one(std::string("random")));
+    expect("axis", number, true, List{0.0, 0.0, 1.0});
+    expect("sizes", length, true, List{Length(1), Length::spacings(2)});
+    expect("names", text, true, List{});
+    expect("flags", boolean, true, List{true, false});
+    expect("files", path, true, List{std::string("x")});
+    expect("alpha", length, false, one(Word{"auto"}));
+    expect("fairing", number, false, one(0.5));
+    expect("log", path, false, std::monostate{});
+    expect("picks", integer, true, std::monostate{});
+    expect("max-error", length, false, std::monostate{});
+}
+
+TEST(Declare, Constraints_AreRecorded) {
+    const FilterDeclaration declared = declaration();
+    EXPECT_EQ(parameter(declared, "count").low, (Bound{1, true}));
+    EXPECT_EQ(parameter(declared, "count").high, (Bound{9, true}));
+    EXPECT_EQ(parameter(declared, "weight").low, (Bound{0, false}));
+    EXPECT_EQ(parameter(declared, "weight").high, (Bound{1, false}));
+    EXPECT_FALSE(parameter(declared, "bend").low);
+    EXPECT_EQ(parameter(declared, "axis").size, 3u);
+    EXPECT_FALSE(parameter(declared, "sizes").size);
+    EXPECT_EQ(parameter(declared, "alpha").word, "auto");
+    EXPECT_EQ(parameter(declared, "size").word, "");
+    EXPECT_TRUE(parameter(declared, "max-error").required);
+    EXPECT_FALSE(parameter(declared, "alpha").required);
+    EXPECT_THAT(parameter(declared, "rule").choices,
+                ElementsAre(Choice{"nearest", "The nearest."}, Choice{"random", "Any of them."},
+                            Choice{"densest", "The densest."}));
+}
+
+}  // namespace
+}  // namespace scanmill::test

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/kinds/length_scale.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "scanmill/base/error.hpp"
+#include "support/shapes.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+Value value_of(auto object) { return std::make_shared<const decltype(object)>(std::move(object)); }
+
+TEST(LengthScale, Points_AreMeasuredByTheirNeighbours) {
+    PointCloud cloud = cloud_of({{0, 0, 0}, {3, 0, 0}, {3, 4, 0}});
+    cloud.frame.unit = LengthUnit::millimetre;
+    const LengthScale scale = length_scale(value_of(cloud));
+    EXPECT_EQ(scale.unit, LengthUnit::millimetre);
+    EXPECT_EQ(scale.diagonal(), 5);
+    EXPECT_EQ(scale.spacing(), 3);
+    EXPECT_EQ(Length::percent_of_diagonal(10).resolved(scale).value(), 0.5);
+}
+
+TEST(LengthScale, Mesh_IsMeasuredByItsEdges) {
+    const LengthScale scale = length_scale(value_of(cube(2)));
+    EXPECT_EQ(scale.unit, LengthUnit::unknown);
+    EXPECT_DOUBLE_EQ(scale.diagonal(), 2 * std::sqrt(3.0));
+    EXPECT_EQ(scale.spacing(), 2);
+}
+
+TEST(LengthScale, MeshWithoutTriangles_IsMeasuredAsPoints) {
+    TriangleMesh mesh;
+    mesh.positions = {Vec3(0, 0, 0), Vec3(0, 0, 7)};
+    EXPECT_EQ(length_scale(value_of(mesh)).spacing(), 7);
+}
+
+TEST(LengthScale, ValueWithoutPositions_HasNoScale) {
+    const LengthScale scale = length_scale(value_of(RigidTransform{}));
+    EXPECT_EQ(scale.unit, LengthUnit::unknown);
+    EXPECT_EQ(scale.diagonal(), 0);
+    EXPECT_EQ(scale.spacing(), 0);
+    EXPECT_THROW(Length::spacings(1).resolved(scale), Error);
+}
+
+std::string refusal(const auto& ask) {
+    try {
+        ask();
+    } catch (const Error& error) {
+        EXPECT_NE(error.hint(), "") << error.sentence();
+        return error.sentence();
+    }
+    return "no refusal";
+}
+
+TEST(LengthScale, OnePlace_HasNoDiagonalToTakeAShareOf) {
+    EXPECT_THAT(refusal(length_scale(value_of(cloud_of({{1, 2, 3}}))).diagonal),
+                AllOf(HasSubstr("%diag means nothing here"), HasSubstr("the diagonal is 0, as the only point is at")));
+    EXPECT_THAT(refusal(length_scale(value_of(cloud_of({{1, 2, 3}, {1, 2, 3}}))).diagonal),
+                HasSubstr("all 2 points are at one place"));
+}
+
+TEST(LengthScale, CoordinatesThatAreFartherApartThanDoublesGo_AreRefusedWithTheirRange) {
+    const LengthScale points = length_scale(value_of(cloud_of({{-1.5e308, 0, 0}, {1.25e308, 0, 0}})));
+    const auto range = AllOf(HasSubstr("from -1.5e+308 to 1.25e+308"), HasSubstr("1.8e+308"));
+    EXPECT_THAT(refusal(points.diagonal), range);
+    EXPECT_THAT(refusal(points.spacing), range);
+    TriangleMesh mesh;
+    mesh.positions = {Vec3(-1.5e308, 0, 0), Vec3(1.25e308, 0, 0), Vec3(1.25e308, 1, 0)};
+    mesh.triangles = {{0, 1, 2}};
+    EXPECT_THAT(refusal(length_scale(value_of(mesh)).spacing), range);
+    const LengthScale within = length_scale(value_of(cloud_of({{-8e307, 0, 0}, {8e307, 0, 0}})));
+    EXPECT_DOUBLE_EQ(within.diagonal(), 1.6e308);
+    EXPECT_DOUBLE_EQ(within.spacing(), 1.6e308);
+}
+
+TEST(LengthScale, Scale_OutlivesWhoMadeTheValue) {
+    LengthScale scale;
+    {
+        const Value value = value_of(cloud_of({{0, 0, 0}, {0, 3, 4}}));
+        scale = length_scale(value);
+    }
+    const LengthScale copy = scale;
+    EXPECT_EQ(copy.diagonal(), 5);
+    EXPECT_EQ(scale.spacing(), 5);
+}
+
+}  // namespace
+}  // namespace scanmill::test

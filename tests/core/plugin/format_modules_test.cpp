@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Modules of file formats: which files they are asked for, and that one which cannot be used hurts nobody else.
+
+#include "scanmill/plugin/format_modules.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "scanmill/plugin/module.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const FormatManifest manifest{abi_text(), {"ABC", {"abc", "abcd"}, {"#ABC", "abc "}, {Kind::points}}};
+
+std::string refusal(const Format& row) {
+    return sentence_of([&] { row.read({"a.abc", "#ABC"}, {}); });
+}
+
+TEST(FormatManifest, ComesBackTheSame) {
+    const FormatManifest back = parse_format_manifest(to_json_text(manifest));
+    EXPECT_EQ(back.spec, manifest.spec);
+    EXPECT_EQ(back.abi, manifest.abi);
+}
+
+TEST(FormatManifest, FormatsThatAreOnlyWritten_ComeBackTheSame) {
+    FormatManifest written = manifest;
+    written.spec.reads = false;
+    EXPECT_EQ(parse_format_manifest(to_json_text(written)).spec, written.spec);
+    EXPECT_NE(written.spec, manifest.spec);
+}
+
+TEST(FormatManifest, WhatIsNone_IsRefused) {
+    EXPECT_THAT(sentence_of([] { parse_format_manifest("{"); }), HasSubstr("is no manifest"));
+    EXPECT_THAT(sentence_of([] { parse_format_manifest("{\"scanmill-format\": 2}"); }), HasSubstr("of version 2"));
+    FormatManifest nameless = manifest;
+    nameless.spec.extensions.clear();
+    EXPECT_THROW(parse_format_manifest(to_json_text(nameless)), Error);
+}
+
+TEST(FormatModules, Recognition_NeedsNoCode) {
+    const TemporaryFolder folder;
+    folder.write("scanmill-abc.json", to_json_text(manifest));
+    folder.write("scanmill-abc.so", "no code at all");
+    const std::vector<Format> rows = format_modules(folder.path());
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].recognises("#ABC 1\n", 7), Recognition::certain);
+    EXPECT_EQ(rows[0].recognises("# ABC\n", 6), Recognition::no);
+    EXPECT_TRUE(rows[0].has_extension(".ABCD"));
+    EXPECT_TRUE(rows[0].writer(Kind::points));
+    EXPECT_FALSE(rows[0].writer(Kind::mesh));
+    EXPECT_THAT(refusal(rows[0]), HasSubstr("cannot be loaded")) << "only now the module is opened";
+}
+
+TEST(FormatModules, OnlyWritten_RefusesToReadWithoutItsCode) {
+    const TemporaryFolder folder;
+    FormatManifest written = manifest;
+    written.spec.reads = false;
+    folder.write("scanmill-abc.json", to_json_text(written));
+    folder.write("scanmill-abc.so", "no code at all");
+    const std::vector<Format> rows = format_modules(folder.path());
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].recognises("#ABC 1\n", 7), Recognition::certain);
+    EXPECT_TRUE(rows[0].is_refused);
+    EXPECT_THAT(refusal(rows[0]), HasSubstr("ABC is written for other programs, and not read"));
+}
+
+TEST(FormatModules, OnesThatCannotBeUsed_SayWhyToWhomNeedsThem) {
+    const TemporaryFolder folder;
+    folder.write("scanmill-alone.json", to_json_text(manifest));
+    FormatManifest foreign = manifest;
+    foreign.abi = "another compiler";
+    folder.write("scanmill-foreign.json", to_json_text(foreign));
+    folder.write("scanmill-torn.json", "{\"scanmill-format\": 1,");
+    folder.write("unrelated.json", "{}");
+    const std::vector<Format> rows = format_modules(folder.path());
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_THAT(refusal(rows[0]), AllOf(HasSubstr("ALONE cannot be read"), HasSubstr("no module beside it")));
+    EXPECT_THAT(rows[0].unusable, AllOf(HasSubstr("scanmill-alone.json"), HasSubstr("no module beside it")));
+    EXPECT_THAT(refusal(rows[1]), AllOf(HasSubstr("'another compiler'"), HasSubstr(abi_text())));
+    EXPECT_THAT(refusal(rows[2]), HasSubstr("is no manifest"));
+    EXPECT_TRUE(rows[2].has_extension("torn"));
+}
+
+TEST(FormatModules, ModuleOfAFilter_IsNoFormat) {
+    const std::filesystem::path filter = std::filesystem::path(SCANMILL_TEST_PLUGIN_DIR) / "scanmill-test-step.so";
+    EXPECT_THAT(sentence_of([&] { load_format_module(filter, "test-step"); }),
+                AllOf(HasSubstr("is no file format"), HasSubstr("'scanmill-filter'"), HasSubstr("'scanmill-format'")));
+}
+
+TEST(FormatModules, MissingFolder_IsNone) { EXPECT_TRUE(format_modules("/no/such/folder").empty()); }
+
+}  // namespace
+}  // namespace scanmill::test

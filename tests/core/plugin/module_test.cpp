@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One module: what is refused, and why. The modules of unusable/ come from tests/modules.
+
+#include "scanmill/plugin/module.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "scanmill/filter/manifest.hpp"
+#include "support/temporary_folder.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+const std::filesystem::path plugin_folder = SCANMILL_TEST_PLUGIN_DIR;
+
+std::filesystem::path good_module() { return plugin_folder / "scanmill-test-step.so"; }
+
+/// What loading unusable/scanmill-<name>.so as the filter <name> says; it always names the file.
+std::string refusal(const std::string& name) {
+    const std::filesystem::path module = plugin_folder / "unusable" / ("scanmill-" + name + ".so");
+    EXPECT_TRUE(std::filesystem::exists(module)) << "tests/modules makes it";
+    const std::string sentence = sentence_of([&] { load_module(module, name); });
+    EXPECT_THAT(sentence, HasSubstr("'" + module.string() + "'"));
+    return sentence;
+}
+
+TEST(LoadModule, GoodModule_GivesWhatItsManifestSays) {
+    const FilterDeclaration declaration = load_module(good_module(), "test-step");
+    const Manifest manifest = parse_manifest(content_of(plugin_folder / "scanmill-test-step.json"));
+    EXPECT_EQ(declaration.spec, manifest.spec);
+    EXPECT_EQ(manifest.abi, abi_text());
+    EXPECT_TRUE(declaration.run);
+}
+
+TEST(LoadModule, AnotherAbi_IsRefusedWithBothTextsAndWithoutACall) {
+    // The module's declaration would abort this program.
+    EXPECT_THAT(refusal("foreign"),
+                AllOf(HasSubstr("was built for another program"), HasSubstr("'scanmill 0.0.1, another compiler'"),
+                      HasSubstr("'" + abi_text() + "'")));
+    const Error error = error_of([] { load_module(plugin_folder / "unusable" / "scanmill-foreign.so", "foreign"); });
+    EXPECT_THAT(error.hint(), HasSubstr("build the module again"));
+}
+
+TEST(LoadModule, OtherHeaders_AreAnotherAbi) {
+    // Version and compiler are ours; the declaration's layout may not be, and calling it would abort this program.
+    EXPECT_THAT(refusal("other-headers"),
+                AllOf(HasSubstr("was built for another program"), HasSubstr("headers 0123456789abcdef"),
+                      HasSubstr("'" + abi_text() + "'")));
+}
+
+TEST(LoadModule, AbiTextOfBeforeItNamedTheHeaders_IsAnotherAbi) {
+    // It is ours in everything that it names.
+    std::string older = abi_text();
+    const std::size_t begin = older.find(", headers ");
+    ASSERT_NE(begin, std::string::npos);
+    older.erase(begin, older.find(',', begin + 1) - begin);
+    EXPECT_THAT(refusal("headers-not-named"),
+                AllOf(HasSubstr("was built for another program"),
+                      HasSubstr("it needs '" + older + "', this is '" + abi_text() + "'")));
+}
+
+TEST(LoadModule, AnotherMagic_IsNoFilter) {
+    EXPECT_THAT(refusal("other-magic"), AllOf(HasSubstr("is no filter"), HasSubstr("begins with")));
+}
+
+TEST(LoadModule, OrdinaryLibrary_IsNoFilter) {
+    EXPECT_THAT(refusal("exports-nothing"), EndsWith("is no filter: it exports no scanmill_plugin"));
+}
+
+TEST(LoadModule, DeclarationThatThrows_IsRefusedWithItsReason) {
+    EXPECT_THAT(refusal("throwing"),
+                EndsWith("fails while it declares itself: the table of 7 magic numbers is missing"));
+}
+
+TEST(LoadModule, DeclarationThatThrowsANumber_IsRefused) {
+    EXPECT_THAT(refusal("throwing-a-number"), EndsWith("with an exception of a foreign type"));
+}
+
+TEST(LoadModule, StaticObjectThatThrows_IsRefusedWithItsReason) {
+    EXPECT_THAT(refusal("throwing-at-load"), AllOf(HasSubstr("would end this program while it is loaded: signal 6"),
+                                                   EndsWith("it said: what():  the licence has run out")));
+}
+
+TEST(LoadModule, StaticObjectThatExits_IsRefused) {
+    EXPECT_THAT(refusal("exiting-at-load"), EndsWith("while it is loaded: it calls exit(3)"));
+}
+
+TEST(LoadModule, DeclarationOfAnotherName_IsRefused) {
+    EXPECT_THAT(refusal("two-names"), EndsWith("declares the filter 'another-name', not 'two-names'"));
+}
+
+TEST(LoadModule, NothingToRun_IsRefused) {
+    EXPECT_THAT(refusal("nothing-to-run"), EndsWith("declares nothing to run"));
+}
+
+TEST(LoadModule, FileOfAnotherName_IsRefused) {
+    EXPECT_THAT(sentence_of([] { load_module(good_module(), "decimate"); }),
+                EndsWith("holds the filter 'test-step', not 'decimate'"));
+}
+
+TEST(LoadModule, MissingFile_CannotBeLoaded) {
+    const std::filesystem::path missing = plugin_folder / "scanmill-nowhere.so";
+    EXPECT_THAT(sentence_of([&] { load_module(missing, "nowhere"); }),
+                AllOf(HasSubstr("'" + missing.string() + "' cannot be loaded"), HasSubstr("No such file")));
+}
+
+TEST(LoadModule, Garbage_CannotBeLoaded) {
+    const TemporaryFolder folder;
+    for (const std::string& content : {std::string(),
+                                       std::string("\x7f"
+                                                   "ELF"),
+                                       std::string("never a library"), std::string(5000, 'x'),
+                                       "\x7f"
+                                       "ELF" +
+                                           std::string(5000, '\xff'),
+                                       "\x7f"
+                                       "ELF\2\1\1" +
+                                           std::string(5000, '\0')}) {
+        const auto module = folder.write("scanmill-garbage.so", content);
+        EXPECT_THAT(sentence_of([&] { load_module(module, "garbage"); }), HasSubstr("'" + module.string() + "'"));
+    }
+}
+
+TEST(LoadModule, ModuleCutShortAnywhereInItsCode_IsRefused) {
+    // Without a check of its own, loading what lacks its segments ends the program.
+    const TemporaryFolder folder;
+    const std::string whole = content_of(good_module());
+    ASSERT_GT(whole.size(), 40'000u);
+    for (const std::size_t size : {1u, 63u, 64u, 100u, 600u, 4096u, 10'000u, 20'000u, 40'000u}) {
+        const auto module = folder.write("scanmill-test-step.so", whole.substr(0, size));
+        EXPECT_THAT(sentence_of([&] { load_module(module, "test-step"); }), HasSubstr("'" + module.string() + "'"))
+            << size;
+    }
+    const auto module = folder.write("scanmill-test-step.so", whole.substr(0, 4096));
+    EXPECT_THAT(sentence_of([&] { load_module(module, "test-step"); }), HasSubstr("was cut short: it has 4096 bytes"));
+}
+
+TEST(LoadModule, CopyElsewhere_IsAModuleToo) {
+    const TemporaryFolder folder;
+    const auto copy = folder.write("anything.so", content_of(good_module()));
+    EXPECT_EQ(load_module(copy, "test-step").spec, load_module(good_module(), "test-step").spec);
+}
+
+TEST(AbiText, NamesWhatMustAgree) {
+    EXPECT_THAT(abi_text(), AllOf(HasSubstr("scanmill " SCANMILL_VERSION), HasSubstr("libstdc++"), HasSubstr("eigen 3"),
+                                  testing::ContainsRegex("headers [0-9a-f]{16},")));
+}
+
+TEST(ContentHash, EqualBytes_HaveEqualHashesWhateverTheFile) {
+    const TemporaryFolder folder;
+    const std::string long_text(3'000'000, 'x');  // longer than one block of reading
+    const std::string hash = content_hash(folder.write("a", long_text));
+    EXPECT_THAT(hash, testing::MatchesRegex("[0-9a-f]{32}"));
+    EXPECT_EQ(content_hash(folder.write("b", long_text)), hash);
+    std::string other = long_text;
+    for (const std::size_t place : {std::size_t(0), std::size_t(1) << 20, other.size() - 1}) {
+        other[place] = 'y';
+        EXPECT_NE(content_hash(folder.write("b", other)), hash) << place;
+        other[place] = 'x';
+    }
+    EXPECT_NE(content_hash(folder.write("b", long_text + "x")), hash);
+}
+
+TEST(ContentHash, EmptyFile_HasThePublishedHashOfNothing) {
+    // XXH3-128 of no bytes with seed 0.
+    const TemporaryFolder folder;
+    EXPECT_EQ(content_hash(folder.write("empty", "")), "99aa06d3014798d86001c324468d497f");
+}
+
+TEST(ContentHash, MissingFileOrFolder_IsRefused) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(sentence_of([&] { content_hash(folder / "missing"); }),
+              "'" + (folder / "missing").string() + "' cannot be read");
+    EXPECT_THAT(sentence_of([&] { content_hash(folder.path()); }), HasSubstr("cannot be read"));
+}
+
+TEST(CoreBuild, IsTheBuildIdInTheLibrarysFile) {
+    const std::string build = core_build();
+    ASSERT_THAT(build, testing::MatchesRegex("[0-9a-f]{40}")) << "a SHA-1, not the hash of the file";
+    std::string note{"\x04\0\0\0\x14\0\0\0\x03\0\0\0GNU\0", 16};
+    for (std::size_t i = 0; i < build.size(); i += 2)
+        note += static_cast<char>(std::stoi(build.substr(i, 2), nullptr, 16));
+    std::ifstream file(core_library_file(), std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(file), {});
+    EXPECT_THAT(bytes, HasSubstr(note));
+}
+
+TEST(InstalledPluginFolder, LiesBesideTheCoreLibrary) {
+    EXPECT_TRUE(std::filesystem::exists(core_library_file()));
+    EXPECT_THAT(core_library_file().filename().string(), testing::StartsWith("libscanmill-core.so"));
+    EXPECT_EQ(installed_plugin_folder(), std::filesystem::path(SCANMILL_PLUGIN_DIR));
+    EXPECT_NE(installed_plugin_folder(), plugin_folder) << "no product ever sees the tests' modules";
+}
+
+}  // namespace
+}  // namespace scanmill::test

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which files a batch means, and what each brings along.
+
+#include "engine/batch/batch_support.hpp"
+#include "scanmill/batch/parse_scans.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+class ScanFiles : public testing::Test {
+protected:
+    void files(std::initializer_list<const char*> names) {
+        for (const char* name : names) folder_.write(name, "x");
+    }
+    std::vector<std::string> found(const std::string& pattern) {
+        std::vector<std::string> names;
+        for (const auto& file : scan_files(folder_.path(), pattern))
+            names.push_back(file.lexically_relative(folder_.path()).string());
+        return names;
+    }
+    std::string refusal(const std::string& pattern) {
+        return test::sentence_of([&] { scan_files(folder_.path(), pattern); });
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(ScanFiles, Wildcards_StayWithinOneName_InTheOrderOfBytes) {
+    files({"s/b.ply", "s/a.ply", "s/B.ply", "s/\xc3\xa4.ply", "s/a.xyz", "s/deep/c.ply", "t/d.ply"});
+    EXPECT_THAT(found("s/*.ply"), ElementsAre("s/B.ply", "s/a.ply", "s/b.ply", "s/\xc3\xa4.ply"));
+    EXPECT_THAT(found("s/?.ply"), ElementsAre("s/B.ply", "s/a.ply", "s/b.ply"));
+    EXPECT_THAT(found("s/[ab].*"), ElementsAre("s/a.ply", "s/a.xyz", "s/b.ply"));
+    EXPECT_THAT(found("s/[!ab].ply"), ElementsAre("s/B.ply"));
+    EXPECT_THAT(found("[st]/*.ply"), SizeIs(5));
+    EXPECT_THAT(found("*/deep/*.ply"), ElementsAre("s/deep/c.ply"));
+}
+
+TEST_F(ScanFiles, TwoStars_AreAnyNumberOfFolders) {
+    files({"a.ply", "s/b.ply", "s/t/c.ply", "s/t/u/d.ply"});
+    EXPECT_THAT(found("**/*.ply"), ElementsAre("a.ply", "s/b.ply", "s/t/c.ply", "s/t/u/d.ply"));
+    EXPECT_THAT(found("s/**/*.ply"), ElementsAre("s/b.ply", "s/t/c.ply", "s/t/u/d.ply"));
+    EXPECT_THAT(found("**/t/*.ply"), ElementsAre("s/t/c.ply"));
+    EXPECT_THAT(found("**/**/d.ply"), ElementsAre("s/t/u/d.ply")) << "once, whatever the ways to it";
+    EXPECT_THAT(refusal("s/**"), HasSubstr("'**' stands for folders"));
+}
+
+TEST_F(ScanFiles, HiddenFilesAndFolders_AreOnlyFoundByTheirNames) {
+    files({".hidden.ply", "a.ply", ".git/b.ply", "s/.t/c.ply"});
+    EXPECT_THAT(found("*.ply"), ElementsAre("a.ply"));
+    EXPECT_THAT(found("**/*.ply"), ElementsAre("a.ply"));
+    EXPECT_THAT(found(".hid*"), ElementsAre(".hidden.ply"));
+    EXPECT_THAT(found(".git/*.ply"), ElementsAre(".git/b.ply"));
+}
+
+TEST_F(ScanFiles, OnlyRegularFiles_AreFound) {
+    files({"a.ply/inside", "b.ply"});
+    std::filesystem::create_symlink("b.ply", folder_ / "link.ply");
+    std::filesystem::create_symlink("nowhere", folder_ / "dangling.ply");
+    EXPECT_THAT(found("*.ply"), ElementsAre("b.ply", "link.ply"));
+}
+
+TEST_F(ScanFiles, LinksToFolders_AreFollowedByNameButNotByTwoStars) {
+    files({"s/a.ply"});
+    std::filesystem::create_directory_symlink(".", folder_ / "s/loop");
+    EXPECT_THAT(found("s/**/*.ply"), ElementsAre("s/a.ply"));
+    EXPECT_THAT(found("s/*/*.ply"), ElementsAre("s/loop/a.ply"));
+}
+
+TEST_F(ScanFiles, NameWithSpecialCharacters_IsTakenLiterallyWhenItIsThere) {
+    files({"scan[1].ply", "scan1.ply", "*.ply", "x\\y.ply"});
+    EXPECT_THAT(found("scan[1].ply"), ElementsAre("scan[1].ply"));
+    EXPECT_THAT(found("*.ply"), ElementsAre("*.ply"));
+    EXPECT_THAT(found("x\\y.ply"), ElementsAre("x\\y.ply"));
+    EXPECT_THAT(found("scan[1].pl?"), ElementsAre("scan1.ply"));
+}
+
+TEST_F(ScanFiles, AbsolutePaths_DoNotCountFromTheFolder) {
+    files({"s/a.ply"});
+    EXPECT_EQ(scan_files("/nowhere", (folder_ / "s/*.ply").string()), std::vector{folder_ / "s/a.ply"});
+    EXPECT_EQ(scan_files("/nowhere", (folder_ / "s/a.ply").string()), std::vector{folder_ / "s/a.ply"});
+}
+
+TEST_F(ScanFiles, NoFile_SaysWhereWasLooked) {
+    files({"s/a.ply"});
+    const std::string here = folder_.path().string();
+    EXPECT_EQ(refusal("s/*.xyz"), "no file matches 's/*.xyz'; looked in '" + here + "/s'");
+    EXPECT_EQ(refusal("t/*.ply"), "no file matches 't/*.ply'; there is no folder '" + here + "/t'");
+    EXPECT_EQ(refusal("s/../*/b.ply"), "no file matches 's/../*/b.ply'; looked in '" + here + "'");
+    EXPECT_EQ(refusal("s/b.ply"), "there is no file 'b.ply' in '" + here + "/s'");
+    EXPECT_EQ(refusal("s"), "'s' is a folder; expected files, as 's/*.ply'");
+    EXPECT_THAT(refusal("s/*/"), HasSubstr("ends in a slash"));
+    EXPECT_THAT(refusal(""), HasSubstr("the path is empty"));
+    EXPECT_THAT(refusal(std::string("a\0b", 3)), HasSubstr("zero byte"));
+}
+
+class BatchScans : public test::Batches {
+protected:
+    static std::string json(const std::string& poses) { return "{\"scanmill\": 1, \"poses\": [" + poses + "]}"; }
+    static std::string pose(double x, const std::string& scan = "") {
+        return "{" + (scan.empty() ? "" : "\"scan\": \"" + scan + "\", ") +
+               "\"rotation\": [0, 0, 0, 1], \"translation\": [" + std::to_string(x) + ", 0, 0]}";
+    }
+    /// Of the only scan, with this pose written in place.
+    std::optional<RigidTransform> written(const std::string& text) {
+        found_ = scans("[{path: scans/a.ply, unit: mm, pose: " + text + "}]");
+        return batch_.scans.at(0).pose;
+    }
+
+    std::vector<std::string> found_;
+};
+
+TEST_F(BatchScans, EntriesKeepTheirOrder_FilesWithinOneAreSorted) {
+    folder_.write("scans/0.xyz", "x");
+    EXPECT_THAT(scans("[scans/b.ply, scans/a.ply, 'scans/*.xyz']"), IsEmpty());
+    EXPECT_THAT(names(), ElementsAre("scans/b.ply", "scans/a.ply", "scans/0.xyz"));
+}
+
+TEST_F(BatchScans, FileOfTwoEntries_IsRefusedNamingBothLines) {
+    EXPECT_THAT(scans("\n  - scans/a.ply\n  - scans/../scans/*.ply"),
+                ElementsAre(AllOf(StartsWith("b:5:5: "), HasSubstr("a.ply' is a scan already by line 4"))));
+    EXPECT_THAT(names(), SizeIs(2));
+}
+
+TEST_F(BatchScans, EntriesThatAreNone_AreRefused) {
+    EXPECT_THAT(scans("[[a]]"), ElementsAre(HasSubstr("found a list; expected a path, as scans/*.ply, or")));
+    EXPECT_THAT(scans("[{unit: mm}]"), ElementsAre(HasSubstr("the scan has no path")));
+    EXPECT_THAT(scans("[{path: [a]}]"), ElementsAre(HasSubstr("found a list; expected a path")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, untis: mm}]"), ElementsAre(HasSubstr("a scan has no key 'untis'")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, frame: [x]}]"), ElementsAre(HasSubstr("expected a text for 'frame'")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, frame: '{scan}'}]"), ElementsAre(HasSubstr("not part of {stem}")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, truth: '{name}.stl'}]"), ElementsAre(HasSubstr("not part of {stem}")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, truth: ''}]"), ElementsAre(HasSubstr("the truth is empty")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, truth: [a]}]"), ElementsAre(HasSubstr("expected a file, as truth/")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, pose: }]"), ElementsAre(HasSubstr("expected a file, as poses/")));
+}
+
+TEST_F(BatchScans, MissingTruth_IsToldForEachScan) {
+    folder_.write("truth/b.stl", "x");
+    EXPECT_THAT(
+        scans("[{path: scans/*.ply, truth: 'truth/{stem}.stl'}]"),
+        ElementsAre(AllOf(StartsWith("b:3:36: "), HasSubstr("truth/a.stl': there is no such file; expected the truth"),
+                          HasSubstr("scans/a.ply"))));
+    EXPECT_EQ(batch_.scans[1].truth, folder_ / "truth/b.stl");
+}
+
+TEST_F(BatchScans, ManyMissingFiles_AreTenAndANumber) {
+    for (int i = 0; i < 13; ++i) folder_.write("many/" + std::to_string(i) + ".ply", "x");
+    const auto found = scans("[{path: many/*.ply, truth: 'truth/{stem}.stl'}]");
+    ASSERT_THAT(found, SizeIs(11));
+    EXPECT_THAT(found.back(), HasSubstr("and 3 more"));
+}
+
+TEST_F(BatchScans, PoseOfAFile_IsTheScansOwnOrTheOnlyOne) {
+    folder_.write("poses/a.json", json(pose(1)));
+    folder_.write("poses/b.json", json(pose(7, "x.ply") + "," + pose(2, "b")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, unit: mm, pose: 'poses/{stem}.json'}]"), IsEmpty());
+    EXPECT_EQ(batch_.scans[0].pose->translation.x(), 1);
+    EXPECT_EQ(batch_.scans[1].pose->translation.x(), 2);
+    EXPECT_EQ(batch_.scans[0].pose->unit, LengthUnit::unknown) << "the file names none: that of the scan";
+}
+
+TEST_F(BatchScans, PoseFilesThatDoNotHelp_AreRefusedWithTheirPath) {
+    const auto refusal = [&](const std::string& content) {
+        folder_.write("p.json", content);
+        const auto found = scans("[{path: scans/a.ply, pose: p.json}]");
+        EXPECT_THAT(found, ElementsAre(AllOf(StartsWith("b:3:35: '"), HasSubstr("p.json': "))));
+        return found.front();
+    };
+    EXPECT_THAT(refusal("{}"), HasSubstr("expected \"scanmill\": 1"));
+    EXPECT_THAT(refusal(json(pose(1, "b.ply"))), HasSubstr("has no pose of 'a.ply'; it has those of b.ply"));
+    EXPECT_THAT(refusal(json(pose(1) + "," + pose(2))), HasSubstr("holds 2 poses, none of which says"));
+    EXPECT_THAT(refusal(json(pose(1, "a") + "," + pose(2, "a.ply"))), HasSubstr("there are 2 poses of 'a.ply'"));
+    EXPECT_THAT(scans("[{path: scans/a.ply, pose: absent.json}]"), ElementsAre(HasSubstr("there is no such file")));
+}
+
+TEST_F(BatchScans, MatrixAndQuaternion_AreTheSameMotion) {
+    const auto matrix = written("[[0.28, -0.96, 0, 1], [0.96, 0.28, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]");
+    EXPECT_THAT(found_, IsEmpty());
+    const auto parts = written("{translation: [1, 2, 3], rotation: [0, 0, 0.6, 0.8]}");
+    EXPECT_THAT(found_, IsEmpty());
+    ASSERT_TRUE(matrix && parts);
+    EXPECT_LT((matrix->rotation - parts->rotation).norm(), 1e-15);
+    EXPECT_EQ(matrix->translation, Vec3(1, 2, 3));
+    EXPECT_EQ(parts->translation, Vec3(1, 2, 3));
+    EXPECT_EQ(parts->unit, LengthUnit::millimetre);
+}
+
+TEST_F(BatchScans, PosesInPlaceThatAreNone_AreRefusedWhereTheyAreWrong) {
+    const auto refusals = [&](const std::string& text) {
+        EXPECT_FALSE(written(text)) << text;
+        return found_;
+    };
+    EXPECT_THAT(refusals("[]"), ElementsAre(HasSubstr("a matrix of 0 rows")));
+    EXPECT_THAT(refusals("[[1]]"), ElementsAre(HasSubstr("a matrix of 1 row; expected 4 rows")));
+    EXPECT_THAT(refusals("[[1, 0, 0, 0], [0, 1, 0], 5, [0, 0, x, 1]]"),
+                ElementsAre(HasSubstr("a list of 3 values; expected a row of 4 numbers"), HasSubstr("found '5'"),
+                            HasSubstr("'x' is no finite number")));
+    EXPECT_THAT(refusals("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, inf, 0], [0, 0, 0, 1]]"),
+                ElementsAre(HasSubstr("'inf' is no finite number")));
+    EXPECT_THAT(refusals("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [1, 2, 3, 1]]"),
+                ElementsAre(HasSubstr("the last row of the matrix is 1 2 3 1; expected 0 0 0 1")));
+    EXPECT_THAT(refusals("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]"),
+                ElementsAre(HasSubstr("is a reflection")));
+    EXPECT_THAT(refusals("{translation: [1, 2, 3]}"), ElementsAre(HasSubstr("the pose has no rotation")));
+    EXPECT_THAT(refusals("{rotation: [0, 0, 0, 1]}"), ElementsAre(HasSubstr("the pose has no translation")));
+    EXPECT_THAT(refusals("{translation: [1, 2], rotation: [0, 0, 0]}"), SizeIs(2));
+    EXPECT_THAT(refusals("{translation: [1, 2, 3], rotation: [0, 0, 0, 2]}"),
+                ElementsAre(HasSubstr("the quaternion 0 0 0 2 has the length 2")));
+    EXPECT_THAT(refusals("{translatoin: [1, 2, 3], rotation: [0, 0, 0, 1]}"),
+                ElementsAre(HasSubstr("the pose has no translation"), HasSubstr("did you mean 'translation'?")));
+}
+
+}  // namespace
+}  // namespace scanmill

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Batch files: what they say, and what is wrong with them.
+
+#include "engine/batch/batch_support.hpp"
+
+namespace scanmill {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class BatchFile : public test::Batches {};
+
+TEST_F(BatchFile, Everything_IsReadAsItStands) {
+    folder_.write("scans/c/d.xyz", "x");
+    folder_.write("other.yaml", "x");
+    folder_.write("truth/a.stl", "x");
+    folder_.write("truth/b.stl", "x");
+    folder_.write("poses.json",
+                  "{\"scanmill\": 1, \"unit\": \"m\", \"frame\": \"part\", \"poses\": ["
+                  "{\"scan\": \"a\", \"rotation\": [0, 0, 0, 1], \"translation\": [1, 0, 0]},"
+                  "{\"scan\": \"b.ply\", \"rotation\": [0, 0, 0, 1], \"translation\": [2, 0, 0]}]}");
+    EXPECT_THAT(findings(R"(scanmill: 1
+batch: nightly
+summary: All of it.
+scans:
+  - {path: scans/*.ply, unit: mm, frame: "f-{stem}", pose: poses.json, truth: "truth/{stem}.stl", set: {n: 2}}
+  - scans/c/d.xyz
+workflows: [w.yaml, other.yaml]
+set: {n: {sweep: [1, 3]}, s: 0.1 %diag}
+limits: {memory: 8 GiB, time: 10 min, step: {memory: 500 MB, time: 2.5 s}, retries: 1}
+measure: {samples: 1000, thresholds: [0.5 %diag, 1 mm], self-intersections: false}
+gate: {hausdorff: +1 %, genus: exact, seconds: +20 %, max: +0.2 mm, components: +3, kept: 7}
+)"),
+                IsEmpty());
+    EXPECT_EQ(batch_.file, file());
+    EXPECT_EQ(batch_.name, "nightly");
+    EXPECT_EQ(batch_.summary, "All of it.");
+    ASSERT_THAT(names(), ElementsAre("scans/a.ply", "scans/b.ply", "scans/c/d.xyz"));
+    const BatchScan& b = batch_.scans[1];
+    EXPECT_EQ(b.position, (Position{5, 12}));
+    EXPECT_EQ(b.unit, LengthUnit::millimetre);
+    EXPECT_EQ(b.frame, "f-b");
+    EXPECT_EQ(b.pose->translation, Vec3(2, 0, 0));
+    EXPECT_EQ(b.pose->unit, LengthUnit::metre);
+    EXPECT_EQ(b.pose->to, "part");
+    EXPECT_EQ(b.truth, folder_ / "truth/b.stl");
+    EXPECT_THAT(b.settings.at("n").values.at(0).literal.items, ElementsAre("2"));
+    EXPECT_EQ(batch_.scans[2].unit, LengthUnit::unknown);
+    EXPECT_FALSE(batch_.scans[2].pose);
+    EXPECT_TRUE(batch_.scans[2].truth.empty());
+    ASSERT_EQ(batch_.workflows.size(), 2u);
+    EXPECT_EQ(batch_.workflows[1].file, folder_ / "other.yaml");
+    EXPECT_EQ(batch_.workflows[1].position, (Position{7, 21}));
+    EXPECT_EQ(batch_.settings.at("n").values.size(), 2u);
+    EXPECT_EQ(batch_.settings.at("s").position, (Position{8, 27})) << "of the name";
+    EXPECT_EQ(batch_.limits, (Limits{u64(8) << 30, 500'000'000, 600, 2.5, 1}));
+    EXPECT_EQ(batch_.measure.samples, 1000);
+    EXPECT_THAT(batch_.measure.thresholds,
+                ElementsAre(Length::percent_of_diagonal(0.5), Length(1, Length::In::millimetre)));
+    EXPECT_EQ(batch_.measure.self_intersections, false);
+    ASSERT_EQ(batch_.gate.size(), 6u);
+    EXPECT_EQ(batch_.gate[0].metric, "hausdorff");
+    EXPECT_EQ(batch_.gate[0].text, "+1 %");
+    EXPECT_EQ(batch_.gate[0].position, (Position{11, 8}));
+    EXPECT_EQ(std::get<Ratio>(batch_.gate[0].allowed).value(), 0.01);
+    EXPECT_TRUE(std::holds_alternative<Unchanged>(batch_.gate[1].allowed));
+    EXPECT_EQ(std::get<Length>(batch_.gate[3].allowed), Length(0.2, Length::In::millimetre));
+    EXPECT_EQ(std::get<double>(batch_.gate[4].allowed), 3);
+    EXPECT_EQ(std::get<double>(batch_.gate[5].allowed), 7) << "a metric of the filter thin";
+}
+
+TEST_F(BatchFile, WhatIsNotSaid_HasNoLimitAndNoOpinion) {
+    EXPECT_THAT(rest("set:\nlimits:\nmeasure:\ngate:\n"), IsEmpty());
+    EXPECT_EQ(batch_.limits, Limits{});
+    EXPECT_FALSE(batch_.measure.samples);
+    EXPECT_TRUE(batch_.gate.empty());
+}
+
+TEST_F(BatchFile, ManyMistakes_AreAllFoundInOneGoWithTheirPlace) {
+    EXPECT_THAT(
+        findings(R"(scanmill: 1
+batch: nightly
+scans:
+  - scans/*.plyy
+  - {path: scans/a.ply, unit: yard, set: {n: $m}}
+workflows: [missing.yaml]
+limits: {memory: 8, retries: 11}
+measure: {sample: 1}
+gate: {hausdorf: exact}
+sumary: It.
+)"),
+        ElementsAre(
+            AllOf(StartsWith("b:4:5: no file matches 'scans/*.plyy'; looked in '"), HasSubstr("/scans'")),
+            StartsWith("b:5:31: 'yard' is no unit"), StartsWith("b:5:46: a setting cannot refer to a parameter"),
+            AllOf(StartsWith("b:6:13: "), HasSubstr("missing.yaml': there is no such file")),
+            "b:7:18: memory: '8' has no unit; expected a size, as 8 GiB",
+            AllOf(StartsWith("b:7:30: retries: 11 is out of range"), HasSubstr("at most 10")),
+            AllOf(StartsWith("b:8:11: measure has no key 'sample'"), HasSubstr("did you mean 'samples'?")),
+            AllOf(StartsWith("b:9:8: nothing is measured as 'hausdorf'"), HasSubstr("did you mean 'hausdorff'?")),
+            AllOf(StartsWith("b:10:1: a batch has no key 'sumary'"), HasSubstr("did you mean 'summary'?"))));
+}
+
+TEST_F(BatchFile, WithoutItsParts_SaysWhichAreMissing) {
+    EXPECT_THAT(findings(""), ElementsAre(HasSubstr("b: is empty; expected a batch")));
+    EXPECT_THAT(findings("[]"), ElementsAre(HasSubstr("found a list; expected a batch")));
+    EXPECT_THAT(findings("summary: x\n"), ElementsAre(HasSubstr("`scanmill: 1`"), HasSubstr("`batch: NAME`"),
+                                                      HasSubstr("has no scans"), HasSubstr("has no workflows")));
+    EXPECT_THAT(findings("scanmill: 2\nbatch: a b\nscans: []\nworkflows: []\n"),
+                ElementsAre(HasSubstr("'2'"), HasSubstr("'a b' is no name for a batch"),
+                            HasSubstr("the list of scans is empty"), HasSubstr("the list of workflows is empty")));
+    EXPECT_THAT(findings(head + "batch: c\n"), ElementsAre(HasSubstr("already at line 2")));
+    EXPECT_THAT(findings("scanmill: 1\nbatch: [b]\nscans: x\nworkflows: {}\n"),
+                ElementsAre(HasSubstr("expected the batch's name"), HasSubstr("expected a list of scans"),
+                            HasSubstr("expected a list of workflow files")));
+}
+
+TEST_F(BatchFile, WorkflowTwice_NamesTheEarlierLine) {
+    EXPECT_THAT(findings("scanmill: 1\nbatch: b\nscans: [scans/*.ply]\nworkflows:\n  - w.yaml\n  - ./w.yaml\n"),
+                ElementsAre(AllOf(StartsWith("b:6:5: "), HasSubstr("already at line 5"))));
+    EXPECT_THAT(findings("scanmill: 1\nbatch: b\nscans: [scans/*.ply]\nworkflows: [scans, '', {}]\n"),
+                ElementsAre(HasSubstr("is a folder"), HasSubstr("is a folder"), HasSubstr("found a map")));
+}
+
+TEST_F(BatchFile, LimitsThatAreNone_AreRefused) {
+    const auto limit = [&](const std::string& text) { return rest("limits: {" + text + "}\n"); };
+    EXPECT_THAT(limit("memory: 8 Gb"), ElementsAre(HasSubstr("memory: '8 Gb' is no size")));
+    EXPECT_THAT(limit("memory: 0 B"),
+                ElementsAre(HasSubstr("memory: 0 B is out of range; expected 64 MiB to 1024 TiB")));
+    EXPECT_THAT(limit("time: 10"), ElementsAre(HasSubstr("time: '10' has no unit; expected a time, as 10 min")));
+    EXPECT_THAT(limit("time: 10 minutes"), ElementsAre(HasSubstr("time: '10 minutes' is no time")));
+    EXPECT_THAT(limit("memory: 1 MiB"), ElementsAre(HasSubstr("is out of range"))) << "no process lives on that";
+    EXPECT_THAT(limit("time: 1e-300 s"), ElementsAre(HasSubstr("is out of range")));
+    EXPECT_THAT(limit("time: 1e300 h"), ElementsAre(HasSubstr("is out of range")));
+    EXPECT_THAT(limit("time: 0 s"), ElementsAre(HasSubstr("is out of range; expected 1 ms to 10000 h")));
+    EXPECT_THAT(limit("time: [1 s]"), ElementsAre(HasSubstr("found a list")));
+    EXPECT_THAT(limit("retries: -1"), ElementsAre(HasSubstr("retries: -1 is out of range")));
+    EXPECT_THAT(limit("retries: 1.5"), ElementsAre(HasSubstr("retries: '1.5' is not a whole number")));
+    EXPECT_THAT(limit("step: 1 s"), ElementsAre(HasSubstr("expected the limits of one step")));
+    EXPECT_THAT(limit("step: {retries: 1}"), ElementsAre(HasSubstr("the limits of a step has no key 'retries'")));
+    EXPECT_THAT(limit("tme: 1 s"), ElementsAre(HasSubstr("did you mean 'time'?")));
+    EXPECT_THAT(rest("limits: 8 GiB\n"), ElementsAre(HasSubstr("expected a map of limits")));
+}
+
+TEST_F(BatchFile, MeasuresThatAreNone_AreRefused) {
+    const auto measure = [&](const std::string& text) { return rest("measure: {" + text + "}\n"); };
+    EXPECT_THAT(measure("samples: 0"), ElementsAre(HasSubstr("samples: 0 is out of range")));
+    EXPECT_THAT(measure("samples: 1000000001"), ElementsAre(HasSubstr("samples: 1000000001 is out of range")));
+    EXPECT_THAT(measure("thresholds: [1]"), ElementsAre(HasSubstr("thresholds: '1' has no unit")));
+    EXPECT_THAT(measure("thresholds: [0 mm]"), ElementsAre(HasSubstr("out of range")));
+    EXPECT_THAT(measure("thresholds: []"), ElementsAre(HasSubstr("the list is empty")));
+    EXPECT_THAT(measure("thresholds: [[1 mm]]"), ElementsAre(HasSubstr("found a list")));
+    EXPECT_THAT(measure("self-intersections: yes"), ElementsAre(HasSubstr("expected true or false")));
+    EXPECT_THAT(rest("measure: all\n"), ElementsAre(HasSubstr("found 'all'")));
+}
+
+TEST_F(BatchFile, GatesThatAreNone_AreRefusedWithWhatFits) {
+    const auto gate = [&](const std::string& text) { return rest("gate: {" + text + "}\n"); };
+    EXPECT_THAT(gate("hausdorff: +3"),
+                ElementsAre("b:5:19: hausdorff: '+3' does not fit it; expected exact, +1 %, +0.2 mm, +0.1 %diag"));
+    EXPECT_THAT(gate("genus: +1 mm"), ElementsAre("b:5:15: genus: '+1 mm' does not fit it; expected exact, +1 %, +3"));
+    EXPECT_THAT(gate("genus: -1"), ElementsAre(HasSubstr("genus: '-1' is out of range")));
+    EXPECT_THAT(gate("genus: inf"), ElementsAre(HasSubstr("genus: 'inf' is out of range")));
+    EXPECT_THAT(gate("hausdorff: -1 %"), ElementsAre(HasSubstr("out of range")));
+    EXPECT_THAT(gate("hausdorff: same"), ElementsAre(HasSubstr("hausdorff: 'same' is no rule; expected exact")));
+    EXPECT_THAT(gate("seconds: exact"), ElementsAre(HasSubstr("seconds: 'exact' does not fit it; expected +1 %")));
+    EXPECT_THAT(gate("volume: +1"), ElementsAre(HasSubstr("expected exact, +1 %")));
+    EXPECT_THAT(gate("genus: [1]"), ElementsAre(HasSubstr("found a list")));
+    EXPECT_THAT(rest("gate: strict\n"), ElementsAre(HasSubstr("expected a map from metrics")));
+    EXPECT_THAT(gate("genus: 0, closed: exact, f-score: +0.01, alpha: +1 u"), IsEmpty());
+}
+
+TEST_F(BatchFile, SettingsThatAreNone_AreRefused) {
+    EXPECT_THAT(rest("set: {a b: 1}\n"), ElementsAre(HasSubstr("'a b' is no name for a parameter")));
+    EXPECT_THAT(rest("set: {n: {sweep: []}}\n"), ElementsAre(HasSubstr("a sweep over no values")));
+    EXPECT_THAT(rest("set: {n: {sweep: [1, $n]}}\n"), ElementsAre(HasSubstr("cannot refer to a parameter")));
+    EXPECT_THAT(rest("set: [n]\n"), ElementsAre(HasSubstr("expected a map of parameters")));
+    EXPECT_THAT(rest("set: {n: }\n"), ElementsAre(HasSubstr("found nothing")));
+    EXPECT_THAT(rest("set: {n: $$x}\n"), IsEmpty());
+}
+
+TEST(IsBatch, TakesTheKeyAtTheRoot) {
+    EXPECT_TRUE(is_batch("scanmill: 1\nbatch: b\n"));
+    EXPECT_FALSE(is_batch("scanmill: 1\nname: b\nparameters: {batch: 1}\n"));
+    EXPECT_FALSE(is_batch("[batch]"));
+    EXPECT_FALSE(is_batch(""));
+    EXPECT_FALSE(is_batch("batch: [\n"));
+}
+
+TEST(IsBatch, AsAWorkflow_SaysHowToRunIt) {
+    Diagnostics diagnostics("b");
+    parse_workflow("scanmill: 1\nbatch: b\nscans: []\n", diagnostics);
+    ASSERT_EQ(diagnostics.errors(), 1u);
+    EXPECT_THAT(diagnostics.sorted()[0].message, HasSubstr("`scanmill batch`"));
+}
+
+}  // namespace
+}  // namespace scanmill

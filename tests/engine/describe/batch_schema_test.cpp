@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The JSON Schema of batches accepts what the parser accepts, and rejects at the same place what it rejects.
+
+#include "scanmill/describe/batch_schema.hpp"
+
+#include "engine/batch/batch_support.hpp"
+#include "engine/describe/schema_support.hpp"
+
+namespace scanmill {
+namespace {
+
+using test::known_only;
+using testing::HasSubstr;
+
+class BatchSchema : public test::Batches {
+protected:
+    test::Schema schema_{batch_schema(library_)};
+};
+
+TEST_F(BatchSchema, WhatTheParserAccepts_IsAccepted) {
+    folder_.write("p.json", "{\"scanmill\": 1, \"poses\": [{\"rotation\": [0, 0, 0, 1], \"translation\": [0, 0, 0]}]}");
+    const std::string scan = "scanmill: 1\nbatch: b\nworkflows: [w.yaml]\nscans: ";
+    for (const std::string& batch :
+         {head, head + "summary: It.\nset:\nlimits:\nmeasure:\ngate:\n",
+          scan + "[{path: scans/*.ply, unit: mm, frame: '{stem}', pose: p.json, truth: 'scans/{stem}.ply', set: {n: "
+                 "2}}]\n",
+          scan + "[{path: scans/*.ply, set: , pose: [[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]\n",
+          scan + "[scans/a.ply, {path: scans/b.ply, pose: {translation: [1, 2, 3], rotation: [0, 0, 0, 1]}}]\n",
+          head + "set: {n: {sweep: [1, 2]}, s: 0.1 %diag, t: [1, 2], u: true, v: $$x}\n",
+          head + "limits: {memory: 8 GiB, time: 10 min, step: {memory: 1.5GB, time: 250 ms}, retries: 0}\n",
+          head + "measure: {samples: 1000000000, thresholds: [0.5 %diag, 1 mm], self-intersections: true}\n",
+          head + "measure: {thresholds: 1 mm}\n",
+          head + "gate: {hausdorff: +1 %, genus: exact, seconds: 20 %, max: +0.2 mm, p50: 1 spacing, f-score: 0.01, "
+                 "components: +3, kept: 7, closed: exact, volume: 0 %}\n"}) {
+        EXPECT_THAT(findings(batch), testing::IsEmpty()) << batch;
+        EXPECT_EQ(schema_.complaints(batch), "") << batch;
+    }
+}
+
+struct Mistake {
+    std::string batch;
+    std::string schema;  ///< a part of the schema's complaints: place and reason
+    std::string parser;  ///< a part of the only thing that the parser says
+};
+
+/// One mistake each, so that neither of the two can reject it for another reason.
+std::vector<Mistake> mistakes(const std::string& head) {
+    const std::string scan = "scanmill: 1\nbatch: b\nworkflows: [w.yaml]\nscans: ";
+    const std::string files = "scanmill: 1\nbatch: b\nscans: [scans/a.ply]\nworkflows: ";
+    return {
+        {"batch: b\nscans: [scans/a.ply]\nworkflows: w.yaml\n", ": Missing required property 'scanmill'",
+         "does not say its grammar"},
+        {"scanmill: 1\nscans: [scans/a.ply]\nworkflows: w.yaml\n", ": Missing required property 'batch'",
+         "has no name"},
+        {"scanmill: 1\nbatch: b\nworkflows: w.yaml\n", ": Missing required property 'scans'", "has no scans"},
+        {"scanmill: 1\nbatch: b\nscans: [scans/a.ply]\n", ": Missing required property 'workflows'",
+         "has no workflows"},
+        {"scanmill: 2\nbatch: b\nscans: [scans/a.ply]\nworkflows: w.yaml\n", "scanmill: Failed to match expected value",
+         "the grammar is '2'"},
+        {"scanmill: 1\nbatch: a b\nscans: [scans/a.ply]\nworkflows: w.yaml\n", "batch: Failed to match regex",
+         "'a b' is no name"},
+        {head + "sumary: x\n", ": Object contains a property" + known_only + "'sumary'", "has no key 'sumary'"},
+        {head + "summary: [x]\n", "summary: Value type not permitted", "a text for 'summary'"},
+        {scan + "[]\n", "scans: Array should contain no fewer than 1", "the list of scans is empty"},
+        {scan + "scans/a.ply\n", "scans: Value type not permitted", "expected a list of scans"},
+        {scan + "['']\n", "scans 0: String should be no fewer than 1", "the path is empty"},
+        {scan + "[{unit: mm}]\n", "scans 0: Missing required property 'path'", "the scan has no path"},
+        {scan + "[{path: scans/a.ply, unti: mm}]\n", "scans 0: Object contains a property" + known_only + "'unti'",
+         "a scan has no key 'unti'"},
+        {scan + "[{path: scans/a.ply, unit: yard}]\n", "scans 0 unit: Failed to match against any enum",
+         "'yard' is no unit"},
+        {scan + "[{path: scans/a.ply, frame: [x]}]\n", "scans 0 frame: Value type not permitted", "a text for 'frame'"},
+        {scan + "[{path: scans/a.ply, truth: ''}]\n", "scans 0 truth: String should be no fewer than 1",
+         "the truth is empty"},
+        {scan + "[{path: scans/a.ply, pose: }]\n", "scans 0 pose: Value type not permitted",
+         "expected a file, as poses/"},
+        {scan + "[{path: scans/a.ply, pose: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]}]\n",
+         "scans 0 pose: Array should contain no fewer than 4", "a matrix of 3 rows"},
+        {scan + "[{path: scans/a.ply, pose: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1], [0, 0, 0, 1]]}]\n",
+         "scans 0 pose 2: Array should contain no fewer than 4", "a list of 3 values"},
+        {scan + "[{path: scans/a.ply, pose: {translation: [0, 0, x], rotation: [0, 0, 0, 1]}}]\n",
+         "scans 0 pose translation 2: Value type not permitted", "'x' is no finite number"},
+        {scan + "[{path: scans/a.ply, pose: {rotation: [0, 0, 0, 1]}}]\n",
+         "scans 0 pose: Missing required property 'translation'", "the pose has no translation"},
+        {scan + "[{path: scans/a.ply, set: {a b: 1}}]\n",
+         "scans 0: Failed to validate against schema associated with property name 'set'", "'a b' is no name"},
+        {files + "[]\n", "workflows: Array should contain no fewer than 1", "the list of workflows is empty"},
+        {files + "{}\n", "workflows: Value type not permitted", "expected a list of workflow files"},
+        {files + "[[]]\n", "workflows 0: Value type not permitted", "expected a workflow file"},
+        {head + "set: {n: $m}\n", "set n: Failed to match regex", "cannot refer to a parameter"},
+        {head + "set: {n: {sweep: []}}\n", "set n sweep: Array should contain no fewer than 1",
+         "a sweep over no values"},
+        {head + "set: {n: {swep: [1]}}\n", "set n: Object contains a property" + known_only + "'swep'",
+         "a value has no key 'swep'"},
+        {head + "set: {n: }\n", "set n: Value type not permitted", "found nothing"},
+        {head + "limits: {memory: 8}\n", "limits memory: Value type not permitted", "'8' has no unit"},
+        {head + "limits: {memory: 8 Gb}\n", "limits memory: Failed to match regex", "'8 Gb' is no size"},
+        {head + "limits: {memory: 0 B}\n", "limits memory: Failed to match regex", "is out of range"},
+        {head + "limits: {time: 5 m}\n", "limits time: Failed to match regex", "'5 m' is no time"},
+        {head + "limits: {time: -5 s}\n", "limits time: Failed to match regex", "'-5 s' is no time"},
+        {head + "limits: {step: {tme: 5 s}}\n", "limits step: Object contains a property" + known_only + "'tme'",
+         "has no key 'tme'"},
+        {head + "limits: {step: }\n", "limits step: Value type not permitted", "expected the limits of one step"},
+        {head + "limits: {retries: 11}\n", "limits retries: Expected number less than or equal to 10",
+         "11 is out of range"},
+        {head + "limits: {retries: 1.5}\n", "limits retries: Value type not permitted", "'1.5' is not a whole number"},
+        {head + "measure: {samples: 0}\n", "measure samples: Expected number greater than or equal to 1",
+         "0 is out of range"},
+        {head + "measure: {thresholds: []}\n", "measure thresholds: Array should contain no fewer than 1",
+         "the list is empty"},
+        {head + "measure: {thresholds: [0 mm]}\n", "measure thresholds 0: Failed to match regex",
+         "0 mm is out of range"},
+        {head + "measure: {self-intersections: 1}\n", "measure self-intersections: Value type not permitted",
+         "expected true or false"},
+        {head + "gate: {hausdorf: exact}\n", "gate: Object contains a property" + known_only + "'hausdorf'",
+         "nothing is measured as 'hausdorf'"},
+        {head + "gate: {hausdorff: 3}\n", "gate hausdorff: Value type not permitted", "'3' does not fit it"},
+        {head + "gate: {hausdorff: -1 %}\n", "gate hausdorff: Failed to match regex", "'-1 %' is out of range"},
+        {head + "gate: {genus: 1 mm}\n", "gate genus: Failed to match regex", "'1 mm' does not fit it"},
+        {head + "gate: {genus: -1}\n", "gate genus: Expected number greater than or equal to 0",
+         "'-1' is out of range"},
+        {head + "gate: {seconds: exact}\n", "gate seconds: Failed to match regex", "'exact' does not fit it"},
+        {head + "gate: {volume: 3}\n", "gate volume: Value type not permitted", "'3' does not fit it"},
+        {head + "gate: [genus]\n", "gate: Value type not permitted", "expected a map from metrics"},
+    };
+}
+
+TEST_F(BatchSchema, WhatIsWrongAtOnePlace_IsRejectedThere_AsByTheParser) {
+    for (const Mistake& mistake : mistakes(head)) {
+        EXPECT_THAT(findings(mistake.batch), testing::ElementsAre(HasSubstr(mistake.parser))) << mistake.batch;
+        EXPECT_THAT("\n" + schema_.complaints(mistake.batch), HasSubstr("\n" + mistake.schema)) << mistake.batch;
+    }
+}
+
+TEST_F(BatchSchema, Metrics_CarryTheirHelp) {
+    const auto document = nlohmann::json::parse(schema_.text());
+    EXPECT_EQ(document["properties"]["gate"]["properties"]["triangles"]["description"], "Triangles.");
+    EXPECT_EQ(batch_schema(library_), schema_.text()) << "equal filters give equal bytes";
+}
+
+}  // namespace
+}  // namespace scanmill

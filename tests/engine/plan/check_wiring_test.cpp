@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What feeds a port is found before any scan is opened, and so is what cannot.
+
+#include "engine/plan/workflow_findings.hpp"
+
+namespace scanmill {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class CheckWiring : public test::WorkflowFindings {};
+
+TEST_F(CheckWiring, PortWithoutAnyValue_NamesTheFiltersThatGiveOne) {
+    EXPECT_THAT(steps("  - solid:\n"),
+                ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("solid needs tets for its port 'tets'"),
+                                  HasSubstr("'tetrahedralise'"))));
+}
+
+TEST_F(CheckWiring, AfterAnUnknownFilter_MissingValuesAreNotBlamedOnTheNextStep) {
+    EXPECT_THAT(steps("  - tetrahedralize:\n  - solid:\n"), ElementsAre(HasSubstr("no filter 'tetrahedralize'")));
+}
+
+TEST_F(CheckWiring, TwoCandidatesInTheNearestStep_AskForIn) {
+    EXPECT_THAT(steps("  - pair:\n  - thin:\n"),
+                ElementsAre(AllOf(StartsWith("w:5:5: "), HasSubstr("left and right"), HasSubstr("`in: {points: …}`"))));
+    EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: {points: pair.right}\n"), IsEmpty());
+    EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: pair.right\n"), IsEmpty());
+}
+
+TEST_F(CheckWiring, TwoInputsOfOneKind_AskForIn) {
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {a: points, b: points}\nsteps:\n  - thin:\n"),
+                ElementsAre(AllOf(StartsWith("w:4:5: "), HasSubstr("inputs a and b"))));
+}
+
+TEST_F(CheckWiring, FilterWithTwoPortsOfOneKind_AsksForBoth) {
+    const std::string head = "scanmill: 1\ninputs: {a: points, b: points}\nsteps:\n  - register:\n";
+    EXPECT_THAT(findings(head), ElementsAre(HasSubstr("in: {source: …}"), HasSubstr("in: {target: …}")));
+    EXPECT_THAT(findings(head + "    in: {source: a, target: b}\n"), IsEmpty());
+}
+
+TEST_F(CheckWiring, UnknownSourceOrPort_ProposesTheClosest) {
+    EXPECT_THAT(steps("  - thin:\n    in: {points: scam}\n"), ElementsAre(HasSubstr("did you mean 'scan'?")));
+    EXPECT_THAT(steps("  - thin:\n    in: {point: scan}\n"), ElementsAre(HasSubstr("did you mean 'points'?")));
+    EXPECT_THAT(steps("  - pair:\n  - thin:\n    in: {points: pair.lfet}\n"),
+                ElementsAre(HasSubstr("did you mean 'left'?")));
+}
+
+TEST_F(CheckWiring, LaterStepAsSource_IsNoEarlierStep) {
+    EXPECT_THAT(steps("  - thin:\n    in: {points: later}\n  - id: later\n    pair:\n"),
+                ElementsAre(HasSubstr("'later' is neither an earlier step nor an input")));
+}
+
+TEST_F(CheckWiring, NameOfTwoSteps_StandsForNone) {
+    EXPECT_THAT(steps("  - thin: {size: 1 u}\n  - thin: {size: 2 u}\n  - pair:\n    in: {points: thin}\n"),
+                ElementsAre(HasSubstr("'thin' stands for several steps; give the one you mean an id")));
+}
+
+TEST_F(CheckWiring, SeveralValuesForASinglePort_AreAnError) {
+    EXPECT_THAT(steps("  - thin:\n    in: {points: [scan, scan]}\n"),
+                ElementsAre(HasSubstr("takes one value; found 2")));
+    EXPECT_THAT(steps("  - pair:\n  - combine:\n    in: {points: [pair.left, pair.right, scan]}\n"), IsEmpty());
+}
+
+TEST_F(CheckWiring, ListInput_FeedsOnlyListPorts) {
+    const std::string head = "scanmill: 1\ninputs: {scan: points, others: [points]}\nsteps:\n";
+    EXPECT_THAT(findings(head + "  - thin:\n"), IsEmpty());
+    EXPECT_THAT(findings(head + "  - thin:\n    in: {points: others}\n"),
+                ElementsAre(HasSubstr("is a list of points")));
+    EXPECT_THAT(findings(head + "  - combine:\n    in: {points: others}\n"), IsEmpty());
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {scans: [points]}\nsteps:\n  - combine:\n"), IsEmpty());
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {scans: [points]}\nsteps:\n  - combine:\noutputs: {x.ply: scans}\n"),
+                ElementsAre(AllOf(StartsWith("w:5:"), HasSubstr("'scans' is a list; a file holds one value"))));
+    EXPECT_THAT(findings("scanmill: 1\ninputs: {s: {kind: points, frame: '{scan}'}}\nsteps:\n  - thin:\n"),
+                ElementsAre(AllOf(StartsWith("w:2:"), HasSubstr("not part of {stem}"))));
+}
+
+}  // namespace
+}  // namespace scanmill

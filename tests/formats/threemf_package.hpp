@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What is in a 3MF package by lib3mf's own reader.
+
+#include <Model/COM/NMR_DLLInterfaces.h>
+
+#include "core/formats/support.hpp"
+
+namespace scanmill::test {
+
+/// The one object of a package, with what assimp does not tell.
+struct SeenBy3mf {
+    DWORD unit = 99;
+    std::string name, uuid;
+    Vec3 place = Vec3::Zero();
+    std::vector<Vec3> vertices;  ///< without the place
+};
+
+inline std::string bytes_of_3mf(const TriangleMesh& mesh, Told* told = nullptr) {
+    return write_bytes("a.3mf", std::make_shared<const TriangleMesh>(mesh), told ? told->writing() : WriteOptions{});
+}
+
+/// lib3mf's objects are left to the end of the program.
+inline SeenBy3mf read_by_3mf(std::string bytes) {
+    using namespace NMR;
+    SeenBy3mf seen;
+    PLib3MFModel* model = nullptr;
+    PLib3MFModelReader* reader = nullptr;
+    PLib3MFModelBuildItemIterator* items = nullptr;
+    PLib3MFModelBuildItem* item = nullptr;
+    PLib3MFModelObjectResource* object = nullptr;
+    BOOL found = 0;
+    MODELTRANSFORM place;
+    DWORD count = 0;
+    char text[200] = "";
+    ULONG length = 0;
+    EXPECT_EQ(lib3mf_createmodel(&model), 0);
+    EXPECT_EQ(lib3mf_model_queryreader(model, "3mf", &reader), 0);
+    EXPECT_EQ(lib3mf_reader_setstrictmodeactive(reader, 1), 0);
+    EXPECT_EQ(lib3mf_reader_readfrombuffer(reader, reinterpret_cast<BYTE*>(bytes.data()), bytes.size()), 0);
+    EXPECT_EQ(lib3mf_model_getunit(model, &seen.unit), 0);
+    EXPECT_EQ(lib3mf_model_getbuilditems(model, &items), 0);
+    EXPECT_EQ(lib3mf_builditemiterator_movenext(items, &found), 0);
+    EXPECT_TRUE(found);
+    EXPECT_EQ(lib3mf_builditemiterator_getcurrent(items, &item), 0);
+    EXPECT_EQ(lib3mf_builditem_getobjecttransform(item, &place), 0);
+    EXPECT_EQ(lib3mf_builditem_getobjectresource(item, &object), 0);
+    EXPECT_EQ(lib3mf_object_getnameutf8(object, text, sizeof text, &length), 0);
+    seen.name = text;
+    EXPECT_EQ(lib3mf_object_getuuidutf8(object, &found, text), 0);
+    seen.uuid = text;
+    EXPECT_EQ(lib3mf_meshobject_getvertexcount(object, &count), 0);
+    for (DWORD i = 0; i < count; ++i) {
+        MODELMESHVERTEX v;
+        EXPECT_EQ(lib3mf_meshobject_getvertex(object, i, &v), 0);
+        seen.vertices.emplace_back(v.m_fPosition[0], v.m_fPosition[1], v.m_fPosition[2]);
+    }
+    for (int axis = 0; axis < 3; ++axis) seen.place[axis] = place.m_fFields[axis][3];
+    return seen;
+}
+
+}  // namespace scanmill::test

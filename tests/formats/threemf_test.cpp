@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// 3MF: what assimp and lib3mf's own reader find.
+
+#include <fmt/format.h>
+
+#include "formats/assimp_support.hpp"
+#include "formats/cube_in_unit.hpp"
+#include "formats/threemf_package.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "support/real_data.hpp"
+#include "support/shapes.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(ThreemfWriter, Cube_IsACubeForOthers) {
+    Told told;
+    const SeenByAssimp seen = through_assimp(cube_in(LengthUnit::millimetre, 2.5), "a.3mf", &told);
+    EXPECT_THAT(told.sentences, IsEmpty());
+    ASSERT_EQ(seen.error, "");
+    EXPECT_EQ(seen.meshes, 1u);
+    EXPECT_EQ(seen.vertices, 8u);
+    EXPECT_EQ(seen.faces, 12u);
+    EXPECT_EQ(seen.box.low, Vec3(0, 0, 0));
+    EXPECT_EQ(seen.box.high, Vec3(2.5, 2.5, 2.5));
+}
+
+TEST(ThreemfWriter, NumbersOfFewDecimals_AreWrittenAsTheyAre) {
+    for (const double edge : {10.0, 12.0, 15.5, 0.001, 8.123, 1234.5}) {
+        const SeenByAssimp seen = through_assimp(cube_in(LengthUnit::millimetre, edge), "a.3mf");
+        EXPECT_EQ(seen.box.high.cast<float>(), Vec3(edge, edge, edge).cast<float>()) << edge;
+        EXPECT_EQ(seen.box.low, Vec3(0, 0, 0));
+    }
+}
+
+/// A solid far from zero, and a vertex of no triangle that is not.
+TriangleMesh far_cube(const Vec3& place, bool has_stray) {
+    TriangleMesh mesh = cube_in(LengthUnit::millimetre, 2000);
+    Array<Vec3> positions;
+    for (const Vec3& p : mesh.positions) positions.push_back(p + place);
+    if (has_stray) positions.push_back({0, 0, 0});
+    mesh.positions = std::move(positions);
+    return mesh;
+}
+
+TEST(ThreemfWriter, FarPlace_IsTheSameInSingleAndDouble) {
+    for (const double far : {123456.75, 432099123.0, 5.421e9, 9.99e11}) {
+        const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(far_cube({far, -far / 3, 0}, false)));
+        for (int axis = 0; axis < 2; ++axis) {
+            double text = 0;
+            parse_number(fmt::format("{:.6g}", seen.place[axis]), text);
+            EXPECT_EQ(text, seen.place[axis]) << far;
+        }
+    }
+}
+
+TEST(ThreemfWriter, VertexOfNoTriangle_IsLeftOutAndMovesNothing) {
+    Told told;
+    const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(far_cube({4.321e8, 5.421e8, 0}, true), &told));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3MF left out 1 vertex that no triangle uses")));
+    ASSERT_EQ(seen.vertices.size(), 8u);
+    BoundingBox box;
+    for (const Vec3& v : seen.vertices) {
+        box.low = box.low.cwiseMin(seen.place + v);
+        box.high = box.high.cwiseMax(seen.place + v);
+    }
+    EXPECT_LT((box.low - Vec3(4.321e8, 5.421e8, 0)).cwiseAbs().maxCoeff(), 2e-3);
+    EXPECT_LT((box.high - Vec3(4.321e8 + 2000, 5.421e8 + 2000, 2000)).cwiseAbs().maxCoeff(), 2e-3);
+}
+
+TEST(ThreemfWriter, EveryUnit_IsDeclared) {
+    for (const auto& [unit, declared] : {std::pair(LengthUnit::micrometre, NMR::MODELUNIT_MICROMETER),
+                                         {LengthUnit::millimetre, NMR::MODELUNIT_MILLIMETER},
+                                         {LengthUnit::centimetre, NMR::MODELUNIT_CENTIMETER},
+                                         {LengthUnit::metre, NMR::MODELUNIT_METER},
+                                         {LengthUnit::inch, NMR::MODELUNIT_INCH},
+                                         {LengthUnit::foot, NMR::MODELUNIT_FOOT}}) {
+        const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(cube_in(unit, 3)));
+        EXPECT_EQ(seen.unit, static_cast<DWORD>(declared)) << symbol(unit);
+        EXPECT_EQ(seen.vertices.size(), 8u);
+    }
+}
+
+TEST(ThreemfWriter, UnknownUnit_IsTakenAsMillimetreAndTold) {
+    Told told;
+    EXPECT_EQ(read_by_3mf(bytes_of_3mf(cube(1), &told)).unit, static_cast<DWORD>(NMR::MODELUNIT_MILLIMETER));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 was written as 1 mm; say the unit")));
+}
+
+TEST(ThreemfWriter, FrameName_IsTheObjects) {
+    TriangleMesh mesh = cube_in(LengthUnit::millimetre);
+    mesh.frame.name = "Teil <7> & \xfe";
+    EXPECT_EQ(read_by_3mf(bytes_of_3mf(mesh)).name, "Teil <7> & _");
+}
+
+TEST(ThreemfWriter, Coordinates_AreRoundedAtTheSixthDecimal_NotCut) {
+    TriangleMesh mesh = cube_in(LengthUnit::millimetre);
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+    for (Vec3& p : positions) p = p * 0.9999999 - Vec3::Constant(0.4999999);
+    mesh.positions = positions;
+    for (const Vec3& v : read_by_3mf(bytes_of_3mf(mesh)).vertices)
+        for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::abs(v[axis]), 0.5, 1e-7);
+}
+
+TEST(ThreemfWriter, TinyShapes_AreToldToMove) {
+    Told told;
+    bytes_of_3mf(cube_in(LengthUnit::metre, 0.0123456789), &told);
+    EXPECT_THAT(told.sentences,
+                ElementsAre(AllOf(HasSubstr("coordinates moved by up to"), HasSubstr("a smaller unit"))));
+}
+
+TEST(ThreemfWriter, FarFromZero_PlaceAndVerticesAddUp) {
+    TriangleMesh mesh = cube_in(LengthUnit::metre);
+    mesh.frame.origin = Vec3(1234567, -7654321.5, 0);
+    Told told;
+    const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(mesh, &told));
+    EXPECT_THAT(told.sentences, IsEmpty());
+    for (std::size_t i = 0; i < 8; ++i)
+        EXPECT_LT((seen.place + seen.vertices[i] - (mesh.frame.origin + mesh.positions[i])).norm(), 3e-6) << i;
+    EXPECT_NE(seen.place, Vec3::Zero());
+}
+
+TEST(ThreemfWriter, EqualValues_GiveEqualBytes_AndOthersOtherUuids) {
+    const std::string bytes = bytes_of_3mf(cube_in(LengthUnit::millimetre, 2));
+    EXPECT_EQ(bytes, bytes_of_3mf(cube_in(LengthUnit::millimetre, 2)));
+    const std::string uuid = read_by_3mf(bytes).uuid;
+    EXPECT_THAT(uuid, testing::MatchesRegex("[0-9a-f]{8}-[0-9a-f]{4}-8[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}"));
+    EXPECT_NE(uuid, read_by_3mf(bytes_of_3mf(cube_in(LengthUnit::millimetre, 3))).uuid);
+}
+
+TEST(ThreemfWriter, RealMesh_HasItsCountsAndBox) {
+    SCANMILL_REAL_SCAN(file, fetched_data, "meshes/fandisk_large.off");
+    TriangleMesh mesh = *read_mesh(file);
+    mesh.frame.unit = LengthUnit::centimetre;
+    const SeenByAssimp seen = through_assimp(mesh, "a.3mf");
+    EXPECT_EQ(seen.vertices, mesh.positions.size());
+    EXPECT_EQ(seen.faces, mesh.triangles.size());
+    const BoundingBox box = bounding_box(mesh.positions.span());
+    EXPECT_LT((seen.box.low - (box.low + mesh.frame.origin)).norm(), 3e-6);
+    EXPECT_LT((seen.box.high - (box.high + mesh.frame.origin)).norm(), 3e-6);
+}
+
+}  // namespace
+}  // namespace scanmill::test
