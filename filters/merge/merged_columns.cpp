@@ -8,7 +8,7 @@
 
 #include "merge/joined_column.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/kinds/placed.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill::merging {
 

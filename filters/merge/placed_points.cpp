@@ -2,7 +2,7 @@
 #include "merge/placed_points.hpp"
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/kinds/placed.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill::merging {
 

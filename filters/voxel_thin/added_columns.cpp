@@ -52,7 +52,7 @@ void add_bin_sizes(PointCloud& thinned, std::span<const double> edges, double gr
         context.warn(fmt::format("{} of {} {} thinned with larger bins before; {} `bin-size` stays", older,
                                  counted(sizes.size(), "kept point", "kept points"), by_count(older, "was", "were"),
                                  by_count(older, "its", "their")));
-    add_columns(thinned, {Column("bin-size", 1, Buffer<double>(std::move(sizes)))}, context);
+    add_columns(thinned, {Column("bin-size", 1, Buffer<double>(std::move(sizes))).with_length_exponent(1)}, context);
 }
 
 }  // namespace scanmill::voxel

@@ -19,10 +19,10 @@ void add_surface_columns(PointCloud& thinned, const LocalBins& bins, std::span<c
         size[i] = bins.sizes[place];
     }
     add_columns(thinned,
-                {Column("curvature-1", 1, Buffer<double>(std::move(first))),
-                 Column("curvature-2", 1, Buffer<double>(std::move(second))),
-                 Column("fit-error", 1, Buffer<double>(std::move(error))),
-                 Column("local-bin-size", 1, Buffer<double>(std::move(size))),
+                {Column("curvature-1", 1, Buffer<double>(std::move(first))).with_length_exponent(-1),
+                 Column("curvature-2", 1, Buffer<double>(std::move(second))).with_length_exponent(-1),
+                 Column("fit-error", 1, Buffer<double>(std::move(error))).with_length_exponent(1),
+                 Column("local-bin-size", 1, Buffer<double>(std::move(size))).with_length_exponent(1),
                  Column("stands-for", 1, Buffer<u32>(Array<u32>(members.begin(), members.end())))},
                 context);
 }

@@ -102,14 +102,14 @@ GlbModel model_of(const Frame& frame, std::span<const Vec3> positions, const Col
 }  // namespace
 
 void write_glb_points(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const PointCloud& cloud = *std::get<std::shared_ptr<const PointCloud>>(value);
+    const PointCloud& cloud = *value.get<PointCloud>();
     GlbModel model = model_of(cloud.frame, cloud.positions.span(), cloud.columns, "points", 0, options);
     model.primitive().mode = TINYGLTF_MODE_POINTS;
     model.write(out);
 }
 
 void write_glb_mesh(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TriangleMesh& whole = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    const TriangleMesh& whole = *value.get<TriangleMesh>();
     if (whole.triangles.empty())
         throw Error("nothing to write: the mesh has {} and no triangles, and GLB would show nothing",
                     counted(whole.positions.size(), "vertex", "vertices"))

@@ -4,7 +4,7 @@
 
 SCANMILL_FORMAT() {
     using namespace scanmill;
-    return {{"GLB", {"glb"}, {"glTF"}, {Kind::points, Kind::mesh}, false},
+    return {{"GLB", {"glb"}, {"glTF"}, {kind_of<PointCloud>(), kind_of<TriangleMesh>()}, false},
             {},
-            {{Kind::points, glb::write_glb_points}, {Kind::mesh, glb::write_glb_mesh}}};
+            {{kind_of<PointCloud>(), glb::write_glb_points}, {kind_of<TriangleMesh>(), glb::write_glb_mesh}}};
 }

@@ -79,7 +79,7 @@ LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     Array<Vec3> positions = positions_of(cloud);
     move_near_origin(positions, bounding_box(positions), points.frame);
     points.positions = std::move(positions);
-    points.columns = columns_of(cloud, options);
+    points.columns = with_exponents(columns_of(cloud, options), loaded.comments);
     loaded.value = std::make_shared<const PointCloud>(std::move(points));
     return loaded;
 }

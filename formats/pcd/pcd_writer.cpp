@@ -87,14 +87,18 @@ void put_row(const Column& column, std::size_t row, OutputBuffer& out) {
 }  // namespace
 
 void write_pcd(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const PointCloud& cloud = *std::get<std::shared_ptr<const PointCloud>>(value);
+    const PointCloud& cloud = *value.get<PointCloud>();
     const bool as_float = all_floats(cloud.frame, cloud.positions.span());
     tell_lost_precision(cloud.frame, cloud.positions.span(), as_float, "PCD", options);
     const std::vector<WrittenColumn> columns = written_columns(cloud, options);
     const pcl::PCLPointCloud2 layout = described(cloud, columns, as_float);
     std::string header =
         pcl::PCDWriter().generateHeaderBinary(layout, Eigen::Vector4f::Zero(), Eigen::Quaternionf::Identity());
-    header.insert(header.find('\n') + 1, comment_lines(cloud.frame));
+    std::string comments = comment_lines(cloud.frame);
+    for (const WrittenColumn& written : columns)
+        if (const std::string exponent = exponent_comment(*written.column); !exponent.empty())
+            comments += "# " + exponent + "\n";
+    header.insert(header.find('\n') + 1, comments);
     out.text(header);
     out.text("DATA binary\n");
     for (std::size_t row = 0; row < cloud.size(); ++row) {

@@ -4,7 +4,7 @@
 
 SCANMILL_FORMAT() {
     using namespace scanmill;
-    return {{"PCD", {"pcd"}, {"# .PCD v", "VERSION 0.", "VERSION ."}, {Kind::points}},
+    return {{"PCD", {"pcd"}, {"# .PCD v", "VERSION 0.", "VERSION ."}, {kind_of<PointCloud>()}},
             pcd::read_pcd,
-            {{Kind::points, pcd::write_pcd}}};
+            {{kind_of<PointCloud>(), pcd::write_pcd}}};
 }

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "scanmill/data/array.hpp"
+
 namespace scanmill::threemf {
 
 namespace {

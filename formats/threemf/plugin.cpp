@@ -5,5 +5,7 @@
 SCANMILL_FORMAT() {
     using namespace scanmill;
     // Its files begin as every ZIP archive does: the extension must tell.
-    return {{"3MF", {"3mf"}, {}, {Kind::mesh}, false}, {}, {{Kind::mesh, threemf::write_threemf}}};
+    return {{"3MF", {"3mf"}, {}, {kind_of<TriangleMesh>()}, false},
+            {},
+            {{kind_of<TriangleMesh>(), threemf::write_threemf}}};
 }

@@ -114,7 +114,7 @@ void add_object(const Handle& model, PrintedMesh& mesh, const std::string& name)
 }  // namespace
 
 void write_threemf(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TriangleMesh mesh = with_used_vertices(*std::get<std::shared_ptr<const TriangleMesh>>(value), "3MF", options);
+    const TriangleMesh mesh = with_used_vertices(*value.get<TriangleMesh>(), "3MF", options);
     require_solid(mesh);
     tell_bare_triangles(mesh, "3MF", options);
     if (mesh.frame.unit == LengthUnit::unknown)

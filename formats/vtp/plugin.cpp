@@ -7,10 +7,10 @@ SCANMILL_FORMAT() {
     return {{"VTP",
              {"vtp"},
              {"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\"", "<VTKFile type=\"PolyData\""},
-             {Kind::points, Kind::mesh, Kind::features},
+             {kind_of<PointCloud>(), kind_of<TriangleMesh>(), kind_of<FeatureGraph>()},
              false},
             {},
-            {{Kind::points, vtk::write_vtp_points},
-             {Kind::mesh, vtk::write_vtp_mesh},
-             {Kind::features, vtk::write_vtp_features}}};
+            {{kind_of<PointCloud>(), vtk::write_vtp_points},
+             {kind_of<TriangleMesh>(), vtk::write_vtp_mesh},
+             {kind_of<FeatureGraph>(), vtk::write_vtp_features}}};
 }

@@ -71,7 +71,7 @@ vtkSmartPointer<vtkDataArray> view(const Array<T>& rows, std::string_view name) 
 }  // namespace
 
 void write_vtp_features(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const FeatureGraph& graph = *std::get<std::shared_ptr<const FeatureGraph>>(value);
+    const FeatureGraph& graph = *value.get<FeatureGraph>();
     tell_lost_precision(graph.frame, graph.positions.span(), false, format, options);
     const FeaturePoints points = points_of(graph);
     tell_unused(graph, points.vertex, options);

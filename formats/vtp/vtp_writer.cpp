@@ -25,7 +25,7 @@ std::span<const u32> vertices_of(const Buffer<Simplex>& simplices) {
 }  // namespace
 
 void write_vtp_points(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const PointCloud& cloud = *std::get<std::shared_ptr<const PointCloud>>(value);
+    const PointCloud& cloud = *value.get<PointCloud>();
     tell_lost_precision(cloud.frame, cloud.positions.span(), false, format, options);
     const auto data = vtkSmartPointer<vtkPolyData>::New();
     data->SetPoints(points_of(cloud.frame, cloud.positions.span()));
@@ -36,7 +36,7 @@ void write_vtp_points(const Value& value, OutputBuffer& out, const WriteOptions&
 }
 
 void write_vtp_mesh(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    const TriangleMesh& mesh = *value.get<TriangleMesh>();
     tell_lost_precision(mesh.frame, mesh.positions.span(), false, format, options);
     const auto data = vtkSmartPointer<vtkPolyData>::New();
     data->SetPoints(points_of(mesh.frame, mesh.positions.span()));

@@ -7,8 +7,8 @@ SCANMILL_FORMAT() {
     return {{"VTU",
              {"vtu"},
              {"<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\"", "<VTKFile type=\"UnstructuredGrid\""},
-             {Kind::tets},
+             {kind_of<TetMesh>()},
              false},
             {},
-            {{Kind::tets, vtk::write_vtu}}};
+            {{kind_of<TetMesh>(), vtk::write_vtu}}};
 }

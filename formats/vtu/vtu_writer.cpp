@@ -26,7 +26,7 @@ std::string name_for_weights(const ColumnTable& columns) {
 }  // namespace
 
 void write_vtu(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TetMesh& tets = *std::get<std::shared_ptr<const TetMesh>>(value);
+    const TetMesh& tets = *value.get<TetMesh>();
     tell_lost_precision(tets.frame, tets.positions.span(), false, format, options);
     const auto data = vtkSmartPointer<vtkUnstructuredGrid>::New();
     data->SetPoints(points_of(tets.frame, tets.positions.span()));

@@ -3,7 +3,6 @@
 
 #include "commands/commands.hpp"
 #include "commands/load.hpp"
-#include "commands/unit_conversion.hpp"
 #include "output/error_output.hpp"
 #include "output/printable.hpp"
 #include "output/stderr_text.hpp"
@@ -11,6 +10,7 @@
 #include "scanmill/data/conversions.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill::runner {
 
@@ -33,9 +33,8 @@ Value tell_dropped(Cleaned<T> cleaned, const std::function<void(std::string)>& w
 }
 
 Value without_invalid(const Value& value, const std::function<void(std::string)>& warn) {
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
-        return tell_dropped(without_invalid_points(**mesh), warn);
-    return tell_dropped(without_invalid_points(*std::get<std::shared_ptr<const PointCloud>>(value)), warn);
+    if (const auto* mesh = value.find<TriangleMesh>()) return tell_dropped(without_invalid_points(*mesh), warn);
+    return tell_dropped(without_invalid_points(*value.get<PointCloud>()), warn);
 }
 
 int convert(const Options& options) {
@@ -53,7 +52,7 @@ int convert(const Options& options) {
             if (frame_of(value)->unit == LengthUnit::unknown)
                 throw Error("--to-unit {}: the unit of the input is not known", symbol(unit))
                     .hint("say it with --unit");
-            value = in_other_unit(value, unit);
+            value = in_unit(value, unit);
         }
         WriteOptions write;
         write.on_warning = warn;

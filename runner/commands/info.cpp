@@ -10,7 +10,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/length_scale.hpp"
-#include "scanmill/plan/properties.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill::runner {
 
@@ -38,23 +38,24 @@ Json describe(const std::string& file) {
     ReadOptions options;
     options.on_warning = [&](std::string text) { warnings.push_back(std::move(text)); };
     const LoadedFile loaded = read_file(file, options);
-    const Frame& frame = *frame_of(loaded.value);
+    const std::optional<Frame> own_frame = frame_of(loaded.value);
+    const Frame frame = own_frame.value_or(Frame{});
     Json json{{"file", file},
               {"format", loaded.format},
               {"encoding", loaded.encoding},
               {"kind", name_of(kind_of(loaded.value))}};
-    const Metrics facts = facts_of(loaded.value);
+    const Metrics facts = properties_of(loaded.value);
     for (const Metric& fact : facts.values)
         json[fact.name] = fact.unit == Unit::boolean ? Json(fact.value != 0) : Json(static_cast<long long>(fact.value));
     std::span<const Vec3> positions;
-    if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&loaded.value)) {
-        positions = (*points)->positions.span();
-        json["columns"] = to_json((*points)->columns);
-    } else if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&loaded.value)) {
-        positions = (*mesh)->positions.span();
-        json["columns"] = to_json((*mesh)->vertex_columns);
-        json["face-columns"] = to_json((*mesh)->face_columns);
-        json["edge-columns"] = to_json((*mesh)->edge_columns);
+    if (const auto* points = loaded.value.find<PointCloud>()) {
+        positions = points->positions.span();
+        json["columns"] = to_json(points->columns);
+    } else if (const auto* mesh = loaded.value.find<TriangleMesh>()) {
+        positions = mesh->positions.span();
+        json["columns"] = to_json(mesh->vertex_columns);
+        json["face-columns"] = to_json(mesh->face_columns);
+        json["edge-columns"] = to_json(mesh->edge_columns);
     }
     const BoundingBox box = bounding_box(positions);
     if (!box.empty()) {

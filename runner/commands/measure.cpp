@@ -7,7 +7,6 @@
 #include "commands/commands.hpp"
 #include "commands/execute.hpp"
 #include "commands/load.hpp"
-#include "commands/unit_conversion.hpp"
 #include "output/error_output.hpp"
 #include "output/printable.hpp"
 #include "output/stderr_text.hpp"
@@ -15,8 +14,8 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/formats/json/metrics_json.hpp"
-#include "scanmill/plan/properties.hpp"
+#include "scanmill/kinds/metrics.hpp"
+#include "scanmill/kinds/value.hpp"
 #include "scanmill/worker/step_runner.hpp"
 
 namespace scanmill::runner {
@@ -68,8 +67,7 @@ std::vector<StepInput> read_inputs(const Options& options, LengthUnit unit, Leng
     if (truth_unit != LengthUnit::unknown) reading.unit = truth_unit;
     Value truth = read_file(options.truth, reading).value;
     const LengthUnit here = frame_of(mesh)->unit, there = frame_of(truth)->unit;
-    if (here != there && here != LengthUnit::unknown && there != LengthUnit::unknown)
-        truth = in_other_unit(truth, here);
+    if (here != there && here != LengthUnit::unknown && there != LengthUnit::unknown) truth = in_unit(truth, here);
     return {{"mesh", mesh}, {"truth", truth}};
 }
 
@@ -80,7 +78,8 @@ std::string report_text(const Metrics& metrics) {
 }
 
 std::string report_json(const Options& options, const Metrics& metrics, const std::vector<std::string>& warnings) {
-    nlohmann::ordered_json json = metrics_document(metrics);
+    nlohmann::ordered_json json;
+    KindTraits<Metrics>::to_json(metrics, json);
     json["mesh"] = options.mesh;
     json["truth"] = options.truth;
     json["warnings"] = warnings;
@@ -112,7 +111,7 @@ int measure(Options options) {
             step, [&]() -> const FilterDeclaration& { return library.load(std::string(filter)); },
             read_inputs(options, unit, truth_unit, warn), std::move(running),
             [](const ParameterSet&, NodeReport&) { return std::nullopt; }, report);
-        const auto& metrics = *std::get<std::shared_ptr<const Metrics>>(*outputs.find(spec->outputs.front().name));
+        const auto& metrics = *outputs.find(spec->outputs.front().name)->get<Metrics>();
         fmt::print("{}", options.json ? report_json(options, metrics, warnings) : report_text(metrics));
     } catch (const Error& error) {
         print(error, options.json);

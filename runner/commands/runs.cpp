@@ -8,8 +8,8 @@
 #include "output/printable.hpp"
 #include "output/table.hpp"
 #include "scanmill/base/error.hpp"
-#include "scanmill/formats/json/metrics_json.hpp"
-#include "scanmill/plan/properties.hpp"
+#include "scanmill/kinds/metrics.hpp"
+#include "scanmill/kinds/value.hpp"
 #include "scanmill/records/run_records.hpp"
 
 namespace scanmill::runner {

@@ -18,12 +18,12 @@ struct Options {
 int schema(const Options& options) {
     const FilterLibrary library = open_library();
     if (options.folder.empty()) {
-        fmt::print("{}", options.kind == "batch" ? batch_schema(library) : workflow_schema(library));
+        fmt::print("{}", options.kind == "batch" ? batch_schema() : workflow_schema(library));
         return done;
     }
     const std::filesystem::path folder(options.folder);
     write_text(folder / "workflow.schema.json", workflow_schema(library));
-    write_text(folder / "batch.schema.json", batch_schema(library));
+    write_text(folder / "batch.schema.json", batch_schema());
     return done;
 }
 

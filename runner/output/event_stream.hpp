@@ -9,7 +9,7 @@
 #include <map>
 #include <mutex>
 
-#include "scanmill/formats/json/metrics_json.hpp"
+#include "scanmill/kinds/metrics.hpp"
 #include "scanmill/run/run.hpp"
 
 namespace scanmill::runner {

@@ -9,8 +9,8 @@
 #include "output/failure_json.hpp"
 #include "output/table.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/formats/json/metrics_json.hpp"
-#include "scanmill/plan/properties.hpp"
+#include "scanmill/kinds/metrics.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill::runner {
 
@@ -42,7 +42,7 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
                 shown.set(metric.name, found->value, found->unit);
     }
     for (const OutputReport& output : report.cells[cell].outputs)
-        if (output.kind == Kind::mesh && output.outcome == Outcome::done) {
+        if (output.kind == kind_of<TriangleMesh>() && output.outcome == Outcome::done) {
             for (const std::string_view name : {"triangles", "closed", "genus"})
                 if (const Metric* fact = output.facts.find(name)) shown.set(name, fact->value, fact->unit);
             break;

@@ -87,7 +87,7 @@ TEST(PcdSamples, HaveTheirPointsAndColumns_AsAnotherReaderFoundThem) {
         Told told;
         const LoadedFile loaded = read_file(folder / sample.file, told.reading());
         EXPECT_THAT(told.sentences, testing::IsEmpty());
-        const auto& cloud = *std::get<std::shared_ptr<const PointCloud>>(loaded.value);
+        const auto& cloud = *loaded.value.get<PointCloud>();
         EXPECT_EQ(cloud.size(), sample.points);
         std::string names;
         for (const Column& column : cloud.columns) names += (names.empty() ? "" : " ") + column.name();

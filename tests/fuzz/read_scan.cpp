@@ -39,8 +39,8 @@ void require_sound(const TriangleMesh& mesh) {
 
 template <class Action>
 decltype(auto) with_geometry(const Value& value, Action&& action) {
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value)) return action(**mesh);
-    return action(*std::get<std::shared_ptr<const PointCloud>>(value));
+    if (const auto* mesh = value.find<TriangleMesh>()) return action(*mesh);
+    return action(*value.get<PointCloud>());
 }
 
 Array<Vec3> world_positions(const Value& value) {

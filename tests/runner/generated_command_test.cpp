@@ -26,7 +26,7 @@ TEST(SchemaCommand, PrintsAndWritesTheSame) {
     EXPECT_EQ(content_of(folder / "new/workflow.schema.json"), printed.out);
     EXPECT_EQ(scanmill_program({"schema", "workflow"}).out, printed.out);
     const ProgramResult of_batches = scanmill_program({"schema", "batch"});
-    EXPECT_TRUE(json::parse(of_batches.out)["properties"].contains("gate"));
+    EXPECT_TRUE(json::parse(of_batches.out)["properties"].contains("limits"));
     EXPECT_EQ(content_of(folder / "new/batch.schema.json"), of_batches.out);
     EXPECT_EQ(scanmill_program({"schema", "report"}).exit_code, 2);
 }

@@ -40,11 +40,11 @@ RawInput scan(const std::string& file) {
     const auto take = [&](const auto& shape) {
         for (const Vec3& p : shape.positions) raw.points.push_back(rounded(shape.frame.origin + p));
     };
-    if (const auto* mesh = std::get_if<std::shared_ptr<const scanmill::TriangleMesh>>(&value)) {
+    if (const auto* mesh = value.find<scanmill::TriangleMesh>()) {
         take(**mesh);
         raw.triangles.assign((*mesh)->triangles.begin(), (*mesh)->triangles.end());
     } else {
-        take(*std::get<std::shared_ptr<const scanmill::PointCloud>>(value));
+        take(*value.get<scanmill::PointCloud>());
     }
     return raw;
 }

@@ -54,9 +54,9 @@ Json load(Held& held, const Json& request) {
 }
 
 Json sizes(const Value& value) {
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
-        return {{"points", (*mesh)->positions.size()}, {"triangles", (*mesh)->triangles.size()}};
-    return {{"points", std::get<std::shared_ptr<const PointCloud>>(value)->size()}, {"triangles", 0}};
+    if (const auto* mesh = value.find<TriangleMesh>())
+        return {{"points", mesh->positions.size()}, {"triangles", mesh->triangles.size()}};
+    return {{"points", value.get<PointCloud>()->size()}, {"triangles", 0}};
 }
 
 Json read(Held& held, const Json& request) {

@@ -20,10 +20,12 @@ std::string_view name_of(ScalarType type) {
     return names[static_cast<std::size_t>(type)];
 }
 
-Column::Column(std::string name, ScalarType type, u32 components, Buffer<std::byte> data, Buffer<u64> offsets)
+Column::Column(std::string name, ScalarType type, u32 components, Buffer<std::byte> data, Buffer<u64> offsets,
+               int length_exponent)
     : name_(std::move(name)),
       type_(type),
       components_(components),
+      length_exponent_(length_exponent),
       data_(std::move(data)),
       offsets_(std::move(offsets)) {
     const std::size_t count = data_.size() / size_of(type_);
@@ -52,7 +54,7 @@ Column Column::gather(std::span<const u32> rows) const {
         Array<std::byte> picked(rows.size() * stride);
         for (std::size_t i = 0; i < rows.size(); ++i)
             std::memcpy(picked.data() + i * stride, data_.data() + rows[i] * stride, stride);
-        return {name_, type_, components_, std::move(picked), {}};
+        return {name_, type_, components_, std::move(picked), {}, length_exponent_};
     }
     Array<u64> offsets(rows.size() + 1);
     offsets[0] = 0;
@@ -63,14 +65,37 @@ Column Column::gather(std::span<const u32> rows) const {
         if (offsets[i + 1] > offsets[i])
             std::memcpy(picked.data() + offsets[i] * width, data_.data() + offsets_[rows[i]] * width,
                         (offsets[i + 1] - offsets[i]) * width);
-    return {name_, type_, 0, std::move(picked), std::move(offsets)};
+    return {name_, type_, 0, std::move(picked), std::move(offsets), length_exponent_};
 }
 
-Column Column::renamed(std::string name) const { return {std::move(name), type_, components_, data_, offsets_}; }
+Column Column::renamed(std::string name) const {
+    return {std::move(name), type_, components_, data_, offsets_, length_exponent_};
+}
+
+Column Column::with_length_exponent(int exponent) const {
+    return {name_, type_, components_, data_, offsets_, exponent};
+}
+
+Column Column::scaled(double factor) const {
+    if (length_exponent_ == 0) return *this;
+    const std::size_t count = data_.size() / size_of(type_);
+    Array<double> values(count);
+    visit_scalar(type_, [&](auto zero) {
+        const auto numbers = this->values<decltype(zero)>();
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto number = static_cast<double>(numbers[i]);
+            values[i] = length_exponent_ < 0 ? number / factor : number * factor;
+        }
+    });
+    const Buffer<double> scaled(std::move(values));
+    const Column column = is_list() ? Column(name_, offsets_, scaled) : Column(name_, components_, scaled);
+    return column.with_length_exponent(length_exponent_);
+}
 
 bool Column::operator==(const Column& other) const {
     return name_ == other.name_ && type_ == other.type_ && components_ == other.components_ &&
-           std::ranges::equal(data_, other.data_) && std::ranges::equal(offsets_, other.offsets_);
+           length_exponent_ == other.length_exponent_ && std::ranges::equal(data_, other.data_) &&
+           std::ranges::equal(offsets_, other.offsets_);
 }
 
 void ColumnTable::add(Column column) {
@@ -91,6 +116,12 @@ ColumnTable ColumnTable::gather(std::span<const u32> rows) const {
     picked.columns_.reserve(columns_.size());
     for (const Column& column : columns_) picked.columns_.push_back(column.gather(rows));
     return picked;
+}
+
+ColumnTable ColumnTable::scaled(double factor) const {
+    ColumnTable all;
+    for (const Column& column : columns_) all.add(column.scaled(factor));
+    return all;
 }
 
 }  // namespace scanmill

@@ -64,7 +64,8 @@ public:
     Column(std::string name, Buffer<u64> offsets, const Buffer<T>& values)
         : Column(std::move(name), scalar_type_of<T>(), 0, bytes_of(values), std::move(offsets)) {}
     /// The general form: `components` 0 means lists. Pre: data is aligned for `type`.
-    Column(std::string name, ScalarType type, u32 components, Buffer<std::byte> data, Buffer<u64> offsets);
+    Column(std::string name, ScalarType type, u32 components, Buffer<std::byte> data, Buffer<u64> offsets,
+           int length_exponent = 0);
 
     const std::string& name() const { return name_; }
     ScalarType type() const { return type_; }
@@ -72,6 +73,9 @@ public:
     /// Numbers per row; 0 for lists.
     u32 components() const { return components_; }
     std::size_t rows() const { return rows_; }
+    /// 1 for lengths in the frame's unit, -1 for what is per length (curvatures), else 0: how the numbers change with
+    /// the unit.
+    int length_exponent() const { return length_exponent_; }
     const Buffer<u64>& offsets() const { return offsets_; }
     const Buffer<std::byte>& bytes() const { return data_; }
 
@@ -86,6 +90,9 @@ public:
 
     Column gather(std::span<const u32> rows) const;
     Column renamed(std::string name) const;
+    Column with_length_exponent(int exponent) const;
+    /// In a unit in which lengths are `factor` times as many: numbers become float64 unless the exponent is 0.
+    Column scaled(double factor) const;
     bool operator==(const Column& other) const;
 
 private:
@@ -99,6 +106,7 @@ private:
     ScalarType type_;
     u32 components_;
     std::size_t rows_;
+    int length_exponent_;
     Buffer<std::byte> data_;
     Buffer<u64> offsets_;
 };
@@ -110,6 +118,8 @@ public:
     void add(Column column);
     const Column* find(std::string_view name) const;
     ColumnTable gather(std::span<const u32> rows) const;
+    /// Every column by Column::scaled().
+    ColumnTable scaled(double factor) const;
 
     auto begin() const { return columns_.begin(); }
     auto end() const { return columns_.end(); }

@@ -35,4 +35,9 @@ struct Metrics {
     const Metric* find(std::string_view name) const;
 };
 
+/// "3000", "0.0125", "yes": a metric's number for people; angles in degrees, ratios in percent.
+std::string display(const Metric& metric);
+/// The same with the unit of lengths: "0.0125 mm", "3.2 u²".
+std::string display(const Metric& metric, LengthUnit unit);
+
 }  // namespace scanmill

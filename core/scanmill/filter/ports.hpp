@@ -29,15 +29,14 @@ public:
     const T* find(std::string_view port) const {
         const auto found = values_.find(port);
         if (found == values_.end()) return nullptr;
-        const auto* object = std::get_if<std::shared_ptr<const T>>(&found->second.front());
-        return object ? object->get() : nullptr;
+        return found->second.front().find<T>();
     }
     /// Everything wired to a list port, in order.
     template <class T>
     std::vector<std::shared_ptr<const T>> list(std::string_view port) const {
         std::vector<std::shared_ptr<const T>> objects;
         if (const auto found = values_.find(port); found != values_.end())
-            for (const Value& value : found->second) objects.push_back(std::get<std::shared_ptr<const T>>(value));
+            for (const Value& value : found->second) objects.push_back(value.get<T>());
         return objects;
     }
 

@@ -81,7 +81,7 @@ void require_sound_parameter(std::string_view filter, const ParameterSpec& param
 }
 
 void require_sound_stream(const FilterSpec& spec) {
-    if (spec.inputs.size() != 1 || spec.inputs.front().kind != Kind::points || spec.inputs.front().list ||
+    if (spec.inputs.size() != 1 || spec.inputs.front().kind != kind_of<PointCloud>() || spec.inputs.front().list ||
         !spec.inputs.front().also.empty())
         throw Error("filter {}: only a filter whose one input is a cloud of points can take it as a stream", spec.name);
     for (const std::string& name : spec.streams->given) {
@@ -126,7 +126,7 @@ void require_sound(const FilterSpec& spec) {
     require_names(spec.name, "metric", spec.metrics);
     if (!spec.inputs.empty()) require_said(spec.name, "ties", spec.ties);
     const auto has_coordinates = [](const PortSpec& port) {
-        return port.takes(Kind::points) || port.takes(Kind::mesh);
+        return port.takes(kind_of<PointCloud>()) || port.takes(kind_of<TriangleMesh>());
     };
     if (std::ranges::any_of(spec.inputs, has_coordinates)) require_said(spec.name, "NaN", spec.not_finite);
     for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec.name, parameter);

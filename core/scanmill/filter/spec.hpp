@@ -16,7 +16,7 @@ namespace scanmill {
 
 struct PortSpec {
     std::string name;
-    Kind kind = Kind::points;
+    Kind kind = kind_of<PointCloud>();
     std::string help;
     bool list = false;      ///< takes any number of values; inputs only
     bool optional = false;  ///< may stay unwired; inputs only

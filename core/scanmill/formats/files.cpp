@@ -39,14 +39,7 @@ LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
 
 /// Whether nothing is there that should be. A closed, smooth mesh has no features, and that is worth writing.
 bool is_empty(const Value& value) {
-    return std::visit(
-        []<class T>(const std::shared_ptr<const T>& object) {
-            if constexpr (requires { object->positions; } && !std::is_same_v<T, FeatureGraph>)
-                return object->positions.empty();
-            else
-                return false;
-        },
-        value);
+    return is_geometric(value.kind()) && !value.find<FeatureGraph>() && positions_of(value).empty();
 }
 
 Format::Write writer_for(const std::filesystem::path& path, const Value& value) {
@@ -84,8 +77,10 @@ LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name,
 
 std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path, const ReadOptions& options) {
     const LoadedFile loaded = read_file(path, options);
-    if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&loaded.value)) return *points;
-    const auto& mesh = std::get<std::shared_ptr<const TriangleMesh>>(loaded.value);
+    if (loaded.value.find<PointCloud>()) return loaded.value.get<PointCloud>();
+    const TriangleMesh* mesh = loaded.value.find<TriangleMesh>();
+    if (!mesh)
+        throw Error("'{}': points are needed; the file contains {}", path.string(), name_of(loaded.value.kind()));
     warn(options.on_warning, "'{}': points were asked for; {} left out", path.string(),
          counted(mesh->triangles.size(), "triangle was", "triangles were"));
     return std::make_shared<const PointCloud>(points_of(*mesh));
@@ -93,9 +88,12 @@ std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path,
 
 std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const LoadedFile loaded = read_file(path, options);
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&loaded.value)) return *mesh;
+    if (loaded.value.find<TriangleMesh>()) return loaded.value.get<TriangleMesh>();
+    const PointCloud* points = loaded.value.find<PointCloud>();
+    if (!points)
+        throw Error("'{}': a mesh is needed; the file contains {}", path.string(), name_of(loaded.value.kind()));
     throw Error("'{}': a mesh is needed; the file holds {} and not a single face", path.string(),
-                counted(std::get<std::shared_ptr<const PointCloud>>(loaded.value)->size(), "point", "points"))
+                counted(points->size(), "point", "points"))
         .hint("make a surface of the points first, by a workflow of filters that lead from points to a mesh");
 }
 

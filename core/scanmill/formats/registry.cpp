@@ -7,8 +7,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/e57/e57.hpp"
-#include "scanmill/formats/json/features_json.hpp"
-#include "scanmill/formats/json/metrics_json.hpp"
+#include "scanmill/formats/json/json.hpp"
 #include "scanmill/formats/las/las.hpp"
 #include "scanmill/formats/obj/obj.hpp"
 #include "scanmill/formats/off/off.hpp"
@@ -21,24 +20,30 @@ namespace scanmill {
 
 namespace {
 
+std::vector<std::pair<Kind, Format::Write>> json_writers() {
+    std::vector<std::pair<Kind, Format::Write>> writers;
+    for (const Kind kind : all_kinds())
+        if (kind.has_json()) writers.emplace_back(kind, write_json);
+    return writers;
+}
+
 std::vector<Format> built_in() {
     return {
-        {"PLY", {"ply"}, recognise_ply, read_ply, {{Kind::points, write_ply_points}, {Kind::mesh, write_ply_mesh}}},
-        {"STL", {"stl"}, recognise_stl, read_stl, {{Kind::mesh, write_stl}}},
-        {"OFF", {"off"}, recognise_off, read_off, {{Kind::mesh, write_off}}},
-        {"OBJ", {"obj"}, recognise_obj, read_obj, {{Kind::mesh, write_obj}}},
-        {"XYZ", {"xyz", "txt"}, recognise_xyz, read_xyz, {{Kind::points, write_xyz}}},
+        {"PLY",
+         {"ply"},
+         recognise_ply,
+         read_ply,
+         {{kind_of<PointCloud>(), write_ply_points}, {kind_of<TriangleMesh>(), write_ply_mesh}}},
+        {"STL", {"stl"}, recognise_stl, read_stl, {{kind_of<TriangleMesh>(), write_stl}}},
+        {"OFF", {"off"}, recognise_off, read_off, {{kind_of<TriangleMesh>(), write_off}}},
+        {"OBJ", {"obj"}, recognise_obj, read_obj, {{kind_of<TriangleMesh>(), write_obj}}},
+        {"XYZ", {"xyz", "txt"}, recognise_xyz, read_xyz, {{kind_of<PointCloud>(), write_xyz}}},
         // Read alike, but not written: commas, a count or normals are expected of them.
         {"CSV", {"csv", "pts", "pwn", "asc"}, recognise_xyz, read_xyz, {}},
         {"PTX", {"ptx"}, recognise_ptx, read_ptx, {}},
         {"LAS", {"las", "laz"}, recognise_las, read_las, {}},
         {"E57", {"e57"}, recognise_e57, refuse_e57, {}, true},
-        {"JSON",
-         {"json"},
-         recognise_json,
-         refuse_json,
-         {{Kind::metrics, write_metrics_json}, {Kind::features, write_features_json}},
-         true},
+        {"JSON", {"json"}, recognise_json, read_json, json_writers()},
     };
 }
 

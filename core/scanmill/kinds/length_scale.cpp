@@ -14,24 +14,6 @@ namespace scanmill {
 
 namespace {
 
-std::span<const Vec3> positions_of(const Value& value) {
-    return std::visit(
-        []<class T>(const std::shared_ptr<const T>& object) -> std::span<const Vec3> {
-            if constexpr (requires { object->positions; })
-                return object->positions.span();
-            else
-                return {};
-        },
-        value);
-}
-
-BoundingBox box_of(const Value& value) {
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value);
-        mesh && !(*mesh)->triangles.empty())
-        return surface_box(**mesh);
-    return bounding_box(positions_of(value));
-}
-
 /// The diagonal of `box`, which `points` finite ones lie in. Throws Error for one that no length is a share of.
 double usable_diagonal(const BoundingBox& box, std::size_t points) {
     const double diagonal = box.diagonal();
@@ -44,19 +26,17 @@ double usable_diagonal(const BoundingBox& box, std::size_t points) {
 }
 
 double diagonal_of(const Value& value) {
-    const std::span<const Vec3> positions = positions_of(value);
+    const Buffer<Vec3> positions = positions_of(value);
     if (positions.empty()) return 0;
-    const BoundingBox box = box_of(value);
-    if (!(box.diagonal() > 0)) require_finite(positions);
+    const BoundingBox box = value.kind().info().box(value.object());
+    if (!(box.diagonal() > 0)) require_finite(positions.span());
     return usable_diagonal(box, positions.size());
 }
 
 double spacing_of(const Value& value) {
-    const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value);
-    const bool has_edges = mesh && !(*mesh)->triangles.empty();
-    const double spacing = has_edges ? edge_spacing(**mesh) : point_spacing(positions_of(value));
-    if (!(spacing > 0)) require_finite(positions_of(value));
-    if (!std::isfinite(spacing)) require_finite_size(bounding_box(positions_of(value)));
+    const double spacing = value.kind().info().spacing(value.object());
+    if (!(spacing > 0)) require_finite(positions_of(value).span());
+    if (!std::isfinite(spacing)) require_finite_size(bounding_box(positions_of(value).span()));
     return spacing;
 }
 
@@ -90,8 +70,8 @@ LengthScale length_scale(const PointStream& scan) {
 }
 
 LengthScale length_scale(const Value& value) {
-    if (const auto* metrics = std::get_if<std::shared_ptr<const Metrics>>(&value)) return scale_beside(*metrics);
-    const Frame* frame = frame_of(value);
+    if (value.find<Metrics>()) return scale_beside(value.get<Metrics>());
+    const std::optional<Frame> frame = frame_of(value);
     return {frame ? frame->unit : LengthUnit::unknown, memoised([value] { return diagonal_of(value); }),
             memoised([value] { return spacing_of(value); })};
 }

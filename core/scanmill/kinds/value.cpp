@@ -1,59 +1,183 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/kinds/value.hpp"
 
-#include <algorithm>
-#include <array>
+#include <cmath>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/data/transform.hpp"
+#include "scanmill/kinds/field_visitor.hpp"
 
 namespace scanmill {
 
 namespace {
 
-constexpr std::array<std::string_view, std::variant_size_v<Value>> names{"points",   "mesh",      "tets",
-                                                                         "features", "transform", "metrics"};
+class Reframe : public FieldChange {
+public:
+    explicit Reframe(const Frame& frame) : frame_(frame) {}
+    void frame(const char*, Frame& frame) override {
+        shift_ = frame.origin - frame_.origin;
+        frame = frame_;
+    }
+    void positions(const char*, Buffer<Vec3>& positions) override {
+        if (shift_ != Vec3::Zero()) positions = translated(positions, shift_);
+    }
 
-template <class T>
-constexpr bool has_positions = requires(const T& value) { value.positions; };
+private:
+    const Frame& frame_;
+    Vec3 shift_ = Vec3::Zero();
+};
+
+class ConvertUnit : public FieldChange {
+public:
+    explicit ConvertUnit(LengthUnit to) : to_(to) {}
+    void frame(const char*, Frame& frame) override {
+        from_ = frame.unit;
+        frame.origin = converted(frame.origin);
+        frame.unit = to_;
+    }
+    void positions(const char*, Buffer<Vec3>& positions) override {
+        Array<Vec3> scaled(positions.size());
+        for (std::size_t i = 0; i < scaled.size(); ++i) {
+            scaled[i] = converted(positions[i]);
+            if (positions[i].allFinite() && !scaled[i].allFinite())
+                throw Error("point {} has a coordinate beyond what a number can hold in {}", i, symbol(to_));
+        }
+        positions = std::move(scaled);
+    }
+    void lengths(const char*, Buffer<double>& lengths, int exponent) override {
+        Array<double> scaled(lengths.begin(), lengths.end());
+        const double factor = scanmill::in_unit(1, from_, to_);
+        for (double& length : scaled)
+            for (int power = 0; power < exponent; ++power) length *= factor;
+        lengths = std::move(scaled);
+    }
+    void columns(const char*, ColumnTable& columns) override {
+        columns = columns.scaled(scanmill::in_unit(1, from_, to_));
+    }
+
+private:
+    Vec3 converted(const Vec3& p) const {
+        return p.unaryExpr([&](double length) { return scanmill::in_unit(length, from_, to_); });
+    }
+    LengthUnit from_ = LengthUnit::unknown, to_;
+};
+
+Buffer<Vec3> rotated(const Buffer<Vec3>& vectors, const Eigen::Matrix3d& rotation) {
+    Array<Vec3> turned(vectors.size());
+    for (std::size_t i = 0; i < turned.size(); ++i) turned[i] = rotation * vectors[i];
+    return turned;
+}
+
+/// Without a rotation nothing but the frame changes: multiplied with the identity, a -0 would become 0.
+class Move : public FieldChange {
+public:
+    explicit Move(const RigidTransform& pose) : pose_(pose), turns_(!pose.rotation.isIdentity(0)) {}
+    void frame(const char*, Frame& frame) override {
+        const Vec3 translation = translation_in(frame.unit, pose_);
+        if (turns_) frame.origin = pose_.rotation * frame.origin;
+        frame.origin += translation;
+        if (!frame.origin.allFinite())
+            throw Error("the pose moves the scan's origin to ({}, {}, {}), which no coordinate can hold",
+                        frame.origin.x(), frame.origin.y(), frame.origin.z());
+        if (!pose_.to.empty()) frame.name = pose_.to;
+    }
+    void positions(const char*, Buffer<Vec3>& positions) override {
+        if (turns_) positions = rotated(positions, pose_.rotation);
+    }
+    void directions(const char*, Buffer<Vec3>& directions) override {
+        if (turns_) directions = rotated(directions, pose_.rotation);
+    }
+    void columns(const char*, ColumnTable& columns) override {
+        if (!turns_) return;
+        ColumnTable all;
+        for (const Column& column : columns) all.add(turned(column, pose_.rotation));
+        columns = std::move(all);
+    }
+
+private:
+    const RigidTransform& pose_;
+    bool turns_;
+};
+
+class ReadGeometry : public FieldChange {
+public:
+    void frame(const char*, Frame& frame) override { found_frame = frame; }
+    void positions(const char*, Buffer<Vec3>& positions) override { found_positions = positions; }
+    Frame found_frame;
+    Buffer<Vec3> found_positions;
+};
+
+template <class Number>
+Column turned_to(const Column& normals, const Eigen::Matrix3d& rotation) {
+    Array<Number> values(3 * normals.rows());
+    for (std::size_t row = 0; row < normals.rows(); ++row) {
+        const Vec3 normal = rotation * Vec3(normals.number(row, 0), normals.number(row, 1), normals.number(row, 2));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            values[3 * row + axis] = static_cast<Number>(normal[static_cast<Eigen::Index>(axis)]);
+    }
+    return {normals.name(), 3, Buffer<Number>(std::move(values))};
+}
 
 }  // namespace
 
-std::string_view name_of(Kind kind) { return names[static_cast<std::size_t>(kind)]; }
-
-std::optional<Kind> kind_named(std::string_view name) {
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end()) return std::nullopt;
-    return static_cast<Kind>(found - names.begin());
+Value visited(const Value& value, FieldVisitor& visitor) {
+    const std::shared_ptr<void> copy = value.kind().info().copy(value.object());
+    value.kind().info().visit(visitor, copy.get());
+    return Value(value.kind(), copy);
 }
 
-std::string_view kind_names() { return "points, mesh, tets, features, transform, metrics"; }
+std::optional<Frame> frame_of(const Value& value) {
+    if (!is_geometric(value.kind())) return std::nullopt;
+    ReadGeometry read;
+    visited(value, read);
+    return read.found_frame;
+}
 
-bool is_geometric(Kind kind) { return kind != Kind::transform && kind != Kind::metrics; }
-
-const Frame* frame_of(const Value& value) {
-    return std::visit(
-        []<class T>(const std::shared_ptr<const T>& object) -> const Frame* {
-            if constexpr (has_positions<T>)
-                return &object->frame;
-            else
-                return nullptr;
-        },
-        value);
+Buffer<Vec3> positions_of(const Value& value) {
+    if (!is_geometric(value.kind())) return {};
+    ReadGeometry read;
+    visited(value, read);
+    return read.found_positions;
 }
 
 Value reframed(const Value& value, const Frame& frame) {
-    return std::visit(
-        [&]<class T>(const std::shared_ptr<const T>& object) -> Value {
-            if constexpr (has_positions<T>) {
-                if (object->frame == frame) return object;
-                T moved = *object;
-                if (moved.frame.origin != frame.origin)
-                    moved.positions = translated(moved.positions, moved.frame.origin - frame.origin);
-                moved.frame = frame;
-                return std::make_shared<const T>(std::move(moved));
-            } else {
-                return object;
-            }
-        },
-        value);
+    const std::optional<Frame> before = frame_of(value);
+    if (!before || *before == frame) return value;
+    Reframe change(frame);
+    return visited(value, change);
+}
+
+Value in_unit(const Value& value, LengthUnit unit) {
+    ConvertUnit change(unit);
+    return visited(value, change);
+}
+
+std::vector<PropertySpec> property_specs(Kind kind) { return kind.info().property_specs(); }
+
+Metrics properties_of(const Value& value) { return value.kind().info().properties(value.object()); }
+
+Value placed(const Value& value, const RigidTransform& pose) {
+    if (!is_geometric(value.kind()))
+        throw Error("a pose moves values with positions; this is {}", name_of(value.kind()));
+    Move change(pose);
+    return visited(value, change);
+}
+
+Vec3 translation_in(LengthUnit unit, const RigidTransform& pose) {
+    if (pose.unit == LengthUnit::unknown || pose.unit == unit) return pose.translation;
+    if (unit == LengthUnit::unknown)
+        throw Error("the pose is in {}; the unit of the scan is not declared", symbol(pose.unit))
+            .hint("declare it: --unit mm, or `unit: mm` at the workflow's input or at the scan in a batch");
+    Vec3 translation;
+    for (int axis = 0; axis < 3; ++axis) translation[axis] = in_unit(pose.translation[axis], pose.unit, unit);
+    return translation;
+}
+
+Column turned(const Column& column, const Eigen::Matrix3d& rotation) {
+    if (column.name() != "normal" || column.components() != 3) return column;
+    return column.type() == ScalarType::float32 ? turned_to<float>(column, rotation)
+                                                : turned_to<double>(column, rotation);
 }
 
 }  // namespace scanmill

@@ -3,8 +3,8 @@
 /// The border between the program and the module of a file format: as that of filters (filter/plugin.hpp), with a
 /// declaration of its own.
 ///
-///     SCANMILL_FORMAT() { return {{"PCD", {"pcd"}, {"# .PCD"}, {Kind::points}}, read_pcd, {{Kind::points,
-///     write_pcd}}}; }
+///     SCANMILL_FORMAT() { return {{"PCD", {"pcd"}, {"# .PCD"}, {kind_of<PointCloud>()}}, read_pcd,
+///     {{kind_of<PointCloud>(), write_pcd}}}; }
 
 #include "scanmill/formats/common/format.hpp"
 #include "scanmill/plugin/format_manifest.hpp"

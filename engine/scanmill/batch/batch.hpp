@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "scanmill/batch/gate.hpp"
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/transform.hpp"
 #include "scanmill/plan/expand.hpp"
-#include "scanmill/plugin/library.hpp"
 
 namespace scanmill {
+
+/// Most attempts after the first, so that a step that always fails does not take all night.
+inline constexpr int most_retries = 10;
 
 /// A cell is one scan under one variant of a workflow. 0: no limit.
 struct Limits {
@@ -24,7 +25,7 @@ struct Limits {
     bool operator==(const Limits&) const = default;
 };
 
-// A batch as its file says it: which scans, under which workflows, with which values, limits, truth and gate.
+// A batch as its file says it: which scans, under which workflows, with which values, limits and truth.
 //
 // Paths are relative to the batch file. Scans are named by globs: `*`, `?` and `[…]` within a name, `**` for any
 // number of folders, never what begins with a dot. What `scans` has found stands here, sorted, every file once.
@@ -45,13 +46,6 @@ struct BatchWorkflow {
     Position position;
 };
 
-/// What the batch says of measuring against the truth; the rest is the filter's default.
-struct MeasureOptions {
-    std::optional<std::int64_t> samples;
-    std::vector<Length> thresholds;
-    std::optional<bool> self_intersections;
-};
-
 /// In Settings a value's `position` is that of its name.
 struct Batch {
     std::string file, name, summary;
@@ -59,14 +53,12 @@ struct Batch {
     std::vector<BatchWorkflow> workflows;
     Settings settings;
     Limits limits;
-    MeasureOptions measure;
-    std::vector<GateRule> gate;  ///< empty: nothing is gated
 };
 
 /// The batch in `text`; `diagnostics` is that of its file, and what is wrong goes there: all of it, each with its
 /// place. What is right is still returned. Looks for the files that it names and reads those of poses, but no scan. A
 /// name in `set` that no workflow declares is not found here (see plan_batch.hpp).
-Batch parse_batch(const std::string& text, const FilterLibrary& library, Diagnostics& diagnostics);
+Batch parse_batch(const std::string& text, Diagnostics& diagnostics);
 
 /// Whether the text is a batch rather than a workflow: it has the key `batch`.
 bool is_batch(const std::string& text);

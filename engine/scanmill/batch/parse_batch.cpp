@@ -3,18 +3,17 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/batch/batch.hpp"
-#include "scanmill/batch/parse_limits.hpp"
 #include "scanmill/batch/parse_scans.hpp"
-#include "scanmill/batch/parse_settings.hpp"
-#include "scanmill/filter/constraint.hpp"
+#include "scanmill/filter/parameter.hpp"
 #include "scanmill/io/regular_file.hpp"
 #include "scanmill/workflow/grammar.hpp"
-#include "scanmill/workflow/parse_value.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
 namespace scanmill {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 template <class Value>
 struct Cap {
@@ -48,47 +47,23 @@ Value cap(const YamlEntry* entry, const Cap<Value>& form, Diagnostics& diagnosti
     }
 }
 
-/// The value of a filter's parameter that is so called; nothing after reporting what it cannot take.
-std::optional<ParameterValue> value(const YamlEntry& entry, const ParameterSpec& spec, Diagnostics& diagnostics) {
-    WrittenParameter written;
-    written.list = entry.value.is_sequence();
-    if (written.list) {
-        for (const YamlNode& item : entry.value.items) {
-            const auto text = require_text(item, "a value", diagnostics);
-            if (!text) return std::nullopt;
-            written.items.push_back(*text);
-        }
-    } else if (const auto text = require_text(entry.value, expectation(spec), diagnostics)) {
-        written.items.push_back(*text);
-    } else {
-        return std::nullopt;
-    }
-    try {
-        return parse(spec, written);
-    } catch (const Error& error) {
-        diagnostics.error(entry.value.position, fmt::format("{}: {}", entry.key, error.sentence()));
-        return std::nullopt;
-    }
-}
-
-ParameterSpec spec_of(ParameterType type, std::optional<Bound> low, std::optional<Bound> high, bool is_list = false) {
+/// 0 when there is none, or after reporting.
+unsigned retries(const YamlEntry* entry, Diagnostics& diagnostics) {
+    if (!entry) return 0;
     ParameterSpec spec;
-    spec.type = type;
-    spec.low = low;
-    spec.high = high;
-    spec.list = is_list;
-    return spec;
+    spec.type = ParameterType::integer;
+    spec.low = Bound{0, true};
+    spec.high = Bound{most_retries, true};
+    const auto text = require_text(entry->value, expectation(spec), diagnostics);
+    if (!text) return 0;
+    try {
+        const ParameterValue value = parse(spec, {{*text}, false});
+        return static_cast<unsigned>(std::get<std::int64_t>(std::get<ParameterScalar>(value)));
+    } catch (const Error& error) {
+        diagnostics.error(entry->value.position, fmt::format("retries: {}", error.sentence()));
+        return 0;
+    }
 }
-
-template <class T>
-std::optional<T> scalar(const YamlEntry* entry, const ParameterSpec& spec, Diagnostics& diagnostics) {
-    if (!entry) return std::nullopt;
-    const auto parsed = value(*entry, spec, diagnostics);
-    if (!parsed) return std::nullopt;
-    return std::get<T>(std::get<ParameterScalar>(*parsed));
-}
-
-}  // namespace
 
 Limits parse_limits(const YamlNode& node, Diagnostics& diagnostics) {
     Limits limits;
@@ -103,64 +78,17 @@ Limits parse_limits(const YamlNode& node, Diagnostics& diagnostics) {
         limits.step_seconds = cap(of_step.find("time"), time_cap, diagnostics);
         of_step.complain_of_others();
     }
-    const ParameterSpec retries = spec_of(ParameterType::integer, Bound{0, true}, Bound{most_retries, true});
-    limits.retries =
-        static_cast<unsigned>(scalar<std::int64_t>(keys.find("retries"), retries, diagnostics).value_or(0));
+    limits.retries = retries(keys.find("retries"), diagnostics);
     keys.complain_of_others();
     return limits;
 }
-
-MeasureOptions parse_measure(const YamlNode& node, Diagnostics& diagnostics) {
-    MeasureOptions options;
-    if (!require_map(node, "how results are measured, as {samples: 100000, thresholds: [0.5 %diag]}", diagnostics))
-        return options;
-    MapReader keys(node, "measure", diagnostics);
-    const ParameterSpec samples = spec_of(ParameterType::integer, Bound{1, true}, Bound{most_samples, true});
-    options.samples = scalar<std::int64_t>(keys.find("samples"), samples, diagnostics);
-    if (const YamlEntry* entry = keys.find("thresholds")) {
-        const ParameterSpec thresholds = spec_of(ParameterType::length, Bound{0, false}, std::nullopt, true);
-        if (entry->value.is_sequence() && entry->value.items.empty())
-            diagnostics.error(entry->value.position, "thresholds: the list is empty; expected lengths, as [0.5 %diag]");
-        else if (const auto parsed = value(*entry, thresholds, diagnostics))
-            for (const ParameterScalar& item : std::get<std::vector<ParameterScalar>>(*parsed))
-                options.thresholds.push_back(std::get<Length>(item));
-    }
-    options.self_intersections = scalar<bool>(keys.find("self-intersections"),
-                                              spec_of(ParameterType::boolean, std::nullopt, std::nullopt), diagnostics);
-    keys.complain_of_others();
-    return options;
-}
-
-Settings parse_settings(const YamlNode& node, Diagnostics& diagnostics) {
-    Settings settings;
-    if (!require_map(node, "a map of parameters, as {max-error: 0.1 %diag}", diagnostics)) return settings;
-    for (const YamlEntry& entry : node.entries) {
-        if (!require_name(entry.key, entry.position, "a parameter", diagnostics)) continue;
-        ValueExpression value = value_expression(entry.value, diagnostics);
-        std::erase_if(value.values, [&](const WrittenValue& written) {
-            if (!written.uses.empty())
-                diagnostics.error(written.uses.front().position,
-                                  "a setting cannot refer to a parameter; write the value");
-            return !written.uses.empty();
-        });
-        if (value.values.empty()) continue;  // and that is reported
-        value.position = entry.position;
-        settings.emplace(entry.key, std::move(value));
-    }
-    return settings;
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* batch_forms = "a batch: a map that begins with `scanmill: 1` and `batch: NAME`";
 
 class BatchParser {
 public:
-    BatchParser(const FilterLibrary& library, Diagnostics& diagnostics)
-        : library_(library),
-          diagnostics_(diagnostics),
+    explicit BatchParser(Diagnostics& diagnostics)
+        : diagnostics_(diagnostics),
           folder_(fs::path(diagnostics.file()).parent_path()) {}
 
     Batch batch(const YamlNode& root) {
@@ -187,10 +115,12 @@ public:
             batch.settings = parse_settings(entry->value, diagnostics_);
         if (const YamlEntry* entry = given(keys.find("limits")))
             batch.limits = parse_limits(entry->value, diagnostics_);
-        if (const YamlEntry* entry = given(keys.find("measure")))
-            batch.measure = parse_measure(entry->value, diagnostics_);
-        if (const YamlEntry* entry = given(keys.find("gate")))
-            batch.gate = parse_gate(entry->value, library_, diagnostics_);
+        for (const char* key : {"measure", "gate"})
+            if (const YamlEntry* entry = keys.find(key))
+                diagnostics_.error(entry->position, fmt::format("nothing acts on `{}` in this version: batches neither "
+                                                                "measure results nor compare them with earlier runs; "
+                                                                "remove it, or use the filter measure in the workflow",
+                                                                key));
         keys.complain_of_others();
         return batch;
     }
@@ -243,7 +173,6 @@ private:
                                                           *text, earlier->second));
     }
 
-    const FilterLibrary& library_;
     Diagnostics& diagnostics_;
     fs::path folder_;
     std::map<fs::path, int> line_of_;
@@ -251,9 +180,9 @@ private:
 
 }  // namespace
 
-Batch parse_batch(const std::string& text, const FilterLibrary& library, Diagnostics& diagnostics) {
+Batch parse_batch(const std::string& text, Diagnostics& diagnostics) {
     const YamlNode root = parse_yaml(text, diagnostics);
-    return BatchParser(library, diagnostics).batch(root);
+    return BatchParser(diagnostics).batch(root);
 }
 
 bool is_batch(const std::string& text) {

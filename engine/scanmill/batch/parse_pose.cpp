@@ -11,7 +11,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/quantity.hpp"
 #include "scanmill/formats/common/reading.hpp"
-#include "scanmill/formats/poses/rotation.hpp"
+#include "scanmill/kinds/transform.hpp"
 #include "scanmill/workflow/grammar.hpp"
 
 namespace scanmill {

@@ -7,9 +7,9 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/batch/parse_pose.hpp"
-#include "scanmill/batch/parse_settings.hpp"
 #include "scanmill/io/regular_file.hpp"
 #include "scanmill/workflow/grammar.hpp"
+#include "scanmill/workflow/parse_value.hpp"
 
 namespace scanmill {
 
@@ -292,6 +292,25 @@ private:
 
 std::vector<BatchScan> parse_scans(const YamlNode& node, const fs::path& folder, Diagnostics& diagnostics) {
     return ScansParser(folder, diagnostics).scans(node);
+}
+
+Settings parse_settings(const YamlNode& node, Diagnostics& diagnostics) {
+    Settings settings;
+    if (!require_map(node, "a map of parameters, as {max-error: 0.1 %diag}", diagnostics)) return settings;
+    for (const YamlEntry& entry : node.entries) {
+        if (!require_name(entry.key, entry.position, "a parameter", diagnostics)) continue;
+        ValueExpression value = value_expression(entry.value, diagnostics);
+        std::erase_if(value.values, [&](const WrittenValue& written) {
+            if (!written.uses.empty())
+                diagnostics.error(written.uses.front().position,
+                                  "a setting cannot refer to a parameter; write the value");
+            return !written.uses.empty();
+        });
+        if (value.values.empty()) continue;  // and that is reported
+        value.position = entry.position;
+        settings.emplace(entry.key, std::move(value));
+    }
+    return settings;
 }
 
 }  // namespace scanmill

@@ -24,4 +24,7 @@ std::vector<std::filesystem::path> scan_files(const std::filesystem::path& folde
 /// Paths count from `folder`. What is wrong is reported and left out.
 std::vector<BatchScan> parse_scans(const YamlNode& node, const std::filesystem::path& folder, Diagnostics& diagnostics);
 
+/// The values under `set:`; each one's position is that of its name. What is wrong is reported and left out.
+Settings parse_settings(const YamlNode& node, Diagnostics& diagnostics);
+
 }  // namespace scanmill

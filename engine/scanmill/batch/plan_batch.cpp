@@ -42,7 +42,7 @@ public:
     BatchPlanner(const std::string& text, const std::string& file, const FilterLibrary& library)
         : library_(library),
           batch_diagnostics_(file) {
-        checked_.batch = parse_batch(text, library, batch_diagnostics_);
+        checked_.batch = parse_batch(text, batch_diagnostics_);
     }
 
     CheckedBatch checked() {

@@ -34,7 +34,7 @@ inline Metrics metrics_from(const nlohmann::json& rows) {
 
 struct ResultOutput {
     std::string port;
-    Kind kind = Kind::points;
+    Kind kind = kind_of<PointCloud>();
     std::string content;  ///< EncodedValue::content()
     u64 bytes = 0;  ///< of its value file
 

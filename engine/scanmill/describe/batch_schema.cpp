@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/describe/batch_schema.hpp"
 
-#include "scanmill/batch/gate.hpp"
-#include "scanmill/batch/parse_limits.hpp"
-#include "scanmill/describe/parameter_schema.hpp"
+#include "scanmill/batch/batch.hpp"
 #include "scanmill/describe/schema_parts.hpp"
-#include "scanmill/filter/constraint.hpp"
 
 namespace scanmill {
 
@@ -14,7 +11,6 @@ namespace {
 using schema::Json;
 using schema::object_of;
 
-constexpr const char* number = R"([+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?)";
 /// A number that is not 0.
 constexpr const char* positive = R"((?![+]?[0.]+([eE]|[^0-9.]|$))[+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?)";
 
@@ -82,49 +78,9 @@ Json limits() {
     return section(std::move(properties), "What one scan under one variant may cost.");
 }
 
-Json measure() {
-    ParameterSpec thresholds;
-    thresholds.type = ParameterType::length;
-    thresholds.low = Bound{0, false};
-    const Json length = value_schema(thresholds);
-    const Json several{{"type", "array"}, {"items", length}, {"minItems", 1}};
-    return section({{"samples",
-                     {{"type", "integer"},
-                      {"minimum", 1},
-                      {"maximum", most_samples},
-                      {"description", "Points drawn on every surface."}}},
-                    {"thresholds",
-                     {{"description", "Distances up to which a point counts as right."},
-                      {"anyOf", Json::array({length, several})}}},
-                    {"self-intersections", {{"type", "boolean"}, {"description", "Whether they are counted."}}}},
-                   "How results are compared with the truth.");
-}
-
-Json gate(const FilterLibrary& library) {
-    Json properties = Json::object();
-    for (const MetricSpec& metric : gate_metrics(library)) {
-        Json& rule = properties[metric.name];
-        const bool costs = metric.name == "seconds" || metric.name == "memory";
-        if (rule.is_null()) {
-            rule = {{"description", metric.help},
-                    {"anyOf", Json::array({text_of(number + std::string(" *%"), {"+1 %"})})}};
-            if (!costs) rule["anyOf"].push_back({{"const", "exact"}});
-        }
-        if (costs) continue;
-        if (metric.unit == Unit::length)
-            rule["anyOf"].push_back(
-                text_of(number + std::string(" *(u|%diag|spacing|um|mm|cm|m|in|ft)"), {"+0.2 mm", "+0.1 %diag"}));
-        if (metric.unit == Unit::count || metric.unit == Unit::number || metric.unit == Unit::ratio) {
-            rule["anyOf"].push_back({{"type", "number"}, {"minimum", 0}});
-            rule["anyOf"].push_back(text_of(number, {"+3"}));  // a plus sign makes it a text for some readers
-        }
-    }
-    return section(std::move(properties), "By how much a metric may get worse from one run to the next.");
-}
-
 }  // namespace
 
-std::string batch_schema(const FilterLibrary& library) {
+std::string batch_schema() {
     const Json files{{"type", "array"}, {"items", path("A workflow file.")}, {"minItems", 1}};
     return schema::document("Scanmill batch", Json::array({"scanmill", "batch", "scans", "workflows"}),
                             {{"scanmill", {{"const", 1}, {"description", "The version of the grammar."}}},
@@ -140,9 +96,7 @@ std::string batch_schema(const FilterLibrary& library) {
                                 "The workflows that every scan runs under; paths count from the batch file's folder."},
                                {"anyOf", Json::array({path("A workflow file."), files})}}},
                              {"set", settings()},
-                             {"limits", limits()},
-                             {"measure", measure()},
-                             {"gate", gate(library)}})
+                             {"limits", limits()}})
                .dump(2) +
            "\n";
 }

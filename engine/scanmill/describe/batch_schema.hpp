@@ -7,11 +7,9 @@
 
 #include <string>
 
-#include "scanmill/plugin/library.hpp"
-
 namespace scanmill {
 
-/// Indented JSON with a trailing newline; equal filters give equal bytes.
-std::string batch_schema(const FilterLibrary& library);
+/// Indented JSON with a trailing newline; always the same bytes.
+std::string batch_schema();
 
 }  // namespace scanmill

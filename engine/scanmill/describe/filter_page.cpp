@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view generated = "<!-- Written by `scanmill docs` from the filters' declarations. -->\n";
 
-bool is_readable(Kind kind) { return kind == Kind::points || kind == Kind::mesh; }
+bool is_readable(Kind kind) { return kind == kind_of<PointCloud>() || kind == kind_of<TriangleMesh>(); }
 
 /// A value that the parameter would take, for examples of required ones.
 std::string sample(const ParameterSpec& parameter) {
@@ -150,7 +150,7 @@ std::string example_workflow(const FilterSpec& spec, const FilterLibrary& librar
     example += "steps:\n";
     for (const FilterSpec* step : steps) example += example_step(*step, step == &spec) + example_wiring(*step);
     const Kind kind = spec.outputs.front().kind;
-    if (is_readable(kind) || kind == Kind::metrics || kind == Kind::features)
+    if (is_readable(kind) || kind.has_json())
         example += fmt::format("outputs:\n  \"{{scan}}.{}\": {}\n", is_readable(kind) ? "ply" : "json", spec.name);
     return example;
 }

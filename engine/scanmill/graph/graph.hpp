@@ -35,7 +35,7 @@ struct ParameterFile {
 struct LeafSource {
     std::filesystem::path file;
     std::string content;  ///< hash of the file's bytes
-    Kind kind = Kind::points;
+    Kind kind = kind_of<PointCloud>();
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: what the file says
     std::string frame;  ///< empty: what the file says
     std::optional<RigidTransform> pose;

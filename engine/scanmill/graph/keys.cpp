@@ -12,7 +12,7 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::string_view key_scheme = "3";
+constexpr std::string_view key_scheme = "4";
 
 /// Of everything that reads files: the core, and the modules of formats.
 std::string builds_of_readers(const std::string& core) {

@@ -57,7 +57,7 @@ bool is_streamed(const Plan& plan, std::size_t input) {
     for (const PlannedVariant& variant : plan.variants)
         for (const PlannedOutput& output : variant.outputs)
             if (output.source == scan) readers.add(false);
-    return plan.workflow.inputs[input].kind == Kind::points && readers.are_streamed();
+    return plan.workflow.inputs[input].kind == kind_of<PointCloud>() && readers.are_streamed();
 }
 
 void mark_streams(RunGraph& graph) {
@@ -68,8 +68,9 @@ void mark_streams(RunGraph& graph) {
         for (const RunOutput& output : cell.outputs) readers[output.node].add(false);
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         RunNode& node = graph.nodes[index];
-        node.leaf.is_streamed = !node.step && readers[index].are_streamed() && node.leaf.kind == Kind::points &&
-                                !node.leaf.pose && node.unreadable.empty() && may_be_point_stream(node.leaf.file);
+        node.leaf.is_streamed = !node.step && readers[index].are_streamed() &&
+                                node.leaf.kind == kind_of<PointCloud>() && !node.leaf.pose && node.unreadable.empty() &&
+                                may_be_point_stream(node.leaf.file);
     }
 }
 

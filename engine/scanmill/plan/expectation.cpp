@@ -8,7 +8,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/plan/properties.hpp"
+#include "scanmill/kinds/value.hpp"
 #include "scanmill/workflow/length_power.hpp"
 
 namespace scanmill {
@@ -29,8 +29,8 @@ ParameterSpec written_as(Unit unit) {
 
 std::vector<MetricSpec> expectable(const FilterSpec& spec) {
     std::vector<MetricSpec> askable = spec.metrics;
-    for (MetricSpec& fact : fact_specs(spec.outputs.front().kind))
-        if (!spec.metric(fact.name)) askable.push_back(std::move(fact));
+    for (const PropertySpec& property : property_specs(spec.outputs.front().kind))
+        if (!spec.metric(property.name)) askable.push_back({property.name, property.unit, property.help});
     return askable;
 }
 

@@ -114,7 +114,7 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
 void write_description(const fs::path& file, const std::string& sha256, const std::string& how, const Value& value,
                        const Metrics& facts) {
     Json json = Json::parse(how);
-    const Frame* frame = frame_of(value);
+    const std::optional<Frame> frame = frame_of(value);
     json["file"] = {{"name", file.filename().string()},
                     {"bytes", fs::file_size(file)},
                     {"sha256", sha256},

@@ -16,6 +16,12 @@ namespace scanmill {
 
 using Json = nlohmann::json;
 
+static Kind kind_from(const Json& json) {
+    const std::optional<Kind> kind = kind_named(json.get<std::string>());
+    if (!kind) throw Error("unknown kind {}", json.get<std::string>());
+    return *kind;
+}
+
 std::string bytes_of(const Json& json) {
     std::string bytes;
     Json::to_cbor(json, bytes);
@@ -164,7 +170,7 @@ JobMemory memory_from(const Json& row) {
 }
 
 Json to_json(const LeafSource& leaf) {
-    Json json{{"file", leaf.file.native()},          {"content", leaf.content}, {"kind", static_cast<int>(leaf.kind)},
+    Json json{{"file", leaf.file.native()},          {"content", leaf.content}, {"kind", leaf.kind.name()},
               {"unit", static_cast<int>(leaf.unit)}, {"frame", leaf.frame},     {"streamed", leaf.is_streamed}};
     if (leaf.pose) {
         const RigidTransform& pose = *leaf.pose;
@@ -178,7 +184,7 @@ Json to_json(const LeafSource& leaf) {
 LeafSource leaf_from(const Json& json) {
     LeafSource leaf{json.at("file").get<std::string>(),
                     json.at("content"),
-                    static_cast<Kind>(json.at("kind").get<int>()),
+                    kind_from(json.at("kind")),
                     static_cast<LengthUnit>(json.at("unit").get<int>()),
                     json.at("frame"),
                     {},
@@ -264,14 +270,14 @@ NodeReport node_from(const Json& json, const PlannedStep* step) {
 Json to_json(const OutputReport& output) {
     return {{"file", output.file.native()},
             {"outcome", static_cast<int>(output.outcome)},
-            {"kind", static_cast<int>(output.kind)},
+            {"kind", output.kind.name()},
             {"facts", rows_of(output.facts)},
             {"warnings", output.warnings}};
 }
 
 OutputReport output_from(const Json& json) {
     return {json.at("file").get<std::string>(), static_cast<Outcome>(json.at("outcome").get<int>()),
-            static_cast<Kind>(json.at("kind").get<int>()), metrics_from(json.at("facts")),
+            kind_from(json.at("kind")), metrics_from(json.at("facts")),
             json.at("warnings").get<std::vector<std::string>>()};
 }
 

@@ -70,7 +70,7 @@ struct NodeReport {
 struct OutputReport {
     std::filesystem::path file;
     Outcome outcome = Outcome::skipped;
-    Kind kind = Kind::points;
+    Kind kind = kind_of<PointCloud>();
     Metrics facts;
     std::vector<std::string> warnings;
 };

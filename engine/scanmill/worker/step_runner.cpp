@@ -8,9 +8,8 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/length_scale.hpp"
-#include "scanmill/kinds/placed.hpp"
+#include "scanmill/kinds/value.hpp"
 #include "scanmill/plan/expectation.hpp"
-#include "scanmill/plan/properties.hpp"
 
 namespace scanmill {
 
@@ -65,7 +64,7 @@ namespace {
 
 const Value* first_geometric(const std::vector<StepInput>& inputs) {
     const auto found =
-        std::ranges::find_if(inputs, [](const StepInput& input) { return frame_of(input.value) != nullptr; });
+        std::ranges::find_if(inputs, [](const StepInput& input) { return is_geometric(input.value.kind()); });
     return found == inputs.end() ? nullptr : &found->value;
 }
 
@@ -74,7 +73,7 @@ const Value* first_geometric(const std::vector<StepInput>& inputs) {
 LengthUnit common_unit(const std::vector<StepInput>& inputs) {
     const StepInput* known = nullptr;
     for (const StepInput& input : inputs) {
-        const Frame* frame = frame_of(input.value);
+        const std::optional<Frame> frame = frame_of(input.value);
         if (!frame || frame->unit == LengthUnit::unknown) continue;
         if (!known) known = &input;
         if (const LengthUnit unit = frame_of(known->value)->unit; unit != frame->unit)
@@ -90,7 +89,7 @@ Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, Context
     const LengthUnit unit = common_unit(inputs);
     Inputs result;
     for (const StepInput& input : inputs) {
-        const Frame* own = frame_of(input.value);
+        const std::optional<Frame> own = frame_of(input.value);
         if (!own) {
             result.add(input.port, input.value);
             continue;
@@ -113,13 +112,7 @@ void require_whole(const Outputs& outputs, const FilterSpec& spec) {
         if (kind_of(*value) != port.kind)
             throw Error("the filter {} gave {} at '{}', which it declares as {}", spec.name, name_of(kind_of(*value)),
                         port.name, name_of(port.kind));
-        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(value)) {
-            require_consistent(**mesh);
-            if ((*mesh)->triangles.empty()) throw Error("the result has no triangles");
-        }
-        if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(value);
-            points && (*points)->size() == 0)
-            throw Error("the result has no points");
+        port.kind.info().require_usable(value->object());
     }
 }
 
@@ -177,7 +170,7 @@ Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDe
 
 void require_expectations(const PlannedStep& step, const Value& primary, NodeReport& report) {
     if (step.expectations.empty()) return;
-    report.facts = facts_of(primary);
+    report.facts = properties_of(primary);
     Metrics known = report.facts;
     for (const Metric& metric : report.metrics.values) known.set(metric.name, metric.value, metric.unit);
     require_met(step.expectations, known, length_scale(primary));
@@ -185,20 +178,21 @@ void require_expectations(const PlannedStep& step, const Value& primary, NodeRep
 
 Value read_leaf(const LeafSource& leaf, const std::function<void(std::string)>& on_warning) {
     const ReadOptions options = reading(leaf, on_warning);
-    Value value;
-    if (leaf.kind == Kind::mesh)
-        value = read_mesh(leaf.file, options);
-    else
-        value = read_points(leaf.file, options);
+    Value value = leaf.kind == kind_of<PointCloud>()     ? Value(read_points(leaf.file, options))
+                  : leaf.kind == kind_of<TriangleMesh>() ? Value(read_mesh(leaf.file, options))
+                                                         : read_file(leaf.file, options).value;
+    if (value.kind() != leaf.kind)
+        throw Error("'{}': {} are needed; the file contains {}", leaf.file.string(), leaf.kind.name(),
+                    value.kind().name());
     if (leaf.pose) value = placed(value, *leaf.pose);
-    Frame frame = *frame_of(value);
-    return take_declared_name(leaf, frame.name, on_warning) ? reframed(value, frame) : value;
+    std::optional<Frame> frame = frame_of(value);
+    return frame && take_declared_name(leaf, frame->name, on_warning) ? reframed(value, *frame) : value;
 }
 
 std::shared_ptr<const PointStream> open_leaf(const LeafSource& leaf, unsigned threads,
                                              const std::function<void(std::string)>& on_warning,
                                              const OnWorldPositions& on_positions) {
-    assert(leaf.is_streamed && leaf.kind == Kind::points && !leaf.pose);
+    assert(leaf.is_streamed && leaf.kind == kind_of<PointCloud>() && !leaf.pose);
     std::shared_ptr<PointStream> scan = open_point_stream(leaf.file, reading(leaf, on_warning), threads, on_positions);
     if (!scan) return nullptr;
     if (std::string name = scan->frame().name; take_declared_name(leaf, name, on_warning)) scan->rename_frame(name);

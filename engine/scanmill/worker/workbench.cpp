@@ -11,7 +11,7 @@
 #include "scanmill/formats/files.hpp"
 #include "scanmill/graph/output_files.hpp"
 #include "scanmill/graph/streaming.hpp"
-#include "scanmill/plan/properties.hpp"
+#include "scanmill/kinds/value.hpp"
 #include "scanmill/plan/step_parameters.hpp"
 #include "scanmill/worker/file_description.hpp"
 #include "scanmill/worker/open_scans.hpp"
@@ -183,7 +183,7 @@ void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
     options.on_bytes = [&](std::string_view bytes) { hash.add(bytes); };
     write_file(work.file, *value, options);
     const auto known = facts_.find({work.value.node, work.value.from});
-    written.facts = known != facts_.end() ? known->second : facts_of(*value);
+    written.facts = known != facts_.end() ? known->second : properties_of(*value);
     constexpr std::size_t longest_name = NAME_MAX;
     if (description_of(work.file).filename().native().size() <= longest_name)
         write_description(work.file, hash.text(), work.made_how, *value, written.facts);
@@ -213,10 +213,8 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     if (uses_cache(work.memory)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
     Value value = read_leaf(work.leaf, on_warning);
     if (check) check->require();
-    if (const auto* points = std::get_if<std::shared_ptr<const PointCloud>>(&value))
-        report.node.facts.set("points", static_cast<double>((*points)->size()), Unit::count);
-    else if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&value))
-        report.node.facts.set("points", static_cast<double>((*mesh)->positions.size()), Unit::count);
+    if (is_geometric(value.kind()))
+        report.node.facts.set("points", static_cast<double>(positions_of(value).size()), Unit::count);
     values_[job.node] = {{"", std::move(value)}};
     remember(job, work.memory, work.memory.plan_key, said_of(work.leaf.file), seconds_since(start), report);
 }
@@ -246,7 +244,7 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
         outputs = known->outputs;
     } else if (learns) {
         const ValueName name = content.of(*scan, job.threads, check_cancelled);
-        outputs = {{"", Kind::points, name.content, name.bytes}};
+        outputs = {{"", kind_of<PointCloud>(), name.content, name.bytes}};
     }
     scans_.require_unchanged(job.node);
     report.result.outputs = std::move(outputs);

@@ -316,15 +316,18 @@ void WorkflowParser::input_kind(const YamlNode& node, WorkflowInput& input) {
     const std::optional<Kind> kind = kind_named(*text);
     if (!kind) {
         std::vector<std::string> kinds;
-        for (int i = 0; i <= static_cast<int>(Kind::metrics); ++i) kinds.emplace_back(name_of(static_cast<Kind>(i)));
+        for (const Kind each : all_kinds()) kinds.emplace_back(each.name());
         diagnostics_.error(scalar->position, fmt::format("'{}' is no kind; expected one of {}{}", *text, kind_names(),
                                                          did_you_mean(*text, kinds)));
-    } else if (*kind != Kind::points && *kind != Kind::mesh) {
+    } else if (*kind != kind_of<PointCloud>() && *kind != kind_of<TriangleMesh>() && !kind->has_json()) {
+        std::string readable = "points, mesh";
+        for (const Kind each : all_kinds())
+            if (each.has_json()) readable.append(", ").append(each.name());
         diagnostics_.error(
             scalar->position,
-            fmt::format("an input of kind {} cannot be read from a file; expected points or mesh", *text));
+            fmt::format("an input of kind {} cannot be read from a file; expected one of {}", *text, readable));
     }
-    input.kind = kind.value_or(Kind::points);
+    input.kind = kind.value_or(kind_of<PointCloud>());
 }
 
 void WorkflowParser::parameter(const YamlEntry& entry, Workflow& workflow) {

@@ -94,7 +94,7 @@ struct StepItem {
 struct WorkflowInput {
     std::string name;
     Position position;
-    Kind kind = Kind::points;
+    Kind kind = kind_of<PointCloud>();
     bool list = false;
     LengthUnit unit = LengthUnit::unknown;
     std::string frame;  ///< may hold {stem}, see input_frame.hpp; empty: what the file says

@@ -114,9 +114,9 @@ TEST(DeclareRun, InputsAndContext_AreHandedThrough) {
     const Outputs outputs = declared.run(inputs, {}, context);
     EXPECT_EQ(context.metrics().find("others")->value, 2);
     ASSERT_TRUE(outputs.find("points"));
-    EXPECT_EQ(std::get<std::shared_ptr<const PointCloud>>(*outputs.find("points"))->positions[0], Vec3(1, 2, 3));
+    EXPECT_EQ(outputs.find("points")->get<PointCloud>()->positions[0], Vec3(1, 2, 3));
     ASSERT_TRUE(outputs.find("mesh"));
-    EXPECT_EQ(kind_of(*outputs.find("mesh")), Kind::mesh);
+    EXPECT_EQ(kind_of(*outputs.find("mesh")), kind_of<TriangleMesh>());
     EXPECT_EQ(outputs.find("rest"), nullptr);
 }
 

@@ -21,16 +21,17 @@ TEST(Declare, FilterAndItsPorts_AreAsDeclaredAndInOrder) {
     EXPECT_EQ(spec.ties, "There are none.");
     EXPECT_EQ(spec.not_finite, help);
     EXPECT_EQ(spec.source, "Hand-made");
-    EXPECT_THAT(spec.inputs, ElementsAre(PortSpec{"points", Kind::points, help, false, false},
-                                         PortSpec{"mesh", Kind::mesh, help, false, true},
-                                         PortSpec{"others", Kind::points, help, true, false},
-                                         PortSpec{"tets", Kind::tets, help, true, true},
-                                         PortSpec{"truth", Kind::mesh, help, false, false, {Kind::points}}));
+    EXPECT_THAT(spec.inputs,
+                ElementsAre(PortSpec{"points", kind_of<PointCloud>(), help, false, false},
+                            PortSpec{"mesh", kind_of<TriangleMesh>(), help, false, true},
+                            PortSpec{"others", kind_of<PointCloud>(), help, true, false},
+                            PortSpec{"tets", kind_of<TetMesh>(), help, true, true},
+                            PortSpec{"truth", kind_of<TriangleMesh>(), help, false, false, {kind_of<PointCloud>()}}));
     EXPECT_EQ(kinds_text(spec.inputs.back()), "mesh or points");
-    EXPECT_TRUE(spec.inputs.back().takes(Kind::points));
-    EXPECT_FALSE(spec.inputs.back().takes(Kind::tets));
-    EXPECT_THAT(spec.outputs, ElementsAre(PortSpec{"mesh", Kind::mesh, help, false, false},
-                                          PortSpec{"numbers", Kind::metrics, help, false, false}));
+    EXPECT_TRUE(spec.inputs.back().takes(kind_of<PointCloud>()));
+    EXPECT_FALSE(spec.inputs.back().takes(kind_of<TetMesh>()));
+    EXPECT_THAT(spec.outputs, ElementsAre(PortSpec{"mesh", kind_of<TriangleMesh>(), help, false, false},
+                                          PortSpec{"numbers", kind_of<Metrics>(), help, false, false}));
     EXPECT_THAT(spec.metrics, ElementsAre(MetricSpec{"kept", Unit::count, help, true, true},
                                           MetricSpec{"error", Unit::length, help, false}));
 }

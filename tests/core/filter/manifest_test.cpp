@@ -36,13 +36,15 @@ Manifest everything() {
     spec.source = "Hand-made";
     spec.ties = "The first of equals stays.";
     spec.not_finite = "Refused with their number.";
-    for (const Kind kind : {Kind::points, Kind::mesh, Kind::tets, Kind::features, Kind::transform, Kind::metrics})
+    for (const Kind kind : {kind_of<PointCloud>(), kind_of<TriangleMesh>(), kind_of<TetMesh>(), kind_of<FeatureGraph>(),
+                            kind_of<RigidTransform>(), kind_of<Metrics>()})
         spec.outputs.push_back({std::string(name_of(kind)), kind, "Gives one of these.", false, false});
-    spec.inputs = {{"plain", Kind::points, "Takes points.", false, false},
-                   {"some", Kind::mesh, "Takes meshes.", true, false},
-                   {"maybe", Kind::tets, "Takes tets.", false, true},
-                   {"both", Kind::tets, "Takes tets.", true, true},
-                   {"either", Kind::mesh, "Takes meshes or points.", false, false, {Kind::points}}};
+    spec.inputs = {
+        {"plain", kind_of<PointCloud>(), "Takes points.", false, false},
+        {"some", kind_of<TriangleMesh>(), "Takes meshes.", true, false},
+        {"maybe", kind_of<TetMesh>(), "Takes tets.", false, true},
+        {"both", kind_of<TetMesh>(), "Takes tets.", true, true},
+        {"either", kind_of<TriangleMesh>(), "Takes meshes or points.", false, false, {kind_of<PointCloud>()}}};
     spec.parameters = {parameter("flag", ParameterType::boolean, ParameterScalar(false)),
                        parameter("count", ParameterType::integer, ParameterScalar(std::int64_t(-9007199254740993))),
                        parameter("weight", ParameterType::number, ParameterScalar(0.1 + 0.2)),
@@ -107,7 +109,7 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.not_finite = "?"; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.inputs[0].list = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.inputs[0].optional = true; }));
-    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.inputs[0].also = {Kind::mesh}; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.inputs[0].also = {kind_of<TriangleMesh>()}; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[2].low->inclusive = false; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[9].size.reset(); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[11].required = false; }));
@@ -119,7 +121,7 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
 
 TEST(Manifest, Stream_ReadsBackEqual) {
     Manifest manifest = everything();
-    manifest.spec.inputs = {{"points", Kind::points, "Takes points.", false, false}};
+    manifest.spec.inputs = {{"points", kind_of<PointCloud>(), "Takes points.", false, false}};
     for (const std::vector<std::string>& given : {std::vector<std::string>{}, {"alpha"}}) {
         manifest.spec.streams = StreamSpec{given};
         ASSERT_NO_THROW(require_sound(manifest.spec));

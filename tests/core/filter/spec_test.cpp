@@ -28,8 +28,9 @@ FilterSpec sound_spec() {
     spec.source = "Wang 2006";
     spec.ties = "The first of equals stays.";
     spec.not_finite = "Refused with their number.";
-    spec.inputs = {{"points", Kind::points, help, false, false}};
-    spec.outputs = {{"points", Kind::points, help, false, false}, {"rest", Kind::points, help, false, false}};
+    spec.inputs = {{"points", kind_of<PointCloud>(), help, false, false}};
+    spec.outputs = {{"points", kind_of<PointCloud>(), help, false, false},
+                    {"rest", kind_of<PointCloud>(), help, false, false}};
     spec.parameters = {number_parameter("bin-size"), number_parameter("k2")};
     spec.metrics = {{"kept", Unit::count, help, true}};
     return spec;
@@ -126,7 +127,7 @@ TEST(RequireSound, TiesAndNan_AreSpokenOfWhereTheyCanCome) {
     spec.inputs.clear();
     spec.ties = spec.not_finite = "";
     EXPECT_NO_THROW(require_sound(spec));
-    spec.inputs.push_back({"tets", Kind::tets, help, false, false});
+    spec.inputs.push_back({"tets", kind_of<TetMesh>(), help, false, false});
     spec.ties = "The first of equals stays.";
     EXPECT_NO_THROW(require_sound(spec));
 }
@@ -213,10 +214,14 @@ TEST(RequireSound, Stream_IsOfOneCloudAndAsksForParametersThatMayLackAValue) {
         "filter voxel-thin: only a filter whose one input is a cloud of points can take it as a "
         "stream";
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.clear(); }), other);
-    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().kind = Kind::mesh; }), other);
+    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().kind = kind_of<TriangleMesh>(); }), other);
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().list = true; }), other);
-    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().also = {Kind::mesh}; }), other);
-    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.push_back({"more", Kind::points, help}); }), other);
+    EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().also = {kind_of<TriangleMesh>()}; }), other);
+    EXPECT_EQ(with_stream({},
+                          [](FilterSpec& spec) {
+                              spec.inputs.push_back({"more", kind_of<PointCloud>(), help});
+                          }),
+              other);
 }
 
 TEST(FilterSpec, Parts_AreFoundByName) {

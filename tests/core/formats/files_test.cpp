@@ -5,7 +5,7 @@
 #include <csignal>
 #include <limits>
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 #include "scanmill/data/conversions.hpp"
 #include "scanmill/formats/common/format.hpp"
 
@@ -80,17 +80,17 @@ TEST(ReadMesh_OfPoints, IsRefusedWithAWayOut) {
 }
 
 TEST(CanWrite_Table, KnowsExtensionsInAnyCase_AndKinds) {
-    EXPECT_TRUE(can_write("ply", Kind::points));
-    EXPECT_TRUE(can_write(".STL", Kind::mesh));
-    EXPECT_FALSE(can_write("stl", Kind::points));
-    EXPECT_FALSE(can_write("xyz", Kind::mesh));
-    EXPECT_FALSE(can_write("", Kind::mesh));
-    EXPECT_FALSE(can_write("ply", Kind::metrics));
+    EXPECT_TRUE(can_write("ply", kind_of<PointCloud>()));
+    EXPECT_TRUE(can_write(".STL", kind_of<TriangleMesh>()));
+    EXPECT_FALSE(can_write("stl", kind_of<PointCloud>()));
+    EXPECT_FALSE(can_write("xyz", kind_of<TriangleMesh>()));
+    EXPECT_FALSE(can_write("", kind_of<TriangleMesh>()));
+    EXPECT_FALSE(can_write("ply", kind_of<Metrics>()));
     // Formats of modules follow, when they were built.
-    EXPECT_TRUE(writable_extensions(Kind::mesh).starts_with("ply, stl, off, obj"));
-    EXPECT_TRUE(writable_extensions(Kind::points).starts_with("ply, xyz, txt"));
-    EXPECT_EQ(writable_extensions(Kind::metrics), "json");
-    EXPECT_EQ(writable_extensions(Kind::transform), "");
+    EXPECT_TRUE(writable_extensions(kind_of<TriangleMesh>()).starts_with("ply, stl, off, obj"));
+    EXPECT_TRUE(writable_extensions(kind_of<PointCloud>()).starts_with("ply, xyz, txt"));
+    EXPECT_EQ(writable_extensions(kind_of<Metrics>()), "json");
+    EXPECT_EQ(writable_extensions(kind_of<RigidTransform>()), "");
 }
 
 TEST(WriteFile_Refuses, WhatCannotBe_LeavesNothing) {

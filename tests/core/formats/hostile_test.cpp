@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -201,11 +201,11 @@ std::vector<std::pair<std::string, std::string>> seeds() {
 bool is_read(const std::string& bytes, const std::string& name) {
     try {
         const LoadedFile loaded = read_bytes(bytes, name);
-        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&loaded.value)) {
-            require_consistent(**mesh);
-            EXPECT_FALSE((*mesh)->positions.empty());
+        if (const auto* mesh = loaded.value.find<TriangleMesh>()) {
+            require_consistent(*mesh);
+            EXPECT_FALSE(mesh->positions.empty());
         } else {
-            const auto& cloud = std::get<std::shared_ptr<const PointCloud>>(loaded.value);
+            const auto& cloud = loaded.value.get<PointCloud>();
             EXPECT_GT(cloud->size(), 0u);
             for (const Column& column : cloud->columns) EXPECT_EQ(column.rows(), cloud->size());
         }

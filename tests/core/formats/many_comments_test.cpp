@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// What comments declare counts wherever it stands, however many there are.
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 
 namespace scanmill::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 #include "support/real_data.hpp"
 
 namespace scanmill::test {
@@ -34,11 +34,11 @@ inline void expect_as_stated(const MeshSample& sample, const fs::path& folder) {
     Told told;
     try {
         const LoadedFile loaded = read_file(folder / sample.file, told.reading());
-        if (const auto* cloud = std::get_if<std::shared_ptr<const PointCloud>>(&loaded.value)) {
-            EXPECT_EQ((*cloud)->size(), sample.vertices);
+        if (const auto* cloud = loaded.value.find<PointCloud>()) {
+            EXPECT_EQ(cloud->size(), sample.vertices);
             EXPECT_EQ(sample.triangles, 0u);
         } else {
-            const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(loaded.value);
+            const TriangleMesh& mesh = *loaded.value.get<TriangleMesh>();
             require_consistent(mesh);
             EXPECT_EQ(mesh.positions.size(), sample.vertices);
             EXPECT_EQ(mesh.triangles.size(), sample.triangles);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scans that others wrote, with the counts that are known of them.
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 #include "support/real_data.hpp"
 
 namespace scanmill::test {
@@ -20,7 +20,7 @@ TEST(Readers_RealScan, BunnyOfStanford_HasItsKnownCountsAndBounds) {
 TEST(Readers_RealScan, RawRangeScan_IsAPointCloudWithoutItsGrid) {
     SCANMILL_REAL_SCAN(path, shared_data, "1-bunny/raw/bun000.ply");
     Told told;
-    EXPECT_EQ(std::get<std::shared_ptr<const PointCloud>>(read_file(path, told.reading()).value)->size(), 40256u);
+    EXPECT_EQ(read_file(path, told.reading()).value.get<PointCloud>()->size(), 40256u);
     EXPECT_THAT(told.sentences, testing::ElementsAre(testing::HasSubstr("204800 rows")));
 }
 

@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 #include "support/real_data.hpp"
 
 namespace scanmill::test {

@@ -35,13 +35,11 @@ inline void put_file(const fs::path& path, std::string_view content) {
 }
 
 inline std::shared_ptr<const PointCloud> points_in(std::string_view bytes, const char* name, Told* told = nullptr) {
-    return std::get<std::shared_ptr<const PointCloud>>(
-        read_bytes(bytes, name, told ? told->reading() : ReadOptions{}).value);
+    return read_bytes(bytes, name, told ? told->reading() : ReadOptions{}).value.get<PointCloud>();
 }
 
 inline std::shared_ptr<const TriangleMesh> mesh_in(std::string_view bytes, const char* name, Told* told = nullptr) {
-    return std::get<std::shared_ptr<const TriangleMesh>>(
-        read_bytes(bytes, name, told ? told->reading() : ReadOptions{}).value);
+    return read_bytes(bytes, name, told ? told->reading() : ReadOptions{}).value.get<TriangleMesh>();
 }
 
 /// The sentence of the Error that reading throws.

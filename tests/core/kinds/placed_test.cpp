@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// Values moved by a pose.
-#include "scanmill/kinds/placed.hpp"
+#include "scanmill/kinds/value.hpp"
 
 #include <gmock/gmock.h>
 
@@ -19,7 +19,7 @@ Value points(Array<Vec3> positions, Frame frame = {}, ColumnTable columns = {}) 
     return std::make_shared<const PointCloud>(PointCloud{frame, std::move(positions), std::move(columns)});
 }
 
-const PointCloud& cloud(const Value& value) { return *std::get<std::shared_ptr<const PointCloud>>(value); }
+const PointCloud& cloud(const Value& value) { return *value.get<PointCloud>(); }
 
 Vec3 world(const PointCloud& points, std::size_t row) { return points.frame.origin + points.positions[row]; }
 
@@ -111,7 +111,7 @@ TEST(Placed, Mesh_MovesWithTheNormalsOfItsVerticesAndFaces) {
     mesh.vertex_columns.add(normals(Array<double>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
     mesh.face_columns.add(normals(Array<double>{0, 1, 0}));
     const Value value = placed(std::make_shared<const TriangleMesh>(mesh), quarter_turn(Vec3(0, 0, 1)));
-    const TriangleMesh& moved = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    const TriangleMesh& moved = *value.get<TriangleMesh>();
     EXPECT_EQ(moved.positions[1], Vec3(0, 1, 0));
     EXPECT_EQ(moved.positions[2], Vec3(-1, 0, 0));
     EXPECT_EQ(moved.frame.origin, Vec3(0, 0, 1));

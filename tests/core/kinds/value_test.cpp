@@ -20,17 +20,17 @@ void expect_kind(Kind kind, std::string_view name, bool geometric) {
     EXPECT_EQ(name_of(kind), name);
     EXPECT_EQ(kind_named(name), kind);
     EXPECT_EQ(is_geometric(kind), geometric);
-    EXPECT_EQ(frame_of(value_of(T{})) != nullptr, geometric) << "a frame goes with positions";
-    EXPECT_NE(kind_names().find(name), std::string_view::npos);
+    EXPECT_EQ(frame_of(value_of(T{})).has_value(), geometric) << "a frame goes with positions";
+    EXPECT_NE(kind_names().find(name), std::string::npos);
 }
 
 TEST(Kind, EveryKind_HasItsNameItsTypeAndMaybeAFrame) {
-    expect_kind<PointCloud>(Kind::points, "points", true);
-    expect_kind<TriangleMesh>(Kind::mesh, "mesh", true);
-    expect_kind<TetMesh>(Kind::tets, "tets", true);
-    expect_kind<FeatureGraph>(Kind::features, "features", true);
-    expect_kind<RigidTransform>(Kind::transform, "transform", false);
-    expect_kind<Metrics>(Kind::metrics, "metrics", false);
+    expect_kind<PointCloud>(kind_of<PointCloud>(), "points", true);
+    expect_kind<TriangleMesh>(kind_of<TriangleMesh>(), "mesh", true);
+    expect_kind<TetMesh>(kind_of<TetMesh>(), "tets", true);
+    expect_kind<FeatureGraph>(kind_of<FeatureGraph>(), "features", true);
+    expect_kind<RigidTransform>(kind_of<RigidTransform>(), "transform", false);
+    expect_kind<Metrics>(kind_of<Metrics>(), "metrics", false);
 }
 
 TEST(Kind, UnknownName_IsNoKind) {
@@ -49,7 +49,7 @@ TYPED_TEST(Reframed, OtherOrigin_KeepsWorldPositions) {
     object.frame = {LengthUnit::metre, Vec3(500, 0, 7), "site"};
     object.positions = {Vec3(1, 2, 3), Vec3(-4, 0, 0.5)};
     const Value moved = reframed(value_of(object), far_away);
-    const auto& result = *std::get<std::shared_ptr<const TypeParam>>(moved);
+    const auto& result = *moved.get<TypeParam>();
     EXPECT_EQ(result.frame, far_away) << "unit and name are set, not converted";
     for (std::size_t i = 0; i < 2; ++i)
         EXPECT_EQ(result.positions[i] + far_away.origin, object.positions[i] + object.frame.origin);
@@ -67,7 +67,7 @@ TYPED_TEST(Reframed, OtherUnitOnly_LeavesPositionsWhereTheyAre) {
     TypeParam object;
     object.positions = {Vec3(1, 2, 3)};
     const Value moved = reframed(value_of(object), {LengthUnit::inch, Vec3::Zero(), ""});
-    const auto& result = *std::get<std::shared_ptr<const TypeParam>>(moved);
+    const auto& result = *moved.get<TypeParam>();
     EXPECT_EQ(result.frame.unit, LengthUnit::inch);
     EXPECT_EQ(result.positions.data(), object.positions.data()) << "the memory is shared";
 }
@@ -77,7 +77,7 @@ TEST(ReframedMesh, EverythingButPositions_IsCarried) {
     mesh.vertex_columns.add(Column("id", 1, Buffer<u32>{0, 1, 2, 3, 4, 5, 6, 7}));
     mesh.sharp_edges = {make_edge(0, 1)};
     const Value moved = reframed(value_of(mesh), far_away);
-    const auto& result = *std::get<std::shared_ptr<const TriangleMesh>>(moved);
+    const auto& result = *moved.get<TriangleMesh>();
     EXPECT_TRUE(std::ranges::equal(result.triangles, mesh.triangles));
     EXPECT_EQ(result.vertex_columns, mesh.vertex_columns);
     EXPECT_TRUE(std::ranges::equal(result.sharp_edges, mesh.sharp_edges));
@@ -86,10 +86,10 @@ TEST(ReframedMesh, EverythingButPositions_IsCarried) {
 TEST(ReframedTransform, WithoutPositions_ComesBackAsItIs) {
     const Value transform = value_of(RigidTransform{});
     EXPECT_EQ(reframed(transform, far_away), transform);
-    EXPECT_EQ(frame_of(transform), nullptr);
+    EXPECT_FALSE(frame_of(transform).has_value());
 }
 
-TEST(FrameOf, Geometry_PointsIntoTheValue) {
+TEST(FrameOf, Geometry_IsItsFrame) {
     PointCloud cloud;
     cloud.frame = far_away;
     const Value value = value_of(cloud);

@@ -18,7 +18,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-const FormatManifest manifest{abi_text(), {"ABC", {"abc", "abcd"}, {"#ABC", "abc "}, {Kind::points}}};
+const FormatManifest manifest{abi_text(), {"ABC", {"abc", "abcd"}, {"#ABC", "abc "}, {kind_of<PointCloud>()}}};
 
 std::string refusal(const Format& row) {
     return sentence_of([&] { row.read({"a.abc", "#ABC"}, {}); });
@@ -54,8 +54,8 @@ TEST(FormatModules, Recognition_NeedsNoCode) {
     EXPECT_EQ(rows[0].recognises("#ABC 1\n", 7), Recognition::certain);
     EXPECT_EQ(rows[0].recognises("# ABC\n", 6), Recognition::no);
     EXPECT_TRUE(rows[0].has_extension(".ABCD"));
-    EXPECT_TRUE(rows[0].writer(Kind::points));
-    EXPECT_FALSE(rows[0].writer(Kind::mesh));
+    EXPECT_TRUE(rows[0].writer(kind_of<PointCloud>()));
+    EXPECT_FALSE(rows[0].writer(kind_of<TriangleMesh>()));
     EXPECT_THAT(refusal(rows[0]), HasSubstr("cannot be loaded")) << "only now the module is opened";
 }
 

@@ -3,6 +3,8 @@
 
 #include "scanmill/plugin/library.hpp"
 
+#include "scanmill/base/hash.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -27,7 +29,7 @@ Manifest manifest_of(const std::string& name, const std::string& summary = "Is t
     manifest.spec.name = name;
     manifest.spec.summary = summary;
     manifest.spec.source = "Hand-made";
-    manifest.spec.outputs = {{"mesh", Kind::mesh, "Gives a mesh.", false, false}};
+    manifest.spec.outputs = {{"mesh", kind_of<TriangleMesh>(), "Gives a mesh.", false, false}};
     return manifest;
 }
 

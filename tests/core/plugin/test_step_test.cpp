@@ -22,12 +22,8 @@ protected:
         values.emplace_back("length", ParameterScalar(Length(0.5)));
         return library_.load("test-step").run(inputs_, {std::move(values)}, context_);
     }
-    const PointCloud& points(const Outputs& outputs) {
-        return *std::get<std::shared_ptr<const PointCloud>>(*outputs.find("points"));
-    }
-    const TriangleMesh& mesh(const Outputs& outputs) {
-        return *std::get<std::shared_ptr<const TriangleMesh>>(*outputs.find("mesh"));
-    }
+    const PointCloud& points(const Outputs& outputs) { return *outputs.find("points")->get<PointCloud>(); }
+    const TriangleMesh& mesh(const Outputs& outputs) { return *outputs.find("mesh")->get<TriangleMesh>(); }
 
     FilterLibrary library_{{SCANMILL_TEST_PLUGIN_DIR}};
     Inputs inputs_;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "scanmill/formats/files.hpp"
 #include "scanmill/formats/open_point_stream.hpp"
 #include "scanmill/plugin/library.hpp"
 #include "support/same_points.hpp"
@@ -11,9 +12,7 @@
 namespace scanmill::test {
 namespace {
 
-const PointCloud& points(const Outputs& outputs) {
-    return *std::get<std::shared_ptr<const PointCloud>>(*outputs.find("points"));
-}
+const PointCloud& points(const Outputs& outputs) { return *outputs.find("points")->get<PointCloud>(); }
 
 TEST(TestStream, GivesTheFirstPointAndTheLast_BothWays) {
     const TemporaryFolder folder;

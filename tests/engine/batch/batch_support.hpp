@@ -22,7 +22,7 @@ protected:
     /// Parses it, remembering the batch; findings begin with "b:".
     std::vector<std::string> findings(const std::string& text) {
         Diagnostics diagnostics(file());
-        batch_ = parse_batch(text, library_, diagnostics);
+        batch_ = parse_batch(text, diagnostics);
         return texts(diagnostics);
     }
     /// The same of lines that follow a sound beginning; the first is line 5.

@@ -32,8 +32,6 @@ scans:
 workflows: [w.yaml, other.yaml]
 set: {n: {sweep: [1, 3]}, s: 0.1 %diag}
 limits: {memory: 8 GiB, time: 10 min, step: {memory: 500 MB, time: 2.5 s}, retries: 1}
-measure: {samples: 1000, thresholds: [0.5 %diag, 1 mm], self-intersections: false}
-gate: {hausdorff: +1 %, genus: exact, seconds: +20 %, max: +0.2 mm, components: +3, kept: 7}
 )"),
                 IsEmpty());
     EXPECT_EQ(batch_.file, file());
@@ -58,26 +56,11 @@ gate: {hausdorff: +1 %, genus: exact, seconds: +20 %, max: +0.2 mm, components: 
     EXPECT_EQ(batch_.settings.at("n").values.size(), 2u);
     EXPECT_EQ(batch_.settings.at("s").position, (Position{8, 27})) << "of the name";
     EXPECT_EQ(batch_.limits, (Limits{u64(8) << 30, 500'000'000, 600, 2.5, 1}));
-    EXPECT_EQ(batch_.measure.samples, 1000);
-    EXPECT_THAT(batch_.measure.thresholds,
-                ElementsAre(Length::percent_of_diagonal(0.5), Length(1, Length::In::millimetre)));
-    EXPECT_EQ(batch_.measure.self_intersections, false);
-    ASSERT_EQ(batch_.gate.size(), 6u);
-    EXPECT_EQ(batch_.gate[0].metric, "hausdorff");
-    EXPECT_EQ(batch_.gate[0].text, "+1 %");
-    EXPECT_EQ(batch_.gate[0].position, (Position{11, 8}));
-    EXPECT_EQ(std::get<Ratio>(batch_.gate[0].allowed).value(), 0.01);
-    EXPECT_TRUE(std::holds_alternative<Unchanged>(batch_.gate[1].allowed));
-    EXPECT_EQ(std::get<Length>(batch_.gate[3].allowed), Length(0.2, Length::In::millimetre));
-    EXPECT_EQ(std::get<double>(batch_.gate[4].allowed), 3);
-    EXPECT_EQ(std::get<double>(batch_.gate[5].allowed), 7) << "a metric of the filter thin";
 }
 
 TEST_F(BatchFile, WhatIsNotSaid_HasNoLimitAndNoOpinion) {
-    EXPECT_THAT(rest("set:\nlimits:\nmeasure:\ngate:\n"), IsEmpty());
+    EXPECT_THAT(rest("set:\nlimits:\n"), IsEmpty());
     EXPECT_EQ(batch_.limits, Limits{});
-    EXPECT_FALSE(batch_.measure.samples);
-    EXPECT_TRUE(batch_.gate.empty());
 }
 
 TEST_F(BatchFile, ManyMistakes_AreAllFoundInOneGoWithTheirPlace) {
@@ -93,15 +76,14 @@ measure: {sample: 1}
 gate: {hausdorf: exact}
 sumary: It.
 )"),
-        ElementsAre(
-            AllOf(StartsWith("b:4:5: no file matches 'scans/*.plyy'; looked in '"), HasSubstr("/scans'")),
-            StartsWith("b:5:31: 'yard' is no unit"), StartsWith("b:5:46: a setting cannot refer to a parameter"),
-            AllOf(StartsWith("b:6:13: "), HasSubstr("missing.yaml': there is no such file")),
-            "b:7:18: memory: '8' has no unit; expected a size, as 8 GiB",
-            AllOf(StartsWith("b:7:30: retries: 11 is out of range"), HasSubstr("at most 10")),
-            AllOf(StartsWith("b:8:11: measure has no key 'sample'"), HasSubstr("did you mean 'samples'?")),
-            AllOf(StartsWith("b:9:8: nothing is measured as 'hausdorf'"), HasSubstr("did you mean 'hausdorff'?")),
-            AllOf(StartsWith("b:10:1: a batch has no key 'sumary'"), HasSubstr("did you mean 'summary'?"))));
+        ElementsAre(AllOf(StartsWith("b:4:5: no file matches 'scans/*.plyy'; looked in '"), HasSubstr("/scans'")),
+                    StartsWith("b:5:31: 'yard' is no unit"),
+                    StartsWith("b:5:46: a setting cannot refer to a parameter"),
+                    AllOf(StartsWith("b:6:13: "), HasSubstr("missing.yaml': there is no such file")),
+                    "b:7:18: memory: '8' has no unit; expected a size, as 8 GiB",
+                    AllOf(StartsWith("b:7:30: retries: 11 is out of range"), HasSubstr("at most 10")),
+                    StartsWith("b:8:1: nothing acts on `measure`"), StartsWith("b:9:1: nothing acts on `gate`"),
+                    AllOf(StartsWith("b:10:1: a batch has no key 'sumary'"), HasSubstr("did you mean 'summary'?"))));
 }
 
 TEST_F(BatchFile, WithoutItsParts_SaysWhichAreMissing) {
@@ -145,32 +127,10 @@ TEST_F(BatchFile, LimitsThatAreNone_AreRefused) {
     EXPECT_THAT(rest("limits: 8 GiB\n"), ElementsAre(HasSubstr("expected a map of limits")));
 }
 
-TEST_F(BatchFile, MeasuresThatAreNone_AreRefused) {
-    const auto measure = [&](const std::string& text) { return rest("measure: {" + text + "}\n"); };
-    EXPECT_THAT(measure("samples: 0"), ElementsAre(HasSubstr("samples: 0 is out of range")));
-    EXPECT_THAT(measure("samples: 1000000001"), ElementsAre(HasSubstr("samples: 1000000001 is out of range")));
-    EXPECT_THAT(measure("thresholds: [1]"), ElementsAre(HasSubstr("thresholds: '1' has no unit")));
-    EXPECT_THAT(measure("thresholds: [0 mm]"), ElementsAre(HasSubstr("out of range")));
-    EXPECT_THAT(measure("thresholds: []"), ElementsAre(HasSubstr("the list is empty")));
-    EXPECT_THAT(measure("thresholds: [[1 mm]]"), ElementsAre(HasSubstr("found a list")));
-    EXPECT_THAT(measure("self-intersections: yes"), ElementsAre(HasSubstr("expected true or false")));
-    EXPECT_THAT(rest("measure: all\n"), ElementsAre(HasSubstr("found 'all'")));
-}
-
-TEST_F(BatchFile, GatesThatAreNone_AreRefusedWithWhatFits) {
-    const auto gate = [&](const std::string& text) { return rest("gate: {" + text + "}\n"); };
-    EXPECT_THAT(gate("hausdorff: +3"),
-                ElementsAre("b:5:19: hausdorff: '+3' does not fit it; expected exact, +1 %, +0.2 mm, +0.1 %diag"));
-    EXPECT_THAT(gate("genus: +1 mm"), ElementsAre("b:5:15: genus: '+1 mm' does not fit it; expected exact, +1 %, +3"));
-    EXPECT_THAT(gate("genus: -1"), ElementsAre(HasSubstr("genus: '-1' is out of range")));
-    EXPECT_THAT(gate("genus: inf"), ElementsAre(HasSubstr("genus: 'inf' is out of range")));
-    EXPECT_THAT(gate("hausdorff: -1 %"), ElementsAre(HasSubstr("out of range")));
-    EXPECT_THAT(gate("hausdorff: same"), ElementsAre(HasSubstr("hausdorff: 'same' is no rule; expected exact")));
-    EXPECT_THAT(gate("seconds: exact"), ElementsAre(HasSubstr("seconds: 'exact' does not fit it; expected +1 %")));
-    EXPECT_THAT(gate("volume: +1"), ElementsAre(HasSubstr("expected exact, +1 %")));
-    EXPECT_THAT(gate("genus: [1]"), ElementsAre(HasSubstr("found a list")));
-    EXPECT_THAT(rest("gate: strict\n"), ElementsAre(HasSubstr("expected a map from metrics")));
-    EXPECT_THAT(gate("genus: 0, closed: exact, f-score: +0.01, alpha: +1 u"), IsEmpty());
+TEST_F(BatchFile, KeysThatNothingActsOn_AreRefused) {
+    for (const std::string key : {"measure", "gate"})
+        for (const std::string value : {"", " {}", " all"})
+            EXPECT_THAT(rest(key + ":" + value + "\n"), ElementsAre(HasSubstr("nothing acts on `" + key + "`")));
 }
 
 TEST_F(BatchFile, SettingsThatAreNone_AreRefused) {

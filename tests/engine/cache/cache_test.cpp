@@ -4,6 +4,8 @@
 
 #include "scanmill/cache/cache.hpp"
 
+#include "scanmill/base/hash.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -36,13 +38,12 @@ Value line_of_points(std::size_t count) {
     return std::make_shared<const PointCloud>(std::move(cloud));
 }
 
-std::size_t size_of(const std::optional<Value>& value) {
-    return value ? std::get<std::shared_ptr<const PointCloud>>(*value)->size() : 0;
-}
+std::size_t size_of(const std::optional<Value>& value) { return value ? value->get<PointCloud>()->size() : 0; }
 
 StepResult some_result() {
     StepResult result;
-    result.outputs = {{"points", Kind::points, std::string(32, 'c'), 1234}, {"mesh", Kind::mesh, "", 0}};
+    result.outputs = {{"points", kind_of<PointCloud>(), std::string(32, 'c'), 1234},
+                      {"mesh", kind_of<TriangleMesh>(), "", 0}};
     result.resolved = {{"bin-size", {{"0.1 u"}, false}}, {"axis", {{"0", "1"}, true}}};
     result.metrics = {{{"kept", 17, Unit::count}, {"rms", std::numeric_limits<double>::quiet_NaN(), Unit::length}}};
     result.facts = {{{"points", 17, Unit::count}}};
@@ -175,7 +176,7 @@ TEST_F(CacheTest, EvictedWhileItIsRead_AValueStays) {
     const std::optional<Value> value = cache.value(encoded.content());
     EXPECT_GT(cache.evict(), 0u);
     EXPECT_FALSE(cache.has_value(encoded.content(), encoded.size()));
-    EXPECT_EQ(std::get<std::shared_ptr<const PointCloud>>(*value)->positions[999], Vec3(999, 0, 0));
+    EXPECT_EQ(value->get<PointCloud>()->positions[999], Vec3(999, 0, 0));
 }
 
 TEST_F(CacheTest, Clear_RemovesWhatIsTheCachesAndNothingElse) {

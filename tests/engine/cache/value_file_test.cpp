@@ -17,7 +17,7 @@ namespace {
 
 template <class T>
 const T& as(const Value& value) {
-    return *std::get<std::shared_ptr<const T>>(value);
+    return *value.get<T>();
 }
 
 template <class T>

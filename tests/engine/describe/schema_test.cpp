@@ -169,7 +169,7 @@ TEST_F(WorkflowSchema, EqualFilters_GiveEqualBytes) { EXPECT_EQ(workflow_schema(
 
 TEST(ShippedWorkflows, AreAcceptedByTheSchemaAndByCheck) {
     const FilterLibrary library({SCANMILL_PLUGIN_DIR});
-    Schema schema(workflow_schema(library)), schema_of_batches(batch_schema(library));
+    Schema schema(workflow_schema(library)), schema_of_batches(batch_schema());
     std::size_t found = 0;
     for (const auto& file : std::filesystem::directory_iterator(SCANMILL_SOURCE_DIR "/workflows")) {
         if (file.path().extension() != ".yaml") continue;
@@ -178,7 +178,7 @@ TEST(ShippedWorkflows, AreAcceptedByTheSchemaAndByCheck) {
         EXPECT_EQ((is_batch(workflow) ? schema_of_batches : schema).complaints(workflow), "") << file.path();
         Diagnostics diagnostics(file.path().string());
         if (is_batch(workflow)) {  // whose scans have to be fetched; all else must be right
-            parse_batch(workflow, library, diagnostics);
+            parse_batch(workflow, diagnostics);
             for (const Diagnostic& found_wrong : diagnostics.sorted())
                 EXPECT_THAT(found_wrong.message, testing::HasSubstr("no file")) << file.path();
             continue;

@@ -20,7 +20,7 @@ using Relation = Expectation::Relation;
 FilterSpec filter() {
     FilterSpec spec;
     spec.name = "weigh";
-    spec.outputs.push_back({.name = "points", .kind = Kind::points, .help = "All."});
+    spec.outputs.push_back({.name = "points", .kind = kind_of<PointCloud>(), .help = "All."});
     spec.metrics = {
         {"volume", Unit::volume, "How much."}, {"skin", Unit::area, "How wide."}, {"edge", Unit::length, ""}};
     return spec;

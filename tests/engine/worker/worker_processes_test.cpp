@@ -95,7 +95,7 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsEverythingOfAStep) {
     work.step = std::shared_ptr<const PlannedStep>(graph_.plans[0], &graph_.plans[0]->steps[0]);
     work.build = "b";
     work.inputs = {{"points", 3, "mesh", "c", {}},
-                   {"more", 4, "", "d", LeafSource{"/a", "d", Kind::points, {}, "", {}}}};
+                   {"more", 4, "", "d", LeafSource{"/a", "d", kind_of<PointCloud>(), {}, "", {}}}};
     work.parameter_files = {{"/a path", "content"}};
     work.memory = {true, "plan", "code", true, 0.1, {"points", "mesh"}};
     job.work = work;
@@ -148,12 +148,12 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsAFileToRead_AndItsPose) {
     pose.unit = LengthUnit::metre;
     pose.to = "lab";
     Job job;
-    job.work = ReadWork{{"/a \xff.ply", "hash", Kind::mesh, LengthUnit::inch, "part", pose}, {}};
+    job.work = ReadWork{{"/a \xff.ply", "hash", kind_of<TriangleMesh>(), LengthUnit::inch, "part", pose}, {}};
     const ReceivedJob received = job_from(to_message(job, {}), library_);
     const LeafSource& leaf = std::get<ReadWork>(received.job->work).leaf;
     EXPECT_EQ(leaf.file, "/a \xff.ply");
     EXPECT_EQ(leaf.content, "hash");
-    EXPECT_EQ(leaf.kind, Kind::mesh);
+    EXPECT_EQ(leaf.kind, kind_of<TriangleMesh>());
     EXPECT_EQ(leaf.unit, LengthUnit::inch);
     EXPECT_EQ(leaf.frame, "part");
     ASSERT_TRUE(leaf.pose);

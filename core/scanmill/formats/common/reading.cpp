@@ -51,6 +51,26 @@ Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions
     return frame;
 }
 
+std::map<std::string, int, std::less<>> declared_exponents(const std::vector<std::string>& comments) {
+    std::map<std::string, int, std::less<>> exponents;
+    for (const std::string& comment : comments) {
+        const std::string_view declared = declaration_in(comment, "length-exponent");
+        for (const auto& [text, exponent] : {std::pair<std::string_view, int>("1 ", 1), {"-1 ", -1}})
+            if (declared.starts_with(text)) exponents.emplace(declared.substr(text.size()), exponent);
+    }
+    return exponents;
+}
+
+ColumnTable with_exponents(const ColumnTable& columns, const std::vector<std::string>& comments) {
+    const auto exponents = declared_exponents(comments);
+    ColumnTable all;
+    for (const Column& column : columns) {
+        const auto found = exponents.find(column.name());
+        all.add(found == exponents.end() ? column : column.with_length_exponent(found->second));
+    }
+    return all;
+}
+
 void require_countable(u64 count, std::string_view elements) {
     constexpr u64 most = ~u32(0);
     if (count > most) throw Error("holds {} {}; at most {} can be numbered", count, elements, most);

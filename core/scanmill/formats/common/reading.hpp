@@ -5,7 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/columns.hpp"
+#include "scanmill/data/points.hpp"
 #include "scanmill/formats/common/format.hpp"
 
 namespace scanmill {
@@ -27,6 +31,11 @@ bool is_prose(std::string_view unit);
 /// Unit and name as declared by lines "unit mm" and "frame NAME" among the comments; the options' unit counts more. A
 /// unit that is none is told.
 Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions& options);
+
+/// Length exponents of columns by name, as declared by comments "length-exponent N NAME".
+std::map<std::string, int, std::less<>> declared_exponents(const std::vector<std::string>& comments);
+/// The columns with their declared exponents.
+ColumnTable with_exponents(const ColumnTable& columns, const std::vector<std::string>& comments);
 
 /// Throws Error unless `count` elements can be numbered with 32 bits.
 void require_countable(u64 count, std::string_view elements);

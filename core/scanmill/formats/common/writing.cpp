@@ -96,6 +96,11 @@ std::string one_line(std::string_view name) {
     return begin == std::string::npos ? "" : line.substr(begin, line.find_last_not_of(' ') + 1 - begin);
 }
 
+std::string exponent_comment(const Column& column) {
+    if (column.length_exponent() == 0) return {};
+    return fmt::format("length-exponent {} {}", column.length_exponent(), column.name());
+}
+
 std::string comment_lines(const Frame& frame) {
     std::string lines;
     if (frame.unit != LengthUnit::unknown) lines.append("# unit ").append(symbol(frame.unit)).append("\n");

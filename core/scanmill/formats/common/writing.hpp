@@ -39,6 +39,9 @@ TriangleMesh with_used_vertices(const TriangleMesh& mesh, std::string_view forma
 /// blanks, and those around it go.
 std::string one_line(std::string_view name);
 
+/// "length-exponent 1 bin-size", which declared_exponents() reads; empty for a column whose exponent is 0.
+std::string exponent_comment(const Column& column);
+
 /// "# unit mm" and "# frame NAME", each on its line, as far as known.
 std::string comment_lines(const Frame& frame);
 

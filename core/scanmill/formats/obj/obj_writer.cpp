@@ -64,7 +64,7 @@ void put_list(std::string_view keyword, const Column* column, OutputBuffer& out)
 }  // namespace
 
 void write_obj(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    const TriangleMesh& mesh = *value.get<TriangleMesh>();
     const TextColumns columns(mesh.vertex_columns);
     tell_lost_precision(mesh.frame, mesh.positions.span(), false, "OBJ", options);
     std::vector<std::string_view> kept = columns.names();

@@ -36,7 +36,7 @@ void put_faces(const TriangleMesh& mesh, const Column* colour, OutputBuffer& out
 }  // namespace
 
 void write_off(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    const TriangleMesh& mesh = *value.get<TriangleMesh>();
     const TextColumns of_vertices(mesh.vertex_columns);
     const Column* const face_colour = TextColumns(mesh.face_columns).colour;
     tell_lost_precision(mesh.frame, mesh.positions.span(), false, "OFF", options);

@@ -28,8 +28,10 @@ Column as_double(const Column& column, bool& exact) {
         wide[i] = static_cast<double>(values[i]);
         exact = exact && wide[i] < beyond && static_cast<T>(wide[i]) == values[i];
     }
-    if (column.is_list()) return Column(column.name(), column.offsets(), Buffer(std::move(wide)));
-    return Column(column.name(), column.components(), Buffer(std::move(wide)));
+    const Buffer<double> numbers(std::move(wide));
+    const Column as_double = column.is_list() ? Column(column.name(), column.offsets(), numbers)
+                                              : Column(column.name(), column.components(), numbers);
+    return as_double.with_length_exponent(column.length_exponent());
 }
 
 /// PLY has no 64-bit integers.
@@ -77,12 +79,15 @@ public:
         return lines;
     }
 
-    /// The comments by which a reader finds out which properties were one column.
+    /// Comments from which a reader learns which properties were one column, and which are lengths.
     std::string comments() const {
         std::string lines;
-        for (const Column& column : columns_)
+        for (const Column& column : columns_) {
+            if (const std::string exponent = exponent_comment(column); !exponent.empty())
+                lines += fmt::format("comment {}\n", exponent);
             if (column.components() > 1 && ply_component_names(column).front() == column.name() + "_0")
                 lines += fmt::format("comment components {} {}\n", column.components(), column.name());
+        }
         return lines;
     }
 
@@ -189,7 +194,7 @@ const std::vector<std::string> axes{"x", "y", "z"};
 }  // namespace
 
 void write_ply_points(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const PointCloud& cloud = *std::get<std::shared_ptr<const PointCloud>>(value);
+    const PointCloud& cloud = *value.get<PointCloud>();
     const bool as_float = coordinates_fit_float(cloud.frame, cloud.positions.span(), options);
     const Properties properties(cloud.columns, axes, "points", options);
     Header header;
@@ -199,7 +204,7 @@ void write_ply_points(const Value& value, OutputBuffer& out, const WriteOptions&
 }
 
 void write_ply_mesh(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    const TriangleMesh& mesh = *value.get<TriangleMesh>();
     const bool as_float = coordinates_fit_float(mesh.frame, mesh.positions.span(), options);
     const Properties of_vertices(mesh.vertex_columns, axes, "vertices", options);
     const Properties of_faces(mesh.face_columns, {"vertex_indices", "vertex_index"}, "faces", options);

@@ -4,32 +4,19 @@
 ///
 /// Two kinds of file, told apart by their content. A Stanford `.conf` has lines `bmesh FILE tx ty tz qx qy qz qw` (or
 /// `mesh …`), blank lines and `#` comments; `camera …` says where somebody looked from and moves nothing. Its
-/// quaternions stand for the inverse of the usual rotation: a point p goes to R(q)ᵀ p + t. JSON has the usual one,
-/// R(q) p + t:
-///
-///     {"scanmill": 1, "unit": "m", "frame": "bunny",
-///      "poses": [{"scan": "bun000.ply", "rotation": [0, 0, 0, 1], "translation": [0, 0, 0]}]}
-///
-/// with rotation = [qx, qy, qz, qw] in both; `unit`, `frame` (the name of the frame that all poses lead to) and `scan`
-/// may be left out. In place of rotation and translation JSON takes `"matrix"`, four rows of four numbers that p, 1
-/// is multiplied with. Coordinates are world coordinates.
+/// quaternions stand for the inverse of the usual rotation: a point p goes to R(q)ᵀ p + t. JSON is as described in
+/// kinds/transform.hpp.
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "scanmill/data/transform.hpp"
+#include "scanmill/kinds/transform.hpp"
 
 namespace scanmill {
 
-struct ScanPose {
-    std::string scan;  ///< as the file has it: a file's name or stem; may be empty in JSON
-    RigidTransform transform;
-};
-
-using OnPoseWarning = std::function<void(std::string sentence)>;
+using OnPoseWarning = OnWarning;
 
 /// In the file's order, at least one. Throws Error, beginning with the path, for a file that is missing or empty, and
 /// with the line, or the number of the pose from 1, for what cannot be read: unknown words, missing, superfluous or

@@ -50,7 +50,7 @@ std::size_t collapsed_triangles(const TriangleMesh& mesh) {
 }  // namespace
 
 void write_stl(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const TriangleMesh& whole = *std::get<std::shared_ptr<const TriangleMesh>>(value);
+    const TriangleMesh& whole = *value.get<TriangleMesh>();
     if (whole.triangles.empty()) throw Error("nothing to write: the mesh has no triangles, and STL holds nothing else");
     require_countable(whole.triangles.size(), "triangles");
     const TriangleMesh mesh = with_used_vertices(whole, "STL", options);

@@ -7,7 +7,7 @@
 namespace scanmill {
 
 void write_xyz(const Value& value, OutputBuffer& out, const WriteOptions& options) {
-    const PointCloud& cloud = *std::get<std::shared_ptr<const PointCloud>>(value);
+    const PointCloud& cloud = *value.get<PointCloud>();
     const Column* const normal = TextColumns(cloud.columns).normal;
     tell_lost_precision(cloud.frame, cloud.positions.span(), false, "XYZ", options);
     std::vector<std::string_view> kept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How far samples lie apart: what `spacing` means for points and for meshes, of any finite coordinates.
+/// The distance between samples: what `spacing` means for points and for meshes.
 
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/points.hpp"
@@ -9,13 +9,12 @@ namespace scanmill {
 
 /// Median distance from a point to the nearest other point; duplicates are at distance 0. Clouds of more than 100,000
 /// points are asked at 100,000 of them (the search still sees all), chosen by a hash of their coordinates, so that the
-/// order of the points does not matter. 0 for fewer than two points, infinity where the median distance is larger than
-/// any double. Non-finite points are passed over.
-/// Cost: a sort and a kd-tree, O(n log n); a second, slower one where squared distances are no numbers.
+/// order of the points does not matter. 0 for fewer than two points. Non-finite points are ignored.
+/// Pre: within the supported range, so that squared distances are numbers. Cost: a kd-tree, O(n log n).
 double point_spacing(std::span<const Vec3> positions);
 
-/// Median edge length over the mesh's edges, each counted once per triangle that has it; 0 without triangles, infinity
-/// where the median is larger than any double. Edges of non-finite vertices are passed over.
+/// Median edge length over the mesh's edges, each counted once per triangle that has it; 0 without triangles.
+/// Edges of non-finite vertices are ignored.
 double edge_spacing(const TriangleMesh& mesh);
 
 }  // namespace scanmill

@@ -173,7 +173,7 @@ TEST(LasUnit, IsThatOfTheGeoTiffKeys) {
     LasBytes las = plain();
     las.add_record("LASF_Projection", 34735, geo_keys({{3076, 9001}}));
     const LoadedFile loaded = read_bytes(las.file(), "a.las", {{}, LengthUnit::millimetre});
-    EXPECT_EQ(std::get<std::shared_ptr<const PointCloud>>(loaded.value)->frame.unit, LengthUnit::millimetre);
+    EXPECT_EQ(loaded.value.get<PointCloud>()->frame.unit, LengthUnit::millimetre);
 }
 
 std::string hint_for(std::string_view bytes, const char* name) {

@@ -2,7 +2,7 @@
 #pragma once
 /// LAS files in memory, put together field by field.
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 
 namespace scanmill::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // LAS, LAZ and E57 files that others wrote: every one in the collection, with what another reader, laspy, finds in it.
-#include "formats_support.hpp"
-#include "samples_support.hpp"
+#include "core/formats/samples_support.hpp"
+#include "core/formats/support.hpp"
 
 namespace scanmill::test {
 namespace {

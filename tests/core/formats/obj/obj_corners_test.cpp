@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Normals and texture coordinates, which OBJ binds to the corners of faces.
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 
 namespace scanmill::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 
 namespace scanmill::test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <random>
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -132,8 +132,8 @@ TEST(ObjWriter_Points, AreNotWritten) {
     const TemporaryFolder folder;
     PointCloud cloud;
     cloud.positions = {Vec3(0, 0, 0)};
-    EXPECT_FALSE(can_write("obj", Kind::points));
-    EXPECT_TRUE(can_write("obj", Kind::mesh));
+    EXPECT_FALSE(can_write("obj", kind_of<PointCloud>()));
+    EXPECT_TRUE(can_write("obj", kind_of<TriangleMesh>()));
     EXPECT_THROW(write_file(folder / "a.obj", std::make_shared<const PointCloud>(cloud)), Error);
 }
 

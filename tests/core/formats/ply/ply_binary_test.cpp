@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 #include "scanmill/data/quantity.hpp"
 
 namespace scanmill::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <random>
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 
 namespace scanmill::test {
 namespace {

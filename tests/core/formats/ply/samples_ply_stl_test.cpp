@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PLY and STL files from other programs' collections, ordinary and odd. Their counts and areas were found with another
 // program: polygons cut into fans, the triangles' areas summed, an STL file's equal corners made one.
-#include "mesh_samples_support.hpp"
+#include "core/formats/mesh_samples_support.hpp"
 
 namespace scanmill::test {
 namespace {

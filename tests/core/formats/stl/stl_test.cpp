@@ -3,7 +3,7 @@
 #include <map>
 #include <random>
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 #include "scanmill/formats/stl/detail/corner_merger.hpp"
 #include "scanmill/formats/stl/stl.hpp"
 

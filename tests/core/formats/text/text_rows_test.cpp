@@ -2,7 +2,7 @@
 // Rows of numbers: separators, comments, counts, blocks, the layouts of PTS and PWN, Hoppe's points.
 #include <random>
 
-#include "formats_support.hpp"
+#include "core/formats/support.hpp"
 #include "support/real_data.hpp"
 
 namespace scanmill::test {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/fit/local_surface.hpp"
 
+#include "scanmill/filter/context.hpp"
+
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>

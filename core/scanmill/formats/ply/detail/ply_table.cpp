@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/common/text_cursor.hpp"
 
 namespace scanmill {
@@ -79,7 +80,8 @@ std::vector<PlyTable::Group> PlyTable::groups_in(const PlyElement& element, cons
 }
 
 PlyTable::PlyTable(const PlyElement& element, const std::vector<std::string>& comments,
-                   std::span<const std::string_view> elsewhere) {
+                   std::span<const std::string_view> elsewhere)
+    : exponents_(declared_exponents(comments)) {
     const std::vector<Group> groups = groups_in(element, comments);
     // Slots point into pending_: it must not move.
     pending_.reserve(element.properties.size());
@@ -114,11 +116,15 @@ PlyTable::PlyTable(const PlyElement& element, const std::vector<std::string>& co
     }
 }
 
-Column PlyTable::finished(Pending pending) {
-    if (pending.components == 0)
-        return {std::move(pending.name), pending.type, 0, std::move(pending.lists.values),
-                std::move(pending.lists.offsets)};
-    return {std::move(pending.name), pending.type, pending.components, std::move(pending.data), {}};
+Column PlyTable::finished(Pending pending) const {
+    const auto exponent = exponents_.find(pending.name);
+    const bool is_list = pending.components == 0;
+    return {std::move(pending.name),
+            pending.type,
+            pending.components,
+            is_list ? std::move(pending.lists.values) : std::move(pending.data),
+            is_list ? Buffer<u64>(std::move(pending.lists.offsets)) : Buffer<u64>(),
+            exponent == exponents_.end() ? 0 : exponent->second};
 }
 
 std::optional<Column> PlyTable::take(std::string_view name) {

@@ -3,6 +3,7 @@
 /// Decodes the rows of one PLY element into memory that the caller prepared: where each property's numbers go is said
 /// by a PlySlot, how they are spelled is settled here.
 
+#include <map>
 #include <span>
 #include <string_view>
 
@@ -83,9 +84,10 @@ private:
         std::vector<std::string> properties;
     };
     static std::vector<Group> groups_in(const PlyElement& element, const std::vector<std::string>& comments);
-    static Column finished(Pending pending);
+    Column finished(Pending pending) const;
 
     std::vector<Pending> pending_;
+    std::map<std::string, int, std::less<>> exponents_;
     std::vector<PlySlot> slots_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/graph/keys.hpp"
+#include "scanmill/base/hash.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/kinds/metrics.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/kinds/document.hpp"
+#include "scanmill/kinds/field_visitor.hpp"
+
+namespace scanmill {
+
+/// For the cache: a row of name, value, unit.
+static void to_json(nlohmann::json& json, const Metric& metric) {
+    json = {metric.name, metric.value, static_cast<int>(metric.unit)};
+}
+static void from_json(const nlohmann::json& json, Metric& metric) {
+    metric = {json.at(0).get<std::string>(), json.at(1).get<double>(), static_cast<Unit>(json.at(2).get<int>())};
+}
+
+void KindTraits<Metrics>::visit(FieldVisitor& visitor, Metrics& metrics) {
+    visitor.small("values", metrics.values);
+    visitor.small("unit", metrics.unit);
+}
+
+Json metrics_json(const Metrics& metrics) {
+    Json json = Json::object();
+    for (const Metric& metric : metrics.values) {
+        if (metric.unit == Unit::boolean)
+            json[metric.name] = metric.value != 0;
+        else if (std::isfinite(metric.value))
+            json[metric.name] = metric.value;
+        else
+            json[metric.name] = nullptr;
+    }
+    return json;
+}
+
+void KindTraits<Metrics>::to_json(const Metrics& metrics, Json& document) {
+    document = {{"scanmill", 1},
+                {"unit", unit_json(metrics.unit)},
+                {"metrics", metrics_json(metrics)},
+                {"units", Json::object()}};
+    for (const Metric& metric : metrics.values) document["units"][metric.name] = name_of(metric.unit);
+}
+
+Metrics KindTraits<Metrics>::from_json(const Json& document, const OnWarning&) {
+    require_document(document, {"scanmill", "unit", "metrics", "units"});
+    const Json& values = member(document, "metrics");
+    const Json& units = member(document, "units");
+    if (!values.is_object() || !units.is_object())
+        throw Error("'metrics' and 'units' are objects; expected a value and a unit for every metric");
+    require_keys(units, "'units'", [&] {
+        std::vector<std::string> names;
+        for (const auto& [name, value] : values.items()) names.push_back(name);
+        return names;
+    }());
+    Metrics metrics;
+    metrics.unit = unit_member(document);
+    for (const auto& [name, value] : values.items()) {
+        const std::string unit_text = text_member(units, name, "'units'");
+        const std::optional<Unit> unit = unit_named(unit_text);
+        if (!unit) throw Error("the metric '{}' has the unknown unit '{}'", name, unit_text);
+        if (!value.is_number() && !value.is_boolean() && !value.is_null())
+            throw Error("the metric '{}' is not a number, true, false or null", name);
+        metrics.set(name,
+                    value.is_null()      ? std::numeric_limits<double>::quiet_NaN()
+                    : value.is_boolean() ? (value.get<bool>() ? 1.0 : 0.0)
+                                         : value.get<double>(),
+                    *unit);
+    }
+    return metrics;
+}
+
+}  // namespace scanmill
