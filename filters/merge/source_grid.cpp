@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "scanmill/geometry/fit/unit_scale.hpp"
+#include "scanmill/geometry/spatial/unit_scale.hpp"
 #include "scanmill/geometry/size_limits.hpp"
 
 namespace scanmill::merging {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/geometry/fit/unit_scale.hpp"
+#include "scanmill/geometry/spatial/unit_scale.hpp"
 #include "scanmill/geometry/size_limits.hpp"
 
 namespace scanmill::voxel {

@@ -64,8 +64,15 @@ std::vector<StepInput> read_inputs(const Options& options, LengthUnit unit, Leng
     reading.on_warning = warn;
     reading.unit = unit;
     const Value mesh = read_mesh(options.mesh, reading);
-    if (truth_unit != LengthUnit::unknown) reading.unit = truth_unit;
+    reading.unit = truth_unit;
     Value truth = read_file(options.truth, reading).value;
+    if (!truth.find<TriangleMesh>() && !truth.find<PointCloud>())
+        throw Error("'{}': the truth is a mesh or points; the file contains {}", options.truth, truth.kind().name());
+    if (Frame frame = *frame_of(truth); frame.unit == LengthUnit::unknown) {
+        frame.unit = unit;  // --unit is for files that do not declare theirs
+        truth = reframed(truth, frame);
+    }
+    for (const Value* value : std::initializer_list<const Value*>{&mesh, &truth}) require_supported_range(bounding_box(positions_of(*value).span()));
     const LengthUnit here = frame_of(mesh)->unit, there = frame_of(truth)->unit;
     if (here != there && here != LengthUnit::unknown && there != LengthUnit::unknown) truth = in_unit(truth, here);
     return {{"mesh", mesh}, {"truth", truth}};

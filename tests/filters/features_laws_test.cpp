@@ -5,7 +5,7 @@
 
 #include "filters/features_laws.hpp"
 #include "scanmill/data/mesh.hpp"
-#include "scanmill/geometry/fit/unit_scale.hpp"
+#include "scanmill/geometry/spatial/unit_scale.hpp"
 
 namespace scanmill {
 namespace {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scanmill/base/error.hpp"
+
 namespace scanmill {
 
 namespace {
@@ -26,6 +28,17 @@ BoundingBox bounding_box(std::span<const Vec3> positions) {
         box.high = box.high.cwiseMax(p);
     }
     return box;
+}
+
+void require_supported_range(const BoundingBox& box) {
+    if (box.empty()) return;
+    const Vec3 sides = box.high - box.low;
+    int axis = 0;
+    const double side = sides.maxCoeff(&axis);
+    if (side == 0 || (side >= least_side && side <= largest_side)) return;
+    throw Error("the scan is {:.3g} of its own unit long, from {:.3g} to {:.3g} in {}; supported are {:g} to {:g}", side,
+                box.low[axis], box.high[axis], "xyz"[axis], least_side, largest_side)
+        .hint(side > largest_side ? "remove stray points, or scale the scan" : "scale the scan to a larger unit");
 }
 
 Vec3 distant_origin(const BoundingBox& box) {

@@ -3,12 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/point_stream.hpp"
-#include "scanmill/geometry/size_limits.hpp"
 
 namespace scanmill {
 
@@ -21,7 +18,6 @@ double usable_diagonal(const BoundingBox& box, std::size_t points) {
         throw Error("%diag means nothing here: the diagonal is 0, as {} at one place",
                     points == 1 ? "the only point is" : fmt::format("all {} points are", points))
             .hint("give a length instead, as 0.5 u");
-    require_finite_size(box);
     return diagonal;
 }
 
@@ -36,7 +32,6 @@ double diagonal_of(const Value& value) {
 double spacing_of(const Value& value) {
     const double spacing = value.kind().info().spacing(value.object());
     if (!(spacing > 0)) require_finite(positions_of(value).span());
-    if (!std::isfinite(spacing)) require_finite_size(bounding_box(positions_of(value).span()));
     return spacing;
 }
 

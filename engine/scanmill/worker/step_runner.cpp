@@ -116,6 +116,15 @@ void require_whole(const Outputs& outputs, const FilterSpec& spec) {
     }
 }
 
+/// Errors of `check` begin with the file's path, as those of reading do.
+void naming_file(const std::filesystem::path& file, const std::function<void()>& check) {
+    try {
+        check();
+    } catch (const Error& error) {
+        throw Error("'{}': {}", file.string(), error.sentence()).hint(error.hint());
+    }
+}
+
 ReadOptions reading(const LeafSource& leaf, const std::function<void(std::string)>& on_warning) {
     ReadOptions options;
     options.on_warning = on_warning;
@@ -184,6 +193,7 @@ Value read_leaf(const LeafSource& leaf, const std::function<void(std::string)>& 
     if (value.kind() != leaf.kind)
         throw Error("'{}': {} are needed; the file contains {}", leaf.file.string(), leaf.kind.name(),
                     value.kind().name());
+    naming_file(leaf.file, [&] { require_supported_range(bounding_box(positions_of(value).span())); });
     if (leaf.pose) value = placed(value, *leaf.pose);
     std::optional<Frame> frame = frame_of(value);
     return frame && take_declared_name(leaf, frame->name, on_warning) ? reframed(value, *frame) : value;
@@ -195,6 +205,7 @@ std::shared_ptr<const PointStream> open_leaf(const LeafSource& leaf, unsigned th
     assert(leaf.is_streamed && leaf.kind == kind_of<PointCloud>() && !leaf.pose);
     std::shared_ptr<PointStream> scan = open_point_stream(leaf.file, reading(leaf, on_warning), threads, on_positions);
     if (!scan) return nullptr;
+    naming_file(leaf.file, [&] { require_supported_range(scan->bounds()); });
     if (std::string name = scan->frame().name; take_declared_name(leaf, name, on_warning)) scan->rename_frame(name);
     return scan;
 }

@@ -13,6 +13,8 @@
 namespace scanmill::test {
 namespace {
 
+using ::testing::AllOf, ::testing::HasSubstr;
+
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -90,6 +92,16 @@ TEST(Translated, Shift_IsAddedToEveryPosition) {
     const Buffer<Vec3> moved = translated({Vec3(1, 2, 3), Vec3(0, 0, 0)}, Vec3(10, 20, 30));
     EXPECT_EQ(moved[0], Vec3(11, 22, 33));
     EXPECT_EQ(moved[1], Vec3(10, 20, 30));
+}
+
+TEST(SupportedRange, SidesOutsideOneNanoUnitToOneGigaUnit_AreRefusedWithTheirRange) {
+    const auto box = [](double low, double high) { return BoundingBox{Vec3(low, 0, 0), Vec3(high, 0, 0)}; };
+    for (const BoundingBox& supported : {box(0, 0), box(5e12, 5e12), box(0, 1e-9), box(-5e8, 5e8), BoundingBox{}})
+        EXPECT_NO_THROW(require_supported_range(supported));
+    EXPECT_THAT(sentence_of([&] { require_supported_range(box(-1e9, 1)); }),
+                AllOf(HasSubstr("from -1e+09 to 1 in x"), HasSubstr("supported are 1e-09 to 1e+09")));
+    EXPECT_THAT(sentence_of([&] { require_supported_range(box(0, 0.99e-9)); }), HasSubstr("supported are"));
+    EXPECT_THAT(sentence_of([&] { require_supported_range(box(-1.5e308, 1.5e308)); }), HasSubstr("supported are"));
 }
 
 }  // namespace

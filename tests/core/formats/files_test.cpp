@@ -90,7 +90,7 @@ TEST(CanWrite_Table, KnowsExtensionsInAnyCase_AndKinds) {
     EXPECT_TRUE(writable_extensions(kind_of<TriangleMesh>()).starts_with("ply, stl, off, obj"));
     EXPECT_TRUE(writable_extensions(kind_of<PointCloud>()).starts_with("ply, xyz, txt"));
     EXPECT_EQ(writable_extensions(kind_of<Metrics>()), "json");
-    EXPECT_EQ(writable_extensions(kind_of<RigidTransform>()), "");
+    EXPECT_EQ(writable_extensions(kind_of<RigidTransform>()), "json");
 }
 
 TEST(WriteFile_Refuses, WhatCannotBe_LeavesNothing) {

@@ -149,8 +149,8 @@ TEST(Placed, PoseOutOfThisWorld_IsRefused) {
 }
 
 TEST(Placed, OtherKinds_AreRefused) {
-    EXPECT_EQ(sentence_of([] { placed(std::make_shared<const TetMesh>(), {}); }),
-              "a pose moves points and meshes; this is tets");
+    EXPECT_EQ(sentence_of([] { placed(std::make_shared<const Metrics>(), {}); }),
+              "a pose moves values with positions; this is metrics");
 }
 
 }  // namespace

