@@ -32,7 +32,8 @@ def arguments():
     parser.add_argument("--large", action="store_true", help="also the rows that take minutes and gigabytes")
     limit(parser, 300, "one answer")
     parser.add_argument("--budget", type=float, default=20, help="seconds of work per contender (default: %(default)s)")
-    parser.add_argument("--into", type=pathlib.Path, help="folder of the results (default: bench for all rows, else build/peers)")
+    parser.add_argument("--into", type=pathlib.Path,
+                        help="folder of the results (default: bench for all rows, else build/peers)")
     parser.add_argument("--only-table", action="store_true", help="measure nothing; write RESULTS.md from results.json")
     parser.add_argument("--list", action="store_true", help="print the names of the rows and stop")
     return parser.parse_args()
@@ -55,8 +56,8 @@ def chosen(rows, wanted):
 
 
 def versions(rows, build, limit):
-    """The versions that the programs report, and the compiler. A program that reports none is left out here and fails in
-    its row."""
+    """The versions that the programs report, and the compiler. A program that reports none is left out here and fails
+    in its row."""
     found = {}
     for name in sorted({contender.program for row in rows for contender in row.contenders}):
         process = None

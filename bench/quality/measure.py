@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """measure.py PROGRAM: compares `scanmill measure` with trimesh and Open3D on the same files.
 
-Compared are the distances from all points of a scan to the nearest point of a mesh's triangles, the area, the volume and
-the Euler characteristic, which have the same meaning in all three programs. trimesh treats triangles below an absolute
+Compares the distances from all points of a scan to the nearest point of a mesh's triangles, the area, the volume and
+the Euler characteristic. They have the same meaning in all three programs. trimesh treats triangles below an absolute
 size as degenerate, so its input is scaled up by 10,000 and its results are scaled back. Open3D computes in float.
 
-Differences are shares of the mesh's diagonal (of its square for areas and its cube for volumes). The exit code is 1 if one
-is above 1e-6 or the Euler characteristics differ.
+Differences are shares of the mesh's diagonal (of its square for areas and its cube for volumes). The exit code is 1 if
+one is above 1e-6 or the Euler characteristics differ.
 """
 import json
 import pathlib
@@ -35,7 +35,7 @@ def load(name):
 
 
 def ours(program, mesh, points, folder):
-    """Runs `scanmill measure`. The mesh is written as a PLY of doubles, so that all programs use the same coordinates."""
+    """Runs `scanmill measure` on PLY files of doubles, so that all programs use the same coordinates."""
     truth = folder / "points.ply"
     surface = folder / "mesh.ply"
     write_ply(surface, mesh.vertices, mesh.faces)

@@ -43,7 +43,8 @@ class StandIn:
 
 STAND_INS = [
     StandIn("Femur", "meshes/femur.off", True,
-            "another femur with fewer points, the vertices of a mesh with two handles; the paper's points came from CT slices"),
+            "another femur with fewer points, the vertices of a mesh with two handles; the paper's points came from CT "
+            "slices"),
     StandIn("Femur", "7-seed-like/femur_gfxmorph.stl", False,
             "a third femur, the vertices of a closed mesh"),
     StandIn("CSG Solid", "meshes/anchor_dense.off", True,

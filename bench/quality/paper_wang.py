@@ -51,7 +51,7 @@ class Case:
 
     @property
     def boundary_edges(self):
-        """By Euler's identity F = 2 V − 2 χ − b, if every kept point is in a facet; None if the facets are not printed."""
+        """By Euler's identity F = 2 V − 2 χ − b, if every kept point is in a facet; None without printed facets."""
         return 2 * self.kept - 2 * self.euler - self.facets if self.facets else None
 
 
@@ -76,7 +76,8 @@ class StandIn:
 
 STAND_INS = [
     StandIn("face", "meshes/mannequin-devil.off", True,
-            "a head with horns, the vertices of a mesh that is open at the neck; the thesis scanned a face from one side"),
+            "a head with horns, the vertices of a mesh that is open at the neck; the thesis scanned a face from one "
+            "side"),
     StandIn("face", "4-open/holes.off", False,
             "a face from one side, the vertices of a mesh with holes; fewer points, so most voxels contain one"),
     StandIn("rhino", "1-bunny/raw/bun000.ply", False, "another animal, one raw scan"),

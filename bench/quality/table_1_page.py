@@ -17,8 +17,9 @@ threads (median of {rounds} rounds). They do not include reading and writing fil
 
 A closed surface of genus 0 through all n points has 2n − 4 triangles. Every point left inside removes 2 triangles,
 every handle adds 4, and every connected component beyond the first removes 4. The paper gives neither the points left
-inside nor the genus; {exact} of its {objects} lines have exactly 2n − 4. The last column is alpha divided by the spacing:
-the median distance to the nearest point, or the median edge of a mesh. Evenly sampled surfaces need about 1."""
+inside nor the genus; {exact} of its {objects} lines have exactly 2n − 4. The last column is alpha divided by the
+spacing, which is the median distance to the nearest point or the median edge of a mesh. Evenly sampled surfaces need
+about 1."""
 
 
 def notes(results):
@@ -67,8 +68,8 @@ def about_the_surface(entry):
         yield "the boundary is not a closed manifold"
         return
     if entry["triangles"] != expected_triangles(entry):
-        yield (f"{entry['triangles']:,} triangles, but points, components and genus give {expected_triangles(entry):,}: "
-               "the counts contradict each other")
+        yield (f"{entry['triangles']:,} triangles, but points, components and genus give "
+               f"{expected_triangles(entry):,}: the counts contradict each other")
     yield "every point is on the surface" if inside == 0 else (
         f"points not on the surface: {inside:,} ({100 * inside / count:.1f} %), before sculpting "
         f"{entry['inside_before']:,}")

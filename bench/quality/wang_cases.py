@@ -40,7 +40,7 @@ def round_holes(features):
 
 
 def judged(report, cell):
-    """The result of one run from the report: counts, topology, distances, and the total seconds of the three filters."""
+    """The result of one run from the report: counts, topology, distances, and total seconds of the three filters."""
     if cell["outcome"] != "done":
         return {"failure": cell.get("error", cell["outcome"])}
     steps = scanmill.steps(report, cell)
@@ -101,8 +101,8 @@ def cases_of(options, hyperboloid):
     whole = WORKFLOWS / "wang-2006.yaml"
     cases = [(begun("hyperboloid", "hyperboloid", "the thesis's own points, from its formula",
                     f"{paper.HYPERBOLOID.bin_size} u", hyperboloid), whole, hyperboloid),
-             (begun("block", "block", "a virtual scan of a similar block; the thesis prints neither the positions of the "
-                    "small holes nor whether its holes have floors", f"{paper.CASES['block'].bin_size} u", None),
+             (begun("block", "block", "a virtual scan of a similar block; the thesis prints neither the positions of "
+                    "the small holes nor whether its holes have floors", f"{paper.CASES['block'].bin_size} u", None),
               WORKFLOWS / "wang-2006-block.yaml", None)]
     for one in paper.STAND_INS:
         path = (options.data if one.fetched else options.more_data) / one.file

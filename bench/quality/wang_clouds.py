@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The clouds that Wang 2006 gives by formulas, and their closed forms.
 
-Two things differ from the printed text. The thesis prints one formula for both x and y of the hemisphere; here x uses the
-cosine of θ. Steps are rounded so that the tolerance holds everywhere; the thesis does not state its rounding.
+Two things differ from the printed text. The thesis prints one formula for both x and y of the hemisphere; here x uses
+the cosine of θ. Steps are rounded so that the tolerance holds everywhere; the thesis does not state its rounding.
 """
 import math
 

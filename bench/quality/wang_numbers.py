@@ -12,8 +12,8 @@ def sampling_rows(results):
     count, printed = results["points"], paper.COUNTS
     degrees = math.degrees(clouds.step_of(1, 0.005))
     more = [printed[name] / count[name] - 1 for name in ("hemisphere-1", "hemisphere-8-coarse", "hemisphere-8")]
-    why = (f"we round the numbers of circles and of points per circle up, so that no step is too large; the thesis does "
-           f"not state its rounding and has {100 * min(more):.1f} to {100 * max(more):.1f} % more points")
+    why = (f"we round the numbers of circles and of points per circle up, so that no step is too large; the thesis "
+           f"does not state its rounding and has {100 * min(more):.1f} to {100 * max(more):.1f} % more points")
     yield ["3.6.1", "hemisphere, radius 1, tolerance 0.005: step", f"{paper.STEP_DEGREES}°", f"{degrees:.3f}°", "",
            "none: both are 2 acos(1 − tolerance / radius)"]
     for name, what in (("hemisphere-1", "radius 1, tolerance 0.005"),
@@ -38,10 +38,12 @@ def hemisphere_rows(results):
     exact, halved = (clouds.bin_size(part, line.tolerance) for part in (bending, bending / 2))
     yield [line.section, "hemisphere, radius 8, tolerance 0.025: voxel size", line.bin_size, f"{exact:.4f}",
            bin_text(thinning, "exact"),
-           f"1.2 corresponds to a sum of second derivatives of {clouds.bending_of(line.bin_size, line.tolerance):.4f}, but "
-           f"a sphere of radius 8 has {bending}; points near the boundary have neighbours on one side only"]
-    yield ["", "the same, with the coefficients a, b, c instead of the second derivatives 2 a, b, 2 c, as in equation 3.9",
-           "", f"{halved:.4f}", bin_text(thinning, "thesis"),
+           "1.2 corresponds to a sum of second derivatives of "
+           f"{clouds.bending_of(line.bin_size, line.tolerance):.4f}, but a sphere of radius 8 has {bending}; points "
+           "near the boundary have neighbours on one side only"]
+    yield ["",
+           "the same, with the coefficients a, b, c instead of the second derivatives 2 a, b, 2 c, as in equation "
+           "3.9", "", f"{halved:.4f}", bin_text(thinning, "thesis"),
            f"voxels are then √2 times as large; 1.2 is near the corresponding edge Ω = √3 B = "
            f"{math.sqrt(3) * halved:.3f}"]
     binning = results["binning"]["hemisphere-8"]
@@ -55,10 +57,11 @@ def cone_rows(results):
     ours = clouds.bending_of(thinning["exact, nearest"]["bin_size"], line.tolerance)
     yield [line.section, "cone, radius and height 1, step 0.05: points", f"{paper.COUNTS['cone']:,}",
            f"{results['points']['cone']:,}", "",
-           f"the formula includes the boundary; without it there are {within:,} points; rounding decides which are included"]
+           f"the formula includes the boundary; without it there are {within:,} points; rounding decides which are "
+           "included"]
     yield ["", "largest curvature", paper.CONE_CURVATURE, "∞", f"{ours:.2f}",
-           "the curvature is undefined at the apex, where a fit depends on the neighbours and the weights; ours is the sum "
-           "of the second derivatives that determines the voxel size"]
+           "the curvature is undefined at the apex, where a fit depends on the neighbours and the weights; ours is "
+           "the sum of the second derivatives that determines the voxel size"]
     yield ["", "voxel size at a tolerance of 0.02", line.bin_size,
            f"{clouds.bin_size(paper.CONE_CURVATURE, line.tolerance):.4f} from 15.25", bin_text(thinning, "exact"),
            f"0.103 corresponds to {clouds.bending_of(line.bin_size, line.tolerance):.2f}, a third of the printed "
@@ -71,7 +74,8 @@ def hyperboloid_rows(results):
     largest, both = max(pair[0] for pair in curvatures), max(sum(pair) for pair in curvatures)
     ours = clouds.bending_of(thinning["exact, nearest"]["bin_size"], line.tolerance)
     yield [line.section, "hyperboloid, r = 2, h = 3, step 0.04: points", f"{paper.COUNTS['hyperboloid']:,}",
-           f"{results['points']['hyperboloid']:,}", "", "as for the cone: the count depends on the points on the boundary"]
+           f"{results['points']['hyperboloid']:,}", "",
+           "as for the cone: the count depends on the points on the boundary"]
     yield ["", "largest curvature", paper.HYPERBOLOID_CURVATURE, f"{largest:.3f}; sum of both {both:.3f}",
            f"sum of both {ours:.3f}",
            "the printed number is near the sum of the two principal curvatures on the boundary, at y = ± r; fits there "
@@ -85,8 +89,9 @@ def hyperboloid_rows(results):
 
 def nose_row():
     bending = clouds.bending_of(paper.NOSE_BIN, paper.NOSE_TOLERANCE)
-    return ["4.4.2", "second derivatives at the nose, from a tolerance of 0.6 and voxels of 1.2 (per mm)", "not printed",
-            f"{bending:.3f}", "", f"equal to those of a ball of radius {2 / bending:.1f} mm; the face is 45 mm wide"]
+    return ["4.4.2", "second derivatives at the nose, from a tolerance of 0.6 and voxels of 1.2 (per mm)",
+            "not printed", f"{bending:.3f}", "", f"equal to those of a ball of radius {2 / bending:.1f} mm; the face "
+            "is 45 mm wide"]
 
 
 def rows(results):

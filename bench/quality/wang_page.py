@@ -63,8 +63,8 @@ def about_the_mesh(entry):
     elif entry["triangles"] == expected_triangles(entry):
         yield f"an oriented manifold with F = 2 V − 2 χ − b = {entry['triangles']:,}"
     else:
-        yield (f"{entry['triangles']:,} triangles, but Euler's identity gives {expected_triangles(entry):,}: the counts "
-               f"contradict each other")
+        yield (f"{entry['triangles']:,} triangles, but Euler's identity gives {expected_triangles(entry):,}: the "
+               f"counts contradict each other")
     yield "every kept point is in a triangle" if entry["vertices"] == entry["kept"] else (
         f"kept points in no triangle: {entry['kept'] - entry['vertices']:,}")
     if entry["self_intersections"]:
@@ -92,17 +92,17 @@ def about_the_border(entry):
     x, y, _ = BLOCK_SIZE
     large, small = BLOCK_RADII
     length = 2 * (x + y) + 2 * math.pi * (large + 4 * small)
-    yield (f"the boundary of its face has a length of {length:.0f}, or {length / entry['bin_size']:.0f} voxel edges; the "
-           f"thesis's counts imply {CASES['block'].boundary_edges} boundary edges, so its mesh had further boundaries or "
-           f"unused points")
+    yield (f"the boundary of its face has a length of {length:.0f}, or {length / entry['bin_size']:.0f} voxel edges; "
+           f"the thesis's counts imply {CASES['block'].boundary_edges} boundary edges, so its mesh had further "
+           f"boundaries or unused points")
 
 
 def about_the_radii(entry):
     for hole in entry["radii"]:
         radius = true_radius(hole)
         off = (hole["mean"] - radius) / entry["bin_size"]
-        yield (f"hole of radius {radius}: mean radius {hole['mean']:.2f} ({hole['least']:.2f} to {hole['largest']:.2f}), "
-               f"{abs(off):.2f} voxel edges too {'large' if off > 0 else 'small'}"
+        yield (f"hole of radius {radius}: mean radius {hole['mean']:.2f} ({hole['least']:.2f} to "
+               f"{hole['largest']:.2f}), {abs(off):.2f} voxel edges too {'large' if off > 0 else 'small'}"
                + ("" if abs(off) <= 1 else ", which is more than one voxel"))
 
 
@@ -125,8 +125,8 @@ def conclusion(entries):
     block = next((entry for entry in done if "radii" in entry), None)
     if block:
         off = max((abs(hole["mean"] - true_radius(hole)) for hole in block["radii"]), default=0) / block["bin_size"]
-        text += (f" In the block {block['holes']} holes are found; their mean radii differ from the true ones by at most "
-                 f"{off:.2f} voxel edges.")
+        text += (f" In the block {block['holes']} holes are found; their mean radii differ from the true ones by at "
+                 f"most {off:.2f} voxel edges.")
     return text
 
 

@@ -3,9 +3,9 @@
 """wang_tables.py PROGRAM: compares the numbers of chapters 3 and 4 of Wang 2006 with ours.
 
 Makes the thesis's clouds by their formulas and thins them to its tolerances (wang-thinning.yaml). Runs the workflow to
-features on every case of section 4.4, or on a similar scan, ROUNDS times with one thread and with all threads, without a
-cache. Every number comes from the program's JSON (metrics and seconds of the steps, the written features) or from a closed
-form. Writes wang-tables.md and .json. The exit code is 1 if a run failed or a fetched file is missing.
+features on every case of section 4.4, or on a similar scan, ROUNDS times with one thread and with all threads, without
+a cache. Every number comes from the program's JSON (metrics and seconds of the steps, the written features) or from a
+closed form. Writes wang-tables.md and .json. The exit code is 1 if a run failed or a fetched file is missing.
 """
 import pathlib
 import sys
@@ -69,8 +69,8 @@ def keeping(options, file, folder):
 
 
 def bin_that_keeps(count, kept, low, high, steps=8):
-    """A voxel size that keeps `count` points, by bisection. Voxels of `low` keep more points, voxels of `high` do not. The
-    number is not monotonic, so other sizes may exist."""
+    """A voxel size that keeps `count` points, by bisection. Voxels of `low` keep more points, voxels of `high` do not.
+    The number is not monotonic, so other sizes may exist."""
     for _ in range(steps):
         middle = (low + high) / 2
         low, high = (middle, high) if kept(middle) > count else (low, middle)

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """robustness.py PROGRAM: measures how much noise and how few points the reconstruction tolerates.
 
-Samples seeded points on known surfaces, runs the program once per surface, and judges every scan by the program's report
-(see verdict.py). Writes results.json and results.md. The exit code is 1 if the program crashed or an input is missing.
-Wrong results and refusals are results of this bench and do not change the exit code.
+Samples seeded points on known surfaces, runs the program once per surface, and judges every scan by the program's
+report (see verdict.py). Writes results.json and results.md. The exit code is 1 if the program crashed or an input is
+missing. Wrong results and refusals are results of this bench and do not change the exit code.
 """
 import os
 import pathlib

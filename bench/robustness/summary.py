@@ -115,8 +115,8 @@ def border(trials, shapes):
     return text + (
         f"{len(wrong):,} of {len(trials):,} trials failed. The most frequent reason: {verdict.FAILURES[often]} "
         f"({wrong.count(often):,}). The program refused {refused:,} and crashed in {crashed:,}; in the other "
-        f"{len(delivered):,} it delivered a wrong mesh, with a warning in {warned:,} of them. Smooth or thin noisy scans "
-        "first, or use a method that does not interpolate the points."
+        f"{len(delivered):,} it delivered a wrong mesh, with a warning in {warned:,} of them. Smooth or thin noisy "
+        "scans first, or use a method that does not interpolate the points."
     )
 
 
@@ -134,7 +134,7 @@ def interpolation(trials, shapes):
 
 
 def hopeless(trials):
-    """A sentence with the noise from which on some point is moved farther than the allowed distance; or an empty text."""
+    """A sentence with the noise that always moves some point farther than the allowed distance; or an empty text."""
     levels = sorted({trial["level"] for trial in trials if trial["axis"] == "noise"})
     for level in levels:
         some = [trial for trial in trials if trial["axis"] == "noise" and trial["level"] == level]

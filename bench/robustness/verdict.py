@@ -24,8 +24,8 @@ def bound(spacing):
 
 
 def judge(outcome, cause, metrics, genus, largest_distance):
-    """Returns SUCCESS or a name of FAILURES. `outcome` and `cause` come from the cell, `metrics` from measure (empty if it
-    did not run). A missing metric or NaN is never a success."""
+    """Returns SUCCESS or a name of FAILURES. `outcome` and `cause` come from the cell, `metrics` from measure (empty if
+    it did not run). A missing metric or NaN is never a success."""
     if outcome != "done":
         return "refused" if cause == "refused" else "crashed"
     if not metrics:
@@ -46,9 +46,9 @@ def rate(verdicts):
 
 
 def reliable_until(cells):
-    """Two levels from (level, verdicts), ordered from the easiest to the hardest: the last level up to which every trial
-    succeeds (None if the easiest has a failure), and the first level from which on none succeeds (None if the hardest has
-    a success)."""
+    """Two levels from (level, verdicts), ordered from the easiest to the hardest: the last level up to which every
+    trial succeeds (None if the easiest has a failure), and the first level from which on none succeeds (None if the
+    hardest has a success)."""
     last, first = None, None
     for level, verdicts in cells:
         succeeded, trials = rate(verdicts)

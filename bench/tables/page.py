@@ -43,8 +43,8 @@ def table(header, rows):
 def other_load(load):
     """A line with the load by other processes; see harness/machine.py."""
     return (
-        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s stolen by "
-        f"the hypervisor; the whole bench took {load['took_seconds']:.0f} s."
+        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s stolen "
+        f"by the hypervisor; the whole bench took {load['took_seconds']:.0f} s."
     )
 
 

@@ -106,7 +106,8 @@ class SummaryTest(unittest.TestCase):
         self.assertIn("all points are on the surface: ball none", text)  # 4 points were left inside
         self.assertIn("before sculpting, with points inside: ball 1.", text)
         self.assertIn("From 2 on, noise moves some point of every scan farther", text)
-        self.assertIn("4 of 8 trials failed. The most frequent reason: the mesh has another number of handles than the truth (2)", text)
+        self.assertIn("4 of 8 trials failed. The most frequent reason: the mesh has another number of handles than the "
+                      "truth (2)", text)
         self.assertIn("refused 1 and crashed in 0; in the other 3 it delivered a wrong mesh", text)
         self.assertIn("with a warning in 1 of them", text)
 

@@ -97,7 +97,8 @@ class PageTest(unittest.TestCase):
     def test_difference_from_the_paper_is_told_beyond_a_tenth(self):
         # 10.0 % removed where the paper has 10.2 %; 4.00 tetrahedra per point where it has 3.69.
         self.assertNotIn("removes", page.remark(entry()))
-        self.assertIn("removes 5.0 % of the alpha-solid's tetrahedra, in the paper 10.2 %", page.remark(entry(removed=200)))
+        self.assertIn("removes 5.0 % of the alpha-solid's tetrahedra, in the paper 10.2 %",
+                      page.remark(entry(removed=200)))
         self.assertIn("1.36 times the paper's tetrahedra per point", page.remark(entry(tetrahedra=5000)))
         # 90 s / 9807 points over 0.875 s / 999 points.
         self.assertIn("per point, our run is 10 times as fast", page.remark(entry()).lower())

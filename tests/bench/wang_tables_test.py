@@ -162,7 +162,8 @@ class PageTest(unittest.TestCase):
         told = page.remark(entry("block", radii=holes, holes=5))
         self.assertIn("ole of radius 21: mean radius 21.50 (21.00 to 22.00), 0.25 voxel edges too large;", told)
         self.assertIn("7.50 (5.00 to 9.00), 1.25 voxel edges too large, which is more than one voxel", told)
-        self.assertIn("from the true ones by at most 1.25 voxel edges", page.conclusion([entry("block", radii=holes, holes=5)]))
+        self.assertIn("from the true ones by at most 1.25 voxel edges",
+                      page.conclusion([entry("block", radii=holes, holes=5)]))
 
     def test_border_of_the_block_is_its_face_and_its_holes(self):
         # 2 (88 + 95) + 2 π (21 + 4 · 5) = 623.6, 312 bins of 2.

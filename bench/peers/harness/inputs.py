@@ -67,7 +67,7 @@ class Inputs:
         return Input(f"{cloud.describe}; weights of their spacing", self.folder / f"weighted-{cloud.path.name}", make)
 
     def around(self, mesh, count):
-        """Seeded points near a mesh: uniform on its surface, then moved by up to 1 % of its diagonal along each axis."""
+        """Seeded points near a mesh: uniform on it, then moved by up to 1 % of its diagonal along each axis."""
 
         def make(path):
             mesh.make()

@@ -7,8 +7,8 @@ Columns:
 
 - *seconds*: median over the rounds; every program measures only the work itself
 - *least to most*: range over the rounds
-- *ours / it*: Scanmill's time divided by the program's time in the same round, median over the rounds; below 1 Scanmill is
-  faster
+- *ours / it*: Scanmill's time divided by the program's time in the same round, median over the rounds; below 1
+  Scanmill is faster
 - *peak*: peak memory of the program's process during the work, including the input and, for Python, the interpreter
 - *cores*: processor time divided by elapsed time
 - †: the program does different work, as explained below the table
@@ -109,8 +109,8 @@ def remarks(row, smaller=None):
         yield from growths(row, smaller)
     load = row["load"]
     yield (
-        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s stolen by "
-        f"the hypervisor, load average {load['load_average_before']:.1f} to {load['load_average_after']:.1f}; "
+        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s stolen "
+        f"by the hypervisor, load average {load['load_average_before']:.1f} to {load['load_average_after']:.1f}; "
         f"the row took {load['took_seconds']:.0f} s"
     )
 

@@ -22,9 +22,9 @@ def row(name, shape, cloud, **more):
             *in_threads([1, 2], "scanmill", {"do": "alpha-solid"}, prepare=load),
             Contender(
                 "cgal", {"do": "optimal-alpha-shape"}, "find_optimal_alpha(1)", prepare=load,
-                differs="finds the least radius at which one solid of tetrahedra contains every point. It does not count "
-                "volume enclosed by thin walls as solid, so its radius is larger, and its boundary may be non-manifold. "
-                "Scanmill counts enclosed volume as solid and delivers a closed manifold.",
+                differs="finds the least radius at which one solid of tetrahedra contains every point. It does not "
+                "count volume enclosed by thin walls as solid, so its radius is larger, and its boundary may be "
+                "non-manifold. Scanmill counts enclosed volume as solid and delivers a closed manifold.",
             ),
         ],
         equal="the points in memory. The time includes the tetrahedralisation and the choice of the radius.",

@@ -20,12 +20,12 @@ def row(name, shape, cloud, **more):
             *in_threads([1, 2], "scanmill", {"do": "alpha-solid", "weighted": True}, prepare=load),
             Contender(
                 "cgal", {"do": "regular"}, "Regular_triangulation_3", prepare=load,
-                differs="stops after the triangulation, the first of the two steps; the ratio is the time of both steps "
-                "relative to it.",
+                differs="stops after the triangulation, the first of the two steps; the ratio compares both "
+                "steps with it.",
             ),
         ],
-        equal="the points in memory and their weights, the squares of the local spacing. Scanmill reads the weights from a "
-        "column.",
+        equal="the points in memory and their weights, the squares of the local spacing. Scanmill reads the weights "
+        "from a column.",
         agree={"cells": 0, "alpha": 0, "triangles": 0},
         peak_per="cells",
         **more,

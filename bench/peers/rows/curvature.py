@@ -27,8 +27,8 @@ def row(name, shape, cloud):
         title=f"Surfaces from {NEIGHBOURS} neighbours, {shape}",
         inputs=[cloud],
         contenders=contenders,
-        equal="the points in memory and the number of neighbours. The time includes the tree and the search for all points. "
-        "Scanmill also fits a quadric to every neighbourhood and computes its normal and its principal curvatures; PCL "
-        "computes normals only. Scanmill stores doubles, PCL floats.",
+        equal="the points in memory and the number of neighbours. The time includes the tree and the search for all "
+        "points. Scanmill also fits a quadric to every neighbourhood and computes its normal and its principal "
+        "curvatures; PCL computes normals only. Scanmill stores doubles, PCL floats.",
         agree={"along_x": 1e-2},
     )

@@ -30,8 +30,8 @@ def row(name, shape, mesh, triangles):
             Contender("pymeshlab", work, prepare=load),
             Contender("open3d", work, prepare=load),
         ],
-        equal=f"the mesh in memory and the target number of triangles. Not compared: {UNBOUNDED}. Scanmill has no decimation "
-        "yet.",
+        equal=f"the mesh in memory and the target number of triangles. Not compared: {UNBOUNDED}. Scanmill has no "
+        "decimation yet.",
         agree={"triangles": 0.01},
         rounds=3,
     )

@@ -28,9 +28,9 @@ def row(name, shape, cloud, **more):
             # Qhull uses rounded arithmetic, so its flat cells may differ.
             Contender("scipy", {"do": "delaunay"}, "(qhull)", prepare=load, agree={"cells": 1e-3}),
         ],
-        equal="the points in memory as doubles, and the cells. Scanmill also delivers them as arrays in canonical order with "
-        "neighbours. CGAL keeps its own structure, whose destruction is not measured. The predicates of qhull are not "
-        "exact.",
+        equal="the points in memory as doubles, and the cells. Scanmill also delivers them as arrays in canonical "
+        "order with neighbours. CGAL keeps its own structure, whose destruction is not measured. The predicates of "
+        "qhull are not exact.",
         agree={"cells": 0, "vertices": 0},
         peak_per="cells",
         **more,

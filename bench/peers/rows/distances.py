@@ -27,7 +27,7 @@ def row(name, what, mesh, points):
             Contender("pymeshlab", work, "get_hausdorff_distance", prepare=prepare),
             Contender("trimesh", work, "closest_point", prepare=prepare),
         ],
-        equal="the mesh and the points in memory. The time includes building the search structure and all queries. Scanmill "
-        "and CGAL use doubles, Open3D floats.",
+        equal="the mesh and the points in memory. The time includes building the search structure and all queries. "
+        "Scanmill and CGAL use doubles, Open3D floats.",
         agree={"mean": 1e-4, "rms": 1e-4, "max": 1e-4},
     )

@@ -42,8 +42,8 @@ def both(name, what, file):
             title=f"Reading {what}",
             inputs=[file],
             contenders=[Contender(program, read) for program in ("scanmill", *OTHERS)],
-            equal="the file, its content, one thread. Scanmill delivers double coordinates and checks them; meshio and VTK "
-            "keep the floats of the file; trimesh makes doubles. Equal corners of an STL file are merged.",
+            equal="the file, its content, one thread. Scanmill delivers double coordinates and checks them; meshio and "
+            "VTK keep the floats of the file; trimesh makes doubles. Equal corners of an STL file are merged.",
             agree={"points": 0, "triangles": 0},
         ),
         Row(

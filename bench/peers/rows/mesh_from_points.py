@@ -2,7 +2,7 @@
 """From points to a mesh: tetrahedralisation, alpha-solid and sculpting, compared with the tetrahedralisation alone."""
 from harness.row import Contender, Row, in_threads
 
-BARE = "stops after the tetrahedralisation, the first of the three steps; the ratio is the time of all steps relative to it"
+BARE = "stops after the tetrahedralisation, the first of the three steps; the ratio compares all three with it"
 
 
 def rows(inputs, large):
@@ -29,8 +29,8 @@ def row(name, shape, cloud, **more):
             *in_threads([1, 2], "scanmill", {"do": "sculpt"}, prepare=load),
             Contender("cgal", {"do": "delaunay"}, "Delaunay_triangulation_3", prepare=load, differs=BARE),
         ],
-        equal="the points in memory as doubles. Scanmill runs delaunay, alpha-solid with an automatic radius and sculpt in "
-        "one process and delivers a mesh; CGAL makes no surface.",
+        equal="the points in memory as doubles. Scanmill runs delaunay, alpha-solid with an automatic radius and "
+        "sculpt in one process and delivers a mesh; CGAL makes no surface.",
         agree={"cells": 0, "alpha": 0, "triangles": 0, "removed": 0, "interior_points": 0},
         peak_per="cells",
         **more,

@@ -30,9 +30,9 @@ def row(name, shape, cloud, radius, **more):
             Contender("pcl", greedy, "GreedyProjectionTriangulation", prepare=load),
             Contender("cgal", {"do": "advancing-front"}, "advancing_front_surface_reconstruction", prepare=load),
         ],
-        equal="the points in memory, without normals. Scanmill and PCL estimate normals from the neighbours; PCL searches "
-        "within five spacings for its triangles; CGAL tetrahedralises. The surfaces differ, so the numbers of triangles "
-        "and of unused points are shown but not compared.",
+        equal="the points in memory, without normals. Scanmill and PCL estimate normals from the neighbours; PCL "
+        "searches within five spacings for its triangles; CGAL tetrahedralises. The surfaces differ, so the numbers of "
+        "triangles and of unused points are shown but not compared.",
         agree={},
         peak_per="triangles",
         **more,

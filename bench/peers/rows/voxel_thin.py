@@ -26,7 +26,8 @@ def row(cloud, count, size):
                 differs=f"{CENTROID}; its grid begins half a voxel below the bounding box of the points",
             ),
         ],
-        equal="the points in memory and the grid (voxels begin at multiples of their size); every voxel keeps the point "
-        "nearest its centre. Scanmill stores doubles and PCL floats, so points on the boundary of a voxel may differ.",
+        equal="the points in memory and the grid (voxels begin at multiples of their size); every voxel keeps the "
+        "point nearest its centre. Scanmill stores doubles and PCL floats, so points on the boundary of a voxel may "
+        "differ.",
         agree={"kept": 1e-3},
     )
