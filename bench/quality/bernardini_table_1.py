@@ -67,14 +67,14 @@ def judged(report, cell):
 
 def beside_its_model(options, path, mesh):
     """The spacing of the scan; if the scan is a mesh, also its topology and the distance of the result from it."""
-    said = scanmill.info(options.program, path)
-    found = {"spacing": said["spacing"], "model": None}
-    if said["kind"] == "mesh":
+    info = scanmill.info(options.program, path)
+    found = {"spacing": info["spacing"], "model": None}
+    if info["kind"] == "mesh":
         distances = scanmill.measure(options.program, mesh, path, options.limit,
                                      ["self-intersections=false", "same-frame=true"])
-        found["model"] = {"closed": said["closed"], "genus": said.get("genus"), "components": said["components"],
-                          "largest_distance": distances["hausdorff"] / said["diagonal"],
-                          "mean_distance": distances["mean"] / said["diagonal"]}
+        found["model"] = {"closed": info["closed"], "genus": info.get("genus"), "components": info["components"],
+                          "largest_distance": distances["hausdorff"] / info["diagonal"],
+                          "mean_distance": distances["mean"] / info["diagonal"]}
     return found
 
 

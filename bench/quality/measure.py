@@ -40,9 +40,9 @@ def ours(program, mesh, points, folder):
     surface = folder / "mesh.ply"
     write_ply(surface, mesh.vertices, mesh.faces)
     write_ply(truth, points)
-    said = subprocess.run([program, "measure", surface, truth, "--json", "--set", "self-intersections=false"],
+    done = subprocess.run([program, "measure", surface, truth, "--json", "--set", "self-intersections=false"],
                           capture_output=True, text=True, check=True)
-    return json.loads(said.stdout)["metrics"]
+    return json.loads(done.stdout)["metrics"]
 
 
 def numbers(distances):
@@ -77,17 +77,17 @@ def main(program):
         if push:  # move the points off the surface
             points = points + push * diagonal * numpy.random.default_rng(1).normal(size=points.shape)
         with tempfile.TemporaryDirectory() as folder:
-            said = ours(program, mesh, points, pathlib.Path(folder))
+            metrics = ours(program, mesh, points, pathlib.Path(folder))
         print(f"{name}, {len(mesh.faces):,} triangles; {len(points):,} points of {other}: "
-              f"mean {said['mean']:.9g}, max {said['max']:.9g}")
+              f"mean {metrics['mean']:.9g}, max {metrics['max']:.9g}")
         for program_name, found in {"trimesh": of_trimesh(mesh, points), "Open3D": of_open3d(mesh, points)}.items():
             differences = {}
             for key, value in found.items():
                 if key == "euler":
-                    differences[key] = 0 if value == said[key] else numpy.inf
+                    differences[key] = 0 if value == metrics[key] else numpy.inf
                 else:
                     power = {"area": 2, "volume": 3}.get(key, 1)
-                    differences[key] = abs(value - said[key]) / diagonal**power
+                    differences[key] = abs(value - metrics[key]) / diagonal**power
             if not all(numpy.isfinite(difference) for difference in differences.values()):
                 worst = numpy.inf
             worst = max(worst, *differences.values())

@@ -76,10 +76,10 @@ def judged(report, cell):
 
 def its_model(options, path):
     """If the scan is a mesh, the topology of that mesh; otherwise None."""
-    said = scanmill.info(options.program, path)
-    if said["kind"] != "mesh":
+    info = scanmill.info(options.program, path)
+    if info["kind"] != "mesh":
         return None
-    return {"loops": said["boundary-loops"], "genus": said.get("genus"), "components": said["components"]}
+    return {"loops": info["boundary-loops"], "genus": info.get("genus"), "components": info["components"]}
 
 
 def take(entry, judgement, threads):

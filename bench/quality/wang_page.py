@@ -53,7 +53,7 @@ def expected_triangles(entry):
     return 2 * entry["vertices"] - 2 * entry["euler"] - entry["boundary_edges"]
 
 
-def told(loops, genus, pieces):
+def topology_text(loops, genus, pieces):
     return f"loops: {loops}, handles: {'unknown' if genus is None else genus}, components: {pieces}"
 
 
@@ -70,8 +70,8 @@ def about_the_mesh(entry):
     if entry["self_intersections"]:
         yield f"pairs of intersecting triangles: {entry['self_intersections']:,}"
     if entry.get("model"):
-        yield (f"{told(entry['loops'], entry['genus'], entry['components'])}; in the mesh that the points come from: "
-               f"{told(entry['model']['loops'], entry['model']['genus'], entry['model']['components'])}")
+        yield (f"{topology_text(entry['loops'], entry['genus'], entry['components'])}; in the mesh that the points come from: "
+               f"{topology_text(entry['model']['loops'], entry['model']['genus'], entry['model']['components'])}")
 
 
 def about_the_thesis(entry):

@@ -75,7 +75,7 @@ def fill_in(trial, report, cell, genus):
     steps = scanmill.named(report, cell)
     names = ("alpha-solid", "sculpt", "before-sculpting", "sculpted")
     solid, carved, before, metrics = (steps.get(name, {}).get("metrics", {}) for name in names)
-    told = carved.get("interior-points"), solid.get("uncovered-points")
+    counts = carved.get("interior-points"), solid.get("uncovered-points")
     outcome, cause = cell["outcome"], cell.get("cause")
     trial.update(
         verdict=verdict.judge(outcome, cause, metrics, genus, trial["bound"]),
@@ -83,7 +83,7 @@ def fill_in(trial, report, cell, genus):
         before=verdict.judge("done" if before else outcome, cause, before, genus, trial["bound"]),
         inside_before=int(solid["interior-points"]) if "interior-points" in solid else None,
         error=cell.get("error", "").partition("\n")[0],  # the other lines contain paths of this run
-        inside=None if None in told else int(sum(told)),
+        inside=None if None in counts else int(sum(counts)),
         warned=any(steps.get(name, {}).get("warnings") for name in ("delaunay", "alpha-solid", "sculpt")),
         hausdorff=metrics.get("hausdorff"),
         mean=metrics.get("mean"),

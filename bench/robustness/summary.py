@@ -52,8 +52,8 @@ def inside_before(trials):
 
 def distance(trials, name):
     """Median distance between mesh and truth in spacings, over the trials that report it."""
-    told = [trial[name] / trial["spacing"] for trial in trials if trial[name] is not None]
-    return f"{statistics.median(told):.2f}" if told else "–"
+    values = [trial[name] / trial["spacing"] for trial in trials if trial[name] is not None]
+    return f"{statistics.median(values):.2f}" if values else "–"
 
 
 def mean_distance(trials):

@@ -20,10 +20,10 @@ def answer(jobs, versions):
         try:
             if request["do"] not in jobs:
                 raise ValueError(f"this program cannot do '{request['do']}'")
-            said = jobs[request["do"]](request)
+            result = jobs[request["do"]](request)
         except BaseException as error:  # SystemExit too, which meshio raises; a failure of a program is an answer
-            said = {"failed": f"{type(error).__name__}: {' '.join(str(error).split())}"}
-        print(json.dumps(said), file=answers, flush=True)
+            result = {"failed": f"{type(error).__name__}: {' '.join(str(error).split())}"}
+        print(json.dumps(result), file=answers, flush=True)
 
 
 def timed(work):

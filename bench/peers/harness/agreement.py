@@ -24,9 +24,9 @@ def check(row, entries):
         if not entry["failure"] and not entry["differs"]
     ]
     for fact, usual_tolerance in row.agree.items():
-        telling = [(contender, entry) for contender, entry in taking_part if fact in entry["facts"]]
-        for contender, entry in telling[1:]:
-            reference = telling[0][1]
+        reporting = [(contender, entry) for contender, entry in taking_part if fact in entry["facts"]]
+        for contender, entry in reporting[1:]:
+            reference = reporting[0][1]
             reference["checked"] += 1
             entry["checked"] += 1
             tolerance = contender.agree.get(fact, usual_tolerance)

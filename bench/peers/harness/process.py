@@ -34,7 +34,7 @@ class Process:
             self.process.stdin.write(json.dumps(request).encode() + b"\n")
             self.process.stdin.flush()
         except OSError:
-            raise Failure(self._epitaph()) from None
+            raise Failure(self._reason_of_end()) from None
         line = self._line(limit)
         try:
             answer = json.loads(line)
@@ -64,12 +64,12 @@ class Process:
                 raise Failure(f"no answer within {limit:g} s")
             some = os.read(stream, 1 << 16)
             if not some:
-                raise Failure(self._epitaph())
+                raise Failure(self._reason_of_end())
             self.unread += some
         line, _, self.unread = self.unread.partition(b"\n")
         return line.decode(errors="replace")
 
-    def _epitaph(self):
+    def _reason_of_end(self):
         """How the program ended, and its last line on standard error."""
         status = self.process.wait()
         how = f"ended with {status}" if status >= 0 else f"killed by {signal.Signals(-status).name}"

@@ -72,9 +72,9 @@ def points(row):
 def growths(row, smaller):
     """Ratio of each contender's time to that on the smaller input of another row."""
     before = {called(entry): entry for entry in smaller["contenders"]}
-    told = [(called(entry), figures.growth(entry, before[called(entry)]))
+    ratios = [(called(entry), figures.growth(entry, before[called(entry)]))
             for entry in row["contenders"] if called(entry) in before]
-    words = [f"{who} {times:.1f} times" for who, times in told if times]
+    words = [f"{who} {times:.1f} times" for who, times in ratios if times]
     if words and points(smaller):
         yield (f"Time compared with `{smaller['name']}`, at {points(row) / points(smaller):.1f} times the points: "
                f"{', '.join(words)}")
@@ -83,8 +83,8 @@ def growths(row, smaller):
 def memory(row):
     """One line with the peak memory per element."""
     fact = row.get("peak_per", "")
-    told = [(called(entry), figures.bytes_per(entry, fact)) for entry in row["contenders"]]
-    words = [f"{who} {per:.0f}" for who, per in told if per is not None]
+    peaks = [(called(entry), figures.bytes_per(entry, fact)) for entry in row["contenders"]]
+    words = [f"{who} {per:.0f}" for who, per in peaks if per is not None]
     if words:
         yield f"Bytes of peak memory beyond the loaded input, per element of {fact}: {', '.join(words)}"
 
