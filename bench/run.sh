@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Runs every performance bench of a build folder. Each prints its own ratios; the machine comes first. What runs beside
-# other programs in processes of their own is peers/run.sh.
+# Prints the machine, then runs every performance bench of a build folder; each prints its own ratios. peers/run.sh runs the
+# comparisons with other programs.
 set -euo pipefail
 build=$1
 root=$(cd "$(dirname "$0")/.." && pwd)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # scanmill_add_filter(<folder> [LINK <target>…] [DEFINE <macro>…] [NO_INSTALL])
 #
-# Makes, from filters/<folder>, with <name> the folder's name with hyphens:
-#   scanmill-<name>-algorithm   a static library of every .cpp but plugin.cpp: the plain functions, for tests and programs
+# Builds a filter from filters/<folder>. <name> is the folder's name with hyphens.
+#   scanmill-<name>-algorithm   a static library of every .cpp except plugin.cpp: the plain functions, for tests and programs
 #   scanmill-<name>.so          the module, from plugin.cpp
 #   scanmill-<name>.json        the manifest, written by the built module
-# Refuses to configure when the filter has no README.md, or no test file tests/filters/<folder>*_test.cpp (unless tests
-# live elsewhere: set SCANMILL_FILTER_TESTS to their folder). NO_INSTALL: for modules that only tests use.
+# The configuration fails if the filter has no README.md or no test file tests/filters/<folder>*_test.cpp. Set
+# SCANMILL_FILTER_TESTS if the tests are in another folder. NO_INSTALL is for modules that only tests use.
 function(scanmill_add_filter folder)
   cmake_parse_arguments(FILTER "NO_INSTALL" "" "LINK;DEFINE" ${ARGN})
   if(FILTER_UNPARSED_ARGUMENTS)
@@ -16,14 +16,14 @@ function(scanmill_add_filter folder)
   set(source ${CMAKE_CURRENT_SOURCE_DIR}/${folder})
 
   if(NOT EXISTS ${source}/README.md)
-    message(FATAL_ERROR "filter ${name}: ${source}/README.md is missing; a filter has a page")
+    message(FATAL_ERROR "filter ${name}: ${source}/README.md is missing; every filter needs a page")
   endif()
   if(NOT SCANMILL_FILTER_TESTS)
     set(SCANMILL_FILTER_TESTS ${PROJECT_SOURCE_DIR}/tests/filters)
   endif()
   file(GLOB tests CONFIGURE_DEPENDS ${SCANMILL_FILTER_TESTS}/${folder}*_test.cpp)
   if(NOT tests)
-    message(FATAL_ERROR "filter ${name}: no ${SCANMILL_FILTER_TESTS}/${folder}*_test.cpp; a filter has tests")
+    message(FATAL_ERROR "filter ${name}: no ${SCANMILL_FILTER_TESTS}/${folder}*_test.cpp; every filter needs tests")
   endif()
 
   file(GLOB sources CONFIGURE_DEPENDS ${source}/*.cpp)
@@ -33,7 +33,7 @@ function(scanmill_add_filter folder)
                                                               POSITION_INDEPENDENT_CODE ON)
   target_include_directories(scanmill-${name}-algorithm PUBLIC ${source}/..)
   target_compile_definitions(scanmill-${name}-algorithm PRIVATE ${FILTER_DEFINE})
-  # No fused multiply-add behind our back: the same bytes on every processor.
+  # No fused multiply-add, so that results have the same bytes on every processor.
   target_compile_options(scanmill-${name}-algorithm PUBLIC -ffp-contract=off)
   target_link_libraries(scanmill-${name}-algorithm PUBLIC Scanmill::core PRIVATE ${FILTER_LINK})
   if(TARGET scanmill-warnings)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # scanmill_add_format(<folder> [LINK <target>…] [INCLUDE <folder>…])
 #
-# Makes, from formats/<folder>, the module scanmill-<folder>.so of every .cpp in it and its manifest scanmill-<folder>.json,
-# written by the built module.
+# Builds the module scanmill-<folder>.so from every .cpp in formats/<folder>, and its manifest scanmill-<folder>.json, which
+# the built module writes.
 function(scanmill_add_format folder)
   cmake_parse_arguments(FORMAT "" "" "LINK;INCLUDE" ${ARGN})
   if(FORMAT_UNPARSED_ARGUMENTS)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What every target is compiled with. Tuning flags stay in the presets; these two decide whether results are right:
-# no fused multiply-add behind our back (same bytes on every processor), and sanitizers in all or in none.
+# Compiler flags of every target. Tuning flags are in the presets. The flags here affect correctness: no fused
+# multiply-add (same bytes on every processor), and sanitizers in all targets or in none.
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
@@ -19,17 +19,17 @@ if(SCANMILL_FUZZ)
     message(FATAL_ERROR "SCANMILL_FUZZ needs clang; the compiler is ${CMAKE_CXX_COMPILER_ID}. Use `make fuzz`, or "
                         "`tools/deps.sh fuzz` and `cmake --preset fuzz`")
   endif()
-  # In every target, so that a fuzzer sees which code its bytes reach.
+  # In every target, so that the fuzzer measures coverage everywhere.
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
 add_library(scanmill-warnings INTERFACE)
 target_compile_options(scanmill-warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  target_compile_options(scanmill-warnings INTERFACE -Wno-restrict)  # false on "literal" + std::string with GCC 12
+  target_compile_options(scanmill-warnings INTERFACE -Wno-restrict)  # false positive on "literal" + std::string with GCC 12
 endif()
 if(SCANMILL_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  target_compile_options(scanmill-warnings INTERFACE -Wno-maybe-uninitialized)  # false with instrumentation
+  target_compile_options(scanmill-warnings INTERFACE -Wno-maybe-uninitialized)  # false positives with instrumentation
 endif()
 if(SCANMILL_WERROR)
   target_compile_options(scanmill-warnings INTERFACE -Werror)

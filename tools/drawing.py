@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An SVG drawing, and the colours that all pictures share."""
+"""An SVG drawing and the colours of all pictures."""
 import math
 
 INK, PALE, BRIGHT, SOLID = "#333333", "#b8b8b8", "#d1495b", "#cfe3ee"
 
 
 class Picture:
-    """An SVG drawing in units of our own, y upwards."""
+    """An SVG drawing in its own units, with y upwards."""
 
     def __init__(self, width, height, scale=60):
         self.width, self.height, self.scale = width, height, scale

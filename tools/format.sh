@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Formats every C++ file; `format.sh check` only says which differ, and fails then.
+# Formats every C++ file. `format.sh check` changes nothing; it lists the files that differ and fails if there are any.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 mapfile -d '' files < <(find . -path ./build -prune -o \( -name '*.cpp' -o -name '*.hpp' \) -print0)

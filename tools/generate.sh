@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Writes schemas/ and docs/filters/ with the built program: `generate.sh build/dev`. With `check` as second argument it
-# changes nothing and fails when the committed files differ from what the filters declare. A filter of this tree that the
-# program does not know would lose its page: then nothing is written.
+# changes nothing, and fails if the committed files differ from the filters' declarations. If the program lacks a filter of
+# this tree, that filter would lose its page; nothing is written then.
 set -euo pipefail
 build=$1
 program=$(realpath "$build")/bin/scanmill
 cd "$(dirname "$0")/.."
-# Only the filters of this tree: not what SCANMILL_PLUGIN_PATH adds.
+# Only the filters of this tree, without those of SCANMILL_PLUGIN_PATH.
 unset SCANMILL_PLUGIN_PATH
 
 known=$("$program" list | cut -d ' ' -f 1)

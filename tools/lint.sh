@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# clang-tidy over our sources, with the compile commands of a configured build folder.
+# Runs clang-tidy over the sources, with the compile commands of a configured build folder.
 set -euo pipefail
 build=$1
 cd "$(dirname "$0")/.."

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the picture of every filter's page, filters/*/picture.svg: the method in the plane, computed, not traced."""
+"""Draws filters/*/picture.svg, the picture of every filter's page. Each one runs the filter's method in the plane."""
 import pathlib
 
 import cloud_pictures as clouds

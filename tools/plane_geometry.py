@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points, triangles and polylines in the plane, for the pictures: small and slow."""
+"""Points, triangles and polylines in the plane, for the pictures. Simple and slow."""
 import itertools
 import math
 
 
 def circumcircle(a, b, c):
-    """Centre and radius of the circle through three points; None when they lie on a line."""
+    """Centre and radius of the circle through three points; None if the points are collinear."""
     bx, by, cx, cy = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
     twice = 2 * (bx * cy - by * cx)
     if abs(twice) < 1e-12:
@@ -16,7 +16,7 @@ def circumcircle(a, b, c):
 
 
 def delaunay(points):
-    """All triangles with an empty circumcircle, by trying every three points."""
+    """All triangles with an empty circumcircle, found by testing every three points."""
     triangles = []
     for corners in itertools.combinations(points, 3):
         circle = circumcircle(*corners)
@@ -26,7 +26,7 @@ def delaunay(points):
 
 
 def scattered(source, count, least, width, height, inside=lambda p: True):
-    """Points at least so far from each other."""
+    """Random points with a distance of more than `least` from each other."""
     points = []
     while len(points) < count:
         p = (source.uniform(0.2, width - 0.2), source.uniform(0.2, height - 0.2))
@@ -36,7 +36,7 @@ def scattered(source, count, least, width, height, inside=lambda p: True):
 
 
 def nearest_on_profile(p, profile):
-    """The nearest point of a polyline."""
+    """The point of a polyline nearest to p."""
     best = None
     for (ax, ay), (bx, by) in itertools.pairwise(profile):
         along = ((p[0] - ax) * (bx - ax) + (p[1] - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pictures of filters that make a surface or look at one."""
+"""Pictures of the filters that make or examine a surface."""
 import itertools
 import math
 import random
@@ -91,7 +91,7 @@ def sculpt():
     profile = [(0.4, 2.8), (0.8, 2.6), (1.2, 2.3), (1.5, 1.9), (1.7, 1.45), (2.0, 1.2), (2.35, 1.15), (2.7, 1.4)]
     profile += [(2.9, 1.85), (3.2, 2.3), (3.6, 2.6), (4.0, 2.8)]
     ground = [(0.4 + 0.6 * i, 0.5) for i in range(7)]
-    # Solid under the profile; before, a lid closes the valley at the height where the ball does not enter.
+    # The solid is below the profile. Before sculpting, cells that the ball cannot enter also fill the valley.
     lid = (2, 9)
     for shift, carved in ((0, False), (5, True)):
         moved = lambda p: (p[0] + shift, p[1])
@@ -122,7 +122,7 @@ def features():
     seen = lambda p: (3.6 + p[0] + 0.45 * p[1], 2.1 + 0.75 * p[1] + 0.9 * p[2])
     ring = [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in (2 * math.pi * i / 14 for i in range(14))]
     grid = [(0.65 * i, 0.75 * j) for i in range(-5, 4) for j in range(5)]
-    # The cross-grained grid would have four cocircular points in every cell.
+    # A regular grid would have four cocircular points in every cell.
     nudged = [(x + 0.02 * math.sin(7 * y) if x not in (0, -3.25, 1.95) else x, y) for x, y in grid]
     for half in (lambda p: p[0] <= 0, lambda p: p[0] >= 0):
         points = [p for p in nudged if half(p) and math.dist(p, centre) > 1.2 * radius]
@@ -142,7 +142,7 @@ def features():
     picture.text((0.1, 1.1), "outer boundary")
     picture.text((2.3, 3.15), "hole")
     picture.text((2.55, 1.75), "crease", BRIGHT)
-    # Across the crease: the angle between the two normals.
+    # Cross-section of the crease, with the angle between the two normals.
     foot, left, right = (8.3, 2.2), (6.5, 2.2), (8.3 + 1.8 * math.cos(bend), 2.2 - 1.8 * math.sin(bend))
     picture.line(left, foot, INK, 2.5)
     picture.line(foot, right, INK, 2.5)

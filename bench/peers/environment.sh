@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# environment.sh FOLDER: makes a Python environment with the peers of requirements.txt there, and says where its
-# interpreter is. Does nothing when the folder holds them already.
+# environment.sh FOLDER: creates a Python environment with the packages of requirements.txt in FOLDER and prints the path of
+# its interpreter. Does not change an environment that already has these packages.
 set -euo pipefail
 folder=$1
 wanted=$(dirname "$0")/requirements.txt

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The programs that rows may name, and how each is started."""
+"""The programs that rows can name, and their command lines."""
 import pathlib
 import sys
 
@@ -14,4 +14,4 @@ def command(program, build):
         return [str(pathlib.Path(build) / "bin" / f"peer_{program}")]
     if program in PYTHON:
         return [sys.executable, str(FOLDER / f"{program.replace('-', '_')}_driver.py")]
-    raise KeyError(f"no program is called {program}; there are {', '.join(COMPILED + PYTHON)}")
+    raise KeyError(f"there is no program {program}; the programs are {', '.join(COMPILED + PYTHON)}")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the rows, and writes results.json and RESULTS.md: run.py BUILD [options].
+"""Runs the rows and writes results.json and RESULTS.md: run.py BUILD [options].
 
-Ends with 1 when one of our own contenders failed, when an input is missing, or when ours came to another result than
-everybody else; what a peer fails in or gets wrong is written down and ends nothing.
+The exit code is 1 if one of our contenders failed, if an input is missing, or if our result differs from that of all
+other programs. Failures and wrong results of other programs are only recorded.
 """
 import argparse
 import datetime
@@ -25,16 +25,17 @@ from tables.options import at_least_one, limit  # noqa: E402
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description="Runs Scanmill beside other programs.")
+    parser = argparse.ArgumentParser(description="Compares Scanmill with other programs.")
     parser.add_argument("build", type=pathlib.Path, help="a build folder of the preset bench")
-    parser.add_argument("--rows", default="", help="parts of row names, separated by commas; all rows without")
-    parser.add_argument("--rounds", type=at_least_one, help="counted rounds, instead of each row's own number")
+    parser.add_argument("--rows", default="", help="parts of row names, separated by commas (default: all rows)")
+    parser.add_argument("--rounds", type=at_least_one, help="counted rounds (default: set by each row)")
     parser.add_argument("--large", action="store_true", help="also the rows that take minutes and gigabytes")
     limit(parser, 300, "one answer")
     parser.add_argument("--budget", type=float, default=20, help="seconds of work per contender (default: %(default)s)")
-    parser.add_argument("--into", type=pathlib.Path, help="folder of the results (bench, of some rows build/peers)")
-    parser.add_argument("--only-table", action="store_true", help="measure nothing; RESULTS.md anew from results.json")
-    parser.add_argument("--list", action="store_true", help="print the rows' names and stop")
+    parser.add_argument("--into", type=pathlib.Path,
+                        help="folder of the results (default: bench for all rows, else build/peers)")
+    parser.add_argument("--only-table", action="store_true", help="measure nothing; write RESULTS.md from results.json")
+    parser.add_argument("--list", action="store_true", help="print the names of the rows and stop")
     return parser.parse_args()
 
 
@@ -46,17 +47,17 @@ def all_rows(inputs, large):
 
 
 def chosen(rows, wanted):
-    """The rows whose name contains one of the words. Exits when a word is in none."""
+    """The rows whose name contains one of the words. Exits if no row matches a word."""
     words = [word for word in wanted.replace(",", " ").split() if word]
     for word in words:
         if not any(word in row.name for row in rows):
-            sys.exit(f"error: no row is called '{word}'; there are {', '.join(row.name for row in rows)}")
+            sys.exit(f"error: there is no row '{word}'; the rows are {', '.join(row.name for row in rows)}")
     return [row for row in rows if not words or any(word in row.name for word in words)]
 
 
 def versions(rows, build, limit):
-    """Of every program in the rows, as it says itself, and what compiled them. A program that cannot say is left out
-    here and fails in its row."""
+    """The versions that the programs report, and the compiler. A program that reports none is left out here and fails
+    in its row."""
     found = {}
     for name in sorted({contender.program for row in rows for contender in row.contenders}):
         process = None
@@ -72,7 +73,7 @@ def versions(rows, build, limit):
 
 
 def trouble(record):
-    """Why this row must not pass for a result, in sentences; none when it may."""
+    """The reasons why this row is invalid, as sentences; empty if it is valid."""
     if record["failure"]:
         return [record["failure"]]
     entries = record["contenders"]
@@ -82,12 +83,12 @@ def trouble(record):
             ours.append(f"{entry['name']}: {entry['failure'] or entry['unequal']}")
     others = [entry for entry in entries if not entry["ours"] and entry["checked"]]
     if others and all(entry["unequal"] for entry in others) and any(entry["ours"] for entry in entries):
-        ours.append("ours came to another result than every other program: " + others[0]["unequal"])
+        ours.append("our result differs from that of every other program: " + others[0]["unequal"])
     return ours
 
 
 def write(folder, results):
-    """Whole or not at all."""
+    """Writes both files, each whole or not at all."""
     text = json.dumps(results, indent=1, allow_nan=False) + "\n"
     for name, content in (("results.json", text), ("RESULTS.md", table.page(results))):
         part = folder / (name + ".part")
@@ -97,7 +98,7 @@ def write(folder, results):
 
 def main():
     options = arguments()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that nothing of ours is left in memory
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # ends the child processes and removes the temporary files
     made = options.build.resolve().parent / "peers"
     inputs = Inputs(ROOT / "build" / "data", made / "inputs", options.build / "bin" / "peer_inputs")
     every = all_rows(inputs, options.large)

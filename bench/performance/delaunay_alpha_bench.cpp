@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// delaunay and alpha-solid together against a bare CGAL::Delaunay_triangulation_3, in turn, in one process.
+/// Compares delaunay and alpha-solid together with CGAL::Delaunay_triangulation_3 alone, in turn, in one process.
 ///
-/// Equal: the points, in memory, and the kernel (exact predicates). Not equal: CGAL gives a triangulation in its own
-/// structure and order, sequentially, and its destruction is not counted; ours counts everything from the cloud to the
-/// boundary mesh, canonical order and clean-up included. Peak memory is that of a process that does nothing else, its
-/// points included.
+/// Equal: the points in memory and the kernel (exact predicates). Not equal: CGAL makes a triangulation in its own
+/// structure and order, in one thread, and its destruction is not measured. Our time includes everything from the cloud
+/// to the boundary mesh, with canonical order and clean-up. Peak memory is that of a process that does nothing else,
+/// including its points.
 ///
-/// usage: delaunay_alpha_bench [rounds = 5] [--large] [file…]     --large adds 3.5 million points; files replace the
-/// scans of build/data
+/// usage: delaunay_alpha_bench [rounds = 5] [--large] [file…]
+/// --large adds 3.5 million points; files replace the scans of build/data.
 
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -46,7 +46,7 @@ struct Input {
 
 struct Contender {
     std::string name;
-    /// Seconds of one run.
+    /// Returns the seconds of one run.
     std::function<double()> run;
     std::vector<double> seconds = {};
 };
@@ -78,7 +78,8 @@ double run_ours(const PointCloud& cloud, unsigned threads, std::string* summary)
         if (!summary) return seconds;
         const scanmill::MeshTopology facts = scanmill::topology(solid.mesh);
         *summary = fmt::format(
-            "{} cells, delaunay {:.0f} % of the time; alpha {:.5g}, alpha_cover {:.5g}, {} triangles, {}, {} pieces, "
+            "{} cells, delaunay {:.0f} % of the time; alpha {:.5g}, alpha_cover {:.5g}, {} triangles, {}, {} "
+            "components, "
             "genus {}, {} interior points, {} left out",
             cells, 100 * delaunay_seconds / seconds, solid.alpha, solid.alpha_cover, solid.mesh.triangles.size(),
             facts.closed ? "closed" : "open", facts.components, facts.genus.value_or(-1), solid.interior_points.size(),
@@ -94,7 +95,7 @@ std::vector<Kernel::Point_3> cgal_points(const PointCloud& cloud) {
     return points;
 }
 
-/// In a child process. Pre: no thread was started yet.
+/// Peak memory of `work` in a child process. Pre: no thread was started before.
 double peak_mebibytes(const std::function<void()>& work) {
     const pid_t child = fork();
     if (child == 0) {
@@ -104,7 +105,7 @@ double peak_mebibytes(const std::function<void()>& work) {
     int status = 0;
     rusage usage{};
     wait4(child, &status, 0, &usage);
-    if (status != 0) throw scanmill::Error("a run for its peak memory ended with status {}", status);
+    if (status != 0) throw scanmill::Error("the run that measures peak memory ended with status {}", status);
     return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
@@ -164,7 +165,7 @@ int main(int argc, char** argv) {
             if (std::filesystem::exists(fetched))
                 files.push_back(fetched);
             else
-                fmt::print("{} was not fetched and is left out\n", fetched);
+                fmt::print("{} is missing and is left out\n", fetched);
         }
 
     std::vector<Input> inputs;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What the engine costs: `scanmill run workflows/quickstart.yaml` beside a program that calls the same filters one
-/// after the other, and nothing else.
+/// Measures the overhead of the engine: compares `scanmill run workflows/quickstart.yaml` with a program that only
+/// calls the same filters one after the other.
 ///
-/// Equal: the scans, the filters' modules, their parameters, the threads, the STL that is written, one process started
-/// and waited for; all in turn. Not equal: the engine also starts a worker process, keys and checks everything, hashes
-/// the scans, looks whether the results are what the workflow expects, and writes its records and a description of
-/// every file. What it does once in a run weighs less the more scans there are. usage: engine_overhead_bench [rounds =
-/// 11]
+/// Equal: the scans, the filters' modules, their parameters, the threads, the STL files written, and one process
+/// started per run; all in turn. Not equal: the engine also starts a worker process, checks the workflow, hashes the
+/// scans, computes cache keys, checks the expectations, and writes its records and a description of every file. The
+/// cost per run matters less with more scans.
+///
+/// usage: engine_overhead_bench [rounds = 11]
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -35,7 +36,7 @@ namespace fs = std::filesystem;
 
 using scanmill::Value;
 
-/// Runs one filter out of its module, with its defaults but for what is given.
+/// Runs one filter from its module, with the given parameters and defaults for the others.
 Value run_filter(scanmill::FilterLibrary& library, const std::string& name, const std::string& port, Value input,
                  const scanmill::ParameterSet& given, scanmill::Context& context) {
     const scanmill::FilterDeclaration& filter = library.load(name);
@@ -61,7 +62,7 @@ void run_filters(scanmill::FilterLibrary& library, scanmill::Context& context, d
     write_file(output, run_filter(library, "alpha-solid", "tets", tets, {}, context));
 }
 
-/// The quickstart workflow as a C++ program would write it, with the same code of the filters: that of their modules.
+/// The quickstart workflow as a C++ program, with the code of the filters' modules.
 int run_filters(double percent, const fs::path& folder, const std::vector<fs::path>& scans) {
     fs::create_directories(folder);
     scanmill::ContextOptions options;
@@ -126,18 +127,18 @@ void compare(double percent, const std::vector<std::string>& scans, const fs::pa
         {"no cache", run({"--no-cache"})},
         {"no cache, in one process", run({"--no-cache", "-j", "0"})},
         {"a warm cache, nothing to store", run({"--cache", cache + "-never", "--keep", "never"})},
-        {"an empty cache, what is worth it", run({"--cache", cache}), without_cache},
+        {"an empty cache, values worth storing", run({"--cache", cache}), without_cache},
         {"an empty cache, every value", run({"--cache", cache, "--keep", "always"}), without_cache},
         {"everything cached", run({"--cache", cache + "-full", "--keep", "always"})},
     };
-    for (int round = 0; round <= rounds; ++round)  // the first warms everything up
+    for (int round = 0; round <= rounds; ++round)  // the first round is a warm-up
         for (Contender& contender : contenders) {
             contender.prepare();
             const double seconds = seconds_of(contender.command);
             if (round > 0) contender.seconds.push_back(seconds);
         }
     for (const std::string& scan : scans) fmt::print("{}, ", fs::path(scan).filename().string());
-    fmt::print("bin size {} % of the diagonal\n", percent);
+    fmt::print("voxel size {} % of the diagonal\n", percent);
     for (const Contender& contender : contenders) {
         std::vector<double> ratios;
         for (std::size_t i = 0; i < contender.seconds.size(); ++i)
@@ -164,7 +165,7 @@ int main(int argc, char** argv) try {
     for (const auto& [percent, scans] : {std::pair(0.5, std::vector{bunny}), std::pair(0.5, std::vector{dragon}),
                                          std::pair(0.5, demo), std::pair(0.25, std::vector{dragon})}) {
         for (const std::string& scan : scans)
-            if (!fs::exists(scan)) throw std::runtime_error(scan + " is not there; make data fetches it");
+            if (!fs::exists(scan)) throw std::runtime_error(scan + " is missing; make data fetches it");
         compare(percent, scans, programs, folder, rounds);
     }
     fs::remove_all(folder);

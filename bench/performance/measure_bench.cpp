@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Nearest-triangle queries: TriangleTree against CGAL's AABB tree, in turn, in one process.
+/// Compares nearest-triangle queries of TriangleTree and of CGAL's AABB tree, in turn, in one process.
 ///
-/// Equal: a million triangles of a bumpy sphere, a million queries near it along a space-filling curve, two threads for
-/// both, doubles on both sides (CGAL with its fastest kernel, Simple_cartesian<double>). CGAL runs with its own table
-/// of hints and, second, with the last answer as hint, as ours does; the better one counts. Not equal: ours returns the
-/// squared distance and the triangle, CGAL the point. At large distances CGAL asks fewer queries and is scaled.
-/// The largest difference between the two answers is printed. usage: measure_bench [rounds = 5]
+/// Equal: a million triangles of a bumpy sphere, a million queries near it along a space-filling curve, two threads and
+/// doubles for both (CGAL with its fastest kernel, Simple_cartesian<double>). CGAL runs first with its own table of
+/// hints, then with the last answer as hint, as ours does; the better result counts. Not equal: ours returns the
+/// squared distance and the triangle, CGAL the point. At large distances CGAL gets fewer queries, and rates per second
+/// are compared. Prints the largest difference between the answers.
+///
+/// usage: measure_bench [rounds = 5]
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -98,7 +100,7 @@ void ask(const CgalTree& tree, std::span<const Vec3> queries, bool from_last, Ar
 void compare(const TriangleMesh& mesh, const TriangleTree& ours, const CgalTree& theirs, double distance,
              std::size_t cgal_queries, int rounds) {
     const Array<Vec3> queries = queries_near(mesh, 1'000'000, distance);
-    // A stretch of the curve, as dense as all of it.
+    // A section of the curve, with the density of the whole curve.
     const std::span<const Vec3> part = std::span(queries).first(cgal_queries);
     Array<double> our_answers(queries.size()), their_answers(part.size());
     std::vector<double> our_rates, table_rates, last_rates;

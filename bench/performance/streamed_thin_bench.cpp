@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Thinning a file that is read piece by piece, beside reading it whole and thinning what was read, in turn, in one
-/// process: points per second, and memory.
+/// Compares thinning a file in chunks with reading it whole and thinning it, in turn, in one process: points per second
+/// and memory.
 ///
-/// A sphere that was scanned line by line, with noise: as binary PLY of floats and as text, warm in the page cache.
-/// Equal: file, bin size, threads; the results are the same bytes. Memory is what the process has resident at most
-/// above what it had before, asked at two bin sizes: their difference over the difference of kept points is what a kept
-/// point costs, the rest is buffers; and at a size that keeps few points far from each other in the file. usage:
-/// streamed_thin_bench [millions of points = 20] [rounds = 5]
+/// The input is a sphere with noise, scanned line by line, as binary PLY of floats and as text, in the page cache.
+/// Equal: file, voxel size, threads; the results have the same bytes. Memory is the peak resident memory above that
+/// before the run. It is measured at two voxel sizes: the difference in memory over the difference in kept points is
+/// the memory per kept point, and the rest is buffers. A third voxel size keeps few points, far from each other in the
+/// file.
+///
+/// usage: streamed_thin_bench [millions of points = 20] [rounds = 5]
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -36,7 +38,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace scanmill;
 
-/// Removed with everything in it.
+/// A temporary folder, removed with its content at the end.
 class Folder {
 public:
     Folder() {
@@ -66,7 +68,7 @@ std::array<float, 3> scanned(std::size_t row, std::size_t count, Random& random)
             static_cast<float>(radius * z)};
 }
 
-/// Written in large blocks, as scanners' programs do: the system then maps such files in large blocks, too.
+/// Writes in large blocks, as scanner software does. The system then also maps the file in large blocks.
 class LargeFile {
 public:
     explicit LargeFile(const fs::path& path) {
@@ -114,7 +116,7 @@ double resident_megabytes(const char* line_begins) {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);)
         if (line.starts_with(line_begins)) return std::stod(line.substr(line.find_first_of("0123456789"))) / 1024;
-    throw std::runtime_error("the system does not tell what is resident");
+    throw std::runtime_error("the system does not report the resident memory");
 }
 
 struct Cost {
@@ -124,8 +126,8 @@ struct Cost {
 
 Cost cost_of(const std::function<std::size_t()>& thin) {
     ::malloc_trim(0);
-    if (std::ofstream peak("/proc/self/clear_refs"); !(peak << 5).flush())  // from now on the peak counts anew
-        throw std::runtime_error("the peak of memory cannot be reset");
+    if (std::ofstream peak("/proc/self/clear_refs"); !(peak << 5).flush())  // resets the peak
+        throw std::runtime_error("the peak memory cannot be reset");
     const double before = resident_megabytes("VmRSS");
     const auto begin = std::chrono::steady_clock::now();
     Cost cost;
@@ -146,7 +148,7 @@ std::size_t thin_stream(const fs::path& path, double bin_size, unsigned threads)
     VoxelThinParams params;
     params.bin_size = bin_size;
     const auto stream = open_point_stream(path, {}, threads);
-    if (!stream) throw std::runtime_error("the file is not read piece by piece");
+    if (!stream) throw std::runtime_error("the file cannot be read in chunks");
     return voxel_thin(*stream, params, context).points.size();
 }
 
@@ -181,7 +183,7 @@ void compare(const fs::path& path, std::size_t points, int rounds) {
             each.fine = cost_of([&] { return each.thin(path, fine, each.threads); });
             each.seconds.push_back(each.coarse.seconds);
         }
-    fmt::print("\n{}: {:.0f} MB, {} points, {} kept in bins of {}, {} in bins of {}\n", path.filename().string(),
+    fmt::print("\n{}: {:.0f} MB, {} points, {} kept in voxels of {}, {} in voxels of {}\n", path.filename().string(),
                static_cast<double>(fs::file_size(path)) / 1e6, points, contenders.front().coarse.kept, coarse,
                contenders.front().fine.kept, fine);
     for (const Contender& each : contenders) {

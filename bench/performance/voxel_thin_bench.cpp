@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// voxel-thin against PCL's UniformSampling and VoxelGrid, in turn, in one process.
+/// Compares voxel-thin with PCL's UniformSampling and VoxelGrid, in turn, in one process.
 ///
-/// Equal: the points (in random order, in memory), the size of the bins, whole clouds in and out. Not equal:
-/// UniformSampling keeps the point nearest the bin's centre as we do; VoxelGrid returns centroids, which are no points
-/// of the scan. PCL stores float (16 bytes a point), we double (24 bytes). PCL uses one thread for both. Its grids
-/// start at whole multiples of the bin size, ours at the bounding box, so counts differ slightly. usage:
-/// voxel-thin-bench [rounds = 5]
+/// Equal: the points in memory in random order, the voxel size, whole clouds as input and output. UniformSampling keeps
+/// the point nearest the voxel's centre, as voxel-thin does. Not equal: VoxelGrid returns centroids, which are not
+/// points of the scan. PCL stores floats (16 bytes per point), Scanmill doubles (24 bytes). PCL uses one thread for
+/// both. PCL's grids start at multiples of the voxel size, ours at the bounding box, so counts differ slightly.
+///
+/// usage: voxel_thin_bench [rounds = 5]
 
 #include <fmt/format.h>
 #include <pcl/filters/uniform_sampling.h>
@@ -32,7 +33,7 @@ using PclCloud = pcl::PointCloud<pcl::PointXYZ>;
 
 struct Contender {
     std::string name;
-    /// Returns how many points are left.
+    /// Returns the number of kept points.
     std::function<std::size_t()> run;
     std::vector<double> seconds = {};
     std::size_t kept = 0;
@@ -72,7 +73,8 @@ PointCloud sphere(std::size_t count) {
     return cloud;
 }
 
-/// The bin size that keeps about a tenth: in a cube one bin per ten points, on a surface about 3/2 bins per bin's face.
+/// The voxel size that keeps about a tenth of the points: one voxel per ten points in a cube; on a surface, about 3/2
+/// voxels per face area of a voxel.
 double bin_size_for_tenth(bool surface, double count) {
     return surface ? std::sqrt(1.5 * 4 * std::numbers::pi / (count / 10)) : std::cbrt(1 / (count / 10));
 }
@@ -113,7 +115,7 @@ void compare(const std::string& title, const PointCloud& cloud, double bin_size,
     for (int round = 0; round < rounds; ++round)
         for (Contender& contender : contenders) time_once(contender);
 
-    fmt::print("\n{}: {} points, bin size {:.5g}\n", title, cloud.size(), bin_size);
+    fmt::print("\n{}: {} points, voxel size {:.5g}\n", title, cloud.size(), bin_size);
     const double uniform = median(contenders[2].seconds), grid = median(contenders[3].seconds);
     for (const Contender& contender : contenders) {
         const auto [least, most] = std::ranges::minmax(contender.seconds);

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""bernardini_table_1.py PROGRAM: Table 1 of Bernardini et al. 1997 beside what we make of like objects.
+"""bernardini_table_1.py PROGRAM: compares Table 1 of Bernardini et al. 1997 with our results on similar objects.
 
-Runs the workflow over all objects, ROUNDS times with one thread and with all, without a cache. Every number is from the
-program's own JSON: the metrics and seconds of the steps, and the facts of the mesh that was written. Writes
-bernardini-table-1.md and .json. Ends with 1 when a run failed, or a fetched file is missing.
+Runs the workflow over all objects, ROUNDS times with one thread and with all threads, without a cache. Every number
+comes from the program's JSON: the metrics and seconds of the steps, and the facts of the written mesh. Writes
+bernardini-table-1.md and .json. The exit code is 1 if a run failed or a fetched file is missing.
 """
 import pathlib
 import sys
@@ -22,12 +22,12 @@ FILTERS = ("delaunay", "alpha-solid", "sculpt")
 
 
 def arguments():
-    return options_of.of_a_paper("The paper's Table 1 beside ours.",
+    return options_of.of_a_paper("Compares the paper's Table 1 with our results.",
                                  ROOT / "workflows" / "bernardini-1997.yaml").parse_args()
 
 
 def begun(one, options):
-    """The entry of an object as far as it is known before the run."""
+    """The entry of an object before the run."""
     path = (options.data if one.fetched else options.more_data) / one.file
     entry = {"paper": one.paper, "file": one.file, "what": one.what, "failure": "", "skipped": ""}
     if not path.exists() and one.fetched:
@@ -38,7 +38,7 @@ def begun(one, options):
 
 
 def judged(report, cell):
-    """What the report says of one object: counts and topology, and the seconds of the three filters together."""
+    """The result for one object from the report: counts, topology, and the total seconds of the three filters."""
     if cell["outcome"] != "done":
         return {"failure": cell.get("error", cell["outcome"])}
     steps = scanmill.steps(report, cell)
@@ -66,15 +66,15 @@ def judged(report, cell):
 
 
 def beside_its_model(options, path, mesh):
-    """The scan's own spacing and topology; for a scan that is a mesh also how far the result is from it."""
-    said = scanmill.info(options.program, path)
-    found = {"spacing": said["spacing"], "model": None}
-    if said["kind"] == "mesh":
+    """The spacing of the scan; if the scan is a mesh, also its topology and the distance of the result from it."""
+    info = scanmill.info(options.program, path)
+    found = {"spacing": info["spacing"], "model": None}
+    if info["kind"] == "mesh":
         distances = scanmill.measure(options.program, mesh, path, options.limit,
                                      ["self-intersections=false", "same-frame=true"])
-        found["model"] = {"closed": said["closed"], "genus": said.get("genus"), "components": said["components"],
-                          "largest_distance": distances["hausdorff"] / said["diagonal"],
-                          "mean_distance": distances["mean"] / said["diagonal"]}
+        found["model"] = {"closed": info["closed"], "genus": info.get("genus"), "components": info["components"],
+                          "largest_distance": distances["hausdorff"] / info["diagonal"],
+                          "mean_distance": distances["mean"] / info["diagonal"]}
     return found
 
 
@@ -86,13 +86,13 @@ def take(entry, judgement, threads):
     seconds = judgement.pop("seconds")
     different = [name for name, value in judgement.items() if "seconds" in entry and entry[name] != value]
     if different:
-        raise scanmill.Broken(f"{entry['file']}: two runs came to different {', '.join(different)}")
+        raise scanmill.Broken(f"{entry['file']}: two runs gave different {', '.join(different)}")
     entry.update(judgement)
     entry.setdefault("seconds", {}).setdefault(threads, []).append(seconds)
 
 
 def run(options, folder):
-    """Entries, called objects, in the order of STAND_INS."""
+    """The results: entries named "objects", in the order of STAND_INS."""
     pairs = [begun(one, options) for one in STAND_INS]
     there = {str(path): (entry, path) for entry, path in pairs if not entry["failure"] and not entry["skipped"]}
     for number in range(options.rounds):

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""measure.py PROGRAM: what `scanmill measure` says beside trimesh and Open3D, on the same files.
+"""measure.py PROGRAM: compares `scanmill measure` with trimesh and Open3D on the same files.
 
-Distances go from the points of a scan, all of them, to the nearest point of a mesh's triangles: that means the same to all
-three. So do area, volume and Euler's number. trimesh is given everything ten thousand times as large and its answers are
-scaled back, because it takes triangles below an absolute size for degenerate. Open3D calculates in float.
+Compares the distances from all points of a scan to the nearest point of a mesh's triangles, the area, the volume and
+the Euler characteristic. They have the same meaning in all three programs. trimesh treats triangles below an absolute
+size as degenerate, so its input is scaled up by 10,000 and its results are scaled back. Open3D computes in float.
 
-Differences are told as shares of the mesh's diagonal (areas and volumes: of its square and cube). Ends with 1 when one is
-above 1e-6, or an Euler number differs.
+Differences are shares of the mesh's diagonal (of its square for areas and its cube for volumes). The exit code is 1 if
+one is above 1e-6 or the Euler characteristics differ.
 """
 import json
 import pathlib
@@ -35,14 +35,14 @@ def load(name):
 
 
 def ours(program, mesh, points, folder):
-    """The mesh goes through a PLY of doubles, so that all three measure the same numbers."""
+    """Runs `scanmill measure` on PLY files of doubles, so that all programs use the same coordinates."""
     truth = folder / "points.ply"
     surface = folder / "mesh.ply"
     write_ply(surface, mesh.vertices, mesh.faces)
     write_ply(truth, points)
-    said = subprocess.run([program, "measure", surface, truth, "--json", "--set", "self-intersections=false"],
+    done = subprocess.run([program, "measure", surface, truth, "--json", "--set", "self-intersections=false"],
                           capture_output=True, text=True, check=True)
-    return json.loads(said.stdout)["metrics"]
+    return json.loads(done.stdout)["metrics"]
 
 
 def numbers(distances):
@@ -74,20 +74,20 @@ def main(program):
     for name, other, push in PAIRS:
         mesh, points = load(name), numpy.asarray(load(other).vertices)
         diagonal = numpy.linalg.norm(mesh.extents)
-        if push:  # the mesh's own points, off the surface
+        if push:  # move the points off the surface
             points = points + push * diagonal * numpy.random.default_rng(1).normal(size=points.shape)
         with tempfile.TemporaryDirectory() as folder:
-            said = ours(program, mesh, points, pathlib.Path(folder))
+            metrics = ours(program, mesh, points, pathlib.Path(folder))
         print(f"{name}, {len(mesh.faces):,} triangles; {len(points):,} points of {other}: "
-              f"mean {said['mean']:.9g}, max {said['max']:.9g}")
+              f"mean {metrics['mean']:.9g}, max {metrics['max']:.9g}")
         for program_name, found in {"trimesh": of_trimesh(mesh, points), "Open3D": of_open3d(mesh, points)}.items():
             differences = {}
             for key, value in found.items():
                 if key == "euler":
-                    differences[key] = 0 if value == said[key] else numpy.inf
+                    differences[key] = 0 if value == metrics[key] else numpy.inf
                 else:
                     power = {"area": 2, "volume": 3}.get(key, 1)
-                    differences[key] = abs(value - said[key]) / diagonal**power
+                    differences[key] = abs(value - metrics[key]) / diagonal**power
             if not all(numpy.isfinite(difference) for difference in differences.values()):
                 worst = numpy.inf
             worst = max(worst, *differences.values())

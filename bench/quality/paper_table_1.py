@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table 1 of Bernardini, Bajaj, Chen, Schikore 1997, and which of our files stands for which of its objects.
+"""Table 1 of Bernardini, Bajaj, Chen, Schikore 1997, and our files for similar objects.
 
-Not one of the paper's point sets is published, so none of these files is the same data.
+The paper's point sets are not published, so none of these files is the same data.
 """
 from dataclasses import dataclass
 
@@ -33,31 +33,32 @@ PAPER = {
 
 @dataclass(frozen=True)
 class StandIn:
-    """A file of ours; its points count, whatever else it holds."""
+    """One of our files; only its points are used."""
 
-    paper: str  #: the paper's object, "" for one that it does not have
+    paper: str  #: the paper's object; "" if it has none like this
     file: str
-    fetched: bool  #: below build/data, by `make data`; else among the files that may be there or not
-    what: str  #: what it is, and so why it is not the paper's
+    fetched: bool  #: whether `make data` fetches it to build/data; otherwise it is optional
+    what: str  #: a description, and the difference from the paper's object
 
 
 STAND_INS = [
     StandIn("Femur", "meshes/femur.off", True,
-            "another femur, fewer points, the corners of a mesh with two handles; the paper's came from CT slices"),
+            "another femur with fewer points, the vertices of a mesh with two handles; the paper's points came from CT "
+            "slices"),
     StandIn("Femur", "7-seed-like/femur_gfxmorph.stl", False,
-            "a third femur, the corners of a closed mesh"),
+            "a third femur, the vertices of a closed mesh"),
     StandIn("CSG Solid", "meshes/anchor_dense.off", True,
-            "another machine part with holes, the corners of its mesh; the paper's solid was sampled at random"),
+            "another machine part with holes, the vertices of its mesh; the paper's solid was sampled at random"),
     StandIn("CSG Solid", "meshes/fandisk_large.off", True,
-            "another machine part, without holes, the corners of its mesh"),
-    StandIn("Club", "8-derived/golf_club.ply", False, "a golf club, fewer points, the corners of an open mesh"),
-    StandIn("Bunny", "meshes/bunny00.off", True, "the bunny, sampled otherwise, the corners of a closed mesh"),
+            "another machine part without holes, the vertices of its mesh"),
+    StandIn("Club", "8-derived/golf_club.ply", False, "a golf club with fewer points, the vertices of an open mesh"),
+    StandIn("Bunny", "meshes/bunny00.off", True, "the bunny with another sampling, the vertices of a closed mesh"),
     StandIn("Bunny", "1-bunny/bun_zipper.ply", False,
-            "the bunny as Stanford merged it, open underneath, with 1,113 points that are in no triangle of theirs"),
+            "the bunny as merged by Stanford, open at the bottom, with 1,113 points that are in none of its triangles"),
     StandIn("Mannequin", "meshes/mannequin-devil.off", True,
-            "a mannequin's head with horns, more points, the corners of a mesh that is open at the neck"),
-    StandIn("", "points_3/kitten.xyz", True, "points without a mesh, of a kitten with one handle"),
+            "a mannequin's head with horns and more points, the vertices of a mesh that is open at the neck"),
+    StandIn("", "points_3/kitten.xyz", True, "a kitten with one handle, points without a mesh"),
 ]
 
-#: Objects of the paper that no file of ours stands for.
+#: Objects of the paper without a similar file.
 WITHOUT = [name for name in PAPER if name not in {one.paper for one in STAND_INS}]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The cases of section 4.4 of Wang 2006, or what stands for them, taken through the workflow to features."""
+"""Runs the workflow to features on the cases of section 4.4 of Wang 2006, or on similar scans."""
 import math
 import pathlib
 
@@ -11,7 +11,7 @@ FILTERS = ("voxel-thin", "region-grow", "features")
 
 
 def begun(case, file, what, bin_size, path, fetched=True):
-    """The entry of a case as far as it is known before the run. `bin_size`: as a workflow says it."""
+    """The entry of a case before the run. `bin_size` is a length as in a workflow."""
     entry = {"case": case, "file": file, "what": what, "bin": bin_size, "failure": "", "skipped": ""}
     if path and not path.exists() and fetched:
         entry["failure"] = f"{file} is not there; `make data` fetches it"
@@ -21,7 +21,7 @@ def begun(case, file, what, bin_size, path, fetched=True):
 
 
 def round_holes(features):
-    """Of every hole its middle and radii: the mean along the loop, the least and the largest at a vertex."""
+    """The centre and the radii of every hole: mean along the loop, least and largest at a vertex."""
     holes = []
     for line in features["polylines"]:
         if line["type"] != "hole":
@@ -40,7 +40,7 @@ def round_holes(features):
 
 
 def judged(report, cell):
-    """What the report says of one run: counts, topology, distances, and the seconds of the three filters together."""
+    """The result of one run from the report: counts, topology, distances, and total seconds of the three filters."""
     if cell["outcome"] != "done":
         return {"failure": cell.get("error", cell["outcome"])}
     steps = scanmill.steps(report, cell)
@@ -75,11 +75,11 @@ def judged(report, cell):
 
 
 def its_model(options, path):
-    """For a scan that is the corners of a mesh, that mesh's own topology."""
-    said = scanmill.info(options.program, path)
-    if said["kind"] != "mesh":
+    """If the scan is a mesh, the topology of that mesh; otherwise None."""
+    info = scanmill.info(options.program, path)
+    if info["kind"] != "mesh":
         return None
-    return {"loops": said["boundary-loops"], "genus": said.get("genus"), "components": said["components"]}
+    return {"loops": info["boundary-loops"], "genus": info.get("genus"), "components": info["components"]}
 
 
 def take(entry, judgement, threads):
@@ -91,18 +91,18 @@ def take(entry, judgement, threads):
     seconds = judgement.pop("seconds")
     different = [name for name, value in judgement.items() if "seconds" in entry and entry[name] != value]
     if different:
-        raise scanmill.Broken(f"{entry['file']}: two runs came to different {', '.join(different)}")
+        raise scanmill.Broken(f"{entry['file']}: two runs gave different {', '.join(different)}")
     entry.update(judgement)
     entry.setdefault("seconds", {}).setdefault(threads, []).append(seconds)
 
 
 def cases_of(options, hyperboloid):
-    """Entry, workflow and scan (None: the workflow makes its own) of everything that is run."""
+    """Entry, workflow and scan of every case. The scan is None if the workflow makes it."""
     whole = WORKFLOWS / "wang-2006.yaml"
-    cases = [(begun("hyperboloid", "hyperboloid", "the thesis's own points, by its formula",
+    cases = [(begun("hyperboloid", "hyperboloid", "the thesis's own points, from its formula",
                     f"{paper.HYPERBOLOID.bin_size} u", hyperboloid), whole, hyperboloid),
-             (begun("block", "block", "a virtual scan of such a block; where the thesis's small holes are, and whether "
-                    "its holes have floors, is not printed", f"{paper.CASES['block'].bin_size} u", None),
+             (begun("block", "block", "a virtual scan of a similar block; the thesis prints neither the positions of "
+                    "the small holes nor whether its holes have floors", f"{paper.CASES['block'].bin_size} u", None),
               WORKFLOWS / "wang-2006-block.yaml", None)]
     for one in paper.STAND_INS:
         path = (options.data if one.fetched else options.more_data) / one.file
@@ -112,7 +112,7 @@ def cases_of(options, hyperboloid):
 
 
 def run(options, hyperboloid, folder):
-    """An entry for each, in this order: the hyperboloid, the block, STAND_INS."""
+    """The entries, in this order: the hyperboloid, the block, STAND_INS."""
     cases = cases_of(options, hyperboloid)
     for number in range(options.rounds):
         for threads in ("1", "all"):

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The clouds of Wang 2006 that are given by formulas, point by point, and what is known of them in closed form.
+"""The clouds that Wang 2006 gives by formulas, and their closed forms.
 
-Two things are not as printed. The hemisphere's x and y are one formula in print; x takes the cosine of θ here. And
-where a count depends on how steps are rounded, they are rounded so that the tolerance holds everywhere.
+Two things differ from the printed text. The thesis prints one formula for both x and y of the hemisphere; here x uses
+the cosine of θ. Steps are rounded so that the tolerance holds everywhere; the thesis does not state its rounding.
 """
 import math
 
 
 def step_of(radius, tolerance):
-    """The angle whose chord is that far from its arc."""
+    """The angle at which the distance between chord and arc is the tolerance."""
     return 2 * math.acos(1 - tolerance / radius)
 
 
 def hemisphere(radius, tolerance):
-    """Circles of latitude from the equator to the pole, points on each, no farther apart than step_of."""
+    """Points on circles of latitude from the equator to the pole, with steps of at most step_of."""
     step = step_of(radius, tolerance)
     circles = math.ceil(math.pi / 2 / step)
     points = []
@@ -28,14 +28,14 @@ def hemisphere(radius, tolerance):
 
 
 def over_disc(radius, step, height):
-    """Points of a square grid with one in the middle, in the disc with its border."""
+    """Points of a square grid, centred on the disc, inside the disc and on its boundary."""
     reach = round(radius / step)
     return [(i * step, j * step, height(i * step, j * step)) for i in range(-reach, reach + 1)
             for j in range(-reach, reach + 1) if i * i + j * j <= reach * reach]
 
 
 def cone():
-    """Of radius and height 1."""
+    """A cone of radius and height 1."""
     return over_disc(1, 0.05, lambda x, y: 1 - math.sqrt(x * x + y * y))
 
 
@@ -47,11 +47,11 @@ def hyperboloid():
 
 
 def hyperboloid_curvatures(point):
-    """The two principal curvatures, by size, of F = z² − a² (x² − y² + r²) = 0 (Goldman 2005)."""
+    """The two principal curvatures of F = z² − a² (x² − y² + r²) = 0, the larger first (Goldman 2005)."""
     x, y, z = point
     square = SLOPE * SLOPE
     gradient = (-2 * square * x, 2 * square * y, 2 * z)
-    hessian = (-2 * square, 2 * square, 2)  # the diagonal, and all of it
+    hessian = (-2 * square, 2 * square, 2)  # the matrix is diagonal
     squared = sum(g * g for g in gradient)
     bent = sum(h * g * g for h, g in zip(hessian, gradient))
     mean = (bent - squared * sum(hessian)) / (2 * squared**1.5)
@@ -62,12 +62,12 @@ def hyperboloid_curvatures(point):
 
 
 def bin_size(bending, tolerance):
-    """Equation 3.14: the edge of bins for a sum of second derivatives M1 + 2 M2 + M3."""
+    """Equation 3.14: the edge of voxels for a sum of second derivatives M1 + 2 M2 + M3."""
     return 2 / 3 * math.sqrt(6 * tolerance / bending)
 
 
 def bending_of(size, tolerance):
-    """Equation 3.14 the other way: the sum of second derivatives that such bins were made for."""
+    """The inverse of equation 3.14: the sum of second derivatives for an edge of voxels."""
     return 8 / 3 * tolerance / (size * size)
 
 

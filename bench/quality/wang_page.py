@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of Wang 2006: its numbers and ours, and a sentence for each difference that matters."""
+"""The page of Wang 2006: its numbers, our numbers, and remarks on relevant differences."""
 import math
 import statistics
 
@@ -7,20 +7,22 @@ import wang_numbers
 from paper_wang import BLOCK_RADII, BLOCK_SIZE, CASES
 from tables import page
 
-HEADER = ["object", "points", "bin size", "kept", "of the points", "triangles", "boundary edges", "χ", "pieces",
-          "loops", "holes", "handles", "95 % of the scan within, largest (bins)", "beyond borders", "seconds"]
+HEADER = ["object", "points", "voxel size", "kept", "share", "triangles", "boundary edges", "χ", "components", "loops",
+          "holes", "handles", "distance p95, largest (voxel edges)", "beyond the boundary", "seconds"]
 
 NUMBERS = """\
-What the thesis prints of thinning, what formulas say, and what voxel-thin finds with `rule: minimum` and
-`guarantee: centres`, which is the thesis's rule: the least bin size that any point's fit of 25 neighbours gives. In
-brackets with the origin of the fit at the neighbours' centroid, the thesis's improved rule."""
+The table compares the thesis's numbers on thinning with closed forms and with voxel-thin. voxel-thin runs with
+`rule: minimum` and `guarantee: centres`, which is the thesis's rule: the least voxel size over all points, each with a
+fit to 25 neighbours. Numbers in brackets use the neighbours' centroid as the origin of the fit, the thesis's improved
+rule."""
 
 TABLE = """\
-Lines in bold are printed in the thesis, their boundary edges follow from Euler's identity F = 2 V − 2 χ − b if every
-point kept is in a triangle and χ is that of what is shown; ours are counted. **Only the hyperboloid is the thesis's
-data.** Bins have its size, for scans of another size its share of the diagonal. Distances are from the points of the
-whole scan to the mesh, without those that are nearest to its borders, which are counted beside. Seconds are voxel-thin,
-region-grow and features, with one thread, and with all after the slash; rounds: {rounds}, the median counts."""
+Lines in bold are printed in the thesis. Their boundary edges follow from Euler's identity F = 2 V − 2 χ − b, if every
+kept point is in a triangle and χ is that of the depicted object. Our boundary edges are counted. **Only the hyperboloid
+is the thesis's data.** Our voxels have the thesis's size; for a scan of another size, the same share of the diagonal.
+Distances are from all points of the scan to the mesh, without the points nearest to its boundary, which are counted
+separately. Seconds are those of voxel-thin, region-grow and features, with one thread and, after the slash, with all
+threads (median of {rounds} rounds)."""
 
 
 def printed_line(name):
@@ -51,34 +53,34 @@ def expected_triangles(entry):
     return 2 * entry["vertices"] - 2 * entry["euler"] - entry["boundary_edges"]
 
 
-def told(loops, genus, pieces):
-    return f"loops: {loops}, handles: {'not known' if genus is None else genus}, pieces: {pieces}"
+def topology_text(loops, genus, pieces):
+    return f"loops: {loops}, handles: {'unknown' if genus is None else genus}, components: {pieces}"
 
 
 def about_the_mesh(entry):
     if not entry["manifold"]:
-        yield "it is not an oriented manifold"
+        yield "the mesh is not an oriented manifold"
     elif entry["triangles"] == expected_triangles(entry):
         yield f"an oriented manifold with F = 2 V − 2 χ − b = {entry['triangles']:,}"
     else:
-        yield (f"{entry['triangles']:,} triangles, where Euler's identity asks for {expected_triangles(entry):,}: the "
+        yield (f"{entry['triangles']:,} triangles, but Euler's identity gives {expected_triangles(entry):,}: the "
                f"counts contradict each other")
-    yield "every point kept is in a triangle" if entry["vertices"] == entry["kept"] else (
-        f"points kept that are in no triangle: {entry['kept'] - entry['vertices']:,}")
+    yield "every kept point is in a triangle" if entry["vertices"] == entry["kept"] else (
+        f"kept points in no triangle: {entry['kept'] - entry['vertices']:,}")
     if entry["self_intersections"]:
-        yield f"pairs of triangles that intersect: {entry['self_intersections']:,}"
+        yield f"pairs of intersecting triangles: {entry['self_intersections']:,}"
     if entry.get("model"):
-        yield (f"{told(entry['loops'], entry['genus'], entry['components'])}; the mesh that its points are from: "
-               f"{told(entry['model']['loops'], entry['model']['genus'], entry['model']['components'])}")
+        yield (f"{topology_text(entry['loops'], entry['genus'], entry['components'])}; in the mesh that the points come from: "
+               f"{topology_text(entry['model']['loops'], entry['model']['genus'], entry['model']['components'])}")
 
 
 def about_the_thesis(entry):
     case = CASES[entry["case"]]
     if case.facets:
-        yield (f"{entry['triangles'] / entry['vertices']:.2f} triangles for each point, the thesis's "
+        yield (f"triangles per point: {entry['triangles'] / entry['vertices']:.2f}, in the thesis "
                f"{case.facets / case.kept:.2f}")
     if entry["holes"] != case.holes:
-        yield f"holes: {entry['holes']}, where {case.what} shows {case.holes}"
+        yield f"holes: {entry['holes']} instead of {case.holes}"
 
 
 def true_radius(hole):
@@ -86,21 +88,22 @@ def true_radius(hole):
 
 
 def about_the_border(entry):
-    """The block's face has a border of known length, and about one edge in a bin of it."""
+    """Compares the known length of the boundary of the block's face with the thesis's number of boundary edges."""
     x, y, _ = BLOCK_SIZE
     large, small = BLOCK_RADII
     length = 2 * (x + y) + 2 * math.pi * (large + 4 * small)
-    yield (f"the border of its face is {length:.0f} long, {length / entry['bin_size']:.0f} bins; the thesis's counts "
-           f"leave {CASES['block'].boundary_edges} boundary edges, so its mesh ended elsewhere too, or left points out")
+    yield (f"the boundary of its face has a length of {length:.0f}, or {length / entry['bin_size']:.0f} voxel edges; "
+           f"the thesis's counts imply {CASES['block'].boundary_edges} boundary edges, so its mesh had further "
+           f"boundaries or unused points")
 
 
 def about_the_radii(entry):
     for hole in entry["radii"]:
         radius = true_radius(hole)
         off = (hole["mean"] - radius) / entry["bin_size"]
-        yield (f"a hole of radius {radius} is found with {hole['mean']:.2f} in the mean ({hole['least']:.2f} to "
-               f"{hole['largest']:.2f}), {abs(off):.2f} bins {'more' if off > 0 else 'less'}"
-               + ("" if abs(off) <= 1 else ", which is more than one bin"))
+        yield (f"hole of radius {radius}: mean radius {hole['mean']:.2f} ({hole['least']:.2f} to "
+               f"{hole['largest']:.2f}), {abs(off):.2f} voxel edges too {'large' if off > 0 else 'small'}"
+               + ("" if abs(off) <= 1 else ", which is more than one voxel"))
 
 
 def remark(entry):
@@ -113,17 +116,17 @@ def remark(entry):
 
 
 def conclusion(entries):
-    """What the table says of all of them, computed from it."""
+    """A summary of all entries."""
     done = [entry for entry in entries if not entry["failure"] and not entry["skipped"]]
     if not done:
         return "Nothing ran."
     sound = [entry for entry in done if entry["manifold"] and entry["triangles"] == expected_triangles(entry)]
-    text = f"Of {len(done)} meshes {len(sound)} are oriented manifolds that obey Euler's identity."
+    text = f"{len(sound)} of {len(done)} meshes are oriented manifolds that satisfy Euler's identity."
     block = next((entry for entry in done if "radii" in entry), None)
     if block:
         off = max((abs(hole["mean"] - true_radius(hole)) for hole in block["radii"]), default=0) / block["bin_size"]
-        text += (f" In the block {block['holes']} holes are found, their mean radii within {off:.2f} bins of the true "
-                 f"ones.")
+        text += (f" In the block {block['holes']} holes are found; their mean radii differ from the true ones by at "
+                 f"most {off:.2f} voxel edges.")
     return text
 
 
@@ -133,8 +136,8 @@ def lines(results):
     for name in CASES:
         rows.append(printed_line(name))
         rows += [our_line(entry) for entry in entries if entry["case"] == name]
-    text = page.heading("The numbers of Wang 2006 beside ours", results, "wang-tables.json")
-    text += ["## Clouds and bin sizes (chapter 3)", "", NUMBERS, "",
+    text = page.heading("The numbers of Wang 2006, compared with Scanmill", results, "wang-tables.json")
+    text += ["## Clouds and voxel sizes (chapter 3)", "", NUMBERS, "",
              *page.table(wang_numbers.HEADER, wang_numbers.rows(results)), ""]
     text += ["## Cases (section 4.4)", "", TABLE.format(rounds=results["rounds"]), "", *page.table(HEADER, rows), ""]
     text += [conclusion(entries), ""]

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""wang_tables.py PROGRAM: the numbers of chapters 3 and 4 of Wang 2006 beside ours.
+"""wang_tables.py PROGRAM: compares the numbers of chapters 3 and 4 of Wang 2006 with ours.
 
-Makes the thesis's clouds by their formulas, thins them to its tolerances (wang-thinning.yaml), and takes every case of
-section 4.4, or what stands for it, through the workflow to features, ROUNDS times with one thread and with all,
-without a cache. Every number is from the program's own JSON (metrics and seconds of the steps, features as they were
-written) or a closed form. Writes wang-tables.md and .json. Ends with 1 when a run failed, or a fetched file is missing.
+Makes the thesis's clouds by their formulas and thins them to its tolerances (wang-thinning.yaml). Runs the workflow to
+features on every case of section 4.4, or on a similar scan, ROUNDS times with one thread and with all threads, without
+a cache. Every number comes from the program's JSON (metrics and seconds of the steps, the written features) or from a
+closed form. Writes wang-tables.md and .json. The exit code is 1 if a run failed or a fetched file is missing.
 """
 import pathlib
 import sys
@@ -24,11 +24,11 @@ ROOT = BENCH.parent
 
 
 def arguments():
-    return options_of.of_a_paper("The thesis's numbers beside ours.", None).parse_args()
+    return options_of.of_a_paper("Compares the thesis's numbers with ours.", None).parse_args()
 
 
 def thinned(report):
-    """By the variant's settings: the bin size and how many points it kept."""
+    """The voxel size and the number of kept points, by the settings of the variant."""
     found = {}
     for cell in report["cells"]:
         if cell["outcome"] != "done":
@@ -41,7 +41,7 @@ def thinned(report):
 
 
 def clouds_in(folder):
-    """Files of the thesis's clouds, by name."""
+    """Writes the thesis's clouds; returns the files by name."""
     files = {}
     for name, make in wang_clouds.CLOUDS.items():
         files[name] = folder / f"{name}.xyz"
@@ -60,7 +60,7 @@ def measured_thinning(options, files, folder):
 
 
 def keeping(options, file, folder):
-    """A function: how many points bins of a size keep."""
+    """Returns a function from a voxel size to the number of kept points."""
     def kept(bin_size):
         report = scanmill.run(options.program, BENCH / "quality" / "wang-binning.yaml", [file],
                               folder / f"{file.stem}-{bin_size}", options.limit, settings={"bin-size": f"{bin_size} u"})
@@ -69,8 +69,8 @@ def keeping(options, file, folder):
 
 
 def bin_that_keeps(count, kept, low, high, steps=8):
-    """By bisection: bins of `low` keep more points than `count`, those of `high` not more. The number need not fall
-    evenly, so this is one such size."""
+    """A voxel size that keeps `count` points, by bisection. Voxels of `low` keep more points, voxels of `high` do not.
+    The number is not monotonic, so other sizes may exist."""
     for _ in range(steps):
         middle = (low + high) / 2
         low, high = (middle, high) if kept(middle) > count else (low, middle)
@@ -78,7 +78,7 @@ def bin_that_keeps(count, kept, low, high, steps=8):
 
 
 def kept_by_bins(options, file, line, folder):
-    """By bins of the printed size, and the size of bins that keep the printed number."""
+    """The number of points kept with the printed voxel size, and the voxel size that keeps the printed number."""
     kept = keeping(options, file, folder)
     return {"kept": kept(line.bin_size),
             "bin_size": bin_that_keeps(line.kept, kept, line.bin_size / 3, line.bin_size * 3)}

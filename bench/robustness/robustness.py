@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""robustness.py PROGRAM: how much noise and how few points the way from points to a mesh bears.
+"""robustness.py PROGRAM: measures how much noise and how few points the reconstruction tolerates.
 
-Seeded points on known surfaces, one run of the program for each surface, and a verdict for every scan from what the
-program's report tells (see verdict.py). Writes results.json and results.md. Ends with 1 when the program crashed
-anywhere, or an input is missing; wrong results and refusals are what the page is about and end nothing.
+Samples seeded points on known surfaces, runs the program once per surface, and judges every scan by the program's
+report (see verdict.py). Writes results.json and results.md. The exit code is 1 if the program crashed or an input is
+missing. Wrong results and refusals are results of this bench and do not change the exit code.
 """
 import os
 import pathlib
@@ -29,10 +29,10 @@ POINTS_WITH_NOISE = 3000
 
 
 def arguments():
-    parser = options_of.of_a_table("Success of points to mesh against noise and density.",
+    parser = options_of.of_a_table("Success rates of the reconstruction by noise and density.",
                                    BENCH / "robustness" / "reconstruction.yaml", 1800, "robustness")
     parser.add_argument("--seeds", type=options_of.at_least_one, default=5,
-                        help="trials for each cell (default: %(default)s)")
+                        help="trials per cell (default: %(default)s)")
     return parser.parse_args()
 
 
@@ -52,7 +52,7 @@ def write_scan(folder, trial, points):
 
 
 def scans(shape, seeds, folder):
-    """Writes all clouds of a shape; their paths, each with the trial as far as it is known."""
+    """Writes all clouds of a shape. Returns the trials before the run, by path."""
     found = {}
     for seed in range(1, seeds + 1):
         points, spacing = sampling.spread(shape, POINTS_WITH_NOISE, seed)
@@ -71,19 +71,19 @@ def scans(shape, seeds, folder):
 
 
 def fill_in(trial, report, cell, genus):
-    """What the program told of one scan."""
+    """Adds the results of one scan to its trial."""
     steps = scanmill.named(report, cell)
     names = ("alpha-solid", "sculpt", "before-sculpting", "sculpted")
     solid, carved, before, metrics = (steps.get(name, {}).get("metrics", {}) for name in names)
-    told = carved.get("interior-points"), solid.get("uncovered-points")
+    counts = carved.get("interior-points"), solid.get("uncovered-points")
     outcome, cause = cell["outcome"], cell.get("cause")
     trial.update(
         verdict=verdict.judge(outcome, cause, metrics, genus, trial["bound"]),
-        # What came later may have failed; the alpha-solid was measured all the same.
+        # The alpha-solid may have been measured although a later step failed.
         before=verdict.judge("done" if before else outcome, cause, before, genus, trial["bound"]),
         inside_before=int(solid["interior-points"]) if "interior-points" in solid else None,
-        error=cell.get("error", "").partition("\n")[0],  # the rest tells where, in this run's folder
-        inside=None if None in told else int(sum(told)),
+        error=cell.get("error", "").partition("\n")[0],  # the other lines contain paths of this run
+        inside=None if None in counts else int(sum(counts)),
         warned=any(steps.get(name, {}).get("warnings") for name in ("delaunay", "alpha-solid", "sculpt")),
         hausdorff=metrics.get("hausdorff"),
         mean=metrics.get("mean"),
@@ -94,7 +94,7 @@ def fill_in(trial, report, cell, genus):
 
 
 def run(shape, options, folder):
-    """All trials of a shape. A scan that the report does not tell of crashed."""
+    """All trials of a shape. A scan that is not in the report counts as crashed."""
     truth = folder / "truth.mesh.ply"
     write_ply(truth, shape.vertices, shape.triangles)
     trials = scans(shape, options.seeds, folder)
@@ -105,7 +105,7 @@ def run(shape, options, folder):
         fill_in(trials[cell["scan"]], report, cell, shape.genus)
     for trial in trials.values():
         if "verdict" not in trial:
-            trial.update(verdict="crashed", before="crashed", error="the report does not tell of this scan",
+            trial.update(verdict="crashed", before="crashed", error="this scan is not in the report",
                          warned=False, inside=None, inside_before=None, mean=None, hausdorff=None)
     return list(trials.values())
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points on a mesh that keep their distance and leave no gap: what a careful scan looks like before noise."""
+"""Evenly spread points on a mesh without gaps, like a careful scan without noise."""
 import numpy
 from scipy.spatial import cKDTree
 
-#: How many places are tried for every point that was asked for. Gaps are then rarely beyond 1.2 spacings.
+#: Candidates per requested point. With this number, gaps rarely exceed 1.2 spacings.
 TRIED = 20
-#: Points per spacing², of points that keep their distance and leave no gap; counted on large samples.
+#: Points per spacing² of evenly spread points without gaps, counted on large samples.
 PER_SQUARE = 0.61
 
 
@@ -15,7 +15,7 @@ def areas(shape):
 
 
 def uniform(shape, count, random):
-    """Points uniform by area."""
+    """Random points, uniform by area."""
     weights = areas(shape)
     chosen = shape.triangles[random.choice(len(weights), count, p=weights / weights.sum())]
     root, along = numpy.sqrt(random.random((count, 1))), random.random((count, 1))
@@ -24,25 +24,26 @@ def uniform(shape, count, random):
 
 
 def spacing_for(shape, count):
-    """The distance that about `count` points keep."""
+    """The spacing at which about `count` points fit on the shape."""
     return numpy.sqrt(PER_SQUARE * areas(shape).sum() / count)
 
 
 def spread(shape, count, seed):
-    """About `count` points no two of which are nearer than the spacing, and that spacing.
+    """About `count` points with at least the spacing between them, and that spacing.
 
-    Of uniform places in random order each one stays that no earlier one which stayed is too near to: all together, in
-    rounds, whoever comes before all its neighbours that are left stays, and those neighbours go.
+    Takes uniform candidates in random order and accepts each one that is at least the spacing away from all earlier
+    accepted ones. Works in parallel rounds: a round accepts every undecided candidate without an undecided earlier
+    neighbour, and rejects its neighbours.
     """
     random = numpy.random.default_rng(seed)
     spacing = spacing_for(shape, count)
     places = uniform(shape, TRIED * count, random)
-    one, other = cKDTree(places).query_pairs(spacing, output_type="ndarray").T  # one comes before other
+    one, other = cKDTree(places).query_pairs(spacing, output_type="ndarray").T  # index pairs with one < other
     undecided = numpy.ones(len(places), bool)
     stays = numpy.zeros(len(places), bool)
     while undecided.any():
         first = undecided.copy()
-        first[other] = False  # whoever has an undecided neighbour before it waits
+        first[other] = False  # candidates with an undecided earlier neighbour wait
         stays |= first
         gone = numpy.zeros(len(places), bool)
         gone[other[first[one]]] = True
@@ -53,6 +54,6 @@ def spread(shape, count, seed):
 
 
 def with_noise(points, deviation, seed):
-    """Every coordinate moved by a normally distributed error, and the largest distance that any point was moved."""
+    """The points with a normally distributed error in every coordinate, and the largest move of a point."""
     moves = deviation * numpy.random.default_rng(seed).normal(size=points.shape)
     return points + moves, float(numpy.linalg.norm(moves, axis=1).max()) if deviation else 0.0

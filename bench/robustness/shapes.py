@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The true surfaces: meshes, so fine where they are round that their facets do not matter beside any spacing used."""
+"""The true surfaces, as meshes. Round surfaces have facets much smaller than the spacings used."""
 from dataclasses import dataclass
 
 import numpy
@@ -15,7 +15,7 @@ class Shape:
 
 
 def grid_triangles(rows, columns):
-    """Two triangles for every square of a grid that is closed both ways; corner (i, j) is i * columns + j."""
+    """Two triangles per square of a grid that is periodic in both directions; corner (i, j) is i * columns + j."""
     i, j = (index.ravel() for index in numpy.meshgrid(numpy.arange(rows), numpy.arange(columns), indexing="ij"))
     below, right = (i + 1) % rows, (j + 1) % columns
     a, b, c, d = i * columns + j, below * columns + j, below * columns + right, i * columns + right
@@ -23,7 +23,7 @@ def grid_triangles(rows, columns):
 
 
 def torus(rows=400, columns=160):
-    """Radii 1 and 0.4."""
+    """A torus with radii 1 and 0.4."""
     around, along = numpy.meshgrid(2 * numpy.pi * numpy.arange(rows) / rows,
                                    2 * numpy.pi * numpy.arange(columns) / columns, indexing="ij")
     from_axis = 1 + 0.4 * numpy.cos(along)
@@ -33,7 +33,7 @@ def torus(rows=400, columns=160):
 
 
 def sphere(cuts=6):
-    """Radius 1: an octahedron whose triangles are cut into four, `cuts` times, corners pushed out."""
+    """A sphere of radius 1: an octahedron, its triangles split into four `cuts` times, with vertices on the sphere."""
     vertices = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
     faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
     for _ in range(cuts):
@@ -54,7 +54,7 @@ def sphere(cuts=6):
 
 
 def block():
-    """A plate of 5 × 3 × 1 with two square holes through it, of edge 1: what is left of a row of unit cubes."""
+    """A plate of 5 × 3 × 1 with two square through holes of edge 1, made of unit cubes."""
     solid = {(x, y) for x in range(5) for y in range(3)} - {(1, 1), (3, 1)}
     corners, triangles = {}, []
 
@@ -70,12 +70,12 @@ def block():
         for (dx, dy), (begin, end) in sides.items():
             if (x + dx, y + dy) not in solid:
                 quad((*begin, 0), (*end, 0), (*end, 1), (*begin, 1))
-    what = "5 × 3 × 1 with two square holes of edge 1 through it"
+    what = "5 × 3 × 1 with two square through holes of edge 1"
     return Shape("block", what, 2, numpy.array(list(corners), float), numpy.array(triangles))
 
 
 def from_off(name, what, genus, path):
-    """A mesh of triangles in a text file. Raises OSError, and ValueError when it is something else."""
+    """Reads a triangle mesh from an OFF file. Raises OSError, and ValueError for other content."""
     words = iter(path.read_text().split())
     if next(words, "") != "OFF":
         raise ValueError(f"{path} does not begin with OFF")
@@ -83,5 +83,5 @@ def from_off(name, what, genus, path):
     rest = numpy.array(list(words), float)
     corners = rest[3 * points:3 * points + 4 * faces].reshape(faces, 4).astype(int)
     if not (corners[:, 0] == 3).all():
-        raise ValueError(f"{path} has faces that are no triangles")
+        raise ValueError(f"{path} has faces that are not triangles")
     return Shape(name, what, genus, rest[:3 * points].reshape(points, 3), corners[:, 1:])

@@ -1,23 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of the robustness bench: success rates, why the others failed, and where the border runs."""
+"""The page of the robustness bench: success rates, reasons of failures, and limits."""
 import statistics
 
 import verdict
 from tables import page
 
 NOTES = """\
-`delaunay`, `alpha-solid` and `sculpt` as they are, without any parameter and without any clean-up before them. A
-success is a closed manifold of one piece, with as many handles as the truth, whose Hausdorff distance from the truth
-(as `measure` samples it, both ways) is at most {largest:g} spacings, however much noise there is. Everything else is a
-failure, and what the program would not or could not do is counted apart from what it did wrong.
+The workflow runs `delaunay`, `alpha-solid` and `sculpt` with their defaults and without clean-up. A trial succeeds if
+the mesh is a closed manifold with one connected component and as many handles as the truth, and if its Hausdorff
+distance from the truth (as `measure` samples it, in both directions) is at most {largest:g} spacings. This bound is
+the same at every noise level. Every other trial fails. Crashes and refusals are counted separately from wrong meshes.
 
-Points keep their distance, the *spacing*, from each other and leave no gap on the surface; every coordinate is then
-moved by a normally distributed error whose deviation is given as a share of the spacing. Seeds in each
-cell: {seeds}."""
+Points are evenly spread: their distance is at least the *spacing*, and they leave no gaps. Noise moves every coordinate
+by a normally distributed error; its standard deviation is given in spacings. Seeds per cell: {seeds}."""
 
 
 def cells_of(trials, shape, axis):
-    """(level, trials) of one line, from the easiest to the hardest."""
+    """(level, trials) of a shape and axis, from the easiest level to the hardest."""
     mine = [trial for trial in trials if trial["shape"] == shape and trial["axis"] == axis]
     levels = sorted({trial["level"] for trial in mine}, reverse=axis == "density")
     return [(level, [trial for trial in mine if trial["level"] == level]) for level in levels]
@@ -28,12 +27,12 @@ def verdicts_of(trials, shape, axis, key="verdict"):
 
 
 def before_sculpting(trials):
-    """As cell(), of the alpha-solid."""
+    """Like cell(), for the alpha-solid."""
     return cell(trials, "before")
 
 
 def cell(trials, key="verdict"):
-    """Successes of trials, and why the others failed: "3/5: 2 genus"."""
+    """The successes of trials and the reasons of failures: "3/5: 2 genus"."""
     verdicts = [trial[key] for trial in trials]
     succeeded, count = verdict.rate(verdicts)
     reasons = [f"{verdicts.count(name)} {name}" for name in verdict.FAILURES if name in verdicts]
@@ -42,7 +41,7 @@ def cell(trials, key="verdict"):
 
 
 def inside(trials, key="inside"):
-    """Median share of the points that are not on the surface, of the trials that tell it."""
+    """Median share of the points that are not on the surface, over the trials that report it."""
     shares = [trial[key] / trial["points"] for trial in trials if trial[key] is not None]
     return f"{100 * statistics.median(shares):.1f} %" if shares else "–"
 
@@ -52,9 +51,9 @@ def inside_before(trials):
 
 
 def distance(trials, name):
-    """Median of a distance between mesh and truth, in spacings, of the trials that tell it."""
-    told = [trial[name] / trial["spacing"] for trial in trials if trial[name] is not None]
-    return f"{statistics.median(told):.2f}" if told else "–"
+    """Median distance between mesh and truth in spacings, over the trials that report it."""
+    values = [trial[name] / trial["spacing"] for trial in trials if trial[name] is not None]
+    return f"{statistics.median(values):.2f}" if values else "–"
 
 
 def mean_distance(trials):
@@ -68,60 +67,61 @@ def largest_distance(trials):
 def table(trials, shapes, axis, show):
     levels = [level for level, _ in cells_of(trials, shapes[0]["name"], axis)]
     rows = [[shape["name"], *(show(some) for _, some in cells_of(trials, shape["name"], axis))] for shape in shapes]
-    title = "noise / spacing" if axis == "noise" else "points asked for"
+    title = "noise / spacing" if axis == "noise" else "requested points"
     return page.table([title, *(f"{level:g}" if axis == "noise" else f"{level:,}" for level in levels)], rows)
 
 
 def noise_border(shape, cells):
     last, never = verdict.reliable_until(cells)
-    text = f"the {shape} " + ("fails sometimes even without noise" if last is None else
-                              f"always succeeds up to {last:g}")
+    text = f"{shape}: " + ("some trials fail even without noise" if last is None else
+                           f"all trials succeed up to {last:g}")
     if last == cells[-1][0]:
-        return text + ", the most tried"
-    return text + (f" and never from {never:g} on" if never is not None else
-                   f" and at {cells[-1][0]:g} still sometimes")
+        return text + ", the largest tested"
+    return text + (f", none succeeds from {never:g} on" if never is not None else
+                   f", some succeed at {cells[-1][0]:g}")
 
 
 def density_border(shape, cells):
     last, never = verdict.reliable_until(cells)
-    text = f"the {shape} " + ("fails sometimes even with the most points" if last is None else
-                              f"always succeeds from {last:,} points on")
+    text = f"{shape}: " + ("some trials fail even with the most points" if last is None else
+                           f"all trials succeed from {last:,} points on")
     if last == cells[-1][0]:
-        return text + ", the fewest tried"
-    return text + (f" and never with {never:,} or fewer" if never is not None else
-                   f" and with {cells[-1][0]:,} still sometimes")
+        return text + ", the fewest tested"
+    return text + (f", none succeeds with {never:,} or fewer" if never is not None else
+                   f", some succeed with {cells[-1][0]:,}")
 
 
 def border(trials, shapes):
-    """The paragraph that says where the method ends, from the table alone."""
+    """The paragraphs about the limits of the method, from the tables alone."""
     names = [shape["name"] for shape in shapes]
     noise, density = ({name: verdicts_of(trials, name, axis) for name in names} for axis in ("noise", "density"))
     lasts = [verdict.reliable_until(cells)[0] for cells in noise.values()]
     if None in lasts:
-        text = "There is no noise, not even none at all, at which every shape always succeeds"
+        text = "At no noise level, not even 0, do all trials succeed."
     else:
-        text = f"Noise of up to {min(lasts):g} spacings is borne by every shape and seed"
-    text += ": " + "; ".join(noise_border(name, cells) for name, cells in noise.items()) + ". "
-    borders = (density_border(name, cells) for name, cells in density.items())
-    text += f"Without noise {'; '.join(borders)}. "
-    text += f"{interpolation(trials, shapes)} {before(trials, shapes)} {hopeless(trials)}"
+        text = f"All trials succeed with noise of up to {min(lasts):g} spacings."
+    text += " Limits of noise, in spacings:\n\n"
+    text += "".join(f"- {noise_border(name, cells)}\n" for name, cells in noise.items())
+    text += "\nLimits of the number of points, without noise:\n\n"
+    text += "".join(f"- {density_border(name, cells)}\n" for name, cells in density.items()) + "\n"
+    text += f"{interpolation(trials, shapes)} {before(trials, shapes)} {hopeless(trials)}\n\n"
     wrong = [trial["verdict"] for trial in trials if trial["verdict"] != verdict.SUCCESS]
     if not wrong:
-        return text + "Nothing failed."
+        return text + "No trial failed."
     often = max(verdict.FAILURES, key=wrong.count)
     refused, crashed = wrong.count("refused"), wrong.count("crashed")
     delivered = [trial for trial in trials if trial["verdict"] not in (verdict.SUCCESS, *verdict.OF_THE_PROGRAM)]
     warned = sum(trial["warned"] for trial in delivered)
     return text + (
-        f"Of {len(trials):,} trials {len(wrong):,} failed, most often because {verdict.FAILURES[often]} "
-        f"({wrong.count(often):,}). The program itself refused {refused:,} and crashed in {crashed:,}; in the other "
-        f"{len(delivered):,} it delivered a mesh that is wrong, with a warning in {warned:,} of them: noisy scans are "
-        "to be smoothed or thinned first, or given to a method that does not interpolate."
+        f"{len(wrong):,} of {len(trials):,} trials failed. The most frequent reason: {verdict.FAILURES[often]} "
+        f"({wrong.count(often):,}). The program refused {refused:,} and crashed in {crashed:,}; in the other "
+        f"{len(delivered):,} it delivered a wrong mesh, with a warning in {warned:,} of them. Smooth or thin noisy "
+        "scans first, or use a method that does not interpolate the points."
     )
 
 
 def interpolation(trials, shapes):
-    """Up to which noise the method does what it is for: a mesh through every point."""
+    """The largest noise at which every mesh is correct and passes through every point."""
     words = []
     for shape in shapes:
         last = None
@@ -129,33 +129,33 @@ def interpolation(trials, shapes):
             if not all(trial["verdict"] == verdict.SUCCESS and trial["inside"] == 0 for trial in some):
                 break
             last = level
-        words.append(f"{shape['name']} {'not even without noise' if last is None else f'up to {last:g}'}")
-    return f"With every point on the surface as well: {', '.join(words)}."
+        words.append(f"{shape['name']} {'none' if last is None else f'{last:g}'}")
+    return f"Noise up to which all trials succeed and all points are on the surface: {', '.join(words)}."
 
 
 def hopeless(trials):
-    """From which noise on a point is always moved farther than a mesh may be away; a sentence, or nothing."""
+    """A sentence with the noise that always moves some point farther than the allowed distance; or an empty text."""
     levels = sorted({trial["level"] for trial in trials if trial["axis"] == "noise"})
     for level in levels:
         some = [trial for trial in trials if trial["axis"] == "noise" and trial["level"] == level]
         if all(trial["farthest_move"] > trial["bound"] for trial in some):
-            return f"From {level:g} on the farthest point itself is moved farther than the mesh may be away. "
+            return f"From {level:g} on, noise moves some point of every scan farther than the allowed distance."
     return ""
 
 
 def before(trials, shapes):
-    """Up to which noise the alpha-solid alone would have done."""
+    """The largest noise at which every alpha-solid is correct, before sculpting."""
     borders = []
     for shape in shapes:
         last, _ = verdict.reliable_until(verdicts_of(trials, shape["name"], "noise", "before"))
-        borders.append(f"{shape['name']} {'not even without noise' if last is None else f'up to {last:g}'}")
-    return f"The alpha-solid before sculpting, which leaves points inside, always succeeds: {', '.join(borders)}."
+        borders.append(f"{shape['name']} {'none' if last is None else f'{last:g}'}")
+    return f"Noise up to which all alpha-solids succeed before sculpting, with points inside: {', '.join(borders)}."
 
 
 SHOWN = {
-    "Of the points, not on the surface (median):": inside,
-    "Before sculpting, successes of the alpha-solid:": before_sculpting,
-    "Before sculpting, of the points, inside the solid (median):": inside_before,
+    "Share of points that are not on the surface (median):": inside,
+    "Successes of the alpha-solid, before sculpting:": before_sculpting,
+    "Share of points inside the solid, before sculpting (median):": inside_before,
     "Mean distance between mesh and truth, in spacings (median):": mean_distance,
     "Hausdorff distance between mesh and truth, in spacings (median):": largest_distance,
 }
@@ -171,10 +171,10 @@ def section(trials, shapes, axis):
 
 def lines(results):
     trials, shapes = results["trials"], results["shapes"]
-    text = page.heading("How much noise, and how few points", results, "results.json")
+    text = page.heading("Tolerance to noise and to few points", results, "results.json")
     text += [NOTES.format(largest=verdict.LARGEST, seeds=results["seeds"]), ""]
-    text += ["## The border", "", border(trials, shapes), ""]
-    text += [f"## Noise, {results['points']:,} points asked for", ""]
+    text += ["## Limits", "", border(trials, shapes), ""]
+    text += [f"## Noise, {results['points']:,} requested points", ""]
     text += section(trials, shapes, "noise") + ["## Density, without noise", ""]
     text += section(trials, shapes, "density")
     text += [f"- {name}: {why}" for name, why in verdict.FAILURES.items()] + [""]
@@ -184,5 +184,5 @@ def lines(results):
                     f"spacings from the most to the fewest points: {', '.join(spacings)}")
     errors = sorted({trial["error"] for trial in trials if trial["error"]})
     if errors:
-        text += ["", "What the program said when it delivered nothing:", "", *(f"- {error}" for error in errors[:20])]
+        text += ["", "Errors of trials without a result:", "", *(f"- {error}" for error in errors[:20])]
     return text + ["", page.other_load(results["load"])]

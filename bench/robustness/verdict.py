@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""When a reconstruction counts as one, and where along noise or density it stops to be one."""
+"""Judges reconstructions, and finds the limits of noise and density."""
 
-#: In spacings. Gaps between points allow for up to about 1.25, at a corner say. The bound does not grow with the
-#: noise: it would soon be as large as the shape, and then anything passes.
+#: The largest allowed distance, in spacings. Gaps between points cause up to about 1.25, for example at a corner. The
+#: bound does not grow with the noise, because it would soon be as large as the shape.
 LARGEST = 3
 
 SUCCESS = "success"
-#: What went wrong, in the order in which it is looked for, each with its sentence for the page.
+#: The kinds of failure, in the order in which they are checked, with their sentences for the page.
 FAILURES = {
-    "crashed": "the program crashed, or ran out of time or memory",
+    "crashed": "the program crashed, or exceeded its limit of time or memory",
     "refused": "the program refused the points with a reason",
     "open": "the mesh is not a closed manifold",
-    "pieces": "it has more than one piece",
-    "genus": "it has another number of handles",
-    "far": "it is too far from the truth",
+    "pieces": "the mesh has more than one connected component",
+    "genus": "the mesh has another number of handles than the truth",
+    "far": "the mesh is too far from the truth",
 }
-#: Of these the program is at fault; the others are results that it delivered.
+#: Failures without a result; for the others the program delivered a mesh.
 OF_THE_PROGRAM = ("crashed", "refused")
 
 
@@ -24,8 +24,8 @@ def bound(spacing):
 
 
 def judge(outcome, cause, metrics, genus, largest_distance):
-    """SUCCESS or a name of FAILURES. `outcome` and `cause` are the cell's, `metrics` those of measure (none when it did
-    not run). What is not told or is no number never counts as success."""
+    """Returns SUCCESS or a name of FAILURES. `outcome` and `cause` come from the cell, `metrics` from measure (empty if
+    it did not run). A missing metric or NaN is never a success."""
     if outcome != "done":
         return "refused" if cause == "refused" else "crashed"
     if not metrics:
@@ -41,13 +41,14 @@ def judge(outcome, cause, metrics, genus, largest_distance):
 
 
 def rate(verdicts):
-    """Successes and trials."""
+    """The number of successes and of trials."""
     return sum(verdict == SUCCESS for verdict in verdicts), len(verdicts)
 
 
 def reliable_until(cells):
-    """Of (level, verdicts) from the easiest to the hardest: the last level up to which every trial succeeded, None when
-    the easiest had a failure; and the first from which on none does, None when the hardest has a success."""
+    """Two levels from (level, verdicts), ordered from the easiest to the hardest: the last level up to which every
+    trial succeeds (None if the easiest has a failure), and the first level from which on none succeeds (None if the
+    hardest has a success)."""
     last, first = None, None
     for level, verdicts in cells:
         succeeded, trials = rate(verdicts)

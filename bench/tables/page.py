@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def described(command):
-    """What made the results, when and where."""
+    """The command, date, revision and machine of the results."""
     return {
         "format": 1,
         "command": command,
@@ -21,7 +21,7 @@ def described(command):
 
 
 def heading(title, results, source):
-    """The first lines of a page: generated from what, by which command, when, on which machine."""
+    """The first lines of a page: its source, command, date and machine."""
     on = results["machine"]
     return [
         f"<!-- Generated from {source} by `{results['command']}` on {results['date']} on {on['processor']}, "
@@ -35,21 +35,21 @@ def heading(title, results, source):
 
 
 def table(header, rows):
-    """Lines of a Markdown table; cells are words."""
+    """The lines of a Markdown table."""
     lines = [header, ["---"] * len(header), *rows]
     return ["| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |" for cells in lines]
 
 
 def other_load(load):
-    """A line that says how quiet the machine was; see harness/machine.py."""
+    """A line with the load by other processes; see harness/machine.py."""
     return (
-        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s taken by "
-        f"the hypervisor; all of it took {load['took_seconds']:.0f} s."
+        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s stolen "
+        f"by the hypervisor; the whole bench took {load['took_seconds']:.0f} s."
     )
 
 
 def json_text(results):
-    """One line for each value, and one for each element of a list, so that changes can be read."""
+    """JSON with one line per value and one per element of a list, so that diffs are readable."""
 
     def value_text(value):
         if not isinstance(value, list):
@@ -60,7 +60,7 @@ def json_text(results):
 
 
 def write(folder, name, results, lines):
-    """NAME.json and NAME.md, each whole or not at all."""
+    """Writes NAME.json and NAME.md, each whole or not at all."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for suffix, content in ((".json", json_text(results)), (".md", "\n".join(lines).rstrip() + "\n")):

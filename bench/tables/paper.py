@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A paper's numbers beside ours: from the runs to the page."""
+"""Compares a paper's numbers with ours, from the runs to the page."""
 import pathlib
 import sys
 import tempfile
@@ -10,10 +10,10 @@ from . import page, scanmill
 
 
 def write(name, options, run, lines_of, tried):
-    """Writes NAME.md and NAME.json, prints the page, and returns what the process ends with: 1 when an entry failed.
+    """Writes NAME.md and NAME.json, prints the page, and returns the exit code: 1 if an entry failed.
 
-    `run(options, folder)` gives the results by name, of which those called `tried` are entries with a `file` and a
-    `failure`, empty when there was none. `lines_of(results)` makes the page.
+    `run(options, folder)` returns the results by name. The results named `tried` are entries with a `file` and a
+    `failure`, which is empty after a success. `lines_of(results)` makes the page.
     """
     load = machine.Load()
     try:

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a workflow and reads what the program says of it. No number is calculated here."""
+"""Runs the program and reads its JSON. Computes no numbers."""
 import json
 import subprocess
 
 
 class Broken(Exception):
-    """The program gave no report. One sentence."""
+    """The program gave no usable report. One sentence."""
 
 
 def run(program, workflow, scans, folder, limit, threads=0, jobs=1, inputs=None, settings=None):
-    """The report of `scanmill run --json`; nothing comes from a cache. `inputs` and `settings` (of parameters) are by
-    name. Scans that fail are in the report. Raises Broken when there is none: bad arguments, a fault of the program, or
-    no end within `limit` seconds."""
+    """The report of `scanmill run --json` without a cache. `inputs` are files and `settings` parameter values, by name.
+    The report includes failed scans. Raises Broken without a report: bad arguments, a fault of the program, or no end
+    within `limit` seconds."""
     command = [program, "run", workflow, *scans, "-o", folder, "--threads", threads, "--jobs", jobs]
     command += ["--no-cache", "--quiet", "--json"]
     for name, file in (inputs or {}).items():
@@ -22,7 +22,7 @@ def run(program, workflow, scans, folder, limit, threads=0, jobs=1, inputs=None,
 
 
 def info(program, file, limit=60):
-    """What `scanmill info --json` says of one file."""
+    """The output of `scanmill info --json` for one file."""
     return report([str(program), "info", str(file), "--json"], limit)["files"][0]
 
 
@@ -42,7 +42,7 @@ def report(command, limit):
     except subprocess.TimeoutExpired:
         raise Broken(f"{' '.join(command[:2])} … did not end within {limit:g} s") from None
     words = (done.stderr.strip().splitlines() or ["nothing on standard error"])[0]
-    # 1: some scans failed, and the report says which.
+    # 1: some scans failed; the report contains them.
     if done.returncode not in (0, 1):
         raise Broken(f"{' '.join(command[:2])} … ended with {done.returncode}: {words}")
     try:
@@ -52,8 +52,8 @@ def report(command, limit):
 
 
 def steps(report, cell):
-    """A cell's steps by the names of their filters; reading the scan is called "read". Of several steps of one filter
-    the first."""
+    """A cell's steps by filter name. The step that reads the scan is "read". If a filter has several steps, the first
+    one counts."""
     found = {}
     for number in cell["steps"]:
         step = report["steps"][number]
@@ -67,15 +67,15 @@ def named(report, cell):
 
 
 def mesh(cell):
-    """The one mesh that the cell wrote, as told in its outputs. Raises Broken when there is none or several."""
+    """The mesh among the outputs of a cell. Raises Broken unless there is exactly one."""
     meshes = [output for output in cell["outputs"] if output["kind"] == "mesh" and output["outcome"] == "done"]
     if len(meshes) != 1:
-        raise Broken(f"{cell['scan']}: the workflow wrote {len(meshes)} meshes, and one is to be judged")
+        raise Broken(f"{cell['scan']}: the workflow wrote {len(meshes)} meshes instead of one")
     return meshes[0]
 
 
 def features(cell):
-    """The features that the cell wrote as JSON. Raises Broken when there are none."""
+    """The features that the cell wrote as JSON. Raises Broken if there are none."""
     for output in cell["outputs"]:
         if output["kind"] == "features" and output["outcome"] == "done" and output["file"].endswith(".json"):
             with open(output["file"]) as file:

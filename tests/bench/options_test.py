@@ -39,7 +39,7 @@ class OptionsTest(unittest.TestCase):
 
     def test_less_than_one_round_is_refused_by_its_name(self):
         for text, why in (("0", "must be at least 1, not 0"), ("-3", "must be at least 1, not -3"),
-                          ("1.5", "'1.5' is no whole number")):
+                          ("1.5", "'1.5' is not a whole number")):
             code, said = parsed(["p", f"--rounds={text}"], refused=True)
             self.assertEqual(code, 2)
             self.assertIn(f"argument --rounds: {why}", said)

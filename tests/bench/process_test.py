@@ -49,11 +49,11 @@ class ProcessTest(unittest.TestCase):
         self.assertEqual(self.process.process.returncode, -signal.SIGKILL)
 
     def test_words_that_are_no_json_fail(self):
-        self.assertIn("which is no JSON object", self.failure({"do": "mumble"}))
+        self.assertIn("which is not a JSON object", self.failure({"do": "mumble"}))
 
     def test_time_that_is_none_fails(self):
         for wrong in (None, 0, -1.0, "soon", float("nan"), float("inf")):
-            self.assertIn("which is no time", self.failure(self.answered(seconds=wrong)))
+            self.assertIn("which is not a valid time", self.failure(self.answered(seconds=wrong)))
 
     def test_missing_program_fails_with_its_path(self):
         with self.assertRaisesRegex(Failure, "/nowhere/at/all cannot be started: No such file"):

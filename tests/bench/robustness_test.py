@@ -100,26 +100,27 @@ class SummaryTest(unittest.TestCase):
 
     def test_border_is_told_from_the_table(self):
         text = summary.border(TRIALS, SHAPES)
-        self.assertIn("Noise of up to 0 spacings is borne by every shape", text)
-        self.assertIn("always succeeds up to 0 and never from 2 on", text)
-        self.assertIn("always succeeds from 1,000 points on and never with 100 or fewer", text)
-        self.assertIn("ball not even without noise", text)  # 4 points were left inside
-        self.assertIn("before sculpting, which leaves points inside, always succeeds: ball up to 1.", text)
-        self.assertIn("From 2 on the farthest point itself is moved farther", text)
-        self.assertIn("Of 8 trials 4 failed, most often because it has another number of handles (2)", text)
-        self.assertIn("refused 1 and crashed in 0; in the other 3 it delivered a mesh that is wrong", text)
+        self.assertIn("All trials succeed with noise of up to 0 spacings", text)
+        self.assertIn("all trials succeed up to 0, none succeeds from 2 on", text)
+        self.assertIn("all trials succeed from 1,000 points on, none succeeds with 100 or fewer", text)
+        self.assertIn("all points are on the surface: ball none", text)  # 4 points were left inside
+        self.assertIn("before sculpting, with points inside: ball 1.", text)
+        self.assertIn("From 2 on, noise moves some point of every scan farther", text)
+        self.assertIn("4 of 8 trials failed. The most frequent reason: the mesh has another number of handles than the "
+                      "truth (2)", text)
+        self.assertIn("refused 1 and crashed in 0; in the other 3 it delivered a wrong mesh", text)
         self.assertIn("with a warning in 1 of them", text)
 
     def test_border_at_the_end_of_what_was_tried_is_told_as_such(self):
         good, mixed = ("success", "success"), ("success", "far")
         self.assertEqual(summary.noise_border("ball", [(0, good), (2, good)]),
-                         "the ball always succeeds up to 2, the most tried")
+                         "ball: all trials succeed up to 2, the largest tested")
         self.assertEqual(summary.noise_border("ball", [(0, mixed), (2, mixed)]),
-                         "the ball fails sometimes even without noise and at 2 still sometimes")
+                         "ball: some trials fail even without noise, some succeed at 2")
         self.assertEqual(summary.density_border("ball", [(900, good), (100, good)]),
-                         "the ball always succeeds from 100 points on, the fewest tried")
+                         "ball: all trials succeed from 100 points on, the fewest tested")
         self.assertEqual(summary.density_border("ball", [(900, good), (100, mixed)]),
-                         "the ball always succeeds from 900 points on and with 100 still sometimes")
+                         "ball: all trials succeed from 900 points on, some succeed with 100")
 
     def test_page_shows_every_cell_and_what_the_program_said(self):
         load = {"took_seconds": 9.0, "others_cores": 0.5, "stolen_cpu_seconds": 0.0}

@@ -84,23 +84,24 @@ class PageTest(unittest.TestCase):
         self.assertEqual(page.expected_triangles(entry(components=2)), 1990)
         self.assertNotIn("contradict", page.remark(entry()))
         told = page.remark(entry(triangles=1990))
-        self.assertIn("1,990 triangles, where points, pieces and handles ask for 1,994", told)
+        self.assertIn("1,990 triangles, but points, components and genus give 1,994", told)
 
     def test_points_left_inside_and_a_genus_that_is_not_the_models_are_told(self):
         model = {"closed": True, "genus": 0, "components": 1, "largest_distance": 0.01, "mean_distance": 0.001}
         told = page.remark(entry(model=model))
-        self.assertIn("2 points (0.2 %) are not on the surface, before sculpting 50", told)
-        self.assertIn("genus 1 (pieces: 1) where the model has genus 0", told)
-        self.assertIn("0.1 % of the diagonal in the mean, at most 1 %", told)
+        self.assertIn("Points not on the surface: 2 (0.2 %), before sculpting 50", told)
+        self.assertIn("genus 1 (components: 1), but the model has genus 0", told)
+        self.assertIn("mean 0.1 % of the diagonal, largest 1 %", told)
         self.assertIn("Every point is on the surface", page.remark(entry(inside=0, triangles=1998)))
 
     def test_difference_from_the_paper_is_told_beyond_a_tenth(self):
         # 10.0 % removed where the paper has 10.2 %; 4.00 tetrahedra per point where it has 3.69.
         self.assertNotIn("removes", page.remark(entry()))
-        self.assertIn("removes 5.0 % of the first solid, the paper's 10.2 %", page.remark(entry(removed=200)))
+        self.assertIn("removes 5.0 % of the alpha-solid's tetrahedra, in the paper 10.2 %",
+                      page.remark(entry(removed=200)))
         self.assertIn("1.36 times the paper's tetrahedra per point", page.remark(entry(tetrahedra=5000)))
         # 90 s / 9807 points over 0.875 s / 999 points.
-        self.assertIn("per point 10 times as fast", page.remark(entry()).lower())
+        self.assertIn("per point, our run is 10 times as fast", page.remark(entry()).lower())
 
     def test_notes_tell_what_the_paper_printed(self):
         self.assertIn("4 of its 8 lines have exactly 2n − 4", page.notes({"rounds": 5}))
@@ -114,8 +115,9 @@ class PageTest(unittest.TestCase):
 
     def test_conclusion_counts_whole_surfaces(self):
         told = page.conclusion([entry(), entry(inside=0)])
-        self.assertIn("Of 2 objects 1 have every point on the surface; points are left inside femur.off (2,", told)
-        self.assertIn("8.76 s for 10,000 points", told)
+        self.assertIn("In 1 of 2 objects every point is on the surface. Points are left inside the solid in femur.off "
+                      "(points: 2,", told)
+        self.assertIn("8.76 s per 10,000 points", told)
 
     def test_every_object_of_the_paper_has_a_stand_in_or_is_said_to_have_none(self):
         stood_for = {one.paper for one in STAND_INS} - {""}

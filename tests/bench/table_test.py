@@ -132,33 +132,33 @@ class PageTest(unittest.TestCase):
 
     def test_unchecked_and_changing_results_are_said(self):
         page = self.page(entry("scanmill", [1.0], checked=0), entry("pcl", [2.0], varied=["cells"]))
-        self.assertIn("- scanmill: nothing of its result could be checked", page)
-        self.assertIn("- pcl: not the same in every round: cells", page)
+        self.assertIn("- scanmill: no fact of its result was compared", page)
+        self.assertIn("- pcl: differs between rounds: cells", page)
 
     def test_row_that_compares_nothing_does_not_say_so_of_everybody(self):
         both = results([entry("scanmill", [1.0], checked=0), entry("pcl", [2.0], checked=0)])
-        self.assertEqual(table.page(both).count("could be checked"), 2)
+        self.assertEqual(table.page(both).count("no fact of its result"), 2)
         both["rows"][0]["compares"] = False
-        self.assertEqual(table.page(both).count("could be checked"), 0)
+        self.assertEqual(table.page(both).count("no fact of its result"), 0)
 
     def test_memory_per_element_stands_below_when_the_row_asks_for_it(self):
         cloud = results([entry("scanmill", [1.0], facts={"cells": 9 * 2**20})])
         cloud["rows"][0]["peak_per"] = "cells"
-        told = "- Bytes of the peak beyond the loaded input, for each of the cells: scanmill 1"
+        told = "- Bytes of peak memory beyond the loaded input, per element of cells: scanmill 1"
         self.assertIn(told, table.page(cloud))
-        self.assertNotIn("Bytes of the peak", self.page(entry("scanmill", [1.0], facts={"cells": 9 * 2**20})))
+        self.assertNotIn("Bytes of peak memory", self.page(entry("scanmill", [1.0], facts={"cells": 9 * 2**20})))
 
     def test_growth_stands_below_the_larger_row_when_both_ran(self):
         both = results([entry("scanmill", [1.0], threads=2), entry("pcl", [2.0])])
         large = results([entry("scanmill", [15.0], threads=2), entry("pcl", [20.0])])["rows"][0]
         large.update(name="large", grows_from="thin", inputs=[{"what": "a torus", "points": 10_000}])
         both["rows"].append(large)
-        grown = "- Beside `thin`, with 10.0 times the points: "
-        grown += "scanmill, 2 threads 15.0 times, pcl 10.0 times the seconds"
+        grown = "- Time compared with `thin`, at 10.0 times the points: "
+        grown += "scanmill, 2 threads 15.0 times, pcl 10.0 times"
         self.assertIn(grown, table.page(both))
-        self.assertEqual(table.page(both).count("- Beside"), 1)
+        self.assertEqual(table.page(both).count("- Time compared with"), 1)
         both["rows"] = [large]
-        self.assertNotIn("Beside `thin`", table.page(both))
+        self.assertNotIn("compared with `thin`", table.page(both))
 
     def test_missing_input_fails_the_row(self):
         self.assertIn("**failed**: bunny.off is not there", self.page(failure="bunny.off is not there"))

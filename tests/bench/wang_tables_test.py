@@ -142,38 +142,39 @@ class PageTest(unittest.TestCase):
     def test_counts_that_contradict_each_other_are_told(self):
         self.assertEqual(page.expected_triangles(entry()), 12)
         self.assertIn("F = 2 V − 2 χ − b = 12", page.remark(entry()))
-        self.assertIn("Euler's identity asks for 14", page.remark(entry(euler=0)))
+        self.assertIn("Euler's identity gives 14", page.remark(entry(euler=0)))
         self.assertIn("not an oriented manifold", page.remark(entry(manifold=False)))
 
     def test_points_left_over_and_intersections_are_told(self):
-        self.assertIn("points kept that are in no triangle: 1", page.remark(entry()))
+        self.assertIn("kept points in no triangle: 1", page.remark(entry()))
         self.assertNotIn("intersect", page.remark(entry()))
         told = page.remark(entry(kept=12, self_intersections=3))
-        self.assertIn("every point kept is in a triangle", told.lower())
-        self.assertIn("pairs of triangles that intersect: 3", told)
+        self.assertIn("every kept point is in a triangle", told.lower())
+        self.assertIn("pairs of intersecting triangles: 3", told)
 
     def test_holes_that_the_thesis_does_not_show_are_told(self):
         self.assertNotIn("holes:", page.remark(entry()))
-        self.assertIn("holes: 2, where a face shows 0", page.remark(entry(holes=2)))
-        self.assertIn("1.00 triangles for each point, the thesis's 1.94", page.remark(entry()))
+        self.assertIn("holes: 2 instead of 0", page.remark(entry(holes=2)))
+        self.assertIn("riangles per point: 1.00, in the thesis 1.94", page.remark(entry()))
 
     def test_radii_are_told_in_bins_with_what_is_more_than_one(self):
         holes = [{"mean": 21.5, "least": 21, "largest": 22}, {"mean": 7.5, "least": 5, "largest": 9}]
         told = page.remark(entry("block", radii=holes, holes=5))
-        self.assertIn("radius 21 is found with 21.50 in the mean (21.00 to 22.00), 0.25 bins more;", told)
-        self.assertIn("7.50 in the mean (5.00 to 9.00), 1.25 bins more, which is more than one bin", told)
-        self.assertIn("within 1.25 bins of the true ones", page.conclusion([entry("block", radii=holes, holes=5)]))
+        self.assertIn("ole of radius 21: mean radius 21.50 (21.00 to 22.00), 0.25 voxel edges too large;", told)
+        self.assertIn("7.50 (5.00 to 9.00), 1.25 voxel edges too large, which is more than one voxel", told)
+        self.assertIn("from the true ones by at most 1.25 voxel edges",
+                      page.conclusion([entry("block", radii=holes, holes=5)]))
 
     def test_border_of_the_block_is_its_face_and_its_holes(self):
         # 2 (88 + 95) + 2 π (21 + 4 · 5) = 623.6, 312 bins of 2.
-        self.assertIn("is 624 long, 312 bins", page.remark(entry("block", radii=[])))
-        self.assertNotIn("border", page.remark(entry()))
+        self.assertIn("has a length of 624, or 312 voxel edges", page.remark(entry("block", radii=[])))
+        self.assertNotIn("boundary", page.remark(entry()))
 
     def test_topology_of_the_mesh_that_points_are_from_is_told_beside_ours(self):
         told = page.remark(entry(model={"loops": 7, "genus": None, "components": 2}))
-        self.assertIn("loops: 1, handles: 0, pieces: 1; the mesh that its points are from: loops: 7, handles: not "
-                      "known, pieces: 2", told)
-        self.assertNotIn("points are from", page.remark(entry(model=None)))
+        self.assertIn("loops: 1, handles: 0, components: 1; in the mesh that the points come from: loops: 7, handles: "
+                      "unknown, components: 2", told)
+        self.assertNotIn("points come from", page.remark(entry(model=None)))
 
     def test_skipped_and_failed_have_no_numbers(self):
         for name in ("skipped", "failure"):

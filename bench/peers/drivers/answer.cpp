@@ -25,7 +25,7 @@ Json answered(const std::map<std::string, Job>& jobs, const std::string& line) {
     }
 }
 
-/// The stream that answers go to; what is printed to standard output from now on goes to standard error.
+/// Returns a stream to standard output for the answers, and redirects all other output to standard error.
 std::FILE* stream_of_answers() {
     std::FILE* answers = ::fdopen(::dup(STDOUT_FILENO), "w");
     if (!answers || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) throw std::runtime_error("standard output is not open");
@@ -38,7 +38,7 @@ std::vector<Element> read_array(const std::string& path) {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) throw std::runtime_error(path + " cannot be read");
     const auto bytes = static_cast<std::size_t>(file.tellg());
-    if (bytes % sizeof(Element) != 0) throw std::runtime_error(path + " ends within an element");
+    if (bytes % sizeof(Element) != 0) throw std::runtime_error(path + " does not hold a whole number of elements");
     std::vector<Element> elements(bytes / sizeof(Element));
     file.seekg(0);
     file.read(reinterpret_cast<char*>(elements.data()), static_cast<std::streamsize>(bytes));

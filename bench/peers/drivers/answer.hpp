@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What the C++ drivers share: requests as JSON lines in, answers out, and inputs as raw arrays.
+/// Shared by the C++ drivers: reads requests as JSON lines, writes answers, and reads and writes raw arrays.
 ///
-/// A request is {"do": JOB, …}; its answer tells facts about the result, of a timed job also "seconds", or is
-/// {"failed": SENTENCE}. Only answers are written to standard output: what a library prints there goes to standard
-/// error instead.
+/// A request is {"do": JOB, …}. Its answer holds facts about the result (and "seconds" for a timed job), or is
+/// {"failed": SENTENCE}. Standard output holds only answers; output of the libraries goes to standard error.
 
 #include <array>
 #include <chrono>
@@ -18,10 +17,10 @@
 namespace peers {
 
 using Json = nlohmann::json;
-/// Throws what it likes; the text of a std::exception is told.
+/// May throw; the answer then contains the text of the std::exception.
 using Job = std::function<Json(const Json& request)>;
 
-/// Answers until standard input ends. "versions" is answered from `versions`, with the compiler and its flags.
+/// Answers requests until standard input ends. Answers "versions" with `versions`, the compiler and its flags.
 int answer(std::map<std::string, Job> jobs, Json versions);
 
 /// Seconds that `work` takes.
@@ -32,23 +31,23 @@ double seconds_of(Work&& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// What lies in PATH.points and PATH.triangles: see harness/inputs.py.
+/// The content of PATH.points, PATH.triangles and PATH.weights: see harness/inputs.py.
 struct RawInput {
     std::vector<std::array<double, 3>> points;
     /// Empty for a cloud.
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    /// Empty, or one per point: squared lengths.
+    /// Squared lengths, one per point; or empty.
     std::vector<double> weights;
 
-    /// As an answer.
+    /// The counts as an answer.
     Json counts() const;
 };
 
-/// Throws std::runtime_error when there is no PATH.points, or when a file holds no whole number of elements.
+/// Throws std::runtime_error if PATH.points is missing, or if a file does not hold a whole number of elements.
 RawInput read_raw(const std::string& path);
 void write_raw(const std::string& path, const RawInput& input);
 
-/// The request's "threads"; 1 when it names none.
+/// The request's "threads"; 1 by default.
 unsigned threads_of(const Json& request);
 
 }  // namespace peers

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the Python drivers share: requests as JSON lines in, answers out, and inputs as raw arrays. See answer.hpp."""
+"""Shared by the Python drivers: reads requests as JSON lines, writes answers, and reads raw arrays. See answer.hpp."""
 import json
 import os
 import pathlib
@@ -10,8 +10,8 @@ import numpy
 
 
 def answer(jobs, versions):
-    """Answers until standard input ends: {"do": JOB, …} by jobs[JOB](request). What is printed goes to standard
-    error."""
+    """Answers requests until standard input ends: {"do": JOB, …} calls jobs[JOB](request). Output of the libraries goes
+    to standard error."""
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     jobs = {**jobs, "versions": lambda request: versions}
@@ -20,14 +20,14 @@ def answer(jobs, versions):
         try:
             if request["do"] not in jobs:
                 raise ValueError(f"this program cannot do '{request['do']}'")
-            said = jobs[request["do"]](request)
-        except BaseException as error:  # SystemExit too, which meshio raises; a peer's failure is an answer
-            said = {"failed": f"{type(error).__name__}: {' '.join(str(error).split())}"}
-        print(json.dumps(said), file=answers, flush=True)
+            result = jobs[request["do"]](request)
+        except BaseException as error:  # SystemExit too, which meshio raises; a failure of a program is an answer
+            result = {"failed": f"{type(error).__name__}: {' '.join(str(error).split())}"}
+        print(json.dumps(result), file=answers, flush=True)
 
 
 def timed(work):
-    """Seconds that work() took, and what it returned."""
+    """The seconds that work() took, and its result."""
     begin = time.perf_counter()
     result = work()
     return time.perf_counter() - begin, result
@@ -39,7 +39,7 @@ def read_points(path):
 
 
 def read_triangles(path):
-    """#triangles by 3 indices; none for a cloud."""
+    """#triangles by 3 indices; empty for a cloud."""
     path = pathlib.Path(path + ".triangles")
     indices = numpy.fromfile(path, dtype=numpy.uint32) if path.exists() else numpy.zeros(0, numpy.uint32)
     return indices.reshape(-1, 3)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// CGAL's side of the rows.
+/// The CGAL driver.
 
 #include <CGAL/version.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Radii of ours are squared for CGAL. The shapes' boundaries are counted after the clock has stopped.
+/// CGAL takes squared radii. The boundaries of the shapes are counted after the timed work.
 
 #include <CGAL/Alpha_shape_3.h>
 #include <CGAL/Alpha_shape_cell_base_3.h>
@@ -46,7 +46,7 @@ std::size_t regular_facets(const Shape& shape) {
     return count;
 }
 
-/// Every cell that can be reached from the unbounded ones through facets that are not in the shape.
+/// All cells that are reachable from the unbounded cells through facets outside the shape.
 std::unordered_set<const void*> outside(const Fixed& shape) {
     std::vector<Fixed::Cell_handle> to_visit{shape.infinite_cell()};
     std::unordered_set<const void*> reached{&*to_visit.back()};
@@ -63,7 +63,7 @@ std::unordered_set<const void*> outside(const Fixed& shape) {
     return reached;
 }
 
-/// Triangles of the solid that nothing outside can enter: what alpha-solid delivers.
+/// Number of boundary triangles of the solid that alpha-solid delivers: all cells that are unreachable from outside.
 std::size_t solid_triangles(const Fixed& shape) {
     const std::unordered_set<const void*> reached = outside(shape);
     std::size_t count = 0;

@@ -34,7 +34,7 @@ Json facts(double seconds, const Triangulation& triangulation) {
             {"vertices", triangulation.number_of_vertices()}};
 }
 
-/// As CGAL's manual shows it: a grid of locks over the bounding box, with 50 boxes per axis.
+/// As in CGAL's manual: a grid of locks over the bounding box, with 50 boxes per axis.
 Json in_parallel(const std::vector<Kernel::Point_3>& points, unsigned threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     std::optional<Parallel::Lock_data_structure> locks;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// CGAL's jobs, one source file each: its headers take long to compile.
+/// CGAL's jobs. Each has its own source file, because CGAL's headers take long to compile.
 
 #include "answer.hpp"
 
 namespace peers {
 
-/// Delaunay_triangulation_3; with "parallel", that of Parallel_tag in "threads" threads.
+/// Delaunay_triangulation_3; with "parallel", the parallel version in "threads" threads.
 Json delaunay(const RawInput& input, const Json& request);
-/// Regular_triangulation_3 of the points with their weights.
+/// Regular_triangulation_3 of the weighted points.
 Json regular(const RawInput& input, const Json& request);
 /// Fixed_alpha_shape_3 at the radius "alpha".
 Json fixed_alpha_shape(const RawInput& input, const Json& request);
@@ -16,7 +16,7 @@ Json fixed_alpha_shape(const RawInput& input, const Json& request);
 Json optimal_alpha_shape(const RawInput& input, const Json& request);
 /// advancing_front_surface_reconstruction, its tetrahedralisation included.
 Json advancing_front(const RawInput& input, const Json& request);
-/// AABB_tree of the triangles of `mesh`, asked for every point's distance.
+/// Distances from all points to `mesh`, by an AABB_tree of its triangles.
 Json distances(const RawInput& mesh, const RawInput& points, const Json& request);
 
 }  // namespace peers

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""fast-simplification: decimation by quadrics in single precision."""
+"""fast-simplification: quadric decimation in single precision."""
 import importlib.metadata
 
 import fast_simplification

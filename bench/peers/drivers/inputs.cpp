@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Makes the raw arrays that every program of a row loads; coordinates are rounded to float, so that programs that
-/// store floats work on the same points.
+/// Makes the raw arrays that all programs of a row load. Coordinates are rounded to float, so that programs that store
+/// floats work on the same points.
 ///
 /// usage: peer_inputs scan FILE OUT | torus COUNT OUT | random-torus COUNT OUT | around RAW COUNT OUT |
 ///                    weighted RAW OUT
-///   scan    the points of a file, and the triangles where it has some
-///   torus   350000 or 3500000 points in random order that keep their distance, on a bumpy torus with radii 1 and 0.4
-///   random-torus  points uniform by area on a plain torus with these radii, each on its own
-///   weighted  the points of RAW, each with the weight that delaunay gives it for its spacing
-///   around  points uniform on the triangles of RAW, moved by up to 1 % of its diagonal along each axis
+///   scan          the points of a file, and its triangles if it has any
+///   torus         350000 or 3500000 evenly spread points in random order, on a bumpy torus with radii 1 and 0.4
+///   random-torus  independent points, uniform by area, on a torus without bumps with these radii
+///   weighted      the points of RAW with the weights of `delaunay: {weights: spacing}`
+///   around        points uniform on the triangles of RAW, moved by up to 1 % of its diagonal along each axis
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -49,15 +49,16 @@ RawInput scan(const std::string& file) {
     return raw;
 }
 
-/// Distances at which that many points still find room, found by trying.
+/// The minimum distance of that many evenly spread points, determined by trial.
 double distance_for(std::size_t count) {
     if (count == 350'000) return 0.0052;
     if (count == 3'500'000) return 0.00164;
     throw std::runtime_error("tori have 350000 or 3500000 points, not " + std::to_string(count));
 }
 
-/// Moved along the tube's radius by up to a tenth of it. Spheres within a plain torus touch it along whole circles,
-/// where no five points are in general position: a case that no scan is, and that qhull does not end on.
+/// Moves a point along the tube's radius by up to a tenth of it. Spheres inside a torus without bumps touch it along
+/// whole circles, so more than four points would be cospherical. Scans are not like that, and qhull does not terminate
+/// on it.
 Vec3 with_bumps(const Vec3& p) {
     const double around = std::atan2(p.y(), p.x()), along = std::atan2(p.z(), std::hypot(p.x(), p.y()) - 1);
     const Vec3 core(std::cos(around), std::sin(around), 0);
@@ -68,7 +69,7 @@ RawInput torus(std::size_t count) {
     const scanmill::PointCloud cloud =
         scanmill::test::poisson_torus(distance_for(count), 0.4, std::size_t(1) << 20, 1, count);
     if (cloud.size() != count)
-        throw std::runtime_error("the torus took only " + std::to_string(cloud.size()) + " points");
+        throw std::runtime_error("the torus has room for only " + std::to_string(cloud.size()) + " points");
     RawInput raw;
     for (const Vec3& p : cloud.positions) raw.points.push_back(rounded(with_bumps(p)));
     return raw;
@@ -90,7 +91,7 @@ RawInput random_torus(std::size_t count) {
 
 Vec3 corner(const RawInput& mesh, std::uint32_t index) { return Vec3(mesh.points.at(index).data()); }
 
-/// The sums of the triangles' areas up to each.
+/// Cumulative areas of the triangles.
 std::vector<double> areas_up_to(const RawInput& mesh) {
     std::vector<double> sums;
     double sum = 0;
@@ -103,7 +104,7 @@ std::vector<double> areas_up_to(const RawInput& mesh) {
 }
 
 RawInput around(const RawInput& mesh, std::size_t count) {
-    if (mesh.triangles.empty()) throw std::runtime_error("points are made around a mesh, and this is none");
+    if (mesh.triangles.empty()) throw std::runtime_error("`around` needs a mesh, and the input has no triangles");
     const std::vector<double> areas = areas_up_to(mesh);
     Vec3 low = corner(mesh, 0), high = low;
     for (const auto& p : mesh.points) {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""meshio: reading and writing files. Reading keeps the corners of an STL file merged, as ours; arrays have the file's
-type."""
+"""meshio: reads and writes files. It merges the equal corners of an STL file, as Scanmill does. Arrays have the type of
+the file."""
 import os
 
 import meshio

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// meshoptimizer's simplifier, one thread, float.
+/// meshoptimizer's simplifier, in one thread and single precision.
 
 #include <meshoptimizer.h>
 
@@ -26,7 +26,7 @@ Json load(Mesh& mesh, const Json& request) {
     return raw.counts();
 }
 
-/// Down to "triangles", whatever the error.
+/// Simplifies to "triangles" triangles, without an error bound.
 Json simplify(const Mesh& mesh, const Json& request) {
     const auto wanted = request.at("triangles").get<std::size_t>();
     if (mesh.indices.empty()) throw std::runtime_error("there are no triangles to simplify");

@@ -30,7 +30,7 @@ def alpha_shape(request):
 
 
 def distances(request):
-    """The scene's tree is built by the first query: a query of one point counts as the building."""
+    """The first query builds the scene's tree, so a query of one point counts as building."""
     scene = open3d.t.geometry.RaycastingScene(nthreads=request["threads"])
     mesh = open3d.t.geometry.TriangleMesh.from_legacy(held["mesh"])
     threads = request["threads"]

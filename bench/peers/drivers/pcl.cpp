@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// PCL's grids, normals and greedy triangulation, as its tutorials call them: points of 16 bytes, float; all but
-/// normals in one thread.
+/// PCL's grids, normals and greedy triangulation, as in its tutorials: points of 16 bytes in single precision. All but
+/// the normals run in one thread.
 
 #include <pcl/features/normal_3d.h>
 #include <pcl/features/normal_3d_omp.h>
@@ -30,7 +30,7 @@ Json load(Cloud& cloud, const Json& request) {
     return raw.counts();
 }
 
-/// Keeps the point nearest each bin's centre.
+/// Keeps the point nearest the centre of each voxel.
 Json sample_uniformly(const Cloud::Ptr& cloud, const Json& request) {
     Cloud left;
     const double seconds = peers::seconds_of([&] {
@@ -42,7 +42,7 @@ Json sample_uniformly(const Cloud::Ptr& cloud, const Json& request) {
     return {{"seconds", seconds}, {"kept", left.size()}};
 }
 
-/// Makes each bin's centroid.
+/// Computes the centroid of each voxel.
 Json average(const Cloud::Ptr& cloud, const Json& request) {
     const auto size = request.at("bin_size").get<float>();
     Cloud left;
@@ -55,8 +55,8 @@ Json average(const Cloud::Ptr& cloud, const Json& request) {
     return {{"seconds", seconds}, {"kept", left.size()}};
 }
 
-/// A normal and the share of the least variance from every point's nearest points, itself counted. How many of the
-/// normals point along x more than along y and z, told as a share: what others must agree on.
+/// Estimates the normal of every point from its nearest points, itself included. The fact that must agree between
+/// programs is the share of normals with x as their largest component.
 Json estimate_normals(const Cloud::Ptr& cloud, const Json& request) {
     pcl::PointCloud<pcl::Normal> normals;
     const double seconds = peers::seconds_of([&] {
@@ -73,8 +73,8 @@ Json estimate_normals(const Cloud::Ptr& cloud, const Json& request) {
     return {{"seconds", seconds}, {"along_x", static_cast<double>(along_x) / static_cast<double>(normals.size())}};
 }
 
-/// Normals of 20 neighbours, then the triangulation with the tutorial's angles; its radius is given, the tutorial's
-/// fits the tutorial's scan only.
+/// Estimates normals from 20 neighbours, then triangulates with the angles of the tutorial. The radius is a parameter,
+/// because that of the tutorial fits only its own scan.
 Json project_greedily(const Cloud::Ptr& cloud, const Json& request) {
     pcl::PolygonMesh mesh;
     const double seconds = peers::seconds_of([&] {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""PyMeshLab: distances as get_hausdorff_distance samples them, decimation."""
+"""PyMeshLab: distances by get_hausdorff_distance, decimation."""
 import importlib.metadata
 
 import pymeshlab
@@ -19,7 +19,7 @@ def load(request):
 
 
 def distances(request):
-    """Of every vertex of the second mesh to the first; no distance is too large."""
+    """Distances from every vertex of the second mesh to the first, without a distance limit."""
     points = held["set"].mesh(1).vertex_number()
     ask = held["set"].get_hausdorff_distance
     far = pymeshlab.PercentageValue(100)
@@ -32,7 +32,7 @@ def distances(request):
 
 
 def decimate(request):
-    """On a fresh copy, which is not timed: the filter changes its mesh."""
+    """Decimates a fresh copy, because the filter changes its mesh. The copy is not timed."""
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=held["mesh"][0], face_matrix=held["mesh"][1]))
     work = meshes.meshing_decimation_quadric_edge_collapse

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Our side of the rows: the filters' algorithms, called as a C++ program calls them, on points in memory.
+/// The Scanmill driver: calls the filters' algorithms as a C++ program does, on points in memory.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ namespace {
 using namespace scanmill;
 using peers::Json;
 
-/// What "load" and "read" left for the jobs that follow.
+/// The data that "load" and "read" keep for the following jobs.
 struct Held {
     PointCloud cloud;
     Array<Triangle> triangles;
@@ -77,14 +77,14 @@ Json write(Held& held, const Json& request) {
 Json thin(Held& held, const Json& request) {
     VoxelThinParams params;
     params.bin_size = request.at("bin_size").get<double>();
-    params.grid_origin = Vec3::Zero();  // as PCL's grids, whose bins begin at whole multiples of their size
+    params.grid_origin = Vec3::Zero();  // as in PCL, whose voxels begin at multiples of their size
     Context context = context_for(request);
     VoxelThinResult result;
     const double seconds = peers::seconds_of([&] { result = voxel_thin(held.cloud, params, context); });
     return {{"seconds", seconds}, {"kept", result.points.size()}};
 }
 
-/// Planes, quadrics and principal curvatures, the tree and the search for neighbours included.
+/// Planes, quadrics and principal curvatures; includes the tree and the search for neighbours.
 Json curvature(Held& held, const Json& request) {
     LocalSurfaceParams params;
     params.neighbours = request.at("neighbours").get<u32>();
@@ -111,8 +111,8 @@ Json tetrahedralise(Held& held, const Json& request) {
     return {{"seconds", seconds}, {"cells", result.tets.cells.size()}, {"vertices", result.tets.positions.size()}};
 }
 
-/// With "alpha", at that radius; without, at the one that is chosen. With "weighted", of the points with their weights.
-/// The tetrahedralisation counts.
+/// The alpha-solid at the radius "alpha", or at an automatic radius without it; "weighted" uses the weights of the
+/// points. The time includes the tetrahedralisation.
 Json solid(Held& held, const Json& request) {
     AlphaSolidParams params;
     if (request.contains("alpha")) params.alpha = request["alpha"].get<double>();
@@ -131,8 +131,8 @@ Json solid(Held& held, const Json& request) {
             {"triangles", result.mesh.triangles.size()}};
 }
 
-/// From points to the sculpted mesh. What a step does not need any more is given back before the next, as between the
-/// steps of a workflow.
+/// From points to the sculpted mesh. Frees the inputs that the following steps do not need, as a workflow does between
+/// its steps.
 Json sculpted(Held& held, const Json& request) {
     Context context = context_for(request);
     std::optional<DelaunayResult> tets;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""SciPy: its Delaunay triangulation is qhull's."""
+"""SciPy: Delaunay triangulation by qhull."""
 import scipy
 from scipy.spatial import Delaunay
 

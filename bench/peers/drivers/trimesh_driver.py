@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""trimesh: reading and writing files, distances."""
+"""trimesh: reads and writes files, distances."""
 import logging
 import os
 
@@ -22,13 +22,13 @@ def sizes(mesh):
 
 
 def read(request):
-    """Reading leaves an STL file's corners as they are until process=True merges them, which is asked for there."""
+    """Reads a file. For STL files, process=True merges equal corners."""
     path = request["path"]
     held["file"] = None
 
     def work():
         mesh = trimesh.load(path, process=path.endswith(".stl"))
-        mesh.vertices  # made when first asked for
+        mesh.vertices  # trimesh creates the array at the first access
         return mesh
 
     seconds, held["file"] = timed(work)
@@ -41,7 +41,7 @@ def write(request):
 
 
 def distances(request):
-    """A mesh of its own every time: it keeps its search tree."""
+    """Uses a new mesh every time, because a mesh keeps its search tree."""
     points, triangles = held["arrays"]
     mesh = trimesh.Trimesh(points, triangles, process=False)
     building, _ = timed(lambda: mesh.triangles_tree)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""VTK: reading and writing files, decimation. vtkPolyData in single precision; the reader of STL files merges equal
-corners."""
+"""VTK: reads and writes files, decimation. vtkPolyData is in single precision. The STL reader merges equal corners."""
 import os
 
 import numpy

@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether contenders that claim to do the same work came to the same result."""
+"""Checks that contenders with the same work have the same result."""
 
 
 def apart(value, reference):
-    """The difference as a share of the reference; infinite when that is zero and the value is not."""
+    """The difference as a share of the reference; infinite if only the reference is zero."""
     if value == reference:
         return 0.0
     return abs(value - reference) / abs(reference) if reference else float("inf")
 
 
 def check(row, entries):
-    """Fills in every entry "unequal", a sentence or empty, and "checked": in how many facts it was compared.
+    """Sets "unequal" (a sentence or empty) and "checked" (the number of compared facts) in every entry.
 
-    Whoever failed or differs by nature is left out. Of the others the first that tells a fact is the reference for it;
-    with an unequal fact a contender's times are not compared. `entries` are the records of row.contenders, in order.
+    Contenders that failed or do different work are left out. The first remaining contender that reports a fact is the
+    reference for it. The times of a contender with an unequal fact are not compared. `entries` are the records of
+    row.contenders, in order.
     """
     for entry in entries:
         entry["unequal"], entry["checked"] = "", 0
@@ -23,15 +24,15 @@ def check(row, entries):
         if not entry["failure"] and not entry["differs"]
     ]
     for fact, usual_tolerance in row.agree.items():
-        telling = [(contender, entry) for contender, entry in taking_part if fact in entry["facts"]]
-        for contender, entry in telling[1:]:
-            reference = telling[0][1]
+        reporting = [(contender, entry) for contender, entry in taking_part if fact in entry["facts"]]
+        for contender, entry in reporting[1:]:
+            reference = reporting[0][1]
             reference["checked"] += 1
             entry["checked"] += 1
             tolerance = contender.agree.get(fact, usual_tolerance)
             value, expected = entry["facts"][fact], reference["facts"][fact]
             difference = apart(value, expected)
-            if not difference <= tolerance and not entry["unequal"]:  # also when it is no number
+            if not difference <= tolerance and not entry["unequal"]:  # also true for NaN
                 entry["unequal"] = (
                     f"{fact} is {value:,} where {reference['name']} has {expected:,}: "
                     f"{100 * difference:.3g} % apart, {100 * tolerance:.3g} % allowed"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the figures come from, and what else went on there meanwhile."""
+"""Describes the machine, and the load by other processes during a measurement."""
 import os
 import platform
 import resource
@@ -36,26 +36,26 @@ def system():
 
 
 def revision(root):
-    """Of the sources below `root`, "dirty" when they are not as committed."""
+    """The git revision of the sources below `root`, with "dirty" if they contain uncommitted changes."""
     ask = ["git", "-C", str(root), "describe", "--always", "--dirty"]
     done = subprocess.run(ask, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     return done.stdout.strip() if done.returncode == 0 else "of an unknown revision"
 
 
 def busy_and_stolen(line):
-    """CPU ticks that work was done in, and that the hypervisor gave to others, from the first line of /proc/stat."""
+    """Busy CPU ticks, and ticks stolen by the hypervisor, from the first line of /proc/stat."""
     user, nice, kernel, _idle, _waiting, interrupts, soft_interrupts, stolen = (int(word) for word in line.split()[1:9])
     return user + nice + kernel + interrupts + soft_interrupts, stolen
 
 
 def cpu_seconds_of_ours():
-    """Of this process and of those it has waited for."""
+    """CPU seconds of this process and of its finished children."""
     used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return sum(usage.ru_utime + usage.ru_stime for usage in used)
 
 
 class Load:
-    """What other processes did between start and end. Every process started meanwhile must be closed before the end."""
+    """Measures the load by other processes from construction to described(). Close all started processes before."""
 
     def __init__(self):
         self.begin = self._now()
@@ -78,7 +78,7 @@ class Load:
 
 
 def between(begin, end):
-    """From two readings, as Load takes them: what others used is all that was busy less what was ours."""
+    """The load between two readings of Load. The share of others is the busy time minus our own."""
     took = end["clock"] - begin["clock"]
     others = max(0.0, end["busy"] - begin["busy"] - (end["ours"] - begin["ours"]))
     return {

@@ -13,7 +13,7 @@ MEBIBYTE = 1024 * 1024
 
 
 class Failure(Exception):
-    """Why a contender is out: an exception's text, a signal, a time limit. One sentence."""
+    """The reason why a contender failed: the text of an exception, a signal, a time limit. One sentence."""
 
 
 class Process:
@@ -29,29 +29,29 @@ class Process:
             raise Failure(f"{command[0]} cannot be started: {error.strerror}") from None
 
     def ask(self, request, limit):
-        """The answer as a dictionary. Raises Failure; after a time limit the program is gone."""
+        """Returns the answer as a dictionary. Raises Failure. Kills the program after the time limit."""
         try:
             self.process.stdin.write(json.dumps(request).encode() + b"\n")
             self.process.stdin.flush()
         except OSError:
-            raise Failure(self._epitaph()) from None
+            raise Failure(self._reason_of_end()) from None
         line = self._line(limit)
         try:
             answer = json.loads(line)
         except ValueError:
             answer = None
         if not isinstance(answer, dict):
-            raise Failure(f"answered {line[:80]!r}, which is no JSON object")
+            raise Failure(f"answered {line[:80]!r}, which is not a JSON object")
         if "failed" in answer:
             raise Failure(answer["failed"])
         return answer
 
     def time(self, request, limit):
-        """As ask(); the answer holds the seconds that the program measured round its work."""
+        """Like ask(). The answer contains the seconds that the program measured for its work."""
         answer = self.ask(request, limit)
         seconds = answer.get("seconds")
         if not isinstance(seconds, (int, float)) or not math.isfinite(seconds) or seconds <= 0:
-            raise Failure(f"measured {seconds!r} seconds, which is no time")
+            raise Failure(f"measured {seconds!r} seconds, which is not a valid time")
         return answer
 
     def _line(self, limit):
@@ -64,13 +64,13 @@ class Process:
                 raise Failure(f"no answer within {limit:g} s")
             some = os.read(stream, 1 << 16)
             if not some:
-                raise Failure(self._epitaph())
+                raise Failure(self._reason_of_end())
             self.unread += some
         line, _, self.unread = self.unread.partition(b"\n")
         return line.decode(errors="replace")
 
-    def _epitaph(self):
-        """How the program ended, and its last words."""
+    def _reason_of_end(self):
+        """How the program ended, and its last line on standard error."""
         status = self.process.wait()
         how = f"ended with {status}" if status >= 0 else f"killed by {signal.Signals(-status).name}"
         self.complaints.seek(0)
@@ -78,7 +78,7 @@ class Process:
         return f"{how}: {words[-1][:200]}" if words else how
 
     def reset_peak(self):
-        """Whether peak_mebibytes() counts from now on, and not from the program's start."""
+        """Resets the peak of peak_mebibytes(). Returns whether the system allows it."""
         try:
             with open(f"/proc/{self.process.pid}/clear_refs", "w") as file:
                 file.write("5")
@@ -93,7 +93,7 @@ class Process:
         return self._status("VmRSS")
 
     def _status(self, name):
-        """None once the program is gone."""
+        """None after the program has ended."""
         try:
             with open(f"/proc/{self.process.pid}/status") as file:
                 for line in file:
@@ -104,7 +104,7 @@ class Process:
         return None
 
     def cpu_seconds(self):
-        """What all its threads have used so far; 0 once it is gone."""
+        """CPU seconds of all its threads so far; 0 after it has ended."""
         try:
             with open(f"/proc/{self.process.pid}/stat") as file:
                 words = file.read().rpartition(")")[2].split()
@@ -117,11 +117,11 @@ class Process:
         self.process.wait()
 
     def close(self):
-        """Lets the program end by itself, and ends it when it does not."""
+        """Closes the program's input, and kills the program if it does not end."""
         try:
             self.process.stdin.close()
         except OSError:
-            pass  # what was not yet sent to a program that is gone
+            pass  # unsent requests to a program that has ended
         try:
             self.process.wait(timeout=20)
         except subprocess.TimeoutExpired:

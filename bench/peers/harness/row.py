@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a file in rows/ says what is to be compared."""
+"""The classes with which a file in rows/ describes a comparison."""
 from dataclasses import dataclass, field
 from typing import Dict, List, Optional
 
 
 @dataclass
 class Contender:
-    """One program that does a row's work, in a process of its own."""
+    """A program that does the work of a row, in its own process."""
 
     program: str  #: a name of programs.py: "scanmill", "cgal", "open3d"
     work: dict  #: the request that is timed, once per round: {"do": "voxel-thin", "bin-size": 0.01}
-    label: str = ""  #: which of the program's ways, when it has several: "VoxelGrid"
-    threads: Optional[int] = None  #: sent along with the work; None: the program has no such setting
-    prepare: Optional[dict] = None  #: a request before the clock and the memory count, usually to load the input
-    differs: str = ""  #: what this program does otherwise than ours; its results are then not checked
+    label: str = ""  #: the method, if the program has several: "VoxelGrid"
+    threads: Optional[int] = None  #: sent with the work; None: the program has no such setting
+    prepare: Optional[dict] = None  #: a request before the measurement, usually to load the input
+    differs: str = ""  #: how its work differs from ours; its results are then not checked
     agree: Dict[str, float] = field(default_factory=dict)  #: its own tolerances instead of the row's
 
     @property
@@ -27,21 +27,21 @@ class Contender:
 
 @dataclass
 class Row:
-    """The same work by several contenders. The first one that tells a fact is who the others are compared with."""
+    """The same work by several contenders. The first one that reports a fact is the reference for the others."""
 
     name: str  #: short, for ROWS=: "delaunay-bunny"
     title: str
-    inputs: list  #: of inputs.Input; made before the clock runs, and a missing one fails the row
+    inputs: list  #: of inputs.Input; made before the measurement; a missing one fails the row
     contenders: List[Contender]
-    equal: str  #: a sentence: what is equal for all of them
-    agree: Dict[str, float]  #: facts of the answers that must be equal, within this share of the first one's
-    #: Rounds when the command line names none. Slow contenders do fewer: see turns.py.
+    equal: str  #: a sentence: what is equal for all contenders
+    agree: Dict[str, float]  #: facts that must be equal, with the tolerance as a share of the reference
+    #: Default number of rounds. Slow contenders do fewer: see turns.py.
     rounds: int = 5
-    #: One round before the counted ones. Without it the first time a program does its work counts.
+    #: Whether one uncounted round precedes the counted rounds.
     warm_up: bool = True
-    #: A fact that counts elements: what the peak adds to the loaded input is told per element as well.
+    #: A fact that counts elements: the page also shows the peak memory beyond the input per element.
     peak_per: str = ""
-    #: The name of a row with the same contenders on a smaller input: how much longer this one takes is told.
+    #: The name of a row with the same contenders on a smaller input: the page shows the ratio of the times.
     grows_from: str = ""
 
 

@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""RESULTS.md from results.json. Everything that the page says is in the JSON or here."""
+"""Writes RESULTS.md from results.json. All text of the page comes from the JSON or from this file."""
 from . import figures
 
 NOTES = """\
-How to read it: *seconds* is the median of the rounds, inside each program, around the work alone; *least to most*
-their spread. *ours / it* is our time over that program's in the same round, the median of the rounds: below 1 we are
-faster. *peak* is the most memory that the program's process held while it worked, its input and, for Python's, the
-interpreter included. *cores* is processor time over time. †: the work is not the same, the sentence below says how; ‡:
-it should have been the same and was not, so there is no ratio; *failed* never counts for anybody.
+Columns:
 
-PDAL has no package in Debian 12 or on PyPI, so it is in no row."""
+- *seconds*: median over the rounds; every program measures only the work itself
+- *least to most*: range over the rounds
+- *ours / it*: Scanmill's time divided by the program's time in the same round, median over the rounds; below 1
+  Scanmill is faster
+- *peak*: peak memory of the program's process during the work, including the input and, for Python, the interpreter
+- *cores*: processor time divided by elapsed time
+- †: the program does different work, as explained below the table
+- ‡: the program should have the same result but has not, so there is no ratio
+- *failed*: the program failed, so there is no ratio
+
+PDAL has no package in Debian 12 or on PyPI and is not compared."""
 
 
 def seconds(value):
@@ -23,7 +29,7 @@ def number(value):
 
 
 def result(entry):
-    """The facts, then the parts of the time that the program told."""
+    """The facts, then the parts of the time that the program reported."""
     words = [f"{name.replace('_', ' ')} {number(value)}" for name, value in entry["facts"].items()]
     for name, parts in entry["part_seconds"].items():
         words.append(f"{name.replace('_', ' ')} took {seconds(figures.spread(parts)[0])} of the seconds")
@@ -64,27 +70,27 @@ def points(row):
 
 
 def growths(row, smaller):
-    """How much longer each contender took than on the smaller input of another row."""
+    """Ratio of each contender's time to that on the smaller input of another row."""
     before = {called(entry): entry for entry in smaller["contenders"]}
-    told = [(called(entry), figures.growth(entry, before[called(entry)]))
+    ratios = [(called(entry), figures.growth(entry, before[called(entry)]))
             for entry in row["contenders"] if called(entry) in before]
-    words = [f"{who} {times:.1f} times" for who, times in told if times]
+    words = [f"{who} {times:.1f} times" for who, times in ratios if times]
     if words and points(smaller):
-        yield (f"Beside `{smaller['name']}`, with {points(row) / points(smaller):.1f} times the points: "
-               f"{', '.join(words)} the seconds")
+        yield (f"Time compared with `{smaller['name']}`, at {points(row) / points(smaller):.1f} times the points: "
+               f"{', '.join(words)}")
 
 
 def memory(row):
-    """Peaks per element, in a line."""
+    """One line with the peak memory per element."""
     fact = row.get("peak_per", "")
-    told = [(called(entry), figures.bytes_per(entry, fact)) for entry in row["contenders"]]
-    words = [f"{who} {per:.0f}" for who, per in told if per is not None]
+    peaks = [(called(entry), figures.bytes_per(entry, fact)) for entry in row["contenders"]]
+    words = [f"{who} {per:.0f}" for who, per in peaks if per is not None]
     if words:
-        yield f"Bytes of the peak beyond the loaded input, for each of the {fact}: {', '.join(words)}"
+        yield f"Bytes of peak memory beyond the loaded input, per element of {fact}: {', '.join(words)}"
 
 
 def remarks(row, smaller=None):
-    """What a reader of the table must know besides. A row that compares nothing says why in its `equal`."""
+    """Remarks below the table. If a row compares no results, its `equal` explains why."""
     compares = row.get("compares", True) and len(row["contenders"]) > 1
     for entry in row["contenders"]:
         who = called(entry)
@@ -93,24 +99,24 @@ def remarks(row, smaller=None):
         if entry["unequal"]:
             yield f"‡ {who}: {entry['unequal']}"
         if compares and not entry["failure"] and not entry["differs"] and not entry["checked"]:
-            yield f"{who}: nothing of its result could be checked against another's"
+            yield f"{who}: no fact of its result was compared with another program"
         if entry["varied"]:
-            yield f"{who}: not the same in every round: {', '.join(entry['varied'])}"
+            yield f"{who}: differs between rounds: {', '.join(entry['varied'])}"
         if entry["peak_counts_loading"] and entry["peak_mebibytes"] is not None:
-            yield f"{who}: its peak counts loading the input too"
+            yield f"{who}: its peak includes loading the input"
     yield from memory(row)
     if smaller:
         yield from growths(row, smaller)
     load = row["load"]
     yield (
-        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s taken by "
-        f"the hypervisor, load average {load['load_average_before']:.1f} to {load['load_average_after']:.1f}; "
+        f"Other load: {load['others_cores']:.2f} cores by other processes, {load['stolen_cpu_seconds']:.1f} s stolen "
+        f"by the hypervisor, load average {load['load_average_before']:.1f} to {load['load_average_after']:.1f}; "
         f"the row took {load['took_seconds']:.0f} s"
     )
 
 
 def section(row, smaller=None):
-    """`smaller` is the record of the row that it grows from, when that ran too."""
+    """`smaller` is the record of the row named by grows_from, if that ran too."""
     lines = [f"## {row['title']}", "", f"`ROWS={row['name']}`"]
     for one in row["inputs"]:
         counts = ", ".join(f"{value:,} {name}" for name, value in one.items() if name != "what")
@@ -127,12 +133,12 @@ def section(row, smaller=None):
 
 
 def page(results):
-    """The whole of RESULTS.md."""
+    """The text of RESULTS.md."""
     machine = results["machine"]
     lines = [
         f"<!-- Generated from results.json by `{results['command']}` on {results['date']} on {machine['processor']}, "
         f"{machine['cores']} cores. Do not edit. -->",
-        "# Scanmill beside other programs",
+        "# Scanmill compared with other programs",
         "",
         f"{results['date']}, {machine['processor']}, {machine['cores']} cores, {machine['memory_gibibytes']} GiB, "
         f"{machine['system']}, Linux {machine['kernel']}.",

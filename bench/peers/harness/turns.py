@@ -1,24 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs a row: every contender in a process of its own, all in turn, so that whatever else the machine does falls on
-all of them."""
+"""Runs a row. Every contender has its own process, and all work in turn, so that other load on the machine affects all
+of them equally."""
 from . import agreement
 from .inputs import Missing
 from .machine import Load
 from .process import Failure, Process
 
-#: Whatever its budget, a contender that ends does so many counted rounds: one has no spread.
+#: Every contender does at least this many counted rounds, whatever its budget, because one round has no spread.
 FEWEST_ROUNDS = 2
 
 
 class Options:
-    """limit: seconds for one answer. budget: seconds of counted work after which a contender sits out the others."""
+    """limit: seconds for one answer. budget: seconds of counted work after which a contender skips the other rounds."""
 
     def __init__(self, rounds=None, limit=300.0, budget=20.0):
         self.rounds, self.limit, self.budget = rounds, limit, budget
 
 
 class Turn:
-    """A contender while its row runs. `entry` is its record."""
+    """A contender during its row. `entry` is its record."""
 
     def __init__(self, contender, command):
         self.contender = contender
@@ -48,7 +48,7 @@ class Turn:
         return bool(self.entry["failure"]) or (self.spent > options.budget and done >= FEWEST_ROUNDS)
 
     def attempt(self, step, *arguments):
-        """Nothing that a contender does may stop the others."""
+        """Runs a step and records its failure, so that the other contenders continue."""
         try:
             step(*arguments)
         except Failure as failure:
@@ -80,7 +80,7 @@ class Turn:
             self.entry["warm_up_seconds"] = answer["seconds"]
 
     def _keep_facts(self, facts):
-        """The first round's; of a fact that changes later, the name."""
+        """Keeps the facts of the first round, and the names of facts that change later."""
         if not self.entry["facts"]:
             self.entry["facts"] = facts
         changed = [name for name in facts if facts[name] != self.entry["facts"].get(name)]
@@ -92,7 +92,7 @@ class Turn:
 
 
 def run(row, command_of, options):
-    """The row's record. command_of(program) gives the command line that starts it."""
+    """Returns the record of the row. command_of(program) gives the command line that starts a program."""
     record = {"name": row.name, "title": row.title, "equal": row.equal, "rounds": options.rounds or row.rounds}
     record["compares"] = bool(row.agree)
     record.update(peak_per=row.peak_per, grows_from=row.grows_from)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The alpha shape with its radius chosen automatically, from points."""
+"""The alpha shape with an automatic radius, from points."""
 from harness.row import Contender, Row, in_threads
 
 
@@ -22,12 +22,12 @@ def row(name, shape, cloud, **more):
             *in_threads([1, 2], "scanmill", {"do": "alpha-solid"}, prepare=load),
             Contender(
                 "cgal", {"do": "optimal-alpha-shape"}, "find_optimal_alpha(1)", prepare=load,
-                differs="seeks the least radius at which one solid of tetrahedra has every point on or in it; what thin "
-                "walls enclose is no solid to it, so its radius is larger, and its boundary need be no manifold. "
-                "Ours counts what walls enclose as solid and delivers a closed manifold.",
+                differs="finds the least radius at which one solid of tetrahedra contains every point. It does not "
+                "count volume enclosed by thin walls as solid, so its radius is larger, and its boundary may be "
+                "non-manifold. Scanmill counts enclosed volume as solid and delivers a closed manifold.",
             ),
         ],
-        equal="the points in memory; the tetrahedralisation and the choice count.",
+        equal="the points in memory. The time includes the tetrahedralisation and the choice of the radius.",
         agree={"alpha": 0, "triangles": 0},
         **more,
     )

@@ -22,9 +22,9 @@ def row(name, shape, cloud, alpha):
             Contender("cgal", {"do": "fixed-alpha-shape", **work}, "Fixed_alpha_shape_3", prepare=load),
             Contender("open3d", {"do": "alpha-shape", **work}, prepare=load, agree={"regular_facets": 1e-3}),
         ],
-        equal="the points in memory, the radius, the complex; the tetrahedralisation counts. We deliver the solid that "
-        "nothing outside can enter as a mesh; CGAL only classifies every simplex (its solid's triangles are counted "
-        "after the clock, to compare), Open3D delivers the cells' boundary, inner walls included (compared with CGAL's), "
-        "on qhull's cells, whose predicates are not exact.",
+        equal="the points in memory, the radius, the alpha complex. The time includes the tetrahedralisation. Scanmill "
+        "delivers a mesh of the solid, with enclosed volume as part of it. CGAL only classifies every simplex; the "
+        "triangles of its solid are counted after the measurement, for comparison. Open3D delivers the boundary of the "
+        "cells with inner walls, compared with CGAL's; its cells come from qhull, whose predicates are not exact.",
         agree={"triangles": 0, "regular_facets": 0},
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The alpha-solid of weighted points, its radius chosen, beside the bare regular triangulation."""
+"""The alpha-solid of weighted points with an automatic radius, compared with the regular triangulation alone."""
 from harness.row import Contender, Row, in_threads
 
 
@@ -20,11 +20,12 @@ def row(name, shape, cloud, **more):
             *in_threads([1, 2], "scanmill", {"do": "alpha-solid", "weighted": True}, prepare=load),
             Contender(
                 "cgal", {"do": "regular"}, "Regular_triangulation_3", prepare=load,
-                differs="stops at the triangulation, the first of the two steps; the ratio tells how many times that "
-                "ours takes.",
+                differs="stops after the triangulation, the first of the two steps; the ratio compares both "
+                "steps with it.",
             ),
         ],
-        equal="the points in memory and their weights, the squares of the local spacing. Ours takes them from a column.",
+        equal="the points in memory and their weights, the squares of the local spacing. Scanmill reads the weights "
+        "from a column.",
         agree={"cells": 0, "alpha": 0, "triangles": 0},
         peak_per="cells",
         **more,

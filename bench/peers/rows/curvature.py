@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What surface the nearest neighbours of every point show."""
+"""The local surface at every point, from its nearest neighbours."""
 from harness.row import Contender, Row
 
 NEIGHBOURS = 25
@@ -27,8 +27,8 @@ def row(name, shape, cloud):
         title=f"Surfaces from {NEIGHBOURS} neighbours, {shape}",
         inputs=[cloud],
         contenders=contenders,
-        equal="the points in memory, the number of neighbours, a tree and a search for all points included. We also fit a "
-        "quadric to every neighbourhood and give its principal curvatures; PCL gives normals alone. Our normals are "
-        "those of the quadric. We hold doubles, PCL floats.",
+        equal="the points in memory and the number of neighbours. The time includes the tree and the search for all "
+        "points. Scanmill also fits a quadric to every neighbourhood and computes its normal and its principal "
+        "curvatures; PCL computes normals only. Scanmill stores doubles, PCL floats.",
         agree={"along_x": 1e-2},
     )

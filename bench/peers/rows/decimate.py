@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Decimation to a tenth of the triangles: the peers, until there is a filter of ours."""
+"""Decimation to a tenth of the triangles. Scanmill has no such filter yet."""
 from harness.row import Contender, Row
 
-UNBOUNDED = "none of them takes a bound of the error, and how far the results are from the input is not compared here"
+UNBOUNDED = "the error of the results; none of the programs takes an error bound"
 
 
 def rows(inputs, large):
@@ -30,7 +30,7 @@ def row(name, shape, mesh, triangles):
             Contender("pymeshlab", work, prepare=load),
             Contender("open3d", work, prepare=load),
         ],
-        equal=f"the mesh in memory, the number of triangles asked for. Not compared: {UNBOUNDED}. Scanmill has no "
+        equal=f"the mesh in memory and the target number of triangles. Not compared: {UNBOUNDED}. Scanmill has no "
         "decimation yet.",
         agree={"triangles": 0.01},
         rounds=3,

@@ -25,11 +25,12 @@ def row(name, shape, cloud, **more):
             *in_threads([1, 2], "scanmill", {"do": "delaunay"}, prepare=load),
             Contender("cgal", {"do": "delaunay"}, "Delaunay_triangulation_3", prepare=load),
             Contender("cgal", {"do": "delaunay", "parallel": True}, "with TBB", threads=2, prepare=load),
-            # Qhull decides by rounded arithmetic: flat cells may be there or not.
+            # Qhull uses rounded arithmetic, so its flat cells may differ.
             Contender("scipy", {"do": "delaunay"}, "(qhull)", prepare=load, agree={"cells": 1e-3}),
         ],
-        equal="the points in memory, as doubles; the cells. We also deliver them as arrays in canonical order with "
-        "neighbours; CGAL leaves its own structure, whose destruction is not counted; qhull's tests are not exact.",
+        equal="the points in memory as doubles, and the cells. Scanmill also delivers them as arrays in canonical "
+        "order with neighbours. CGAL keeps its own structure, whose destruction is not measured. The predicates of "
+        "qhull are not exact.",
         agree={"cells": 0, "vertices": 0},
         peak_per="cells",
         **more,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Distances of points to a mesh: what every measure of a reconstruction asks for."""
+"""Distances from points to a mesh, as needed to measure a reconstruction."""
 from harness.row import Contender, Row, in_threads
 
 
@@ -27,7 +27,7 @@ def row(name, what, mesh, points):
             Contender("pymeshlab", work, "get_hausdorff_distance", prepare=prepare),
             Contender("trimesh", work, "closest_point", prepare=prepare),
         ],
-        equal="mesh and points in memory; building the search structure and asking for every point's distance. Ours "
-        "and CGAL's work on doubles, Open3D's on floats.",
+        equal="the mesh and the points in memory. The time includes building the search structure and all queries. "
+        "Scanmill and CGAL use doubles, Open3D floats.",
         agree={"mean": 1e-4, "rms": 1e-4, "max": 1e-4},
     )

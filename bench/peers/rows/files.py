@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reading and writing files, in the page cache, on a file system in memory where there is one."""
+"""Reading and writing files in the page cache, on a file system in memory if there is one."""
 import atexit
 import math
 import pathlib
@@ -10,7 +10,7 @@ from harness.inputs import Input
 from harness.row import Contender, Row
 
 POINTS = 3_500_000
-ACROSS = 592  # a grid of as many by as many squares has about 700 k triangles
+ACROSS = 592  # squares per side of the grid; gives about 700 k triangles
 OTHERS = ("meshio", "vtk", "trimesh")
 
 
@@ -33,7 +33,7 @@ def scratch():
 
 
 def both(name, what, file):
-    """Reading; and writing what was read before."""
+    """The row that reads a file, and the row that writes the data read from it."""
     read = {"do": "read", "path": str(file.path)}
     copy = {program: str(file.path.with_name(program + file.path.suffix)) for program in ("scanmill", *OTHERS)}
     return [
@@ -42,8 +42,8 @@ def both(name, what, file):
             title=f"Reading {what}",
             inputs=[file],
             contenders=[Contender(program, read) for program in ("scanmill", *OTHERS)],
-            equal="the file, what it holds, one thread. Scanmill delivers double coordinates and checks them, meshio "
-            "and VTK keep the file's float, trimesh makes doubles. Equal corners of an STL file are merged.",
+            equal="the file, its content, one thread. Scanmill delivers double coordinates and checks them; meshio and "
+            "VTK keep the floats of the file; trimesh makes doubles. Equal corners of an STL file are merged.",
             agree={"points": 0, "triangles": 0},
         ),
         Row(
@@ -53,8 +53,8 @@ def both(name, what, file):
             contenders=[
                 Contender(program, {"do": "write", "path": path}, prepare=read) for program, path in copy.items()
             ],
-            equal="what was read from the same file, binary, floats. Scanmill's file appears whole or not at all.",
-            # The headers of PLY files hold comments, a few hundred bytes of 42 million.
+            equal="the data read from the same file, binary, floats. Scanmill's file appears whole or not at all.",
+            # The comments in PLY headers differ by a few hundred bytes of 42 million.
             agree={"bytes": 1e-5},
         ),
     ]
@@ -80,7 +80,7 @@ def write_points(path):
 
 
 def write_triangles(path):
-    """A wavy sheet of triangles, row after row, as a mesher would deliver it."""
+    """A wavy sheet of triangles, row after row, as a mesh generator writes it."""
     import numpy
 
     step = numpy.arange(ACROSS + 1)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From points to a mesh: what tetrahedralisation, alpha-solid and sculpting take beside the bare tetrahedralisation."""
+"""From points to a mesh: tetrahedralisation, alpha-solid and sculpting, compared with the tetrahedralisation alone."""
 from harness.row import Contender, Row, in_threads
 
-BARE = "stops at the tetrahedralisation, the first of the three steps; the ratio tells how many times that ours takes."
+BARE = "stops after the tetrahedralisation, the first of the three steps; the ratio compares all three with it"
 
 
 def rows(inputs, large):
@@ -12,7 +12,7 @@ def rows(inputs, large):
         row("mesh-dragon", "dragon", inputs.scan("dragon", "dragon/dragon_vrip.ply")),
     ]
     if large:
-        # One round of ours takes half a minute and more than 3 gigabytes.
+        # One round of Scanmill takes half a minute and more than 3 gigabytes.
         torus = inputs.torus(3_500_000)
         more = {"warm_up": False, "rounds": 2, "grows_from": "mesh-torus"}
         found.append(row("mesh-large-torus", "large bumpy torus", torus, **more))
@@ -29,8 +29,8 @@ def row(name, shape, cloud, **more):
             *in_threads([1, 2], "scanmill", {"do": "sculpt"}, prepare=load),
             Contender("cgal", {"do": "delaunay"}, "Delaunay_triangulation_3", prepare=load, differs=BARE),
         ],
-        equal="the points in memory, as doubles. Ours runs delaunay, alpha-solid with an automatic radius and sculpt "
-        "in one process and delivers a mesh; CGAL makes no surface.",
+        equal="the points in memory as doubles. Scanmill runs delaunay, alpha-solid with an automatic radius and "
+        "sculpt in one process and delivers a mesh; CGAL makes no surface.",
         agree={"cells": 0, "alpha": 0, "triangles": 0, "removed": 0, "interior_points": 0},
         peak_per="cells",
         **more,

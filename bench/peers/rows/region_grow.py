@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A surface through the points that may end: region growing beside the other two that grow one."""
+"""An open surface through points: region growing compared with two other methods that grow a surface."""
 from harness.row import Contender, Row, in_threads
 
-#: How far PCL looks: five spacings.
+#: PCL's search radius: five spacings.
 RADII = {"torus": 0.026, "dragon": 0.0012, "large-torus": 0.0082}
 
 
@@ -30,9 +30,9 @@ def row(name, shape, cloud, radius, **more):
             Contender("pcl", greedy, "GreedyProjectionTriangulation", prepare=load),
             Contender("cgal", {"do": "advancing-front"}, "advancing_front_surface_reconstruction", prepare=load),
         ],
-        equal="the points in memory, no normals. Ours and PCL's take theirs from the neighbours, PCL looks five spacings far "
-        "for its triangles; CGAL tetrahedralises. Each makes a surface of its own, so triangles and points in none "
-        "are told, not compared.",
+        equal="the points in memory, without normals. Scanmill and PCL estimate normals from the neighbours; PCL "
+        "searches within five spacings for its triangles; CGAL tetrahedralises. The surfaces differ, so the numbers of "
+        "triangles and of unused points are shown but not compared.",
         agree={},
         peak_per="triangles",
         **more,

@@ -2,9 +2,9 @@
 """Voxel thinning to about a tenth of the points."""
 from harness.row import Contender, Row, in_threads
 
-#: Edges of the bins, exactly representable as float.
+#: Edges of the voxels, exactly representable as float.
 SIZES = {350_000: 27 / 1024, 3_500_000: 17 / 2048}
-CENTROID = "makes each bin's centroid, which is no point of the scan and has none of its columns"
+CENTROID = "computes the centroid of each voxel, which is not a point of the scan and has none of its columns"
 
 
 def rows(inputs, large):
@@ -15,7 +15,7 @@ def row(cloud, count, size):
     load, work = cloud.load(), {"bin_size": size}
     return Row(
         name=f"voxel-thin-{count // 1000}k",
-        title=f"Voxel thinning, {count:,} points, bins of {size:.5g}",
+        title=f"Voxel thinning, {count:,} points, voxels of {size:.5g}",
         inputs=[cloud],
         contenders=[
             *in_threads([1, 2], "scanmill", {"do": "voxel-thin", **work}, prepare=load),
@@ -23,10 +23,11 @@ def row(cloud, count, size):
             Contender("pcl", {"do": "voxel-grid", **work}, "VoxelGrid", prepare=load, differs=CENTROID),
             Contender(
                 "open3d", {"do": "voxel-thin", **work}, "voxel_down_sample", prepare=load,
-                differs=f"{CENTROID}; its grid begins half a bin below the box of the points",
+                differs=f"{CENTROID}; its grid begins half a voxel below the bounding box of the points",
             ),
         ],
-        equal="the points in memory, the grid (bins begin at multiples of their size), of every bin the point nearest "
-        "its centre stays. We hold doubles, PCL floats, so points on a bin's border may fall otherwise.",
+        equal="the points in memory and the grid (voxels begin at multiples of their size); every voxel keeps the "
+        "point nearest its centre. Scanmill stores doubles and PCL floats, so points on the boundary of a voxel may "
+        "differ.",
         agree={"kept": 1e-3},
     )
