@@ -20,7 +20,8 @@ NearestRows rows_by_octree(std::span<const Vec3> positions, const LocalBins& loc
         choose_in_octree(positions, local.place_of_row, local.sizes, origin, local.chosen, min_points, context);
     context.metric("smallest-bin", choice.smallest, Unit::length);
     context.metric("largest-bin", choice.largest, Unit::length);
-    return {std::move(choice.kept), std::move(choice.members), std::move(choice.edges), choice.noise, choice.leaves};
+    return {std::move(choice.kept), std::move(choice.members), std::move(choice.edges), choice.noise,
+            choice.basic_voxels};
 }
 
 void report(const LocalBins& local, Context& context) {
