@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "region_grow/normal_signs.hpp"
-#include "region_grow/search_radii.hpp"
 #include "region_grow/small_holes.hpp"
 #include "scanmill/filter/counted.hpp"
 #include "scanmill/geometry/feature_doubts.hpp"
@@ -25,7 +24,6 @@ void count_all(const RegionGrowResult& result, Context& context) {
     count("holes", result.holes);
     count("thin-loops", result.thin_loops);
     count("unused-points", result.unused_points);
-    count("near-twins", result.near_twins);
     count("duplicates", result.duplicates);
     count("patch-edges", result.patch_edges);
     count("creases", result.creases);
@@ -39,13 +37,7 @@ void count_all(const RegionGrowResult& result, Context& context) {
 }
 
 void warn_of_unused(const RegionGrowResult& result, const Surface& surface, Context& context) {
-    const std::size_t places = surface.samples.size(), twins = result.near_twins;
-    const std::size_t unused = result.unused_points - twins;
-    if (200 * twins > places)
-        context.warn(
-            fmt::format("{} of {} distinct points were left out as near twins of others, as of scans laid over each "
-                        "other; voxel-thin with bins of {:.3g} {} takes one of each by place",
-                        twins, places, bins_as_dense(surface, context.threads()), symbol(result.mesh.frame.unit)));
+    const std::size_t places = surface.samples.size(), unused = result.unused_points;
     if (200 * unused > places)
         context.warn(fmt::format(
             "{} of {} distinct points are in no triangle; thin the scan, or remove its noise first", unused, places));

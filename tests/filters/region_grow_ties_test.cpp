@@ -25,7 +25,7 @@ struct TwoAbove {
     Surface made() const {
         Surface on(samples, neighbourhoods, principal_normals(samples, neighbourhoods, 1),
                    Array<double>(samples.size(), 40 * samples.scale), Array<double>(samples.size(), 40 * samples.scale),
-                   {}, false);
+                   false);
         for (Vec3& normal : on.normals) normal = Vec3::UnitZ();
         return on;
     }
