@@ -69,18 +69,17 @@ SearchRadii search_radii(const PointCloud& cloud, const Samples& samples, const 
     SearchRadii found =
         automatic_radii(samples, neighbourhoods, normals.directions, normals.roughness, thinned, context.threads());
     if (params.search_radius) {
-        std::ranges::fill(found.radii, params.search_radius->value() * samples.scale);
+        std::ranges::fill(found.radii, params.search_radius->value());
         return found;
     }
-    tell_contradiction(samples, thinned, found, cloud.frame.unit, context);
+    tell_contradiction(thinned, found, cloud.frame.unit, context);
     context.metric("known-bins", static_cast<double>(found.known));
     return found;
 }
 
 std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std::optional<u32> row) {
     if (!row) return std::nullopt;
-    const Vec3 wanted = cloud.positions[*row] * samples.scale;
-    return static_cast<u32>(std::ranges::find(samples.positions, wanted) - samples.positions.begin());
+    return static_cast<u32>(std::ranges::find(samples.positions, cloud.positions[*row]) - samples.positions.begin());
 }
 
 }  // namespace
@@ -88,7 +87,6 @@ std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context) {
     require_finite(cloud.positions.span());
     require_in_range(params, cloud.size());
-    require_size(cloud);
     const Samples samples = distinct_samples(cloud.positions.span());
     require_area(samples, cloud.size());
     context.progress(0.05);

@@ -81,8 +81,7 @@ struct RegionGrowResult {
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, a
-/// search radius too small for any triangle (or layers so near that none is flat), a cloud beyond 1e-100 to 1e100 u in
-/// size.
+/// search radius too small for any triangle (or layers so near that none is flat).
 ///
 /// Post: an oriented manifold: every edge in one triangle or in two that pass it in opposite directions, every vertex's
 /// triangles one fan. No vertex twice in one place. Triangles round a vertex do not overlap as seen along its normal,

@@ -43,17 +43,16 @@ void warn_of_unused(const RegionGrowResult& result, const Surface& surface, Cont
             "{} of {} distinct points are in no triangle; thin the scan, or remove its noise first", unused, places));
 }
 
-void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, double scale, Context& context) {
+void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, Context& context) {
     if (thin.loops == 0) return;
     const std::string_view unit = symbol(result.mesh.frame.unit);
-    context.warn(
-        fmt::format("{} of {} boundary loops {} where two sides, or layers, are nearer to each other than {} bins, the "
-                    "nearest {:.3g} "
-                    "{} with bins of {:.3g} {}: the surface may go on there; thin less where the object is thin, more "
-                    "where the scan "
-                    "is noisy",
-                    thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_bins, thin.least / scale,
-                    unit, thin.bin / scale, unit));
+    context.warn(fmt::format(
+        "{} of {} boundary loops {} where two sides, or layers, are nearer to each other than {} bins, the "
+        "nearest {:.3g} "
+        "{} with bins of {:.3g} {}: the surface may go on there; thin less where the object is thin, more "
+        "where the scan "
+        "is noisy",
+        thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_bins, thin.least, unit, thin.bin, unit));
 }
 
 void warn_of_seams(const Surface& surface, Context& context) {
@@ -73,7 +72,7 @@ void report(const RegionGrowResult& result, const FeatureCounts& lines, const Su
     warn_of_unused(result, surface, context);
     warn_of_doubts(lines, context);
     warn_of_seams(surface, context);
-    warn_of_thin_parts(result, thin, surface.samples.scale, context);
+    warn_of_thin_parts(result, thin, context);
 }
 
 }  // namespace scanmill::growing

@@ -103,7 +103,7 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
 double bins_as_dense(const Surface& surface, unsigned threads) {
     Array<double> radii =
         automatic_radii(surface.samples, surface.neighbourhoods, surface.normals, surface.roughness, {}, threads).radii;
-    return median(radii) / (2 * std::numbers::sqrt3) / surface.samples.scale;
+    return median(radii) / (2 * std::numbers::sqrt3);
 }
 
 }  // namespace scanmill::growing

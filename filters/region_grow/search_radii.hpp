@@ -8,7 +8,7 @@
 namespace scanmill::growing {
 
 struct SearchRadii {
-    /// Per place 2 √3 B, in the samples' scale.
+    /// Per place 2 √3 B.
     Array<double> radii;
     /// Per place what the density alone makes of it.
     Array<double> by_density;
@@ -36,7 +36,7 @@ struct SearchRadii {
 SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> normals,
                             std::span<const float> roughness, std::span<const double> thinned, unsigned threads);
 
-/// The bin size, in the scan's unit, whose thinning would leave points as dense as they are at the middle place.
+/// The bin size whose thinning would leave points as dense as they are at the middle place.
 double bins_as_dense(const Surface& surface, unsigned threads);
 
 }  // namespace scanmill::growing

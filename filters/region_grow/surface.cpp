@@ -4,6 +4,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+
+#include "scanmill/data/points.hpp"
 
 namespace scanmill::growing {
 
@@ -12,6 +15,13 @@ namespace {
 Triangle lowest_first(Triangle triangle) {
     std::ranges::rotate(triangle, std::ranges::min_element(triangle));
     return triangle;
+}
+
+double power_of_two_above_extent(std::span<const Vec3> positions) {
+    const BoundingBox box = bounding_box(positions);
+    int exponent = 0;
+    std::frexp((box.high - box.low).maxCoeff(), &exponent);
+    return std::ldexp(1.0, exponent);
 }
 
 }  // namespace
@@ -26,6 +36,7 @@ Surface::Surface(const Samples& from, const Neighbourhoods& near, PointNormals f
       search_radius(std::move(search_radii)),
       usual_radius(std::move(usual_radii)),
       oriented(are_oriented),
+      axis_length(power_of_two_above_extent(from.positions)),
       fans(from.size()),
       states(from.size()) {
     std::ranges::fill(states, PlaceState::unused);

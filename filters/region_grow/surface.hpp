@@ -29,12 +29,15 @@ struct Surface {
     /// Of places on the surface they point to its upside; of others so when `oriented`.
     Array<Vec3> normals;
     Array<float> roughness;
-    /// Per place, in the samples' scale.
+    /// Per place.
     Array<double> search_radius;
     /// What it would be by the density alone: triangles that are small beside it are as the points lie there.
     Array<double> usual_radius;
     /// Normals came with the cloud: a triangle must agree with their sign.
     bool oriented;
+    /// The power of two above the longest side of the box. Exact predicates take the point that lies this far along a
+    /// unit normal: a shorter one would lose digits in the sum of point and normal.
+    double axis_length;
 
     Fans fans;
     Array<PlaceState> states;

@@ -129,13 +129,10 @@ struct Root {
 /// origin is takes no level away from it.
 Root root_over(const BoundingBox& box, const Vec3& origin, double base) {
     int levels = 0;
-    for (double edge = base; std::isfinite(edge); edge *= 2, ++levels) {
+    for (double edge = base;; edge *= 2, ++levels) {
         const Vec3 low = origin.array() + ((box.low - origin).array() / edge).floor() * edge;
         if ((box.high.array() < low.array() + edge).all()) return {low, edge, levels};
     }
-    throw Error("the scan goes from {:.3g} to {:.3g} u, and differences between such numbers are none",
-                box.low.minCoeff(), box.high.maxCoeff())
-        .hint("give it in a larger unit");
 }
 
 /// Removes the points of basic voxels that hold fewer than `min_points`, and counts both. The points are sorted by

@@ -19,18 +19,15 @@ public:
         for (u32 name = 0; name < positions.size(); ++name) set_search_radius(name, 4);
     }
     void add(u32 a, u32 b, u32 c) { surface_.add({place_[a], place_[b], place_[c]}, 0); }
-    /// Lengths as in the positions given.
-    void set_search_radius(u32 name, double radius) { surface_.search_radius[place_[name]] = radius * samples_.scale; }
+    void set_search_radius(u32 name, double radius) { surface_.search_radius[place_[name]] = radius; }
     Surface& surface() { return surface_; }
     const Surface& surface() const { return surface_; }
-    double scale() const { return samples_.scale; }
     u32 place(u32 name) const { return place_[name]; }
     u32 name_of(u32 place) const { return static_cast<u32>(std::ranges::find(place_, place) - place_.begin()); }
 
 private:
     u32 place_at(const Vec3& p) const {
-        return static_cast<u32>(std::ranges::find(samples_.positions, Vec3(p * samples_.scale)) -
-                                samples_.positions.begin());
+        return static_cast<u32>(std::ranges::find(samples_.positions, p) - samples_.positions.begin());
     }
 
     Samples samples_;
