@@ -104,8 +104,7 @@ bool Growth::form_seed(u32 place) {
     const Vec3& normal = surface_.normals[place];
     u32 second = nobody;
     for (u32 other : surface_.neighbourhoods.of(place))
-        if (surface_.states[other] == PlaceState::unused && !surface_.are_twins(place, other) &&
-            !surface_.face_apart(place, other)) {
+        if (surface_.states[other] == PlaceState::unused && !surface_.face_apart(place, other)) {
             second = other;
             break;
         }

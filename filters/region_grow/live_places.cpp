@@ -46,8 +46,7 @@ bool LivePlaces::visit_leaf(std::size_t leaf, u32 place, double squared, std::ve
     bool live = false;
     const std::size_t end = std::min((leaf + 1) * leaf_size, surface_.positions.size());
     for (u32 other = static_cast<u32>(leaf * leaf_size); other < end; ++other) {
-        const PlaceState state = surface_.states[other];
-        if (state != PlaceState::unused && state != PlaceState::front) continue;
+        if (surface_.states[other] == PlaceState::interior) continue;
         live = true;
         if (other != place && (surface_.positions[other] - surface_.positions[place]).squaredNorm() < squared)
             found.push_back(other);

@@ -41,16 +41,6 @@ std::vector<Fan> fans_at(const Surface& surface, u32 vertex) {
     return fans;
 }
 
-/// Twins of a place that is used no more are none, unless of another that is.
-void free_twins_of(Surface& surface, u32 corner) {
-    surface.for_twins_of(corner, [&](u32 twin) {
-        if (surface.states[twin] == PlaceState::twin &&
-            std::ranges::none_of(surface.neighbourhoods.of(twin),
-                                 [&](u32 other) { return surface.is_used(other) && surface.are_twins(twin, other); }))
-            surface.states[twin] = PlaceState::unused;
-    });
-}
-
 }  // namespace
 
 std::size_t remove_pinches(Surface& surface) {
@@ -77,8 +67,6 @@ std::size_t remove_pinches(Surface& surface) {
                                                                            : PlaceState::front;
                     suspects.push_back(corner);
                 }
-                for (u32 corner : triangle)
-                    if (surface.states[corner] == PlaceState::unused) free_twins_of(surface, corner);
             }
         }
     }

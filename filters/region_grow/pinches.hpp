@@ -7,8 +7,7 @@
 namespace scanmill::growing {
 
 /// Removes triangles until the triangles of every vertex form one fan, open or closed: of several the one of most
-/// triangles stays, of equal ones that of the lowest vertex. How many were removed. Near twins of
-/// places that are used no more are unused as well. Cost: linear.
+/// triangles stays, of equal ones that of the lowest vertex. How many were removed. Cost: linear.
 std::size_t remove_pinches(Surface& surface);
 
 }  // namespace scanmill::growing

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = RegionGrowParams;
-    return Declare<P>("region-grow", 4)
+    return Declare<P>("region-grow", 5)
         .summary(
             "Grows a surface over thinned points from a seed triangle, and tells its borders, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
@@ -50,7 +50,6 @@ SCANMILL_FILTER() {
             "Loops where two sides are nearer to each other than three bins, so that the surface may go on there; not "
             "counted with a `search-radius`, nor where given normals tell the sides.")
         .metric("unused-points", Unit::count, "Distinct points in no triangle: noise, or too near others.", headline)
-        .metric("near-twins", Unit::count, "Of these, such as gave way to a near twin: scans laid over each other.")
         .metric("duplicates", Unit::count, "Points that repeat the place of an earlier one.")
         .metric("known-bins", Unit::count, "Distinct points whose search radius follows from the column `bin-size`.")
         .metric("patch-edges", Unit::count, "Border edges beyond which the surface goes on at too large an angle.")

@@ -34,18 +34,8 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
         throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points);
 }
 
-void require_size(const PointCloud& cloud) {
-    if (cloud.size() == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(few_points_hint);
-    const double size = bounding_box(cloud.positions.span()).diagonal();
-    if (size == 0 || (size > 1e-100 && size < 1e100)) return;
-    const std::string actual =
-        std::isfinite(size) ? fmt::format("{:.3g} {}", size, symbol(cloud.frame.unit)) : std::string("beyond 1.7e308");
-    throw Error("needs a scan between 1e-100 and 1e100 in size, so that squares of lengths are numbers; it is {}",
-                actual)
-        .hint("remove stray points, or check that the columns x, y and z are read as such; scale the scan if they are");
-}
-
 void require_area(const Samples& samples, std::size_t points) {
+    if (points == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(few_points_hint);
     if (samples.size() < 3)
         throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", samples.size(), points)
             .hint(few_points_hint);
@@ -58,7 +48,7 @@ void require_area(const Samples& samples, std::size_t points) {
     const double off = off_line(farthest(off_line));
     if (off <= 1e-9 * (end - p[0]).norm())
         throw Error("all {} distinct points lie on one line, to within {:.2g} u; a surface needs some off it",
-                    samples.size(), off / samples.scale)
+                    samples.size(), off)
             .hint("scan more than a single profile, or check that the columns x, y and z are read as such");
 }
 

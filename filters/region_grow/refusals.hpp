@@ -9,8 +9,6 @@ namespace scanmill::growing {
 
 /// Throws Error for a parameter out of its range.
 void require_in_range(const RegionGrowParams& params, std::size_t points);
-/// Throws Error for no points, and for a cloud in whose size squares of lengths are no numbers. Pre: finite.
-void require_size(const PointCloud& cloud);
 /// Throws Error unless there are three places off one line. `points`: of the cloud.
 void require_area(const Samples& samples, std::size_t points);
 

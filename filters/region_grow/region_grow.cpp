@@ -11,7 +11,6 @@
 #include "region_grow/finished_mesh.hpp"
 #include "region_grow/given_normals.hpp"
 #include "region_grow/narrow_holes.hpp"
-#include "region_grow/near_twins.hpp"
 #include "region_grow/normal_signs.hpp"
 #include "region_grow/pieces.hpp"
 #include "region_grow/pinches.hpp"
@@ -65,24 +64,22 @@ double largest_bend(const RegionGrowParams& params) {
 }
 
 SearchRadii search_radii(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
-                         const PointNormals& normals, std::span<const u8> twins, const RegionGrowParams& params,
-                         Context& context) {
+                         const PointNormals& normals, const RegionGrowParams& params, Context& context) {
     const Array<double> thinned = params.search_radius ? Array<double>() : thinned_bins(cloud, samples, context);
-    SearchRadii found = automatic_radii(samples, neighbourhoods, normals.directions, normals.roughness, twins, thinned,
-                                        context.threads());
+    SearchRadii found =
+        automatic_radii(samples, neighbourhoods, normals.directions, normals.roughness, thinned, context.threads());
     if (params.search_radius) {
-        std::ranges::fill(found.radii, params.search_radius->value() * samples.scale);
+        std::ranges::fill(found.radii, params.search_radius->value());
         return found;
     }
-    tell_contradiction(samples, thinned, found, cloud.frame.unit, context);
+    tell_contradiction(thinned, found, cloud.frame.unit, context);
     context.metric("known-bins", static_cast<double>(found.known));
     return found;
 }
 
 std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std::optional<u32> row) {
     if (!row) return std::nullopt;
-    const Vec3 wanted = cloud.positions[*row] * samples.scale;
-    return static_cast<u32>(std::ranges::find(samples.positions, wanted) - samples.positions.begin());
+    return static_cast<u32>(std::ranges::find(samples.positions, cloud.positions[*row]) - samples.positions.begin());
 }
 
 }  // namespace
@@ -90,7 +87,6 @@ std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context) {
     require_finite(cloud.positions.span());
     require_in_range(params, cloud.size());
-    require_size(cloud);
     const Samples samples = distinct_samples(cloud.positions.span());
     require_area(samples, cloud.size());
     context.progress(0.05);
@@ -101,12 +97,9 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     PointNormals normals = principal_normals(samples, neighbourhoods, context.threads());
     const GivenNormals given = take_given_normals(cloud, samples, neighbourhoods, normals, context);
     const bool oriented = given.signs_count;
-    std::span<const Vec3> facing;
-    if (oriented) facing = normals.directions;
-    Array<u8> twins = count_near_twins(samples, neighbourhoods, facing, context.threads());
-    SearchRadii radii = search_radii(cloud, samples, neighbourhoods, normals, twins, params, context);
+    SearchRadii radii = search_radii(cloud, samples, neighbourhoods, normals, params, context);
     Surface surface(samples, neighbourhoods, std::move(normals), std::move(radii.radii), std::move(radii.by_density),
-                    std::move(twins), oriented);
+                    oriented);
     context.progress(0.4);
 
     const std::vector<Limits> limits = limits_of(params);
@@ -156,7 +149,6 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.components = pieces.count;
     result.duplicates = samples.repeats.size();
     result.unused_points = samples.size() - result.rows.size();
-    result.near_twins = static_cast<std::size_t>(std::ranges::count(surface.states, PlaceState::twin));
     report(result, lines.counts, surface, thin, context);
     context.progress(1);
     return result;

@@ -60,8 +60,6 @@ struct RegionGrowResult {
     std::size_t thin_loops = 0;
     /// Rows without a vertex of their own: repeats of an earlier row, and places that no triangle reached.
     std::size_t duplicates = 0, unused_points = 0;
-    /// Of the unused points those that gave way to one much nearer than the rest, where most points have such twins.
-    std::size_t near_twins = 0;
     /// Border edges beyond which a place of the front was turned down for the angle to the triangle there alone.
     std::size_t patch_edges = 0;
     std::size_t creases = 0, corners = 0, closed_holes = 0;
@@ -79,13 +77,11 @@ struct RegionGrowResult {
 /// the pieces face. A normal that is zero or not finite is replaced by the principal one. Without the column normals
 /// are principal directions of the 12 nearest neighbours. A column `bin-size` (a number per row, in the scan's unit;
 /// what is not above 0 or not finite counts as unknown) tells the bins of a thinning. Of rows in one place the least
-/// bin counts, and the normal first by x, y, z. Where most points have near twins (see near_twins.hpp), as scans laid
-/// over each other do, one of each is used.
+/// bin counts, and the normal first by x, y, z.
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a normal column of another size, a parameter out of range, a start that is no row or starts nothing, a
-/// search radius too small for any triangle (or layers so near that none is flat), a cloud beyond 1e-100 to 1e100 u in
-/// size.
+/// search radius too small for any triangle (or layers so near that none is flat).
 ///
 /// Post: an oriented manifold: every edge in one triangle or in two that pass it in opposite directions, every vertex's
 /// triangles one fan. No vertex twice in one place. Triangles round a vertex do not overlap as seen along its normal,

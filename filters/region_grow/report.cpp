@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "region_grow/normal_signs.hpp"
-#include "region_grow/search_radii.hpp"
 #include "region_grow/small_holes.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/mesh/feature_lines.hpp"
@@ -25,7 +24,6 @@ void count_all(const RegionGrowResult& result, Context& context) {
     count("holes", result.holes);
     count("thin-loops", result.thin_loops);
     count("unused-points", result.unused_points);
-    count("near-twins", result.near_twins);
     count("duplicates", result.duplicates);
     count("patch-edges", result.patch_edges);
     count("creases", result.creases);
@@ -39,29 +37,22 @@ void count_all(const RegionGrowResult& result, Context& context) {
 }
 
 void warn_of_unused(const RegionGrowResult& result, const Surface& surface, Context& context) {
-    const std::size_t places = surface.samples.size(), twins = result.near_twins;
-    const std::size_t unused = result.unused_points - twins;
-    if (200 * twins > places)
-        context.warn(
-            fmt::format("{} of {} distinct points were left out as near twins of others, as of scans laid over each "
-                        "other; voxel-thin with bins of {:.3g} {} takes one of each by place",
-                        twins, places, bins_as_dense(surface, context.threads()), symbol(result.mesh.frame.unit)));
+    const std::size_t places = surface.samples.size(), unused = result.unused_points;
     if (200 * unused > places)
         context.warn(fmt::format(
             "{} of {} distinct points are in no triangle; thin the scan, or remove its noise first", unused, places));
 }
 
-void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, double scale, Context& context) {
+void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, Context& context) {
     if (thin.loops == 0) return;
     const std::string_view unit = symbol(result.mesh.frame.unit);
-    context.warn(
-        fmt::format("{} of {} boundary loops {} where two sides, or layers, are nearer to each other than {} bins, the "
-                    "nearest {:.3g} "
-                    "{} with bins of {:.3g} {}: the surface may go on there; thin less where the object is thin, more "
-                    "where the scan "
-                    "is noisy",
-                    thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_bins, thin.least / scale,
-                    unit, thin.bin / scale, unit));
+    context.warn(fmt::format(
+        "{} of {} boundary loops {} where two sides, or layers, are nearer to each other than {} bins, the "
+        "nearest {:.3g} "
+        "{} with bins of {:.3g} {}: the surface may go on there; thin less where the object is thin, more "
+        "where the scan "
+        "is noisy",
+        thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_bins, thin.least, unit, thin.bin, unit));
 }
 
 void warn_of_seams(const Surface& surface, Context& context) {
@@ -81,7 +72,7 @@ void report(const RegionGrowResult& result, const FeatureCounts& lines, const Su
     warn_of_unused(result, surface, context);
     for (std::string& sentence : doubts(lines)) context.warn(std::move(sentence));
     warn_of_seams(surface, context);
-    warn_of_thin_parts(result, thin, surface.samples.scale, context);
+    warn_of_thin_parts(result, thin, context);
 }
 
 }  // namespace scanmill::growing

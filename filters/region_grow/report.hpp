@@ -9,8 +9,8 @@
 
 namespace scanmill::growing {
 
-/// Metrics as plugin.cpp declares them, except `known-bins`. Warns when more than half a percent of the places gave way
-/// to near twins, and when as many more are unused, of what find_features() could not tell, of loops at thin parts, and
+/// Metrics as plugin.cpp declares them, except `known-bins`. Warns when more than half a percent of the places
+/// are unused, of what find_features() could not tell, of loops at thin parts, and
 /// of ends that only the signs of given normals make.
 void report(const RegionGrowResult& result, const FeatureCounts& lines, const Surface& surface, const ThinParts& thin,
             Context& context);

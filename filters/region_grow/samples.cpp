@@ -44,24 +44,17 @@ void order_within_cells(std::span<const Vec3> positions, const BoundingBox& box,
 
 Samples distinct_samples(std::span<const Vec3> positions) {
     Samples samples;
-    int exponent = 0;
-    const BoundingBox box = bounding_box(positions);
-    std::frexp((box.high - box.low).maxCoeff(), &exponent);
-    samples.scale = std::ldexp(1.0, -exponent);
-    // Scaled first: what scaling takes for one place must be one sample.
-    Array<Vec3> scaled(positions.size());
-    std::ranges::transform(positions, scaled.begin(), [&](const Vec3& p) { return Vec3(p * samples.scale); });
-    Array<u32> order = spatial_order(scaled);
-    order_within_cells(scaled, bounding_box(scaled), order);
+    Array<u32> order = spatial_order(positions);
+    order_within_cells(positions, bounding_box(positions), order);
 
     samples.positions.reserve(order.size());
     samples.rows.reserve(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
-        if (i > 0 && scaled[order[i]] == scaled[order[i - 1]]) {
+        if (i > 0 && positions[order[i]] == positions[order[i - 1]]) {
             samples.repeats.push_back({static_cast<u32>(samples.rows.size() - 1), order[i]});
             continue;
         }
-        samples.positions.push_back(scaled[order[i]]);
+        samples.positions.push_back(positions[order[i]]);
         samples.rows.push_back(order[i]);
     }
     return samples;

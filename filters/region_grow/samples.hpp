@@ -11,9 +11,8 @@
 namespace scanmill::growing {
 
 struct Samples {
-    /// Distinct as they are here (next to a large extent scaling takes the very least coordinates for 0), along the
-    /// Morton curve through their box, equal codes by x, y, z: the order depends on the places alone, so whatever is
-    /// decided by number is decided by place.
+    /// Distinct, along the Morton curve through their box, equal codes by x, y, z: the order depends on the places
+    /// alone, so whatever is decided by number is decided by place.
     Array<Vec3> positions;
     /// Per place the lowest row of the cloud that lies there.
     Array<u32> rows;
@@ -22,15 +21,11 @@ struct Samples {
         u32 place, row;
     };
     std::vector<Repeat> repeats;
-    /// What the cloud's positions were multiplied with: a power of two that brings the box's extent near 1, so that
-    /// products of coordinates neither overflow nor vanish.
-    double scale = 1;
 
     std::size_t size() const { return positions.size(); }
 };
 
-/// Pre: finite positions, at least one, fewer than 2^32, all one place or in a box between 1e-100 and 1e100 in size.
-/// Cost: O(n log n) at most, 85 bytes per point, 8 more per repeat.
+/// Pre: finite positions, fewer than 2^32. Cost: O(n log n) at most, 61 bytes per point, 8 more per repeat.
 Samples distinct_samples(std::span<const Vec3> positions);
 
 }  // namespace scanmill::growing

@@ -22,11 +22,11 @@ constexpr double largest_of_median = 1.15;
 constexpr std::size_t chunk = 1 << 12;
 
 /// The bin whose thinning would put the place's last counted neighbour where it is, of one cube per squared bin.
-double bin_at(const Samples& samples, const Neighbourhoods& neighbourhoods, u32 twins, u32 place) {
+double bin_at(const Samples& samples, const Neighbourhoods& neighbourhoods, u32 place) {
     const auto neighbours = neighbourhoods.of(place);
     const std::size_t count = std::min(counted_neighbours, neighbours.size());
     const double distance = (samples.positions[neighbours[count - 1]] - samples.positions[place]).norm();
-    return distance * std::sqrt(std::numbers::pi * (1 + twins) / static_cast<double>(count));
+    return distance * std::sqrt(std::numbers::pi / static_cast<double>(count));
 }
 
 /// How many cubes per squared bin a surface of this normal meets.
@@ -34,15 +34,13 @@ double cubes_met(const Vec3& normal) { return normal.cwiseAbs().sum(); }
 
 class Bins {
 public:
-    Bins(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> normals,
-         std::span<const u8> near_twins, unsigned threads)
+    Bins(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> normals, unsigned threads)
         : neighbourhoods_(neighbourhoods),
           normals_(normals),
           bins_(samples.size()) {
         for_each_chunk(threads, bins_.size(), chunk, [&](std::size_t begin, std::size_t end) {
             for (std::size_t place = begin; place < end; ++place)
-                bins_[place] = bin_at(samples, neighbourhoods, near_twins.empty() ? u8(0) : near_twins[place],
-                                      static_cast<u32>(place));
+                bins_[place] = bin_at(samples, neighbourhoods, static_cast<u32>(place));
         });
     }
 
@@ -76,9 +74,8 @@ private:
 }  // namespace
 
 SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> normals,
-                            std::span<const float> roughness, std::span<const u8> near_twins,
-                            std::span<const double> thinned, unsigned threads) {
-    const Bins bins(samples, neighbourhoods, normals, near_twins, threads);
+                            std::span<const float> roughness, std::span<const double> thinned, unsigned threads) {
+    const Bins bins(samples, neighbourhoods, normals, threads);
     SearchRadii result;
     result.radii.resize(samples.size());
     result.by_density.resize(samples.size());
@@ -104,10 +101,9 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
 }
 
 double bins_as_dense(const Surface& surface, unsigned threads) {
-    Array<double> radii = automatic_radii(surface.samples, surface.neighbourhoods, surface.normals, surface.roughness,
-                                          surface.near_twins, {}, threads)
-                              .radii;
-    return median(radii) / (2 * std::numbers::sqrt3) / surface.samples.scale;
+    Array<double> radii =
+        automatic_radii(surface.samples, surface.neighbourhoods, surface.normals, surface.roughness, {}, threads).radii;
+    return median(radii) / (2 * std::numbers::sqrt3);
 }
 
 }  // namespace scanmill::growing

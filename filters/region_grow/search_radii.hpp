@@ -8,7 +8,7 @@
 namespace scanmill::growing {
 
 struct SearchRadii {
-    /// Per place 2 √3 B, in the samples' scale.
+    /// Per place 2 √3 B.
     Array<double> radii;
     /// Per place what the density alone makes of it.
     Array<double> by_density;
@@ -32,15 +32,11 @@ struct SearchRadii {
 /// the scan was noisy or lies there twice, less where more thinned scans were merged. From 0.55 to 1.15 they agree.
 /// Where points are sparser the scan itself was, or some were lost; where they are denser the bins are not theirs. At
 /// rough places, tips and edges, points of bins that touch lie round a corner and the empty circles are larger than on
-/// a face; there B is no less than the density tells.
-///
-/// `near_twins`: as count_near_twins() gives them; a place and its twins count as one. Cost: linear.
+/// a face; there B is no less than the density tells. Cost: linear.
 SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> normals,
-                            std::span<const float> roughness, std::span<const u8> near_twins,
-                            std::span<const double> thinned, unsigned threads);
+                            std::span<const float> roughness, std::span<const double> thinned, unsigned threads);
 
-/// The bin size, in the scan's unit, whose thinning would leave points as dense as they are at the middle place, near
-/// twins counted once.
+/// The bin size whose thinning would leave points as dense as they are at the middle place.
 double bins_as_dense(const Surface& surface, unsigned threads);
 
 }  // namespace scanmill::growing

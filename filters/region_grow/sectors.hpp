@@ -12,16 +12,16 @@
 
 namespace scanmill::growing {
 
-int exact_side_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& axis);
+int exact_side_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& axis, double axis_length);
 
 /// On which side of the line a → b, seen against `axis`, lies c: +1 left, −1 right, 0 on it. Exact; where rounding
-/// cannot change the sign, in doubles.
-inline int side_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& axis) {
+/// cannot change the sign, in doubles. `axis_length`: that of the surface.
+inline int side_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& axis, double axis_length) {
     const Vec3 u = b - a, w = c - a;
     const double volume = axis.dot(u.cross(w));
     // Far above what rounding of these dozen operations can amount to; axes are of unit length.
     const double doubt = 1e-14 * (u.cwiseAbs().sum() * w.cwiseAbs().sum());
-    return volume > doubt ? 1 : volume < -doubt ? -1 : exact_side_of(a, b, c, axis);
+    return volume > doubt ? 1 : volume < -doubt ? -1 : exact_side_of(a, b, c, axis, axis_length);
 }
 
 /// Whether the sector from first to last, counter-clockwise round `vertex` seen against `axis`, is narrower than a half

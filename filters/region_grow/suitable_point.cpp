@@ -77,7 +77,7 @@ void PointChooser::rate(u32 from, u32 to, const Vec3& joined, const Limits& limi
     candidates_.clear();
     fronts_.clear();
     for (u32 point : near_) {
-        if (point == from || point == to || surface_.states[point] == PlaceState::twin) continue;
+        if (point == from || point == to) continue;
         if (surface_.states[point] == PlaceState::front) fronts_.push_back(point);
         const Vec3 &d = surface_.positions[point], to_a = a - d, to_b = b - d;
         const Vec3 normal = to_b.cross(to_a);
@@ -181,9 +181,7 @@ u32 PointChooser::choose_third(u32 from, u32 to, const Limits& limits) {
     u32 best = nobody;
     double least = std::numeric_limits<double>::infinity();
     for (Candidate& candidate : candidates_) {
-        if (surface_.states[candidate.point] != PlaceState::unused || surface_.are_twins(from, candidate.point) ||
-            surface_.are_twins(to, candidate.point))
-            continue;
+        if (surface_.states[candidate.point] != PlaceState::unused) continue;
         if (surface_.normals[from].dot(candidate.normal) < 0) candidate.normal = -candidate.normal;
         if (!is_suitable(from, to, candidate, limits, true)) continue;
         const double margin = same_score * (1 + std::abs(least));

@@ -4,6 +4,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+
+#include "scanmill/data/points.hpp"
 
 namespace scanmill::growing {
 
@@ -14,10 +17,17 @@ Triangle lowest_first(Triangle triangle) {
     return triangle;
 }
 
+double power_of_two_above_extent(std::span<const Vec3> positions) {
+    const BoundingBox box = bounding_box(positions);
+    int exponent = 0;
+    std::frexp((box.high - box.low).maxCoeff(), &exponent);
+    return std::ldexp(1.0, exponent);
+}
+
 }  // namespace
 
 Surface::Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radii,
-                 Array<double> usual_radii, Array<u8> twins, bool are_oriented)
+                 Array<double> usual_radii, bool are_oriented)
     : samples(from),
       neighbourhoods(near),
       positions(from.positions),
@@ -25,8 +35,8 @@ Surface::Surface(const Samples& from, const Neighbourhoods& near, PointNormals f
       roughness(std::move(facing.roughness)),
       search_radius(std::move(search_radii)),
       usual_radius(std::move(usual_radii)),
-      near_twins(std::move(twins)),
       oriented(are_oriented),
+      axis_length(power_of_two_above_extent(from.positions)),
       fans(from.size()),
       states(from.size()) {
     std::ranges::fill(states, PlaceState::unused);
@@ -46,15 +56,6 @@ Vec3 Surface::facet_normal(u32 a, u32 b, u32 c) const {
     return (positions[b] - positions[a]).cross(positions[c] - positions[a]).normalized();
 }
 
-bool Surface::are_twins(u32 a, u32 b) const {
-    const auto has = [&](u32 one, u32 other) {
-        bool found = false;
-        for_twins_of(one, [&](u32 twin) { found = found || twin == other; });
-        return found;
-    };
-    return has(a, b) || has(b, a);
-}
-
 void Surface::add(const Triangle& triangle, Pass pass) {
     const auto& [a, b, c] = triangle;
     assert(fans.left_of(a, b) == nobody && fans.left_of(b, c) == nobody && fans.left_of(c, a) == nobody);
@@ -63,11 +64,6 @@ void Surface::add(const Triangle& triangle, Pass pass) {
     triangles.push_back(triangle);
     passes.push_back(pass);
     for (u32 corner : triangle) {
-        if (states[corner] == PlaceState::unused)
-            for_twins_of(corner, [&](u32 twin) {
-                if (states[twin] == PlaceState::unused && std::ranges::find(triangle, twin) == triangle.end())
-                    states[twin] = PlaceState::twin;
-            });
         if (states[corner] == PlaceState::unused && !oriented && normals[corner].dot(normal) < 0)
             normals[corner] = -normals[corner];
         states[corner] = fans.closed(corner) ? PlaceState::interior : PlaceState::front;

@@ -14,7 +14,7 @@ inline constexpr double thin_in_bins = 3;
 struct ThinParts {
     /// Loops with a place that has another side nearer than `thin_in_bins` bins.
     std::size_t loops = 0;
-    /// The least such distance, and the bin there, in the samples' scale.
+    /// The least such distance, and the bin there.
     double least = 0, bin = 0;
 };
 

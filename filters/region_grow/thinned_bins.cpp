@@ -18,7 +18,7 @@ Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Cont
         return {};
     }
     const auto bin = [&](u32 row) {
-        const double size = column->number(row) * samples.scale;
+        const double size = column->number(row);
         return std::isfinite(size) && size > 0 ? size : 0;
     };
     Array<double> bins(samples.size());
@@ -28,13 +28,12 @@ Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Cont
     return bins;
 }
 
-void tell_contradiction(const Samples& samples, std::span<const double> thinned, const SearchRadii& found,
-                        LengthUnit unit, Context& context) {
+void tell_contradiction(std::span<const double> thinned, const SearchRadii& found, LengthUnit unit, Context& context) {
     std::vector<double> said, seen;
     for (std::size_t place = 0; place < thinned.size(); ++place) {
         if (found.too_dense[place] == 0) continue;
-        said.push_back(thinned[place] / samples.scale);
-        seen.push_back(found.too_dense[place] / samples.scale);
+        said.push_back(thinned[place]);
+        seen.push_back(found.too_dense[place]);
     }
     if (2 * said.size() <= thinned.size()) return;
     context.warn(

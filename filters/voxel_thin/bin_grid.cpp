@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/geometry/spatial/unit_scale.hpp"
-#include "scanmill/geometry/size_limits.hpp"
 
 namespace scanmill::voxel {
 
@@ -17,8 +15,7 @@ constexpr double farthest_bin = 0x1p31;
 }  // namespace
 
 BinGrid grid_over(const BoundingBox& box, const Vec3& origin, double size) {
-    require_finite_size(box);
-    BinGrid grid{origin, size, unit_scale(size), Vec3::Zero(), {}};
+    BinGrid grid{origin, size, Vec3::Zero(), {}};
     for (int axis = 0; axis < 3; ++axis) {
         const double first = std::floor((box.low[axis] - grid.origin[axis]) / size);
         const double last = std::floor((box.high[axis] - grid.origin[axis]) / size);

@@ -11,7 +11,6 @@ namespace scanmill::voxel {
 struct BinGrid {
     Vec3 origin;
     double size;
-    double scale;  ///< a power of two that brings `size` near 1, so that squares of lengths in a bin are numbers
     Vec3 first;  // whole numbers
     std::array<u64, 3> bins;
 
@@ -19,11 +18,10 @@ struct BinGrid {
 };
 
 /// The part of the grid that `box` touches. Pre: the box is finite, size above 0. Throws Error for more than 2^21 bins
-/// along an axis (naming the smallest size that fits), for an origin more than 2^31 bins away, and for a box larger
-/// than any number.
+/// along an axis (naming the smallest size that fits) and for an origin more than 2^31 bins away.
 BinGrid grid_over(const BoundingBox& box, const Vec3& origin, double size);
 
-/// The point's bin and its squared distance to the bin's centre, scaled. Pre: it lies in the grid's box.
+/// The point's bin and its squared distance to the bin's centre. Pre: it lies in the grid's box.
 template <class Bin>
 Candidate<Bin> located(const Vec3& point, u32 row, const BinGrid& grid) {
     u64 number = 0;
@@ -33,7 +31,7 @@ Candidate<Bin> located(const Vec3& point, u32 row, const BinGrid& grid) {
         // Rounding towards zero and correcting below: floor without SSE4's instruction. Fits: see grid_over.
         const double whole = static_cast<double>(static_cast<std::int32_t>(quotient));
         const double bin = whole > quotient ? whole - 1 : whole;
-        const double offset = (point[axis] - (grid.origin[axis] + (bin + 0.5) * grid.size)) * grid.scale;
+        const double offset = point[axis] - (grid.origin[axis] + (bin + 0.5) * grid.size);
         distance += offset * offset;
         number = number * grid.bins[axis] + static_cast<u64>(static_cast<std::int64_t>(bin - grid.first[axis]));
     }

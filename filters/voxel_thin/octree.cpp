@@ -46,13 +46,12 @@ Vec3 cell_of(u64 code, int level) {
 class Octree {
 public:
     Octree(std::span<const Vec3> positions, std::span<const u32> size_of_row, std::span<const double> sizes,
-           const Vec3& origin, double edge, u32 min_points)
+           const Vec3& origin, double edge)
         : positions_(positions),
           size_of_row_(size_of_row),
           sizes_(sizes),
           origin_(origin),
-          edge_(edge),
-          min_points_(min_points) {}
+          edge_(edge) {}
 
     /// `points` are those of one cell of this level, by code.
     void thin(std::span<const Located> points, int level) {
@@ -95,11 +94,6 @@ private:
     }
 
     void keep_one(std::span<const Located> points, int level) {
-        ++choice.leaves;
-        if (points.size() < min_points_) {
-            choice.noise += points.size();
-            return;
-        }
         const double edge = std::ldexp(edge_, -level);
         const Vec3 centre = origin_ + (cell_of(points.front().code, level) + Vec3::Constant(0.5)) * edge;
         u32 best = ~u32(0);
@@ -123,24 +117,39 @@ private:
     std::span<const double> sizes_;
     Vec3 origin_;
     double edge_;
-    u32 min_points_;
 };
 
 struct Root {
     Vec3 low;
     double edge;
+    int levels;  ///< how often its edge is halved until it is the basic voxel's
 };
 
 /// The smallest cell of the grids from `origin`, of edges `base` times a power of two, that holds the box: how far the
 /// origin is takes no level away from it.
 Root root_over(const BoundingBox& box, const Vec3& origin, double base) {
-    for (double edge = base; std::isfinite(edge); edge *= 2) {
+    int levels = 0;
+    for (double edge = base;; edge *= 2, ++levels) {
         const Vec3 low = origin.array() + ((box.low - origin).array() / edge).floor() * edge;
-        if ((box.high.array() < low.array() + edge).all()) return {low, edge};
+        if ((box.high.array() < low.array() + edge).all()) return {low, edge, levels};
     }
-    throw Error("the scan goes from {:.3g} to {:.3g} u, and differences between such numbers are none",
-                box.low.minCoeff(), box.high.maxCoeff())
-        .hint("give it in a larger unit");
+}
+
+/// Removes the points of basic voxels that hold fewer than `min_points`, and counts both. The points are sorted by
+/// code.
+void remove_noise(Array<Located>& points, int levels, u32 min_points, OctreeChoice& choice) {
+    // A root with more levels than the codes has finest cells that are larger than basic voxels.
+    const int shift = 3 * (most_levels - std::min(levels, most_levels));
+    std::size_t kept = 0;
+    for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
+        while (end < points.size() && points[end].code >> shift == points[begin].code >> shift) ++end;
+        ++choice.basic_voxels;
+        if (end - begin < min_points)
+            choice.noise += end - begin;
+        else
+            for (std::size_t i = begin; i < end; ++i) points[kept++] = points[i];
+    }
+    points.resize(kept);
 }
 
 void sort_by_row(OctreeChoice& choice) {
@@ -163,8 +172,9 @@ OctreeChoice choose_in_octree(std::span<const Vec3> positions, std::span<const u
     std::ranges::sort(points, std::less());
     context.check_cancelled();
 
-    Octree octree(positions, size_of_row, sizes, root.low, root.edge, min_points);
-    octree.thin(points, 0);
+    Octree octree(positions, size_of_row, sizes, root.low, root.edge);
+    remove_noise(points, root.levels, min_points, octree.choice);
+    if (!points.empty()) octree.thin(points, 0);
     OctreeChoice choice = std::move(octree.choice);
     if (choice.largest == 0) choice.smallest = choice.largest = base;
     sort_by_row(choice);

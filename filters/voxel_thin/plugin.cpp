@@ -7,7 +7,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = VoxelThinParams;
-    return Declare<P>("voxel-thin", 2)
+    return Declare<P>("voxel-thin", 3)
         .summary("Keeps, in every voxel, the one point nearest the voxel's centre.")
         .source("Wang 2006, chapter 3")
         .ties("Of points equally near a centre the one that comes first stays; a duplicate is a point like any other.")
@@ -48,13 +48,16 @@ SCANMILL_FILTER() {
                 {{"centres", P::Guarantee::centres, "Between centres of voxels that touch: bins twice as large."},
                  {"points", P::Guarantee::points, "Between any two points in voxels that touch."}},
                 "Where distances must not exceed the edge length that the tolerance allows.")
-        .param("min-points", &P::min_points, "Voxels with fewer points are noise and keep none; 1 keeps all voxels.",
+        .param("min-points", &P::min_points,
+               "Voxels with fewer points are noise and keep none; 1 keeps all voxels. With `rule: adaptive` these are "
+               "the basic voxels of edge `bin-size`, before any is divided.",
                at_least(1))
         .param("margin", &P::margin, "The grid begins this far below the bounding box, along every axis.", at_least(0))
         .metric("bin-size", Unit::length, "Edge of a voxel, given or derived; of an octree that of its basic leaves.")
         .metric("kept", Unit::count, "Points kept.", headline)
         .metric("removed", Unit::count, "Points that gave way to a nearer one of their voxel, or were noise.")
-        .metric("noise", Unit::count, "Removed points whose voxels had fewer than min-points.")
+        .metric("noise", Unit::count,
+                "Removed points whose voxels (of an octree the basic ones) had fewer than min-points.")
         .metric("smallest-radius", Unit::length, "Of the principal curvatures' radii the least; none on a plane.")
         .metric("flat", Unit::count, "Places so flat that a tenth of the bounding box bounds their voxels.")
         .metric("undetermined", Unit::count, "Places whose neighbours lie near lines and show no curvature.")

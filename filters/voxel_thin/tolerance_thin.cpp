@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/geometry/size_limits.hpp"
 #include "voxel_thin/octree.hpp"
 #include "voxel_thin/surface_columns.hpp"
 #include "voxel_thin/thin_pieces.hpp"
@@ -20,7 +19,8 @@ NearestRows rows_by_octree(std::span<const Vec3> positions, const LocalBins& loc
         choose_in_octree(positions, local.place_of_row, local.sizes, origin, local.chosen, min_points, context);
     context.metric("smallest-bin", choice.smallest, Unit::length);
     context.metric("largest-bin", choice.largest, Unit::length);
-    return {std::move(choice.kept), std::move(choice.members), std::move(choice.edges), choice.noise, choice.leaves};
+    return {std::move(choice.kept), std::move(choice.members), std::move(choice.edges), choice.noise,
+            choice.basic_voxels};
 }
 
 void report(const LocalBins& local, Context& context) {
@@ -41,8 +41,6 @@ VoxelThinResult thin_within_tolerance(const PointCloud& cloud, const PointPieces
         throw Error("the adaptive rule makes an octree over the cloud, and has no use for a grid's origin")
             .hint("leave the grid's origin out, or take the rule quantile");
     const std::span<const Vec3> positions = cloud.positions.span();
-    require_finite_size(box);
-    if (box.diagonal() != 0) require_squares(box.diagonal(), "curvature needs a scan");
     const LocalBins local = local_bins(positions, box, params, context);
 
     VoxelThinResult result;

@@ -45,7 +45,8 @@ struct VoxelThinParams {
         points    ///< so are any two points in them: bins half as large
     };
     Guarantee guarantee = Guarantee::points;
-    /// Bins with fewer points are noise: none of their points is kept. 1 keeps all bins.
+    /// Bins with fewer points are noise: none of their points is kept. 1 keeps all bins. With the adaptive rule these
+    /// are the basic voxels, of edge VoxelThinResult::bin_size, whatever the leaves are.
     u32 min_points = 1;
     /// The grid's origin is the bounding box's low corner minus this along every axis; 0 or more.
     Length margin;
@@ -69,7 +70,7 @@ struct VoxelThinResult {
     double bin_size = 0;
     /// Points that gave way to another one of their bin, or that were noise: kept + removed = input.
     std::size_t removed = 0;
-    /// The removed points whose bins had fewer than min_points.
+    /// The removed points whose bins (of an octree the basic voxels) had fewer than min_points.
     std::size_t noise = 0;
 };
 

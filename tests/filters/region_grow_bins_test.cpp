@@ -69,14 +69,14 @@ double bin_in_the_middle(double thinned_with, double elsewhere, const Vec3& norm
     const growing::Samples samples = growing::distinct_samples(cloud.positions.span());
     const growing::Neighbourhoods neighbourhoods(samples, 1);
     const Array<Vec3> normals(samples.size(), normal);
-    Array<double> thinned(samples.size(), elsewhere * samples.scale);
-    const auto middle = static_cast<std::size_t>(
-        std::ranges::find(samples.positions, Vec3(Vec3(20, 20, 0) * samples.scale)) - samples.positions.begin());
-    thinned[middle] = thinned_with * samples.scale;
+    Array<double> thinned(samples.size(), elsewhere);
+    const auto middle =
+        static_cast<std::size_t>(std::ranges::find(samples.positions, Vec3(20, 20, 0)) - samples.positions.begin());
+    thinned[middle] = thinned_with;
     const Array<float> roughness(samples.size(), roughness_of_all);
     const growing::SearchRadii found =
-        growing::automatic_radii(samples, neighbourhoods, normals, roughness, {}, thinned, 1);
-    return found.radii[middle] / samples.scale / (2 * std::numbers::sqrt3);
+        growing::automatic_radii(samples, neighbourhoods, normals, roughness, thinned, 1);
+    return found.radii[middle] / (2 * std::numbers::sqrt3);
 }
 
 double bin_in_the_middle(double thinned_with, const Vec3& normal) {
@@ -207,7 +207,6 @@ TEST(RegionGrow_Bins, AreToldPerPoint) {
     const Said said = grown_and_said(with_bins(cloud, [&](std::size_t row) { return row % 3 ? 0.1 : nan; }));
     expect_consistent(said.result);
     EXPECT_NEAR(said.known, 2.0 / 3 * static_cast<double>(cloud.size()), 0.02 * static_cast<double>(cloud.size()));
-    EXPECT_EQ(said.result.near_twins, 0u);
     EXPECT_EQ(said.result.unused_points, 0u);
     EXPECT_THAT(said.warnings, IsEmpty());
 }
@@ -231,15 +230,11 @@ TEST(RegionGrow_Bins, GiveWayToAGivenRadius) {
 TEST(RegionGrow_Bins, AreInTheScansUnit) {
     const PointCloud cloud = thinned(plate_with_holes(3.4, 2), 2);
     const Said plain = grown_and_said(cloud);
-    for (const double factor : {0x1p-300, 0x1p-20, 0x1p300}) {
+    for (const double factor : {0x1p-20, 0x1p20}) {
         const Said said = grown_and_said(with_bins(moved(cloud, factor), [&](std::size_t) { return 2 * factor; }));
         EXPECT_EQ(said.known, plain.known) << factor;
         expect_the_same(said.result, plain.result);
     }
-    // Beyond all numbers where the scan is scaled to: as good as none.
-    const Said endless = grown_and_said(with_bins(moved(cloud, 0x1p-300), [](std::size_t) { return 1.7e308; }));
-    EXPECT_EQ(endless.known, 0);
-    EXPECT_THAT(endless.warnings, IsEmpty());
 }
 
 TEST(RegionGrow_BinsReadBackFromAFile, AreTheSame) {

@@ -40,8 +40,8 @@ std::vector<Triangle> filling(const Patch& patch, const std::vector<u32>& loop, 
     for (u32 x : loop) corners.push_back(patch.place(x));
     NearTriangles near;
     std::vector<Triangle> triangles;
-    for (Triangle t : cheapest_filling(patch.surface(), near, corners,
-                                       {circle * patch.scale(), std::cos(bend / 180 * std::numbers::pi)})) {
+    for (Triangle t :
+         cheapest_filling(patch.surface(), near, corners, {circle, std::cos(bend / 180 * std::numbers::pi)})) {
         for (u32& corner : t) corner = patch.name_of(corner);
         EXPECT_LT(std::ranges::find(loop, t[0]), std::ranges::find(loop, t[1])) << "in the loop's direction";
         std::ranges::sort(t);

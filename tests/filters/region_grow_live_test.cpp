@@ -19,7 +19,7 @@ TEST(LivePlaces, WhileTheSurfaceClosesOverThem_AreThoseOfALoop) {
         const Samples samples = distinct_samples(random_cube(count, count).positions.span());
         const Neighbourhoods neighbourhoods(samples, 1);
         Surface surface(samples, neighbourhoods, principal_normals(samples, neighbourhoods, 1),
-                        Array<double>(samples.size(), 1), Array<double>(samples.size(), 1), {}, false);
+                        Array<double>(samples.size(), 1), Array<double>(samples.size(), 1), false);
         LivePlaces live(surface);
         Random random(3);
         for (int turn = 0; turn < 400; ++turn) {
@@ -27,7 +27,7 @@ TEST(LivePlaces, WhileTheSurfaceClosesOverThem_AreThoseOfALoop) {
             // More and more are closed; some are of the front, and stay open.
             for (int i = 0; i < 3; ++i)
                 if (PlaceState& state = surface.states[any()]; state == PlaceState::unused)
-                    state = i == 0 ? PlaceState::front : i == 1 ? PlaceState::interior : PlaceState::twin;
+                    state = i == 0 ? PlaceState::front : PlaceState::interior;
             const u32 place = any();
             const double squared = random.uniform();
             std::vector<u32> found, expected;

@@ -5,7 +5,6 @@
 #include "filters/region_grow_cases.hpp"
 #include "filters/region_grow_patch.hpp"
 #include "region_grow/narrow_holes.hpp"
-#include "region_grow/pinches.hpp"
 #include "scanmill/base/random.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
@@ -196,22 +195,6 @@ TEST(RegionGrow_OpenPocket, StaysOpenThoughNarrow) {
         EXPECT_EQ(result.loops, 1u) << seed;
         EXPECT_EQ(topology(result.mesh).euler, 1) << seed;
     }
-}
-
-TEST(RegionGrowPinches_TwinsOfPlacesThatAreTakenOff, AreUnusedAsWell) {
-    // Two triangles at one side of the first place, one at the other, each with a twin of its own beside its tip.
-    const std::vector<Vec3> positions{Vec3(0, 0, 0),   Vec3(4, -2, 0), Vec3(4, 0, 0),    Vec3(-4, 2, 0),
-                                      Vec3(-4, -2, 0), Vec3(4, 2, 0),  Vec3(4.1, -2, 0), Vec3(-4.1, -2, 0)};
-    Patch patch(positions, {0, 1, 0, 0, 1, 0, 1, 1});
-    patch.add(0, 1, 2);
-    patch.add(0, 2, 5);
-    patch.add(0, 3, 4);
-    ASSERT_EQ(patch.state(6), PlaceState::twin);
-    ASSERT_EQ(patch.state(7), PlaceState::twin);
-    EXPECT_EQ(remove_pinches(patch.surface()), 1u);
-    EXPECT_EQ(patch.state(4), PlaceState::unused);
-    EXPECT_EQ(patch.state(6), PlaceState::twin);
-    EXPECT_EQ(patch.state(7), PlaceState::unused);
 }
 
 }  // namespace

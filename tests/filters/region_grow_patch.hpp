@@ -10,35 +10,24 @@ namespace scanmill::growing {
 
 class Patch {
 public:
-    /// `twins`: per position, of its nearest neighbours.
-    explicit Patch(const std::vector<Vec3>& positions, std::vector<u8> twins = {})
+    explicit Patch(const std::vector<Vec3>& positions)
         : samples_(distinct_samples(positions)),
           neighbourhoods_(samples_, 1),
           surface_(samples_, neighbourhoods_, principal_normals(samples_, neighbourhoods_, 1),
-                   Array<double>(samples_.size()), Array<double>(samples_.size(), 1), by_place(positions, twins),
-                   false) {
+                   Array<double>(samples_.size()), Array<double>(samples_.size(), 1), false) {
         for (const Vec3& p : positions) place_.push_back(place_at(p));
         for (u32 name = 0; name < positions.size(); ++name) set_search_radius(name, 4);
     }
     void add(u32 a, u32 b, u32 c) { surface_.add({place_[a], place_[b], place_[c]}, 0); }
-    /// Lengths as in the positions given.
-    void set_search_radius(u32 name, double radius) { surface_.search_radius[place_[name]] = radius * samples_.scale; }
+    void set_search_radius(u32 name, double radius) { surface_.search_radius[place_[name]] = radius; }
     Surface& surface() { return surface_; }
     const Surface& surface() const { return surface_; }
-    double scale() const { return samples_.scale; }
     u32 place(u32 name) const { return place_[name]; }
     u32 name_of(u32 place) const { return static_cast<u32>(std::ranges::find(place_, place) - place_.begin()); }
-    PlaceState state(u32 name) const { return surface_.states[place_[name]]; }
 
 private:
     u32 place_at(const Vec3& p) const {
-        return static_cast<u32>(std::ranges::find(samples_.positions, Vec3(p * samples_.scale)) -
-                                samples_.positions.begin());
-    }
-    Array<u8> by_place(const std::vector<Vec3>& positions, const std::vector<u8>& twins) const {
-        Array<u8> counts(twins.empty() ? 0 : samples_.size());
-        for (std::size_t name = 0; name < twins.size(); ++name) counts[place_at(positions[name])] = twins[name];
-        return counts;
+        return static_cast<u32>(std::ranges::find(samples_.positions, p) - samples_.positions.begin());
     }
 
     Samples samples_;

@@ -31,25 +31,6 @@ TEST(RegionGrowRefuses, OneAndTwoPoints) {
                 AllOf(HasSubstr("the cloud has 2 in 3 rows"), HasSubstr("hint")));
 }
 
-TEST(RegionGrowRefuses, ScansWhoseSquaresOfLengthsAreNoNumbers) {
-    EXPECT_THAT(growth_refusal(moved(grid(30, 30), 1e-311)),
-                AllOf(HasSubstr("between 1e-100 and 1e100 in size"), HasSubstr("it is 4.1e-310 u"), HasSubstr("hint")));
-    EXPECT_THAT(growth_refusal(moved(grid(30, 30), 1e299)), HasSubstr("it is 4.1e+300 u"));
-    const PointCloud widest = moved(moved(grid(30, 30), 1, Vec3(-14.5, -14.5, 0)), 1.5e308 / 14.5);
-    EXPECT_THAT(growth_refusal(widest), AllOf(HasSubstr("in size"), HasSubstr("it is beyond 1.7e308")));
-}
-
-TEST(RegionGrow_PlacesThatScalingJoins, AreOneVertex) {
-    // Next to a step of 1e10 the least double is 0.
-    const PointCloud cloud = joined(moved(grid(3, 3), 1e10), cloud_of({{5e-324, 0, 0}}));
-    const RegionGrowResult result = grown(cloud);
-    expect_consistent(result);
-    EXPECT_EQ(result.mesh.triangles.size(), 8u);
-    EXPECT_EQ(result.duplicates, 1u);
-    EXPECT_EQ(result.unused_points, 0u);
-    EXPECT_EQ(result.rows.size(), 9u);
-}
-
 TEST(RegionGrowRefuses, PointsOnALine) {
     EXPECT_THAT(growth_refusal(cloud_of({{0, 0, 0}, {1, 2, 3}, {2, 4, 6}, {-3, -6, -9}})),
                 AllOf(HasSubstr("all 4 distinct points lie on one line"), HasSubstr("hint")));

@@ -40,9 +40,8 @@ ThinParts thin_parts(const Patch& patch) {
 TEST(RegionGrowThinParts_TwoSheets, AreThinBelowThreeBins) {
     const ThinParts thin = thin_parts(sheets(2.5, true));
     EXPECT_EQ(thin.loops, 2u);
-    const double scale = sheets(2.5, true).scale();
-    EXPECT_DOUBLE_EQ(thin.least, 2.5 * scale);
-    EXPECT_DOUBLE_EQ(thin.bin, scale);
+    EXPECT_DOUBLE_EQ(thin.least, 2.5);
+    EXPECT_DOUBLE_EQ(thin.bin, 1);
     EXPECT_EQ(thin_parts(sheets(2.999, true)).loops, 2u);
     EXPECT_EQ(thin_parts(sheets(3.001, true)).loops, 0u);
 }

