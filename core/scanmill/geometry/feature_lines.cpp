@@ -9,6 +9,7 @@
 #include "scanmill/filter/counted.hpp"
 #include "scanmill/filter/error.hpp"
 #include "scanmill/filter/parallel.hpp"
+#include "scanmill/geometry/angle.hpp"
 #include "scanmill/geometry/boundary_loops.hpp"
 #include "scanmill/geometry/facet_normals.hpp"
 #include "scanmill/geometry/feature_net.hpp"

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "scanmill/geometry/angle.hpp"
 #include "scanmill/geometry/boundary_loops.hpp"
-#include "scanmill/geometry/facet_normals.hpp"
 #include "scanmill/geometry/sides.hpp"
 
 namespace scanmill {
