@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -15,22 +14,11 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill {
 
 namespace measuring {
-
-double angle_of(double cosine, double sine) {
-    assert(sine >= 0);
-    if (cosine < 0) return std::numbers::pi - angle_of(-cosine, sine);
-    if (sine > cosine) return std::numbers::pi / 2 - angle_of(sine, cosine);
-    if (!(cosine > 0)) return 0;
-    double tangent = sine / cosine;  // in [0, 1]; two halvings of the angle bring it below 0.2
-    for (int halving = 0; halving < 2; ++halving) tangent /= 1 + std::sqrt(1 + tangent * tangent);
-    double sum = 0;
-    for (int degree = 25; degree > 0; degree -= 2) sum = 1.0 / degree - sum * (tangent * tangent);
-    return 4 * tangent * sum;
-}
 
 double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
     // Opposite the shortest edge.
@@ -38,8 +26,7 @@ double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3& apex = ab <= bc && ab <= ca ? c : bc <= ca ? a : b;
     const Vec3& left = &apex == &a ? b : a;
     const Vec3& right = &apex == &c ? b : c;
-    const Vec3 to_left = left - apex, to_right = right - apex;
-    return angle_of(to_left.dot(to_right), to_left.cross(to_right).norm());
+    return angle_between(left - apex, right - apex);
 }
 
 }  // namespace measuring

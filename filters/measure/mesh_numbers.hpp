@@ -27,10 +27,6 @@ MeshNumbers mesh_numbers(const TriangleMesh& mesh, unsigned threads);
 
 namespace measuring {
 
-/// The angle in [0, π] whose cosine and sine are as `cosine` to `sine` ≥ 0, to about 1e-15; takes the same roundings on
-/// every processor, which the C library's arctangent does not.
-double angle_of(double cosine, double sine);
-
 /// Smallest angle of a triangle with these corners; 0 when one of its edges has no length.
 double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c);
 

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sculpt/bending.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill::sculpting {
 
 namespace {
 
-const double cosine_of_sharp = std::cos(std::numbers::pi / 4);
-const double sine_of_thin = std::sin(0.1 * std::numbers::pi / 180);
+constexpr double cosine_of_sharp = std::numbers::sqrt2 / 2;  // of 45°
+constexpr double sine_of_thin = 0.0017453283658983088;  // of 0.1°
 
 double power_of_two_scale(std::span<const Vec3> positions) {
     return std::ldexp(1.0, -std::ilogb(bounding_box(positions).diagonal()));
@@ -66,7 +69,7 @@ double total_bending(BoundaryLinks& links, std::span<const Vec3> positions, unsi
             for (std::size_t i = 0; i < link.size(); ++i) {
                 if (link[i].to < vertex) continue;
                 const auto beyond = std::ranges::lower_bound(link, link[i].to, {}, &LinkEdge::from) - link.begin();
-                sum += bend(normals[i], normals[static_cast<std::size_t>(beyond)]);
+                sum += angle_between(normals[i], normals[static_cast<std::size_t>(beyond)]);
             }
         }
         sums[begin / chunk] = sum;
@@ -105,13 +108,13 @@ double Gains::of(u32 cell, unsigned open, Without without) const {
         const int c = sorted[edge.c], d = sorted[edge.d];
         double change;
         if (is_open(c) && is_open(d)) {
-            change = bend(normals[c], normals[d]);
+            change = angle_between(normals[c], normals[d]);
         } else if (is_open(c) || is_open(d)) {
             const int before = is_open(c) ? c : d, after = is_open(c) ? d : c;
             const Vec3 outer = outer_normal(cell, after, before, without);
-            change = bend(normals[before], outer) - bend(-normals[after], outer);
+            change = angle_between(normals[before], outer) - angle_between(-normals[after], outer);
         } else {
-            change = -bend(normals[c], normals[d]);
+            change = -angle_between(normals[c], normals[d]);
         }
         if (weight_ == SculptWeight::length) {
             const Tetrahedron& corners = tets_.cells[cell];

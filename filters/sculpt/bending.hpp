@@ -2,18 +2,11 @@
 #pragma once
 /// How much a boundary bends at its edges, and by how much less when a cell is removed.
 
-#include <cmath>
-
-#include <Eigen/Geometry>
-
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 #include "sculpt/carved_solid.hpp"
 #include "sculpt/sculpt.hpp"
 
 namespace scanmill::sculpting {
-
-/// The angle between two normals of any length, in [0, π]; 0 where one is zero.
-inline double bend(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 /// By x, then y, then z.
 inline bool is_lower(const Vec3& a, const Vec3& b) {

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = SculptParams;
-    return Declare<P>("sculpt", 2)
+    return Declare<P>("sculpt", 3)
         .summary("Takes single cells off a solid until every point lies on its boundary and the boundary bends less.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3; Boissonnat 1984 for the admissible steps")
         .ties(

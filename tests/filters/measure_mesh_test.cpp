@@ -102,18 +102,6 @@ TEST(MeasureMesh, ShapeQuantiles_AreByNearestRank) {
     EXPECT_NEAR(numbers.angle_p50, 10 * pi / 180, 1e-14);
 }
 
-TEST(MeasureMesh, Angles_AgreeWithTheArctangent) {
-    for (int i = 0; i <= 10'000; ++i) {
-        const double angle = pi * i / 10'000;
-        EXPECT_NEAR(measuring::angle_of(std::cos(angle), std::sin(std::max(angle, 0.0)) < 0 ? 0 : std::sin(angle)),
-                    angle, 1e-15 + 4e-16 * angle);
-    }
-    EXPECT_EQ(measuring::angle_of(1, 0), 0);
-    EXPECT_EQ(measuring::angle_of(0, 0), 0);
-    EXPECT_DOUBLE_EQ(measuring::angle_of(0, 1), pi / 2);
-    EXPECT_DOUBLE_EQ(measuring::angle_of(-1, 0), pi);
-}
-
 TEST(MeasureMesh, NearNeedles_HaveAFiniteAspect) {
     const MeshNumbers numbers = mesh_numbers(soup({{0, 0, 0}, {1, 0, 0}, {0.5, 1e-9, 0}}, {{0, 1, 2}}), 1);
     EXPECT_EQ(numbers.collinear_triangles, 0u);

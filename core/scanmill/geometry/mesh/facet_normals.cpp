@@ -3,10 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/spatial/unit_scale.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
 
 namespace scanmill {
@@ -111,16 +109,6 @@ FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> twins,
     result.without_area = thin.size();
     ThinTriangles(mesh, twins, result.unit).fill(std::move(thin));
     return result;
-}
-
-double angle_between(const Vec3& a, const Vec3& b) {
-    // The norm of the product holds the fourth power of length.
-    const double one = a.cwiseAbs().maxCoeff(), other = b.cwiseAbs().maxCoeff();
-    const auto is_usual = [](double length) { return length > 0x1p-100 && length < 0x1p100; };
-    if (is_usual(one) && is_usual(other)) return std::atan2(a.cross(b).norm(), a.dot(b));
-    if (one == 0 || other == 0) return 0;
-    const Vec3 u = a * unit_scale(one), v = b * unit_scale(other);
-    return std::atan2(u.cross(v).norm(), u.dot(v));
 }
 
 }  // namespace scanmill

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "scanmill/data/mesh.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill {
 
@@ -25,10 +26,6 @@ struct FacetNormals {
 /// Post: no bit depends on the order of the triangles or vertices, nor on which corner a triangle names first.
 /// Cost: linear, 24 bytes per triangle.
 FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> twins, unsigned threads);
-
-/// The angle in radians between two finite vectors of any length, 0 to pi, to a few units in the last place for small
-/// and for flat angles; 0 when one is zero.
-double angle_between(const Vec3& a, const Vec3& b);
 
 /// Angles between normals that differ from a limit by no more than this, in radians, count as equal to it: what
 /// rounding does to the sides of a regular prism.

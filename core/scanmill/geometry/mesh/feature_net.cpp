@@ -6,8 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
-#include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
 
 namespace scanmill {

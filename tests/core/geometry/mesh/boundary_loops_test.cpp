@@ -48,11 +48,5 @@ TEST(LoopShape, SeesTheLoopAlongTheMeanNormal_WeightedByTheSides) {
     EXPECT_TRUE(shape.clear);
 }
 
-TEST(FacetNormals, AngleBetween_IsRightForSmallAndForFlatAngles) {
-    for (const double angle : {0.0, 1e-9, 0.5, 3.0, 3.141592652})
-        EXPECT_NEAR(angle_between(Vec3(2, 0, 0), Vec3(3 * std::cos(angle), 3 * std::sin(angle), 0)), angle, 1e-15);
-    EXPECT_EQ(angle_between(Vec3::Zero(), Vec3(1, 0, 0)), 0);
-}
-
 }  // namespace
 }  // namespace scanmill::test

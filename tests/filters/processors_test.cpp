@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// sculpt, features and measure give the same bytes on every processor: on one without fused multiply-add the C library
+/// takes other variants of atan2, sin and the like, whose last bits differ.
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+
+#include "features/features.hpp"
+#include "filters/sculpt_cases.hpp"
+#include "measure/measure.hpp"
+#include "measure/measured_metrics.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+namespace {
+
+/// Where the second process writes its results.
+constexpr const char* output_variable = "SCANMILL_TEST_PROCESSOR_OUTPUT";
+constexpr const char* without_fma = "glibc.cpu.hwcaps=-FMA,-AVX2_Usable,-FMA_Usable,-AVX2,-FMA4";
+
+/// Hash of the bits of numbers (FNV-1a).
+class Digest {
+public:
+    void add(double number) {
+        for (std::uint64_t bits = std::bit_cast<std::uint64_t>(number), byte = 0; byte < 8; ++byte, bits >>= 8)
+            hash_ = (hash_ ^ (bits & 255)) * 0x100000001b3;
+    }
+    void add(const Vec3& vector) {
+        for (const double number : vector) add(number);
+    }
+    std::uint64_t value() const { return hash_; }
+
+private:
+    std::uint64_t hash_ = 0xcbf29ce484222325;
+};
+
+std::uint64_t of_angles() {
+    Digest digest;
+    for (int i = -300; i <= 300; ++i)
+        for (int j = 0; j <= 300; ++j) digest.add(angle_of(i, j));
+    return digest.value();
+}
+
+std::uint64_t of_sculpted(const SculptResult& result) {
+    Digest digest;
+    for (const SculptRemoval& removal : result.removals) {
+        digest.add(removal.cell);
+        digest.add(removal.gain);
+    }
+    digest.add(result.bending_before);
+    digest.add(result.bending_after);
+    return digest.value();
+}
+
+std::uint64_t of_features(const TriangleMesh& mesh) {
+    Context context;
+    const FeatureGraph graph = features(mesh, {}, context).graph;
+    Digest digest;
+    for (const u32 corner : graph.corners) digest.add(corner);
+    for (const u32 vertex : graph.vertices) digest.add(vertex);
+    for (const Vec3& normal : graph.left_normals) digest.add(normal);
+    return digest.value();
+}
+
+std::uint64_t of_measured(const TriangleMesh& mesh, const TriangleMesh& truth) {
+    Context context;
+    MeasureParams few;
+    few.samples = 1000;
+    Digest digest;
+    for (const Metric& metric : metrics_of(measure(mesh, truth, few, context)).values) digest.add(metric.value);
+    return digest.value();
+}
+
+/// The points have exact coordinates, which do not depend on the processor.
+std::string results() {
+    std::string text = fmt::format("angles {:x}\n", of_angles());
+    for (const TetMesh& tets : {hull_of(random_cube(2000, 1)), hull_of(lattice_cube(4)),
+                                solid_of(tets_of(l_block_surface(3, 2, 6, 2e-3))).tets})
+        for (const SculptWeight weight : {SculptWeight::none, SculptWeight::length}) {
+            SculptParams params;
+            params.weight = weight;
+            const SculptResult carved = sculpted(tets, params);
+            text += fmt::format("sculpt {:x}, features {:x}, measure {:x}\n", of_sculpted(carved),
+                                of_features(carved.mesh), of_measured(carved.mesh, mesh_of(tets, tets.inside.span())));
+        }
+    return text;
+}
+
+/// Runs this test alone in a process of its own; returns what that process wrote.
+std::string results_of_second_process() {
+    const TemporaryFolder folder;
+    const std::string output = (folder / "results").string();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::setenv(output_variable, output.c_str(), 1);
+        ::setenv("GLIBC_TUNABLES", without_fma, 1);
+        ::execl("/proc/self/exe", "filters-tests", "--gtest_filter=Processors.*", "--gtest_brief=1", nullptr);
+        ::_exit(127);
+    }
+    int status = -1;
+    ::waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    return content_of(output);
+}
+
+TEST(Processors, WithAndWithoutFusedMultiplyAdd_GiveTheSameBytes) {
+    if (const char* output = std::getenv(output_variable)) {
+        std::ofstream(output) << results();
+        return;
+    }
+    EXPECT_EQ(results(), results_of_second_process());
+}
+
+}  // namespace
+}  // namespace scanmill::test
