@@ -213,8 +213,7 @@ std::string ambiguity_text(const AlphaSolidResult& result) {
     if (signs.empty()) return {};
     return joined(signs) +
            ": what is narrower than 2 alpha may be filled, gaps between parts too; sculpt opens what it can; more "
-           "points "
-           "in gaps and thin parts, or a lower coverage that ignores outliers, allow a smaller alpha";
+           "points in gaps and thin parts, or a lower coverage that ignores outliers, allow a smaller alpha";
 }
 
 /// Reports points and cells that are not in the solid; empty when none is missing.

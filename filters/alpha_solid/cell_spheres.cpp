@@ -381,18 +381,18 @@ CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& given, dou
     });
     const WeightedCorners corners{given[by_position[0]], given[by_position[1]], given[by_position[2]],
                                   given[by_position[3]]};
-    unsigned asked = 0;
-    for (int i = 0; i < 4; ++i) asked |= (facets >> by_position[i] & 1u) << i;
+    unsigned requested = 0;
+    for (int i = 0; i < 4; ++i) requested |= (facets >> by_position[i] & 1u) << i;
 
     const std::array<bool, 4> attached = attachments(corners);
     const bool any_attached = std::ranges::find(attached, true) != attached.end();
-    const CellBounds found = cell_bounds(corners, largest, asked, any_attached);
+    const CellBounds found = cell_bounds(corners, largest, requested, any_attached);
     double own = 0;
     if (any_attached) own = found.cell.narrow() ? found.cell.middle() : exact_cell_value(corners, largest);
     CellSpheres result{};
     for (int i = 0; i < 4; ++i) {
         double value = 0;
-        if ((asked >> i & 1u) != 0)
+        if ((requested >> i & 1u) != 0)
             value = found.facets[i].narrow() ? found.facets[i].middle() : exact_facet_value(corners, i, largest);
         result.values[by_position[i]] = attached[i] ? std::max(value, own) : value;
         result.attached |= static_cast<u8>(attached[i] << by_position[i]);

@@ -26,14 +26,13 @@ SCANMILL_FILTER() {
         .choice("components", &P::components,
                 {{"single", AlphaComponents::single,
                   "One solid: alpha grows until all are joined; with coverage below 100 % only the one with the most "
-                  "points "
-                  "is kept."},
+                  "points is kept."},
                  {"many", AlphaComponents::many,
                   "Any number of solids: those that are separate at the least alpha stay separate."}},
                 "How many separate solids are valid.")
         .param("coverage", &P::coverage, "Share of the points that must be in or on the solid.", above(0), at_most(1))
         .metric("alpha", Unit::length, "The radius used.", headline)
-        .metric("alpha-cover", Unit::length, "The least radius that covers the asked share of the points.")
+        .metric("alpha-cover", Unit::length, "The least radius that covers the requested share of the points.")
         .metric("spectrum", Unit::count,
                 "Number of different alpha-solids from alpha-cover (or a smaller given alpha) up to the hull.")
         .metric("cells", Unit::count, "Cells inside.")
