@@ -7,12 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "alpha_solid/pieces.hpp"
-#include "alpha_solid/remarks.hpp"
 #include "alpha_solid/selection.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/geometry/size_limits.hpp"
 #include "scanmill/geometry/tets/hidden_vertices.hpp"
 
 namespace scanmill {
@@ -31,11 +29,10 @@ void require_usable(const TetMesh& tets, const AlphaSolidParams& params) {
         throw Error("coverage must be above 0 % and at most 100 %; it is {}", params.coverage.text());
     if (params.alpha && !(params.alpha->value() > 0 && std::isfinite(params.alpha->value())))
         throw Error("alpha must be a length above 0; it is {}", params.alpha->text());
-    require_squares(bounding_box(tets.positions.span()).diagonal(), "needs a scan");
     if (tets.weights.empty()) return;
     const auto [least, largest] = std::ranges::minmax(tets.weights);
-    if (!(least >= 0 && largest <= 1e200))
-        throw Error("needs weights from 0 to 1e200; these go from {:.3g} to {:.3g}", least, largest)
+    if (!(least >= 0 && std::isfinite(largest)))
+        throw Error("needs finite weights of 0 or more; these go from {:.3g} to {:.3g}", least, largest)
             .hint("`delaunay: {weights: spacing}` computes them");
 }
 
@@ -45,16 +42,14 @@ double radius(double squared) {
     return root * root < squared ? std::nextafter(root, std::numeric_limits<double>::infinity()) : root;
 }
 
-/// The shortest decimal that is no smaller and, unless that takes many digits, little larger: told, it works.
-std::string text_from(double squared) {
-    return alpha::text_within({radius(squared), std::numeric_limits<double>::max()}, 0);
-}
+/// The shortest decimal that is not below the radius and, unless that takes many digits, only slightly above it.
+std::string text_from(double squared) { return text_within({radius(squared), std::numeric_limits<double>::max()}, 0); }
 
-[[noreturn]] void refuse_without_cells(const Flood& flood, const Length& alpha, const Frame& frame) {
+[[noreturn]] void refuse_without_cells(const SweepResult& sweep, const Length& alpha, const Frame& frame) {
     const std::string_view unit = symbol(frame.unit);
-    throw Error("alpha {} leaves no cell inside; from {} {} there is one, from {} {} cells reach {} of {} points",
-                alpha.text(), text_from(flood.values.back()), unit, text_from(flood.cover), unit, flood.needed,
-                flood.points)
+    throw Error(
+        "alpha {} leaves no cell inside; the first is inside from {} {}, and from {} {} cells cover {} of {} points",
+        alpha.text(), text_from(sweep.values.back()), unit, text_from(sweep.cover), unit, sweep.needed, sweep.points)
         .hint("'alpha: auto' finds the least alpha with a closed manifold boundary");
 }
 
@@ -66,21 +61,7 @@ double radius_below(double squared) {
     return root;
 }
 
-/// Throws Error when no number is the square of a radius that is needed.
-void require_number(double squared, const TetMesh& tets) {
-    if (squared < std::numeric_limits<double>::max()) return;
-    const std::string_view unit = symbol(tets.frame.unit);
-    std::string text = fmt::format("the solid needs an alpha above 1e154 {}; the scan is only {:.3g} {} in size", unit,
-                                   bounding_box(tets.positions.span()).diagonal(), unit);
-    if (tets.weights.empty()) throw Error(text).hint("all points but hairs lie in one plane; region-grow accepts that");
-    const auto [least, largest] = std::ranges::minmax(tets.weights);
-    throw Error(text + fmt::format(", and its weights go from {:.3g} to {:.3g} {}²", least, largest, unit))
-        .hint(
-            "weights should not differ by more than squares of distances between points: a smaller factor brings them "
-            "nearer to each other, `weights: spacing` fits them to the points");
-}
-
-/// Fills what follows from the labels: inside, counts, interior and uncovered points.
+/// Sets the labels of the cells, and derives from them the counts and the interior, uncovered and hidden points.
 void describe_cells(AlphaSolidResult& result, Selection& selection, unsigned threads) {
     const TetMesh& tets = result.tets;
     Array<u8> state = coverage(tets, selection.labels, threads);
@@ -102,15 +83,15 @@ void describe_cells(AlphaSolidResult& result, Selection& selection, unsigned thr
     result.tets.inside = std::move(selection.labels);
 }
 
-/// Different values among the flood's above `value`, and the solid at it.
-std::size_t spectrum_from(const Flood& flood, double value) {
+/// The number of different solids at `value` and above.
+std::size_t spectrum_from(const SweepResult& sweep, double value) {
     std::size_t count = 1;
-    for (std::size_t i = 0; i < flood.values.size() && flood.values[i] > value; ++i)
-        count += i == 0 || flood.values[i] != flood.values[i - 1];
+    for (std::size_t i = 0; i < sweep.values.size() && sweep.values[i] > value; ++i)
+        count += i == 0 || sweep.values[i] != sweep.values[i - 1];
     return count;
 }
 
-void report(const AlphaSolidResult& result, Context& context) {
+void set_metrics(const AlphaSolidResult& result, Context& context) {
     context.metric("alpha", result.alpha, Unit::length);
     context.metric("alpha-cover", result.alpha_cover, Unit::length);
     context.metric("spectrum", static_cast<double>(result.spectrum));
@@ -121,36 +102,192 @@ void report(const AlphaSolidResult& result, Context& context) {
     context.metric("triangles", static_cast<double>(result.mesh.triangles.size()));
 }
 
+// Warnings.
+
+/// Clean scans have a valid solid at alpha_cover itself; where the first valid one is this factor above it, it has
+/// often closed a hole.
+constexpr double ambiguous_factor = 1.1;
+/// On clean scans alpha is near the length of the boundary's edges; this multiple spans a gap or includes outliers.
+constexpr double ambiguous_edges = 3;
+
+std::string_view unit_of(const AlphaSolidResult& result) { return symbol(result.tets.frame.unit); }
+
+std::string joined(const std::vector<std::string>& parts) {
+    std::string text;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+    return text;
+}
+
+/// Reports that more points are outside than the share allows; empty when not.
+std::string too_many_outside(const AlphaSolidResult& result, const AlphaSolidParams& params) {
+    const std::size_t points = result.tets.positions.size() - result.hidden_points.size();
+    const std::size_t outside = result.uncovered_points.size();
+    const std::size_t allowed = points - needed_points(params.coverage.value(), points);
+    if (outside <= allowed) return {};
+    const std::string text = fmt::format("{} of {} points {} outside of it", outside, result.tets.positions.size(),
+                                         by_count(outside, "is", "are"));
+    if (params.coverage.value() == 1) return text;
+    return text + fmt::format(", more than the {} that coverage {} allows", allowed, params.coverage.text());
+}
+
+/// The defects of the solid at a given alpha, and the nearest valid alpha.
+std::string wrong_alpha_text(const AlphaSolidResult& result, const AlphaSolidParams& params) {
+    const std::string_view unit = unit_of(result);
+    std::vector<std::string> faults;
+    if (std::string text = too_many_outside(result, params); !text.empty()) faults.push_back(std::move(text));
+    if (result.nonmanifold_vertices > 0)
+        faults.push_back(
+            fmt::format("its boundary has {} and {} with more than two triangles",
+                        counted(result.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices"),
+                        counted(result.nonmanifold_edges, "edge", "edges")));
+    if (params.components == AlphaComponents::single && result.components > 1)
+        faults.push_back(fmt::format("it has {} components", result.components));
+    const double alpha = result.alpha, least = result.nearest_valid->least;
+    return fmt::format("at alpha {} the solid is not valid: {}; the nearest alpha that gives a valid one is {} {}{}",
+                       params.alpha->text(), joined(faults), text_within(*result.nearest_valid, alpha), unit,
+                       least > max_scan * result.alpha_cover && least > alpha
+                           ? ", far above what covers the points: 'alpha: auto' repairs a smaller solid instead"
+                           : "");
+}
+
+/// Per vertex of the boundary, alpha² less the squared radius of the ball there: 0 without weights.
+std::vector<double> weight_deficits(const AlphaSolidResult& result) {
+    const Buffer<double>& weights = result.tets.weights;
+    std::vector<double> deficits(result.mesh.positions.size(), 0.0);
+    if (weights.empty()) return deficits;
+    std::vector<bool> is_elsewhere(weights.size(), false);
+    for (const Buffer<u32>* points : {&result.interior_points, &result.uncovered_points, &result.hidden_points})
+        for (u32 vertex : *points) is_elsewhere[vertex] = true;
+    const double largest = *std::ranges::max_element(weights);
+    std::size_t at_boundary = 0;
+    for (std::size_t vertex = 0; vertex < weights.size(); ++vertex)
+        if (!is_elsewhere[vertex]) deficits[at_boundary++] = largest - weights[vertex];
+    return deficits;
+}
+
+/// The median ratio of the ball's radius to the length of the boundary's edges, over the edges of some ten thousand
+/// evenly spread triangles. Pre: there are triangles.
+double radius_in_edges(const AlphaSolidResult& result) {
+    const TriangleMesh& mesh = result.mesh;
+    const std::vector<double> deficits = weight_deficits(result);
+    constexpr std::size_t most = 1 << 16;
+    const std::size_t step = 1 + (mesh.triangles.size() - 1) / most;
+    std::vector<double> ratios;
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += step)
+        for (int i = 0; i < 3; ++i) {
+            const u32 a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
+            const double squared = result.alpha * result.alpha - (deficits[a] + deficits[b]) / 2;
+            ratios.push_back(std::sqrt(std::max(0.0, squared)) / (mesh.positions[a] - mesh.positions[b]).norm());
+        }
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::ranges::nth_element(ratios, middle);
+    return *middle;
+}
+
+/// Signs that a chosen alpha is too large.
+std::vector<std::string> doubts(const AlphaSolidResult& result) {
+    const std::string_view unit = unit_of(result);
+    std::vector<std::string> signs;
+    if (result.alpha >= ambiguous_factor * result.alpha_cover)
+        signs.push_back(
+            fmt::format("alpha {:.4g} {} is {:.3g} times the {:.4g} {} that would cover the points, because the "
+                        "smaller solids are not valid",
+                        result.alpha, unit, result.alpha / result.alpha_cover, result.alpha_cover, unit));
+    if (const double edges = radius_in_edges(result); edges >= ambiguous_edges)
+        signs.push_back(
+            fmt::format("alpha {:.4g} {} is {:.3g} times the boundary's median edge{}, to span gaps or to reach "
+                        "distant points",
+                        result.alpha, unit, edges, result.tets.weights.empty() ? "" : ", weights taken into account"));
+    return signs;
+}
+
+/// Reports that the points do not determine the solid; empty when they do.
+std::string ambiguity_text(const AlphaSolidResult& result) {
+    std::vector<std::string> signs;
+    if (result.choice != AlphaChoice::given) signs = doubts(result);
+    if (!result.interior_points.empty())
+        signs.push_back(fmt::format("{} of {} points {} inside the solid instead of on its boundary",
+                                    result.interior_points.size(), result.tets.positions.size(),
+                                    by_count(result.interior_points.size(), "lies", "lie")));
+    if (signs.empty()) return {};
+    return joined(signs) +
+           ": what is narrower than 2 alpha may be filled, gaps between parts too; sculpt opens what it can; more "
+           "points in gaps and thin parts, or a lower coverage that ignores outliers, allow a smaller alpha";
+}
+
+/// Reports points and cells that are not in the solid; empty when none is missing.
+std::string missing_text(const AlphaSolidResult& result) {
+    const std::size_t points = result.uncovered_points.size(), cells = result.cells_left_out;
+    const std::string of_others =
+        counted(cells, "cell of other solids was", "cells of other solids were") + " left out";
+    if (points == 0) return cells == 0 ? "" : of_others;
+    return fmt::format("{} of {} points {} not in or on the solid{}", points, result.tets.positions.size(),
+                       by_count(points, "is", "are"), cells == 0 ? "" : "; " + of_others);
+}
+
+/// Reports that no alpha-solid was valid, and how one was repaired.
+std::string repair_text(const AlphaSolidResult& result, const AlphaSolidParams& params) {
+    const std::string_view unit = unit_of(result);
+    // A solid that leaves points out may be valid at a slightly larger alpha, so only smaller ones are ruled out.
+    const bool may_leave_out = params.components == AlphaComponents::single && params.coverage.value() < 1;
+    const std::string none =
+        may_leave_out
+            ? fmt::format("no alpha below {:.4g} {} gives a manifold boundary round enough points", result.alpha, unit)
+            : fmt::format("no alpha up to {:.4g} {} gives a solid with a manifold boundary",
+                          max_scan * result.alpha_cover, unit);
+    if (result.choice == AlphaChoice::hull)
+        return fmt::format(
+            "{}, and closing the solid at {:.4g} {} round its non-manifold vertices filled the convex hull; more "
+            "points, or a coverage below 100 % that ignores outliers, allow a smaller alpha",
+            none, result.alpha, unit);
+    return fmt::format("{}; the solid at {:.4g} {} was closed round its non-manifold vertices", none, result.alpha,
+                       unit);
+}
+
+void warn_about(const AlphaSolidResult& result, const AlphaSolidParams& params, Context& context) {
+    if (result.nearest_valid) context.warn(wrong_alpha_text(result, params));
+    const bool is_reported =
+        result.nearest_valid && result.cells_left_out == 0 && !too_many_outside(result, params).empty();
+    if (const std::string text = missing_text(result); !text.empty() && !is_reported) context.warn(text);
+    if (result.nearest_valid) return;
+    if (const auto& separate = result.separate)
+        context.warn(fmt::format(
+            "alpha {:.4g} {} joins {} solids that are separate at {:.4g} {}; 'components: many' keeps them separate",
+            result.alpha, unit_of(result), separate->count, separate->alpha, unit_of(result)));
+    if (result.choice == AlphaChoice::repaired || result.choice == AlphaChoice::hull)
+        context.warn(repair_text(result, params));
+    if (const std::string text = ambiguity_text(result); !text.empty()) context.warn(text);
+}
+
 }  // namespace
 
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context) {
     require_usable(tets, params);
-    FloodLimits limits;
+    SweepLimits limits;
     limits.coverage = params.coverage.value();
     if (params.alpha) limits.value = params.alpha->value() * params.alpha->value();
 
-    Flood flood;
+    SweepResult sweep;
     {
         const Array<SweepCell> cells = sweep_cells(tets, context);
         context.progress(0.35);
-        flood = flood_from_outside(cells, tets.positions.size(), limits, context);
+        sweep = sweep_from_outside(cells, tets.positions.size(), limits, context);
     }
     context.progress(0.75);
-    if (params.alpha && flood.outside_above(limits.value) == tets.cells.size())
-        refuse_without_cells(flood, *params.alpha, tets.frame);
+    if (params.alpha && sweep.outside_above(limits.value) == tets.cells.size())
+        refuse_without_cells(sweep, *params.alpha, tets.frame);
 
-    const Selector selector(tets, flood, params, context);
+    const Selector selector(tets, sweep, params, context);
     Selection selection = params.alpha                           ? selector.given(limits.value)
                           : params.search == AlphaSearch::binary ? selector.bisect()
                                                                  : selector.scan();
     context.progress(0.9);
 
     AlphaSolidResult result;
-    if (!params.alpha) require_number(flood.values[selection.outside], tets);
-    require_number(flood.cover, tets);
-    result.alpha_cover = radius(flood.cover);
-    result.alpha = params.alpha ? params.alpha->value() : radius(flood.values[selection.outside]);
-    result.spectrum = spectrum_from(flood, std::min(flood.cover, limits.value));
+    result.alpha_cover = radius(sweep.cover);
+    result.alpha = params.alpha ? params.alpha->value() : radius(sweep.values[selection.outside]);
+    result.spectrum = spectrum_from(sweep, std::min(sweep.cover, limits.value));
     result.choice = selection.choice;
     result.components = selection.components;
     result.nonmanifold_vertices = selection.defects.vertices.size();
@@ -160,14 +297,14 @@ AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params
         result.nearest_valid = {radius(nearest.from), radius_below(nearest.to)};
     }
     const bool is_joined = params.components == AlphaComponents::single && params.coverage.value() == 1;
-    if (!params.alpha && is_joined && selection.outside < flood.outside_above(flood.cover))
-        if (const auto apart = selector.apart())
-            result.separate = {apart->components, radius(flood.values[apart->outside])};
+    if (!params.alpha && is_joined && selection.outside < sweep.outside_above(sweep.cover))
+        if (const auto separate = selector.separate())
+            result.separate = {separate->components, radius(sweep.values[separate->outside])};
     result.tets = tets;
     describe_cells(result, selection, context.threads());
     result.mesh = boundary_mesh(tets, std::move(selection.triangles));
-    remark(result, params, context);
-    report(result, context);
+    warn_about(result, params, context);
+    set_metrics(result, context);
     context.progress(1);
     return result;
 }

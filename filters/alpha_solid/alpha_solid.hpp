@@ -3,8 +3,17 @@
 /// The alpha-solid: the part of a Delaunay tetrahedralisation that a ball of radius alpha cannot enter from outside,
 /// with alpha chosen automatically.
 ///
-/// A facet is a wall at alpha when it belongs to the alpha-shape. The solid is every cell that cannot be reached from
-/// outside without crossing a wall; what walls enclose is solid, so it has no cavities. Growing alpha grows the solid.
+/// A facet is a wall at alpha when it belongs to the alpha-shape: when its smallest circumscribed sphere, or, if that
+/// contains an opposite vertex, the smaller of its cells' spheres, has a radius of at most alpha. The solid is every
+/// cell that cannot be reached from outside without crossing a wall; what walls enclose is solid, so it has no
+/// cavities. Growing alpha grows the solid.
+///
+/// A solid is valid when the requested share of the points is in or on it, its boundary is a closed 2-manifold (every
+/// vertex's triangles form exactly one closed fan) and, for `single`, it is connected. From alpha_cover on, all larger
+/// alphas have the first property, but may lose the second. So the scan starts at alpha_cover and adds the cells of one
+/// value after the other, testing only the vertices that they touch, until the first valid solid.
+///
+/// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
 
 #include <optional>
 
@@ -16,14 +25,14 @@
 namespace scanmill {
 
 enum class AlphaSearch {
-    scan,   ///< the least alpha with a valid solid
+    scan,  ///< the least alpha with a valid solid
     binary  ///< the paper's bisection: a valid solid, not always the least
 };
 
 enum class AlphaComponents {
-    single,  ///< one solid, for which alpha grows; with coverage below 100 % others than the one that holds the most
-             ///< points are left out
-    many     ///< any number of solids
+    single,  ///< one solid: alpha grows until all are joined; with coverage below 100 %, solids other than the one with
+             ///< the most points are left out
+    many  ///< any number of solids
 };
 
 struct AlphaSolidParams {
@@ -35,13 +44,13 @@ struct AlphaSolidParams {
     Ratio coverage = Ratio::percent(100);
 };
 
-/// How alpha and the solid came about.
+/// How alpha and the solid were found.
 enum class AlphaChoice {
-    scan,      ///< a plain alpha-solid, the first valid one
-    binary,    ///< a plain alpha-solid found by bisection
+    scan,  ///< a plain alpha-solid, the first valid one
+    binary,  ///< a plain alpha-solid found by bisection
     repaired,  ///< cells were added round the non-manifold vertices of a plain alpha-solid
-    hull,      ///< added cells made it the whole tetrahedralisation
-    given      ///< alpha was given; nothing is promised about the boundary
+    hull,  ///< repaired, and the added cells made it the whole tetrahedralisation
+    given  ///< alpha was given; its boundary may have any defect
 };
 
 /// Radii that all give the same alpha-solid, both ends included; `largest` is infinite for the whole
@@ -50,7 +59,7 @@ struct AlphaInterval {
     double least = 0, largest = 0;
 };
 
-/// Solids that stand apart at a smaller alpha than the one that joins them.
+/// Solids that are separate at an alpha smaller than the one that joins them.
 struct SeparateSolids {
     std::size_t count = 0;
     double alpha = 0;
@@ -64,60 +73,62 @@ struct AlphaSolidResult {
     TetMesh tets;
     /// A radius in the scan's unit; giving it as the parameter gives the same alpha-solid (before any repair).
     double alpha = 0;
-    /// The least alpha at which the asked share of the points is in or on the alpha-solid.
+    /// The least alpha at which the requested share of the points is in or on the alpha-solid.
     double alpha_cover = 0;
     std::size_t cells_inside = 0;
-    /// How many different alpha-solids there are from alpha_cover (or a given alpha that is smaller) up to the whole
-    /// tetrahedralisation, both included: the different values at which cells enter. What the choice was among; those
-    /// below alpha_cover leave points out and are not counted.
+    /// The number of different alpha-solids from alpha_cover (or a given alpha that is smaller) up to the whole
+    /// tetrahedralisation, both included: the different values at which cells enter. Those below alpha_cover leave
+    /// points out and are not counted.
     std::size_t spectrum = 0;
-    /// Vertex indices of the input, ascending: inside the solid but not on its boundary; in no cell of the solid.
+    /// Vertex indices of the input, ascending. Interior: inside the solid but not on its boundary. Uncovered: in no
+    /// cell of the solid.
     Buffer<u32> interior_points, uncovered_points;
-    /// Vertex indices of the input, ascending, that are in no cell at all because weights hide them. Every other point
-    /// is interior, uncovered or on the boundary. They count for no coverage.
+    /// Vertex indices of the input, ascending, of points in no cell at all, because weights hide them. Every other
+    /// point is interior, uncovered or on the boundary. Coverage ignores hidden points.
     Buffer<u32> hidden_points;
-    /// Pieces of the boundary that share no vertex; for a manifold boundary, the number of separate solids.
+    /// Components of the boundary that share no vertex; for a manifold boundary, the number of separate solids.
     std::size_t components = 0;
-    /// Cells and points in them alone that `single` left out.
+    /// Cells of smaller solids that `single` left out.
     std::size_t cells_left_out = 0;
     AlphaChoice choice = AlphaChoice::scan;
-    /// Only a given alpha can leave any: edges with more than two boundary triangles, and vertices whose boundary
-    /// triangles are not exactly one closed fan.
+    /// Edges with more than two boundary triangles, and vertices whose boundary triangles are not exactly one closed
+    /// fan. Above 0 for a given alpha only.
     std::size_t nonmanifold_edges = 0, nonmanifold_vertices = 0;
     /// Present when alpha was given and its solid is not valid: the radii nearest to it whose solid is.
     std::optional<AlphaInterval> nearest_valid;
-    /// Present when alpha grew to join, for `single` with all points, what `many` would leave apart.
+    /// Present when alpha grew, for `single` with all points, to join solids that `many` keeps separate.
     std::optional<SeparateSolids> separate;
 };
 
-/// Finds the smallest alpha whose solid is valid: the asked share of the points is in or on it, its boundary is a
-/// closed 2-manifold (every vertex's triangles form exactly one closed fan), and for `single` it is connected. When no
-/// alpha up to four times alpha_cover has one, the solid at alpha_cover (for `single` the first connected one above) is
-/// repaired by adding the cheapest cells round every non-manifold vertex.
+/// Finds the smallest alpha whose solid is valid. When no alpha up to four times alpha_cover has one, the solid at
+/// alpha_cover (for `single` the first connected one above) is repaired: round every non-manifold vertex the cells with
+/// the least value are added until none is left; cavities that this seals become solid.
 ///
-/// With `search: scan` alpha does not fall when coverage rises; bisection promises nothing of that.
+/// With `search: scan` alpha does not fall when coverage rises: a valid solid for one share is valid for every smaller
+/// one, and where a repair for all points starts at a smaller alpha, from components that merely touch, the scan takes
+/// that. Bisection gives no such guarantee.
 ///
-/// Pre:  a tetrahedralisation made by delaunay(); alpha above 0; coverage in (0, 1]; size of the scan between 1e-100
-///       and 1e100, weights from 0 to 1e200. Throws Error with numbers, also when the given alpha leaves no cell
-///       inside, or when alpha would have to be so large that its square is no number.
+/// A given alpha is used unchanged. When its solid is not valid, the nearest alpha that is valid is searched by the
+/// same scan, from alpha_cover past the given alpha.
+///
+/// With weights (TetMesh::weights) the radii are those of spheres orthogonal to weighted points, with all weights
+/// lowered by the largest: alpha is the ball's radius where the weight is largest, and at a point of weight w the ball
+/// acts with the radius sqrt(alpha² - (largest - w)), or not at all when that is not a number. With `weights: spacing`
+/// and factor 1 alpha is about one spacing where the sampling is coarsest; smaller factors allow a smaller alpha, and
+/// the ball then shrinks less. Equal weights change no byte.
+///
+/// Pre:  a tetrahedralisation made by delaunay(), its weights finite and 0 or more; alpha above 0; coverage in (0, 1].
+///       Throws Error with numbers, also when the given alpha leaves no cell inside.
 /// Post: see AlphaSolidResult. Facet values are computed from corners sorted by coordinates and compared exactly; equal
-///       values enter together. Facets that are congruent but lie differently may differ in the last bits, and then
-///       enter one after the other. So the solid depends neither on the order of the points nor on the number of
+///       values enter together. Facets that are congruent but oriented differently may differ in the last bits, and
+///       then enter one after the other. So the solid depends neither on the order of the points nor on the number of
 ///       threads. A point exactly on a facet's smallest circumsphere does not attach the facet.
 /// Cost: O(n log n) in the worst case, about linear in the cells outside the solid for surface scans; about 80 bytes
 ///       per cell beside the result, and 50 more for `single` with coverage below 100 %.
-/// With weights (TetMesh::weights) the radii are those of spheres orthogonal to weighted points, all weights lowered by
-/// the largest: alpha is the ball's radius where the weight is largest, and at a point of weight w the ball acts with
-/// the radius sqrt(alpha² - (largest - w)), or not at all when that is no number. Equal weights change no byte.
-///
-/// A given alpha is taken as it is. Only when its solid is not valid is the nearest one sought that is, by the same
-/// scan from alpha_cover past the given alpha.
-///
-/// Metrics: alpha, alpha-cover, spectrum, cells, interior-points, uncovered-points, hidden-points, triangles. Warns, in
-/// a sentence each, about a given alpha whose solid is not valid (and names the nearest that works), points and cells
-/// left out, separate solids that were joined, a repaired or hull solid, and an ambiguous choice: points inside, or a
-/// chosen alpha far above alpha_cover or the boundary's edges. Source: Bernardini, Bajaj, Chen, Schikore 1997, section
-/// 3; Edelsbrunner, Mücke 1994 for alpha-shapes.
+/// Metrics: alpha, alpha-cover, spectrum, cells, interior-points, uncovered-points, hidden-points, triangles.
+/// Warnings, one sentence each: a given alpha whose solid is not valid, with the nearest valid alpha; points and cells
+/// left out; separate solids that were joined; a repaired or hull solid; and an ambiguous choice: points inside, or a
+/// chosen alpha far above alpha_cover or the boundary's edges.
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
 
 }  // namespace scanmill

@@ -1,24 +1,107 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "alpha_solid/cell_spheres.hpp"
+
+#include <CGAL/Interval_nt.h>
+#include <CGAL/MP_Float.h>
+#include <CGAL/Mpzf.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
-#include "alpha_solid/facet_values.hpp"
 #include "alpha_solid/sphere_polynomials.hpp"
 
 namespace scanmill::alpha {
 
 namespace {
 
+/// Offsets as short as this occur between near-duplicates only; products of shorter ones could underflow, which the
+/// error bounds below do not cover.
+constexpr double least_size = 1e-45;
+
+// Exact arithmetic, for the few cases that doubles cannot decide; a thousand times slower.
+
+/// Holds every double and is closed under + − ×. Mpzf is faster and needs GMP.
+#ifdef CGAL_HAS_MPZF
+using Exact = CGAL::Mpzf;
+#else
+using Exact = CGAL::MP_Float;
+#endif
+
+/// mantissa · 2^exponent, the mantissa 0 or far from the ends of double's range.
+struct Leading {
+    double mantissa;
+    int exponent;
+};
+
+/// The first digits of a number. Products of many lengths can lie far outside double's range where short and long
+/// offsets meet in one cell.
+Leading leading(Exact number) {
+    constexpr int step = 512;
+    Leading result{CGAL::to_double(number), 0};
+    if (CGAL::sign(number) == CGAL::ZERO) return {0, 0};
+    while (!(std::abs(result.mantissa) > 1e-150 && std::abs(result.mantissa) < 1e150)) {
+        const int shift = std::abs(result.mantissa) < 1 ? step : -step;
+        number = number * Exact(std::ldexp(1.0, shift));
+        result = {CGAL::to_double(number), result.exponent - shift};
+    }
+    return result;
+}
+
+/// numerator / denominator · 4^exponent; at most the largest double. Pre: numerator not negative, denominator above 0.
+double exact_quotient(const Exact& numerator, const Exact& denominator, int exponent) {
+    const Leading n = leading(numerator), d = leading(denominator);
+    const double value = std::ldexp(n.mantissa / d.mantissa, n.exponent - d.exponent + 2 * exponent);
+    return std::min(value, std::numeric_limits<double>::max());
+}
+
+/// The exponent of a power of two that brings a size near 1. The reciprocal of that power is a double.
+int exponent_near(double size) { return size > 0 ? std::max(std::ilogb(size), -1000) : 0; }
+
+/// Divides the offsets by the power of two near their size. Returns its exponent.
+template <std::size_t count>
+int normalise(Offsets<Exact, count>& offsets) {
+    double size = 0;
+    for (const Offset<Exact>& offset : offsets)
+        for (const Exact& component : offset) size = std::max(size, std::abs(CGAL::to_double(component)));
+    const int exponent = exponent_near(size);
+    const Exact scale(std::ldexp(1.0, -exponent));
+    for (Offset<Exact>& offset : offsets)
+        for (Exact& component : offset) component = component * scale;
+    return exponent;
+}
+
+double exact_squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    Offsets<Exact, 3> offsets = offsets_from<Exact>(a, b, c, d);
+    const int exponent = normalise(offsets);
+    const auto& [u, v, w] = offsets;
+    const Offset<Exact> vw = cross(v, w);
+    const Exact determinant = dot(u, vw);
+    const Offset<Exact> centre = circumcentre_numerator(dot(u, u), dot(v, v), dot(w, w), vw, cross(w, u), cross(u, v));
+    return exact_quotient(dot(centre, centre), Exact(4) * determinant * determinant, exponent);
+}
+
+double exact_squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c) {
+    Offsets<Exact, 2> offsets = offsets_from<Exact>(a, b, c);
+    const int exponent = normalise(offsets);
+    const auto& [u, v] = offsets;
+    const Offset<Exact> normal = cross(u, v), third = minus(v, u);
+    return exact_quotient(dot(u, u) * dot(v, v) * dot(third, third), Exact(4) * dot(normal, normal), exponent);
+}
+
+/// Whether d is strictly inside the smallest sphere through a, b, c.
+bool exactly_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return CGAL::sign(smallest_sphere_power(offsets_from<Exact>(a, b, c, d))) == CGAL::NEGATIVE;
+}
+
+// Without weights.
+
 /// A double result is accepted where cancellation has left at least this share of the terms, squared; the rest is
 /// computed exactly.
 constexpr double squared_share = 1e-12;
 
-/// Within these sizes no intermediate overflows, nor underflows so far as to matter against the bounds.
-constexpr double least_size = 1e-45, largest_size = 1e45;
-bool is_moderate(double least_square, double largest_square) {
-    return least_square > least_size * least_size && largest_square < largest_size * largest_size;
-}
+bool can_underflow(double least_square) { return !(least_square > least_size * least_size); }
 
 bool tie_broken_less(const Vec3& a, const Vec3& b) { return a.y() != b.y() ? a.y() < b.y() : a.z() < b.z(); }
 
@@ -42,7 +125,7 @@ double facet_value(const Offset<double>& u, const Offset<double>& v, double uu, 
                    const Vec3& a, const Vec3& b, const Vec3& c) {
     const Offset<double> third = minus(v, u);
     const double normal_squared = dot(normal, normal), product = uu * vv;
-    if (normal_squared > squared_share * product && is_moderate(std::min(uu, vv), std::max(uu, vv)))
+    if (normal_squared > squared_share * product && !can_underflow(std::min(uu, vv)))
         return product * dot(third, third) / (4 * normal_squared);
     return exact_squared_circumradius(a, b, c);
 }
@@ -80,7 +163,7 @@ public:
     double squared_radius() const {
         const double numerator = dot(centre_, centre_), denominator = volume_ * volume_, product = uu_ * vv_ * ww_;
         if (denominator > squared_share * product && numerator > 3 * squared_share * (product * (uu_ + vv_ + ww_)) &&
-            is_moderate(std::min({uu_, vv_, ww_}), std::max({uu_, vv_, ww_})))
+            !can_underflow(std::min({uu_, vv_, ww_})))
             return numerator / (4 * denominator);
         return exact_squared_circumradius(a_, b_, c_, d_);
     }
@@ -92,7 +175,7 @@ public:
         // value, and pass at most 19 roundings each, the offsets' included; those of the first to at most
         // 44 uvw (u + v + w) (vw + wu + uv) and 22 roundings. 22 · 44 · 2^-53 < 1.1e-13 covers all four.
         const double u = largest(u_), v = largest(v_), w = largest(w_);
-        const double bound = std::min({u, v, w}) > least_size && std::max({u, v, w}) < largest_size
+        const double bound = std::min({u, v, w}) > least_size
                                  ? 1.1e-13 * (u * v * w * (u + v + w) * (v * w + w * u + u * v))
                                  : std::numeric_limits<double>::infinity();
         const Offset<double> sum{vw_[0] + wu_[0] + uv_[0], vw_[1] + wu_[1] + uv_[1], vw_[2] + wu_[2] + uv_[2]};
@@ -107,8 +190,7 @@ public:
 private:
     bool exactly_attached(int corner) const {
         const std::array<const Vec3*, 4> all{&a_, &b_, &c_, &d_};
-        return exact_smallest_sphere_sign(*all[(corner + 1) % 4], *all[(corner + 2) % 4], *all[(corner + 3) % 4],
-                                          *all[corner]) < 0;
+        return exactly_inside(*all[(corner + 1) % 4], *all[(corner + 2) % 4], *all[(corner + 3) % 4], *all[corner]);
     }
 
     const Vec3 &a_, &b_, &c_, &d_;
@@ -118,6 +200,144 @@ private:
     double volume_;
     Offset<double> centre_;
 };
+
+// With weights.
+
+/// Rounds outwards while the processor's rounding mode is upwards.
+using Interval = CGAL::Interval_nt<false>;
+
+using WeightedCorners = std::array<WeightedPoint, 4>;
+
+/// The corners of facet i of a cell, the one with the lowest number first, then the opposite corner.
+constexpr std::array<std::array<int, 4>, 4> facet_and_apex{{{1, 2, 3, 0}, {0, 2, 3, 1}, {0, 1, 3, 2}, {0, 1, 2, 3}}};
+
+/// Corners of a cell or facet relative to their first one, in some number type and in units of 2^exponent.
+template <class Number>
+class RelativeTo {
+public:
+    RelativeTo(const WeightedPoint& from, int exponent)
+        : from_(from),
+          length_(std::ldexp(1.0, -exponent)),
+          scaled_(exponent != 0) {}
+
+    Lifted<Number> operator()(const WeightedPoint& corner) const {
+        Offset<Number> offset = offsets_from<Number>(*from_.position, *corner.position)[0];
+        if (scaled_)
+            for (Number& component : offset) component = component * length_;
+        return {offset, dot(offset, offset) + scaled(Number(from_.weight) - Number(corner.weight))};
+    }
+    /// The amount by which the first corner's weight is below the largest.
+    Number deficit(double largest) const { return scaled(Number(largest) - Number(from_.weight)); }
+
+private:
+    Number scaled(const Number& weight) const { return scaled_ ? weight * length_ * length_ : weight; }
+
+    const WeightedPoint& from_;
+    Number length_;
+    bool scaled_;
+};
+
+// Facets are numbered as in facet_and_apex.
+
+template <class Number>
+FacetSphere<Number> facet_sphere(const WeightedCorners& corners, int facet, const RelativeTo<Number>& relative) {
+    const auto& [a, b, c, apex] = facet_and_apex[static_cast<std::size_t>(facet)];
+    return {relative(corners[b]), relative(corners[c])};
+}
+template <class Number>
+Fraction<Number> cell_fraction(const WeightedCorners& corners, const RelativeTo<Number>& relative, double largest) {
+    return cell_squared_radius(relative(corners[1]), relative(corners[2]), relative(corners[3]),
+                               relative.deficit(largest));
+}
+
+int exponent_of(const WeightedCorners& corners) {
+    double size = 0;
+    for (const WeightedPoint& corner : corners)
+        size = std::max({size, largest(offsets_from(*corners[0].position, *corner.position)[0]),
+                         std::sqrt(std::abs(corner.weight - corners[0].weight))});
+    return exponent_near(size);
+}
+
+double quotient(const Fraction<Exact>& fraction, int exponent) {
+    return exact_quotient(fraction.numerator, fraction.denominator, exponent);
+}
+
+const WeightedPoint& first_of(const WeightedCorners& corners, int facet) {
+    return corners[static_cast<std::size_t>(facet_and_apex[static_cast<std::size_t>(facet)][0])];
+}
+const WeightedPoint& apex_of(const WeightedCorners& corners, int facet) {
+    return corners[static_cast<std::size_t>(facet_and_apex[static_cast<std::size_t>(facet)][3])];
+}
+
+bool exactly_attached(const WeightedCorners& corners, int facet) {
+    const RelativeTo<Exact> relative(first_of(corners, facet), exponent_of(corners));
+    return CGAL::sign(facet_sphere(corners, facet, relative).power(relative(apex_of(corners, facet)))) ==
+           CGAL::NEGATIVE;
+}
+double exact_facet_value(const WeightedCorners& corners, int facet, double largest) {
+    const int exponent = exponent_of(corners);
+    const RelativeTo<Exact> relative(first_of(corners, facet), exponent);
+    return quotient(facet_sphere(corners, facet, relative).squared_radius(relative.deficit(largest)), exponent);
+}
+double exact_cell_value(const WeightedCorners& corners, double largest) {
+    const int exponent = exponent_of(corners);
+    return quotient(cell_fraction(corners, RelativeTo<Exact>(corners[0], exponent), largest), exponent);
+}
+
+/// Whether corner i attaches the facet opposite to it: whether the centre of the cell's sphere lies beyond that facet.
+std::array<bool, 4> attachments(const WeightedCorners& corners) {
+    const RelativeTo<double> relative(corners[0], 0);
+    const Lifted<double> u = relative(corners[1]), v = relative(corners[2]), w = relative(corners[3]);
+    const Offset<double> vw = cross(v.offset, w.offset), wu = cross(w.offset, u.offset), uv = cross(u.offset, v.offset);
+    const Offset<double> centre = circumcentre_numerator(u.lift, v.lift, w.lift, vw, wu, uv);
+    const double volume = dot(u.offset, vw);
+    const Offset<double> sum{vw[0] + wu[0] + uv[0], vw[1] + wu[1] + uv[1], vw[2] + wu[2] + uv[2]};
+    // Barycentric coordinates of the centre, times 2 volume².
+    const std::array<double, 4> coordinates{2 * volume * volume - dot(centre, sum), dot(centre, vw), dot(centre, wu),
+                                            dot(centre, uv)};
+    // With U, V, W short for the offsets' largest components and L for three times their squares plus the difference of
+    // the weights, the monomials sum to at most 20 (L_u VW + L_v WU + L_w UV) (VW + WU + UV) in absolute value, and
+    // pass at most 23 roundings each, the offsets' included. 20 · 23 · 2^-53 < 5.2e-14.
+    const double su = largest(u.offset), sv = largest(v.offset), sw = largest(w.offset);
+    const auto most = [&](double size, const WeightedPoint& corner) {
+        return 3 * size * size + std::abs(corners[0].weight - corner.weight);
+    };
+    const double lu = most(su, corners[1]), lv = most(sv, corners[2]), lw = most(sw, corners[3]);
+    const double bound = std::min({su, sv, sw}) > least_size
+                             ? 5.5e-14 * ((lu * sv * sw + lv * sw * su + lw * su * sv) * (sv * sw + sw * su + su * sv))
+                             : std::numeric_limits<double>::infinity();
+    std::array<bool, 4> attached;
+    for (int i = 0; i < 4; ++i)
+        attached[i] = std::abs(coordinates[i]) > bound ? coordinates[i] < 0 : exactly_attached(corners, i);
+    return attached;
+}
+
+struct Bounds {
+    double low, high;
+    /// Narrow enough for a value. False when a bound is infinite or NaN.
+    bool narrow() const { return low > 0 && high - low <= 1e-9 * low; }
+    double middle() const { return low + (high - low) / 2; }
+};
+Bounds bounds(const Interval& interval) { return {interval.inf(), interval.sup()}; }
+Bounds bounds(const Fraction<Interval>& fraction) { return bounds(fraction.numerator / fraction.denominator); }
+
+struct CellBounds {
+    std::array<Bounds, 4> facets;
+    Bounds cell;
+};
+
+/// Of the facets in the mask, and of the cell if `with_cell`.
+CellBounds cell_bounds(const WeightedCorners& corners, double largest, unsigned facets, bool with_cell) {
+    const CGAL::Protect_FPU_rounding<true> upwards;
+    CellBounds result;
+    for (unsigned left = facets; left != 0; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const RelativeTo<Interval> relative(first_of(corners, i), 0);
+        result.facets[i] = bounds(facet_sphere(corners, i, relative).squared_radius(relative.deficit(largest)));
+    }
+    if (with_cell) result.cell = bounds(cell_fraction(corners, RelativeTo<Interval>(corners[0], 0), largest));
+    return result;
+}
 
 }  // namespace
 
@@ -148,6 +368,34 @@ CellSpheres cell_spheres(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3
     for (int i = 0; i < 4; ++i) {
         result.values[corners[i].number] = attached[i] ? std::max(values[i], own) : values[i];
         result.attached |= static_cast<u8>(attached[i] << corners[i].number);
+    }
+    return result;
+}
+
+CellSpheres weighted_cell_spheres(const std::array<WeightedPoint, 4>& given, double largest, unsigned facets) {
+    // Sorted by coordinates, so that the result does not depend on the corners' numbers.
+    std::array<int, 4> by_position{0, 1, 2, 3};
+    std::ranges::sort(by_position, [&](int a, int b) {
+        const Vec3 &p = *given[a].position, &q = *given[b].position;
+        return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+    });
+    const WeightedCorners corners{given[by_position[0]], given[by_position[1]], given[by_position[2]],
+                                  given[by_position[3]]};
+    unsigned requested = 0;
+    for (int i = 0; i < 4; ++i) requested |= (facets >> by_position[i] & 1u) << i;
+
+    const std::array<bool, 4> attached = attachments(corners);
+    const bool any_attached = std::ranges::find(attached, true) != attached.end();
+    const CellBounds found = cell_bounds(corners, largest, requested, any_attached);
+    double own = 0;
+    if (any_attached) own = found.cell.narrow() ? found.cell.middle() : exact_cell_value(corners, largest);
+    CellSpheres result{};
+    for (int i = 0; i < 4; ++i) {
+        double value = 0;
+        if ((requested >> i & 1u) != 0)
+            value = found.facets[i].narrow() ? found.facets[i].middle() : exact_facet_value(corners, i, largest);
+        result.values[by_position[i]] = attached[i] ? std::max(value, own) : value;
+        result.attached |= static_cast<u8>(attached[i] << by_position[i]);
     }
     return result;
 }

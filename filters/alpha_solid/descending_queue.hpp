@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// A priority queue for values that never rise: no value pushed exceeds the last one popped. A radix heap (Ahuja,
-/// Mehlhorn, Orlin, Tarjan 1990) over the bits of non-negative doubles: amortised a few sequential moves per item where
-/// a binary heap would miss the cache at every level.
+/// Mehlhorn, Orlin, Tarjan 1990) over the bits of non-negative doubles: amortised a few sequential moves per item,
+/// where a binary heap misses the cache at every level.
 
 #include <array>
 #include <bit>
@@ -22,12 +22,12 @@ public:
         buckets_[bucket(key)].push_back({key, item});
     }
 
-    /// The value being popped; infinite at first.
+    /// The value of the last item popped; infinite at first.
     double level() const { return std::bit_cast<double>(~level_); }
 
-    /// Puts the next item that `wanted(item)` accepts into `item`; items of equal value come last in, first out. An
-    /// item is offered to `wanted` when its value becomes the level, once per push.
-    /// `soon(item)` is called for some items a little before they come out, to fetch what they need.
+    /// Pops into `item` the next item that `wanted(item)` accepts; items of equal value come last in, first out.
+    /// `wanted` is called for an item when its value becomes the level, once per push. `soon(item)` is called for some
+    /// items shortly before they are popped, to prefetch their data. False when no item is left.
     template <class Wanted, class Soon>
     bool pop(u32& item, const Wanted& wanted, const Soon& soon) {
         Array<Entry>& current = buckets_[0];
@@ -57,7 +57,7 @@ private:
     /// 0 for the level itself, else the position of the highest bit in which the key differs from it.
     std::size_t bucket(u64 key) const { return static_cast<std::size_t>(std::bit_width(key ^ level_)); }
 
-    /// Moves the level to the largest value left and deals out its bucket anew.
+    /// Lowers the level to the largest value left and redistributes its bucket.
     template <class Soon>
     bool descend(const Soon& soon) {
         std::size_t first = 1;
@@ -76,7 +76,7 @@ private:
         return true;
     }
 
-    /// So many items' memory stays in the cache until they come out.
+    /// Prefetched data of this many items stays in the cache until they are popped.
     static constexpr std::size_t few = 64;
 
     u64 level_ = key_of(std::numeric_limits<double>::infinity());

@@ -12,32 +12,29 @@ SCANMILL_FILTER() {
             "outside.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
         .ties(
-            "Facets that open at equal alpha, as doubles round it, open together; of pieces with equally many points "
-            "the one with the lowest "
-            "point stays.")
+            "Facets whose alpha is equal in double precision open together; of components with equally many points the "
+            "one with the lowest point is kept.")
         .in<TetMesh>("tets", "A Delaunay tetrahedralisation.")
         .out<TriangleMesh>("mesh", "The solid's boundary, closed and outward.")
         .out<TetMesh>("tets", "The cells, labelled inside or outside.")
-        .param("alpha", &P::alpha, "The ball's radius; auto takes the least that gives a valid solid.", word("auto"),
-               above(0))
+        .param("alpha", &P::alpha, "The radius of the ball; auto takes the least that gives a valid solid.",
+               word("auto"), above(0))
         .choice("search", &P::search,
                 {{"scan", AlphaSearch::scan, "The least alpha whose solid is valid."},
                  {"binary", AlphaSearch::binary, "The paper's bisection: a valid solid, not always the least."}},
                 "How alpha: auto is found.")
-        .choice(
-            "components", &P::components,
-            {{"single", AlphaComponents::single,
-              "One solid: alpha grows until it joins all; with coverage below 100 % others than the one with the most "
-              "points are left out."},
-             {"many", AlphaComponents::many, "Any number of solids: what stands apart at the least alpha stays so."}},
-            "How many separate solids are valid.")
+        .choice("components", &P::components,
+                {{"single", AlphaComponents::single,
+                  "One solid: alpha grows until all are joined; with coverage below 100 % only the one with the most "
+                  "points is kept."},
+                 {"many", AlphaComponents::many,
+                  "Any number of solids: those that are separate at the least alpha stay separate."}},
+                "How many separate solids are valid.")
         .param("coverage", &P::coverage, "Share of the points that must be in or on the solid.", above(0), at_most(1))
         .metric("alpha", Unit::length, "The radius used.", headline)
-        .metric("alpha-cover", Unit::length, "The least radius that covers the asked share of the points.")
-        .metric(
-            "spectrum", Unit::count,
-            "Different alpha-solids from alpha-cover (or a smaller given alpha) up to the hull: what the choice was "
-            "among.")
+        .metric("alpha-cover", Unit::length, "The least radius that covers the requested share of the points.")
+        .metric("spectrum", Unit::count,
+                "Number of different alpha-solids from alpha-cover (or a smaller given alpha) up to the hull.")
         .metric("cells", Unit::count, "Cells inside.")
         .metric("interior-points", Unit::count, "Points inside the solid but not on its boundary.")
         .metric("uncovered-points", Unit::count, "Points in no cell of the solid.", headline)

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "alpha_solid/selection.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
+#include <charconv>
 #include <cmath>
 #include <limits>
-#include <optional>
 
-#include "alpha_solid/growth.hpp"
-#include "alpha_solid/pieces.hpp"
+#include "alpha_solid/incremental_solid.hpp"
 
 namespace scanmill::alpha {
 
@@ -23,25 +24,153 @@ double distance(const AlphaRange& range, double alpha) {
     return std::max(std::sqrt(range.from) - alpha, alpha - std::sqrt(range.to));
 }
 
-/// No number may lie between two squares that differ in their last bits.
+/// Between two squares that differ in their last bits there may be no radius.
 bool has_a_radius(const AlphaRange& range) {
     const double root = std::sqrt(range.from);
     const double least = root * root < range.from ? std::nextafter(root, range.to) : root;
     return least * least < range.to;
 }
 
+double number(std::string_view text) {
+    double value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
 }  // namespace
 
-Selector::Selector(const TetMesh& tets, const Flood& flood, const AlphaSolidParams& params, Context& context)
+std::string text_within(const AlphaInterval& interval, double alpha) {
+    const bool is_above = interval.least > alpha;
+    const double end = is_above ? interval.least : interval.largest;
+    std::string text;
+    for (int digits = 4; digits <= 17; ++digits) {
+        const double last_place = std::pow(10.0, std::floor(std::log10(end)) + 1 - digits);
+        for (double candidate : {end, is_above ? end + last_place : end - last_place}) {
+            text = fmt::format("{:.{}g}", candidate, digits);
+            if (const double value = number(text); value >= interval.least && value <= interval.largest) return text;
+        }
+    }
+    return text;
+}
+
+/// The alpha-solid while alpha grows: cells enter in groups of equal value, and after each group it is known which
+/// points the solid has and whether it is valid.
+class Selector::Ascent {
+public:
+    Ascent(const Selector& selector, const Selection& start)
+        : selector_(selector),
+          outside_(start.outside),
+          vertices_(selector.one_component_ ? selector.tets_.positions.size() : 0) {
+        solid_.emplace(selector.tets_, start.labels, start.defects.vertices);
+        if (selector.one_component_) component_count_ = join_vertices(start.triangles, vertices_);
+        if (selector.keeps_largest_) {
+            components_.emplace(selector.tets_, start.labels);
+            note_largest();
+        }
+    }
+
+    bool at_hull() const { return outside_ == 0; }
+    double next_value() const { return selector_.sweep_.values[outside_ - 1]; }
+    std::size_t outside() const { return outside_; }
+
+    /// Lets the next group enter.
+    void step() {
+        const std::size_t begin = selector_.sweep_.group_begin(outside_ - 1);
+        const std::span<const u32> cells(selector_.sweep_.cells.data() + begin, outside_ - begin);
+        outside_ = begin;
+        if (components_) {
+            solid_->add_joined(cells);
+            components_->add(cells);
+            return;
+        }
+        solid_->add(cells);
+        // Every point is covered, so components are only joined.
+        if (component_count_ > 1)
+            for (u32 cell : cells)
+                for (u32 vertex : selector_.tets_.cells[cell])
+                    component_count_ -= vertices_.unite(selector_.tets_.cells[cell][0], vertex);
+    }
+
+    /// One component when one is requested with all points; else a component with enough points, which is then kept.
+    bool has_required_component() {
+        if (!components_) return component_count_ == 1;
+        if (components_->most_points() < selector_.needed_) return false;
+        follow_largest();
+        return true;
+    }
+
+    IncrementalSolid& solid() { return *solid_; }
+
+    AlphaRange range() const {
+        const Array<double>& values = selector_.sweep_.values;
+        return {values[outside_], at_hull() ? std::numeric_limits<double>::infinity() : values[outside_ - 1]};
+    }
+
+    bool is_valid() {
+        triangles_.reset();
+        if (!has_required_component()) return false;
+        const IncrementalSolid::Verdict verdict = solid_->verdict();
+        if (verdict != IncrementalSolid::Verdict::many_suspects) return verdict == IncrementalSolid::Verdict::manifold;
+        const unsigned threads = selector_.context_.threads();
+        triangles_ = boundary_triangles(selector_.tets_, solid_->labels(), threads);
+        const BoundaryDefects defects = boundary_defects(*triangles_, selector_.tets_.positions.size(), threads);
+        solid_->suspect_only(defects.vertices);
+        return defects.vertices.empty();
+    }
+    /// Pre: is_valid() was true and no group has entered since.
+    Selection valid_selection() {
+        if (!triangles_)
+            triangles_ = boundary_triangles(selector_.tets_, solid_->labels(), selector_.context_.threads());
+        Selection selection;
+        selection.outside = outside_;
+        selection.labels = solid_->labels();
+        selection.triangles = std::move(*triangles_);
+        DisjointSets vertices(selector_.tets_.positions.size());
+        selection.components = selector_.one_component_ ? 1 : join_vertices(selection.triangles, vertices);
+        return selection;
+    }
+
+private:
+    /// Another component than the kept one may have the most points by now, or as many. Components only gain points, so
+    /// the choice stays valid as long as neither number changes.
+    void follow_largest() {
+        const bool is_noted = most_ == components_->most_points() && with_most_ == components_->components_with_most();
+        const bool is_alone =
+            components_->components_with_most() == 1 && solid_->covered() == components_->most_points();
+        note_largest();
+        if (is_noted || is_alone) return;
+        const Selection largest = selector_.solid_without(outside_);
+        solid_.emplace(selector_.tets_, largest.labels, largest.defects.vertices);
+    }
+
+    void note_largest() {
+        most_ = components_->most_points();
+        with_most_ = components_->components_with_most();
+    }
+
+    const Selector& selector_;
+    std::optional<IncrementalSolid> solid_;
+    std::size_t outside_;
+    /// When one component is requested: its points joined, and the number of components left.
+    DisjointSets vertices_;
+    std::size_t component_count_ = 1;
+    /// When the largest component is kept: the points of each, and the numbers when the largest was last chosen.
+    std::optional<IncrementalComponents> components_;
+    std::size_t most_ = 0, with_most_ = 0;
+    /// The boundary, when the last test needed all of it.
+    std::optional<Array<Triangle>> triangles_;
+};
+
+Selector::Selector(const TetMesh& tets, const SweepResult& sweep, const AlphaSolidParams& params, Context& context)
     : tets_(tets),
-      flood_(flood),
+      sweep_(sweep),
       context_(context),
       search_(params.search),
-      cover_(flood.cover),
-      needed_(flood.needed) {
+      cover_(sweep.cover),
+      needed_(sweep.needed) {
     const bool single = params.components == AlphaComponents::single;
     keeps_largest_ = single && params.coverage.value() < 1;
-    one_piece_ = single && !keeps_largest_;
+    one_component_ = single && !keeps_largest_;
 }
 
 Selection Selector::described(Array<u8> labels, std::size_t outside, AlphaChoice choice) const {
@@ -60,55 +189,55 @@ Selection Selector::solid_without(std::size_t outside_cells) const {
     context_.check_cancelled();
     Array<u8> labels(tets_.cells.size());
     std::ranges::fill(labels, solid);
-    for (std::size_t i = 0; i < outside_cells; ++i) labels[flood_.cells[i]] = outside;
-    if (keeps_largest_) keep_largest_piece(tets_, labels);
+    for (std::size_t i = 0; i < outside_cells; ++i) labels[sweep_.cells[i]] = outside;
+    if (keeps_largest_) keep_largest_component(tets_, labels);
     return described(std::move(labels), outside_cells, choice_of(search_));
 }
 
 bool Selector::is_valid(const Selection& selection) const {
     if (!selection.defects.vertices.empty()) return false;
-    if (one_piece_ && selection.components != 1) return false;
-    // From alpha_cover on, only what was left out can be missing.
-    const bool is_covered = !keeps_largest_ && selection.outside <= flood_.outside_above(cover_);
+    if (one_component_ && selection.components != 1) return false;
+    // From alpha_cover on, points can be missing only where components were left out.
+    const bool is_covered = !keeps_largest_ && selection.outside <= sweep_.outside_above(cover_);
     return is_covered || covered_points(tets_, selection.labels) >= needed_;
 }
 
 Selection Selector::given(double value) const {
-    Selection selection = solid_without(flood_.outside_above(value));
+    Selection selection = solid_without(sweep_.outside_above(value));
     selection.choice = AlphaChoice::given;
     return selection;
 }
 
 Selector Selector::for_all_points() const {
     Selector all = *this;
-    all.cover_ = flood_.cover_all;
-    all.needed_ = flood_.points;
-    all.one_piece_ = true;
+    all.cover_ = sweep_.cover_all;
+    all.needed_ = sweep_.points;
+    all.one_component_ = true;
     all.keeps_largest_ = false;
     return all;
 }
 
-/// For any share the least valid solid is one for every smaller share too, and so is the least in one piece, joined
-/// across facets, where repairs start; so alpha never falls when the share grows. Only repairs for all points start
-/// from less, from pieces that touch.
+/// The least valid solid for a share is valid for every smaller share too, and so is the least solid of one component,
+/// joined across facets, where repairs start. So alpha never falls when the share grows. Only repairs for all points
+/// start at a smaller alpha, from components that touch.
 Selection Selector::scan() const {
     Selection chosen = scan_for_share();
-    if (!keeps_largest_ || flood_.values[chosen.outside] <= flood_.cover_all) return chosen;
+    if (!keeps_largest_ || sweep_.values[chosen.outside] <= sweep_.cover_all) return chosen;
     Selection whole = for_all_points().scan_for_share();
-    return flood_.values[whole.outside] < flood_.values[chosen.outside] ? std::move(whole) : std::move(chosen);
+    return sweep_.values[whole.outside] < sweep_.values[chosen.outside] ? std::move(whole) : std::move(chosen);
 }
 
 Selection Selector::scan_for_share() const {
-    Selection start = solid_without(flood_.outside_above(cover_));
+    Selection start = solid_without(sweep_.outside_above(cover_));
     if (is_valid(start)) return start;
 
-    Growth growth(*this, start);
+    Ascent ascent(*this, start);
     const double last = max_scan * max_scan * cover_;
-    for (std::size_t steps = 0; !growth.at_hull() && growth.next_value() <= last; ++steps) {
+    for (std::size_t steps = 0; !ascent.at_hull() && ascent.next_value() <= last; ++steps) {
         if (steps % 4096 == 0) context_.check_cancelled();
-        growth.step();
-        if (!growth.is_valid()) continue;
-        Selection selection = growth.valid_selection();
+        ascent.step();
+        if (!ascent.is_valid()) continue;
+        Selection selection = ascent.valid_selection();
         assert(is_valid(described(selection.labels, selection.outside, AlphaChoice::scan)));
         return selection;
     }
@@ -117,31 +246,31 @@ Selection Selector::scan_for_share() const {
 
 AlphaRange Selector::nearest_valid(double value) const {
     // Below alpha_cover points are left out.
-    Growth growth(*this, solid_without(flood_.outside_above(cover_)));
+    Ascent ascent(*this, solid_without(sweep_.outside_above(cover_)));
     const double alpha = std::sqrt(value);
     std::optional<AlphaRange> nearest;
     for (std::size_t steps = 0;; ++steps) {
         if (steps % 4096 == 0) context_.check_cancelled();
-        // While alpha grows, ranges below `value` come nearer, those above go farther away.
-        const AlphaRange range = growth.range();
+        // As alpha grows, ranges below `value` come nearer and ranges above it go farther away.
+        const AlphaRange range = ascent.range();
         if (nearest && range.from > value && distance(range, alpha) > distance(*nearest, alpha)) return *nearest;
-        if (has_a_radius(range) && growth.is_valid()) {
+        if (has_a_radius(range) && ascent.is_valid()) {
             if (range.from > value) return range;
             nearest = range;
         }
-        if (growth.at_hull()) break;
-        growth.step();
+        if (ascent.at_hull()) break;
+        ascent.step();
     }
     assert(nearest);  // the hull is valid
     return *nearest;
 }
 
-std::optional<Selection> Selector::apart() const {
-    assert(one_piece_);
+std::optional<Selection> Selector::separate() const {
+    assert(one_component_);
     Selector any = *this;
-    any.one_piece_ = false;
-    // All points are covered there, so a larger alpha only joins pieces.
-    if (any.solid_without(flood_.outside_above(cover_)).components < 2) return std::nullopt;
+    any.one_component_ = false;
+    // All points are covered there, so a larger alpha only joins components.
+    if (any.solid_without(sweep_.outside_above(cover_)).components < 2) return std::nullopt;
     Selection selection = any.scan_for_share();
     if (selection.components < 2) return std::nullopt;
     return selection;
@@ -149,29 +278,29 @@ std::optional<Selection> Selector::apart() const {
 
 Selection Selector::repaired(const Selection& start) const {
     context_.check_cancelled();
-    Growth growth(*this, start);
-    while (!growth.holds_enough()) growth.step();
+    Ascent ascent(*this, start);
+    while (!ascent.has_required_component()) ascent.step();
 
     Array<double> price(tets_.cells.size());
     std::ranges::fill(price, 0.0);
-    for (std::size_t i = 0; i < growth.outside(); ++i) price[flood_.cells[i]] = flood_.values[i];
-    growth.solid().repair(price);
+    for (std::size_t i = 0; i < ascent.outside(); ++i) price[sweep_.cells[i]] = sweep_.values[i];
+    ascent.solid().repair(price);
 
-    Array<u8> labels = growth.solid().labels();
+    Array<u8> labels = ascent.solid().labels();
     fill_cavities(tets_, labels);
     const bool is_hull = std::ranges::all_of(labels, [](u8 label) { return label == solid; });
     Selection selection =
-        described(std::move(labels), growth.outside(), is_hull ? AlphaChoice::hull : AlphaChoice::repaired);
+        described(std::move(labels), ascent.outside(), is_hull ? AlphaChoice::hull : AlphaChoice::repaired);
     assert(is_valid(selection));
     return selection;
 }
 
 Selection Selector::bisect() const {
     // Every different alpha-solid from the hull (nothing outside) down to alpha_cover.
-    const std::size_t cover = flood_.outside_above(cover_);
+    const std::size_t cover = sweep_.outside_above(cover_);
     Array<std::size_t> candidates;
     for (std::size_t i = 0; i <= cover; ++i)
-        if (i == 0 || flood_.values[i] != flood_.values[i - 1]) candidates.push_back(i);
+        if (i == 0 || sweep_.values[i] != sweep_.values[i - 1]) candidates.push_back(i);
 
     Selection best = solid_without(cover);
     if (is_valid(best)) return best;

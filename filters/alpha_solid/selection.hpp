@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Which alpha-solid: the search through the order in which cells enter as alpha grows.
+/// The search for alpha, through the order in which cells enter the solid as alpha grows.
 
 #include <optional>
+#include <string>
 
 #include "alpha_solid/alpha_solid.hpp"
-#include "alpha_solid/flood.hpp"
-#include "alpha_solid/labels.hpp"
+#include "alpha_solid/components.hpp"
+#include "alpha_solid/widest_path_sweep.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill::alpha {
 
-/// How far beyond alpha_cover the scan goes on looking for a valid alpha-solid before it settles for a repaired one.
+/// Up to this multiple of alpha_cover the scan searches for a valid alpha-solid; if there is none, it repairs one.
 inline constexpr double max_scan = 4;
 
 struct Selection {
-    /// The alpha-solid is every cell but the flood's first `outside`; `labels` may differ from it by cells left out or
+    /// The alpha-solid is every cell but the sweep's first `outside`; `labels` may differ from it by cells left out or
     /// added.
     std::size_t outside = 0;
     AlphaChoice choice = AlphaChoice::scan;
@@ -32,35 +33,38 @@ struct AlphaRange {
     double from = 0, to = 0;
 };
 
+/// A radius of the interval near `alpha`, written with as few digits (at least 4) as still give one of it. Pre: least
+/// is above 0 and not above largest; alpha is outside of them.
+std::string text_within(const AlphaInterval& interval, double alpha);
+
 class Selector {
 public:
-    Selector(const TetMesh& tets, const Flood& flood, const AlphaSolidParams& params, Context& context);
+    Selector(const TetMesh& tets, const SweepResult& sweep, const AlphaSolidParams& params, Context& context);
 
     /// The alpha-solid at squared radius `value`, whatever its boundary.
     Selection given(double value) const;
-    /// The least valid alpha-solid, or a repaired one when none is valid up to four times alpha_cover. Of `single` with
-    /// a share of the points and with all of them, whichever has the smaller alpha: pieces that touch are one sooner
-    /// than they are joined across facets, and may be repaired then.
+    /// The least valid alpha-solid, or a repaired one when none is valid up to max_scan times alpha_cover. For `single`
+    /// with a share of the points, the solid for the share or that for all points, whichever has the smaller alpha:
+    /// components that touch count as one before they are joined across facets, and may be repaired then.
     Selection scan() const;
     /// A valid alpha-solid by bisection between alpha_cover and the hull.
     Selection bisect() const;
 
-    /// As defined by alpha_solid(): does the solid hold enough points, with a manifold boundary and in one piece where
-    /// that was asked for?
+    /// As defined by alpha_solid(): the solid has enough points, a manifold boundary, and is one component where that
+    /// was requested.
     bool is_valid(const Selection& selection) const;
-    /// Of all valid alpha-solids the one whose radii come nearest to the root of `value`; of two equally near the
-    /// larger. Pre: the one at `value` is not valid. Cost: as scan(), over all radii from alpha_cover to that distance
-    /// above `value`.
+    /// The valid alpha-solid whose radii are nearest to the root of `value`; of two equally near the larger. Pre: the
+    /// one at `value` is not valid. Cost: as scan(), over all radii from alpha_cover to that distance above `value`.
     AlphaRange nearest_valid(double value) const;
 
-    /// The alpha-solid that is valid when any number of pieces is, if that are several. Pre: one piece was asked for,
-    /// with all points, and the alpha-solid at alpha_cover is not valid.
-    std::optional<Selection> apart() const;
+    /// The solid that is valid when any number of components is allowed, if it has several. Pre: one component was
+    /// requested, with all points, and the alpha-solid at alpha_cover is not valid.
+    std::optional<Selection> separate() const;
 
 private:
-    class Growth;
+    class Ascent;
 
-    /// Asks for all points in one piece.
+    /// Requests all points in one component.
     Selector for_all_points() const;
     Selection scan_for_share() const;
     Selection solid_without(std::size_t outside) const;
@@ -68,15 +72,15 @@ private:
     Selection repaired(const Selection& start) const;
 
     const TetMesh& tets_;
-    const Flood& flood_;
+    const SweepResult& sweep_;
     Context& context_;
     AlphaSearch search_;
     /// alpha_cover² and the number of points that it covers.
     double cover_;
     std::size_t needed_;
-    /// `single` with full coverage: only a solid in one piece is valid.
-    bool one_piece_;
-    /// `single` with less: pieces but the largest are left out.
+    /// `single` with full coverage: only a solid of one component is valid.
+    bool one_component_;
+    /// `single` with less: components but the largest are left out.
     bool keeps_largest_;
 };
 

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The polynomials behind circumspheres, for any number type: one definition serves doubles and exact numbers.
+/// The polynomials behind the spheres of cells and facets, for any number type: one definition serves doubles,
+/// intervals and exact numbers.
 ///
 /// Everything is written in offsets u, v, w from one corner. With n = u×v and p = u·(v×w):
 /// circumcentre of a tetrahedron = (|u|² v×w + |v|² w×u + |w|² u×v) / 2p;
 /// circumcentre of a triangle    = (|v|² n×u + |u|² v×n) / 2|n|².
+///
+/// With weights, the centre's offset x from corner a satisfies 2 x·u = |u|² + w_a - w_b for every other corner b at
+/// offset u. So the formulas are the same with these right-hand sides, here called lifts, in place of |u|².
 
 #include <algorithm>
 #include <array>
@@ -32,6 +36,11 @@ Offset<Number> cross(const Offset<Number>& a, const Offset<Number>& b) {
 template <class Number>
 Offset<Number> minus(const Offset<Number>& a, const Offset<Number>& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+template <class Number>
+Offset<Number> times(const Number& factor, const Offset<Number>& offset) {
+    return {factor * offset[0], factor * offset[1], factor * offset[2]};
 }
 
 inline double largest(const Offset<double>& offset) {
@@ -69,11 +78,52 @@ Number smallest_sphere_power(const Offsets<Number, 3>& offsets) {
     return dot(n, n) * dot(w, w) - dot(w, twice_centre);
 }
 
-/// The same in exact arithmetic, for the few cases that doubles cannot decide; a thousand times slower. Values are
-/// finite: one beyond the range of double becomes the largest double.
-double exact_squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
-double exact_squared_circumradius(const Vec3& a, const Vec3& b, const Vec3& c);
-/// −1 when d is strictly inside the smallest sphere through a, b, c; 0 on it; 1 outside.
-int exact_smallest_sphere_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+/// numerator / denominator; both of them non-negative, the denominator above 0.
+template <class Number>
+struct Fraction {
+    Number numerator, denominator;
+};
+
+/// A weighted corner relative to another one.
+template <class Number>
+struct Lifted {
+    Offset<Number> offset;
+    Number lift;
+};
+
+/// Twice the centre of the smallest sphere of a, b and c is n × spread / |n|², with n = u×v and
+/// spread = lift(c) u - lift(b) v. So its squared radius is |spread|² / 4|n|² plus `deficit`, the amount by which a's
+/// weight is below the largest.
+template <class Number>
+struct FacetSphere {
+    FacetSphere(const Lifted<Number>& b, const Lifted<Number>& c)
+        : normal(cross(b.offset, c.offset)),
+          normal_squared(dot(normal, normal)),
+          spread(minus(times(c.lift, b.offset), times(b.lift, c.offset))) {}
+
+    Fraction<Number> squared_radius(const Number& deficit) const {
+        const Number denominator = Number(4) * normal_squared;
+        return {dot(spread, spread) + deficit * denominator, denominator};
+    }
+    /// |n|² times the power of d.
+    Number power(const Lifted<Number>& d) const {
+        return normal_squared * d.lift - dot(d.offset, cross(normal, spread));
+    }
+
+    Offset<Number> normal;
+    Number normal_squared;
+    Offset<Number> spread;
+};
+
+template <class Number>
+Fraction<Number> cell_squared_radius(const Lifted<Number>& b, const Lifted<Number>& c, const Lifted<Number>& d,
+                                     const Number& deficit) {
+    const Offset<Number> cd = cross(c.offset, d.offset);
+    const Offset<Number> centre =
+        circumcentre_numerator(b.lift, c.lift, d.lift, cd, cross(d.offset, b.offset), cross(b.offset, c.offset));
+    const Number volume = dot(b.offset, cd);
+    const Number denominator = Number(4) * volume * volume;
+    return {dot(centre, centre) + deficit * denominator, denominator};
+}
 
 }  // namespace scanmill::alpha

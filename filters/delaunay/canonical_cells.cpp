@@ -22,12 +22,12 @@ struct NumberedCell {
 
 CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, std::size_t vertices,
                                unsigned threads) {
-    // Counting sort by first corner: bucket sizes, bucket starts, fill. Which thread fills first does not matter, the
-    // buckets are sorted afterwards.
+    // Counting sort by first corner: bucket sizes, bucket starts, fill. The order in which threads fill a bucket does
+    // not matter, because buckets are sorted afterwards.
     Array<u32> next(vertices + 1);
     std::fill(next.begin(), next.end(), 0);
-    const auto claim = [&, alone = threads == 1](u32 vertex) {
-        return alone ? next[vertex]++ : std::atomic_ref(next[vertex]).fetch_add(1, std::memory_order_relaxed);
+    const auto claim = [&, is_serial = threads == 1](u32 vertex) {
+        return is_serial ? next[vertex]++ : std::atomic_ref(next[vertex]).fetch_add(1, std::memory_order_relaxed);
     };
     for_each_chunk(threads, cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) claim(cells[c][0]);
@@ -40,9 +40,9 @@ CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, 
         for (std::size_t c = begin; c < end; ++c) sorted[claim(cells[c][0])] = {cells[c], static_cast<u32>(c)};
     });
 
-    // Filling moved every start to the next bucket's: bucket v is now [next[v - 1], next[v]).
+    // Filling has moved every start to that of the next bucket: bucket v is now [next[v - 1], next[v]).
     CanonicalCells result{std::move(cells), {}};
-    Array<u32> place(sorted.size());
+    Array<u32> new_number(sorted.size());
     for_each_chunk(threads, vertices, chunk / 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t vertex = begin; vertex < end; ++vertex) {
             const u32 first = vertex == 0 ? 0 : next[vertex - 1], last = next[vertex];
@@ -50,20 +50,20 @@ CanonicalCells canonical_cells(Array<Tetrahedron> cells, Array<Row> neighbours, 
                       [](const NumberedCell& a, const NumberedCell& b) { return a.corners < b.corners; });
             for (u32 c = first; c < last; ++c) {
                 result.cells[c] = sorted[c].corners;
-                place[sorted[c].number] = c;
+                new_number[sorted[c].number] = c;
             }
         }
     });
 
-    // In the order they came in: there neighbours are mostly near each other, so that only the write jumps.
+    // In input order, in which neighbours are mostly near each other, so that only the writes are scattered.
     sorted = {};
     result.neighbours.resize(neighbours.size());
     for_each_chunk(threads, neighbours.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
             Row across = neighbours[c];
             for (u32& neighbour : across)
-                if (neighbour != TetMesh::outside_hull) neighbour = place[neighbour];
-            result.neighbours[place[c]] = across;
+                if (neighbour != TetMesh::outside_hull) neighbour = new_number[neighbour];
+            result.neighbours[new_number[c]] = across;
         }
     });
     return result;

@@ -9,7 +9,7 @@
 
 namespace scanmill {
 
-/// Where the corners of `cell` come from in canonical order: the even permutation that makes it lexicographically
+/// The corners of `cell` in canonical order, as indices into it: the even permutation that makes it lexicographically
 /// smallest.
 inline std::array<int, 4> canonical_corners(const Tetrahedron& cell) {
     constexpr std::array<std::array<int, 4>, 4> first{{{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 0, 1, 3}, {3, 0, 2, 1}}};

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Puts the vertices and cells of our triangulations into slabs. CGAL's data structure names its containers itself, so
-/// this is where they can be told whose memory to take: a container of our elements is the same one with another
-/// allocator.
+/// Makes CGAL allocate the vertices and cells of our triangulations from slabs. CGAL's data structure fixes the type of
+/// its containers, so this file specialises those types for our elements: the same containers with another allocator.
 ///
-/// Include it before any triangulation is named.
+/// Include it before any triangulation type is used.
 
 #include <CGAL/Compact_container.h>
 #include <CGAL/Concurrent_compact_container.h>
@@ -16,12 +15,12 @@
 
 namespace scanmill {
 
-/// The place of a finite cell among all, or TetMesh::outside_hull.
+/// The number of a finite cell, or TetMesh::outside_hull.
 struct CellNumber {
     u32 number;
 };
 
-/// Of the input rows at a vertex's place the smallest.
+/// The smallest of the input rows at a vertex's position.
 struct FirstRow {
     static constexpr u32 none = 0xffff'ffff;
     u32 row = none;
@@ -48,7 +47,7 @@ template <class Kernel, class Base>
 class Compact_container<scanmill::RowVertexBase<Kernel, Base>, Default, Default, Default>
     : public scanmill::LoneContainer<scanmill::RowVertexBase<Kernel, Base>> {};
 
-// It takes memory under its own lock.
+// It allocates memory under its own lock.
 template <class Kernel, class Base>
 class Concurrent_compact_container<scanmill::NumberedCellBase<Kernel, Base>,
                                    tbb::scalable_allocator<scanmill::NumberedCellBase<Kernel, Base>>>

@@ -14,7 +14,7 @@ namespace scanmill {
 
 namespace {
 
-/// Input rows that stay, and for every input row the vertex that it became (only rows that stay are filled).
+/// The input rows that are kept, and for every kept row its vertex.
 struct DistinctRows {
     Array<u32> kept, vertex_of_row;
 };
@@ -33,7 +33,7 @@ DistinctRows distinct_rows(std::size_t count, std::span<const u32> duplicates) {
     return rows;
 }
 
-/// Marks the vertices in no cell, if any, by a column, and tells how many there are.
+/// Marks the vertices in no cell, if any, in a column, with a warning. Returns their number.
 std::size_t mark_hidden(TetMesh& tets, Context& context) {
     const Array<u32> hidden = hidden_vertices(tets);
     if (hidden.empty()) return 0;
@@ -58,7 +58,7 @@ DelaunayResult delaunay(const PointCloud& cloud, const DelaunayParams& params, C
         weighted = point_weights(cloud, params, context);
         raw = triangulate_weighted(positions, weighted.weights, std::move(weighted.duplicates), context);
     } else {
-        if (params.factor != DelaunayParams().factor) context.warn("factor changes nothing while `weights` is none");
+        if (params.factor != DelaunayParams().factor) context.warn("factor has no effect while `weights` is none");
         raw = triangulate(positions, context);
     }
     if (raw.dimension < 3) refuse_flat(positions, raw.dimension, 0, cloud.frame);

@@ -9,7 +9,6 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/array.hpp"
-#include "scanmill/geometry/size_limits.hpp"
 
 namespace scanmill {
 
@@ -18,8 +17,8 @@ namespace {
 constexpr std::size_t chunk = 1 << 15;
 constexpr std::string_view way_out = "voxel-thin accepts flat scans";
 constexpr std::string_view few_points =
-    "`scanmill info` tells how many points a file has; a step before may keep too few, as voxel-thin does with a large "
-    "bin-size or min-points";
+    "`scanmill info` gives the number of points in a file; an earlier step may keep too few, such as voxel-thin with a "
+    "large bin-size or min-points";
 
 struct Farthest {
     double measure = -1;
@@ -42,7 +41,7 @@ Farthest farthest(std::span<const Vec3> positions, unsigned threads, const Measu
     return best;
 }
 
-std::size_t distinct_places(std::span<const Vec3> positions) {
+std::size_t distinct_points(std::span<const Vec3> positions) {
     std::vector<Vec3> sorted(positions.begin(), positions.end());
     const auto less = [](const Vec3& a, const Vec3& b) {
         return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
@@ -84,7 +83,6 @@ void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsign
     if (positions.size() < 4)
         throw Error("needs at least 4 points that are not coplanar; the cloud has {}", positions.size())
             .hint(std::string(few_points));
-    require_finite_size(bounding_box(positions));
     const Extents found = extents(positions, frame.origin, threads);
     if (found.from_point <= found.rounding) refuse_flat(positions, 0, found.from_point, frame);
     if (found.from_line <= found.rounding) refuse_flat(positions, 1, found.from_line, frame);
@@ -92,12 +90,12 @@ void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsign
 }
 
 void refuse_flat(std::span<const Vec3> positions, int dimension, double distance, const Frame& frame) {
-    if (const std::size_t distinct = distinct_places(positions); distinct < 4)
+    if (const std::size_t distinct = distinct_points(positions); distinct < 4)
         throw Error("needs at least 4 points that are not coplanar; the cloud has {} at {}",
                     counted(positions.size(), "point", "points"),
-                    counted(distinct, "distinct place", "distinct places"))
+                    counted(distinct, "distinct position", "distinct positions"))
             .hint(std::string(few_points));
-    const std::string_view shape = dimension == 0 ? "one place" : dimension == 1 ? "one line" : "one plane";
+    const std::string_view shape = dimension == 0 ? "one position" : dimension == 1 ? "one line" : "one plane";
     throw Error("needs at least 4 points that are not coplanar; the cloud has {}, all within {:.2g} {} of {}{}",
                 positions.size(), distance, symbol(frame.unit), shape,
                 distance > 0 ? ", less than their coordinates can express" : "")

@@ -10,20 +10,20 @@ SCANMILL_FILTER() {
         .summary("Tetrahedralises the points so that no point lies inside the circumsphere of any cell.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3")
         .ties(
-            "Points on one empty sphere are parted by a symbolic perturbation of their coordinates, whatever their "
-            "order; of duplicates the first stays, with the largest of their weights.")
+            "Ties between points on one empty sphere are broken by a symbolic perturbation of their coordinates, "
+            "independent of their order; of duplicates the first is kept, with the largest of their weights.")
         .not_finite("Refused, with their number and the first of them.")
         .in<PointCloud>(
             "points",
             "Finite coordinates, at least 4 distinct points that are not coplanar; every column is carried along.")
         .out<TetMesh>("tets", "The cells over the distinct points, in canonical order.")
         .param("weights", &P::weights,
-               "Lets space between points shrink and grow with the sampling. Two words have a meaning of their own: "
-               "`none` gives no weights, `spacing` gives every point the square of its distance to its neighbours. Any "
-               "other is the name of a column of squared lengths in the scan's unit; one that is called `none` or "
-               "`spacing` must be renamed in the file before it can be used.",
+               "Adapts the cells to the local density of the sampling. `none` gives no weights; `spacing` gives every "
+               "point the square of its mean distance to its neighbours; any other word is the name of a column of "
+               "squared lengths in the scan's unit. A column called `none` or `spacing` must be renamed in the file "
+               "before it can be used.",
                word("none"))
-        .param("factor", &P::factor, "The weights are multiplied with this; with `spacing` at most 4.", at_least(0))
+        .param("factor", &P::factor, "The weights are multiplied by this; with `spacing` at most 4.", at_least(0))
         .metric("cells", Unit::count, "Finite tetrahedra.")
         .metric("duplicates", Unit::count, "Points that lie exactly on an earlier one and were merged into it.")
         .metric("hidden", Unit::count, "Distinct points in no cell, because weights hide them; they are kept.")

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Memory for a container that grows by many blocks and gives all of them back at its end.
+/// Memory for a container that grows by many blocks and frees all of them at its end.
 ///
-/// Blocks are cut from few large slabs. So they lie on huge pages, where following pointers through millions of cells
-/// misses fewer translations; and when the last one is given back the kernel gets everything, where a heap would keep
-/// most of it for a next time that may never come.
+/// Blocks are cut from few large slabs. So they lie on huge pages, which saves address translations when pointers
+/// through millions of cells are followed. When the last block is freed, all memory returns to the kernel, where a heap
+/// would keep most of it.
 
 #include <algorithm>
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace scanmill {
 
-/// Not for several threads at a time.
+/// Not thread-safe.
 class Slabs {
 public:
     static constexpr std::size_t least_slab = std::size_t(1) << 16, largest_slab = std::size_t(8) << 20;
@@ -35,12 +35,12 @@ public:
         ++blocks_;
         return block;
     }
-    /// Memory is given back with the last block.
+    /// The memory is released with the last block.
     void deallocate() noexcept {
         if (--blocks_ == 0) release();
     }
 
-    /// Of all slabs.
+    /// The size of all slabs.
     std::size_t bytes() const { return bytes_; }
 
 private:
@@ -51,8 +51,8 @@ private:
         std::size_t bytes;
     };
 
-    /// What is left of the last one is given up. Slabs are as large as all before together, so that a small container
-    /// takes little.
+    /// Abandons the rest of the last slab. A new slab is as large as all earlier ones together, so that a small
+    /// container takes little memory.
     void add_slab(std::size_t least) {
         const std::size_t size = watched_memory ? least : std::max(least, std::clamp(bytes_, least_slab, largest_slab));
         slabs_.reserve(slabs_.size() + 1);
@@ -72,14 +72,14 @@ private:
     std::size_t left_ = 0, bytes_ = 0, blocks_ = 0;
 };
 
-/// Every default-constructed one has slabs of its own; copies share them.
+/// Every default-constructed allocator has its own slabs; copies share them.
 template <class T>
 class SlabAllocator {
 public:
     using value_type = T;
 
     SlabAllocator() : slabs_(std::make_shared<Slabs>()) {}
-    /// Moves nothing: an allocator that was moved from allocates as before.
+    /// Moving copies: an allocator that was moved from allocates as before.
     SlabAllocator(const SlabAllocator&) noexcept = default;
     SlabAllocator& operator=(const SlabAllocator&) noexcept = default;
     template <class Other>

@@ -5,11 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "merge/merged_columns.hpp"
-#include "merge/overlap.hpp"
-#include "merge/placed_points.hpp"
+#include "merge/merge_steps.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/kinds/value.hpp"
 
 namespace scanmill {
 
@@ -17,14 +16,14 @@ namespace {
 
 using Inputs = std::span<const std::shared_ptr<const PointCloud>>;
 
-std::string_view said(LengthUnit unit) { return unit == LengthUnit::unknown ? "an unknown unit" : symbol(unit); }
+std::string_view unit_text(LengthUnit unit) { return unit == LengthUnit::unknown ? "an unknown unit" : symbol(unit); }
 
 void require_one_unit(Inputs inputs) {
     const LengthUnit first = inputs.front()->frame.unit;
     for (std::size_t input = 1; input < inputs.size(); ++input)
         if (const LengthUnit unit = inputs[input]->frame.unit; unit != first)
-            throw Error("the inputs have different units: {} in input 0, {} in input {}", said(first), said(unit),
-                        input)
+            throw Error("the inputs have different units: {} in input 0, {} in input {}", unit_text(first),
+                        unit_text(unit), input)
                 .hint(first == LengthUnit::unknown || unit == LengthUnit::unknown
                           ? "declare the unit of all of them (--unit mm, or `unit: mm` at the workflow's input)"
                           : "convert one of them: scanmill convert --to-unit mm IN OUT");
@@ -56,7 +55,7 @@ void require_sound(Inputs inputs, const MergeParams& params) {
                     counted(params.poses.size(), "pose", "poses"), counted(inputs.size(), "input", "inputs"));
 }
 
-/// The column's numbers, checked, of all inputs end to end.
+/// The numbers of the column of all inputs, checked, end to end.
 std::vector<double> uncertainties(Inputs inputs) {
     std::vector<double> values;
     for (std::size_t input = 0; input < inputs.size(); ++input) {
@@ -70,32 +69,99 @@ std::vector<double> uncertainties(Inputs inputs) {
         for (std::size_t row = 0; row < column->rows(); ++row) {
             values.push_back(column->number(row));
             if (!(values.back() >= 0))
-                throw Error("an uncertainty is 0 or more; point {} of input {} has {}", row, input, values.back());
+                throw Error("an uncertainty must be 0 or more; point {} of input {} has {}", row, input, values.back());
         }
     }
     return values;
 }
 
-void tell_names(Inputs inputs, Context& context) {
+void warn_of_names(Inputs inputs, Context& context) {
     const std::string& first = inputs.front()->frame.name;
     const auto differs = [&](const auto& cloud) { return cloud->frame.name != first; };
     const auto other = std::ranges::find_if(inputs, differs);
     if (other == inputs.end()) return;
     context.warn(fmt::format(
-        "{} of {} inputs have another frame than '{}', the first one's, as input {} in '{}'; "
-        "without poses all are taken to be in that one",
+        "{} of {} inputs have another frame than '{}', that of the first input, such as input {} in '{}'; "
+        "without poses all are assumed to be in the same frame",
         std::ranges::count_if(inputs, differs), inputs.size(), first, other - inputs.begin(), (*other)->frame.name));
+}
+
+/// p goes to rotation p + shift.
+struct Motion {
+    Eigen::Matrix3d rotation;
+    Vec3 shift;
+};
+
+/// Poses, or origins far apart, can make a cloud larger than the supported range of scans.
+void require_supported_size(std::span<const Vec3> positions) {
+    constexpr double largest_size = 1e9;
+    const BoundingBox box = bounding_box(positions);
+    if (const double size = (box.high - box.low).maxCoeff(); !(size <= largest_size))
+        throw Error("the longest side of the box around the points is {:.3g} u; at most {:.0e} u is supported", size,
+                    largest_size)
+            .hint("check the poses, their unit, and that the inputs are in one coordinate system");
+}
+
+/// All positions end to end, with the frame of the result and no columns. A pose maps world coordinates: origin o plus
+/// position p goes to R (o + p) + t, computed as R p + (R o + t - origin of the result), so that large numbers cancel
+/// before a position is added. Without poses positions are only moved to the origin of the first cloud.
+/// Pre: `poses` is empty or as long as `clouds`, which are finite and of one unit. Throws Error for a pose in a known
+/// unit when that of the clouds is unknown, and when the moved points exceed the supported range.
+PointCloud placed_points(Inputs clouds, std::span<const RigidTransform> poses) {
+    PointCloud result;
+    result.frame = clouds.front()->frame;
+    std::vector<Motion> motions;  // to world coordinates, from relative ones
+    std::size_t points = 0;
+    BoundingBox world;
+    for (std::size_t i = 0; i < clouds.size(); ++i) {
+        points += clouds[i]->size();
+        const Vec3& origin = clouds[i]->frame.origin;
+        if (poses.empty()) {
+            motions.push_back({Eigen::Matrix3d::Identity(), origin});
+            continue;
+        }
+        const Eigen::Matrix3d& rotation = poses[i].rotation;
+        motions.push_back({rotation, rotation * origin + translation_in(result.frame.unit, poses[i])});
+        for (const Vec3& p : clouds[i]->positions) {
+            const Vec3 moved = rotation * p + motions.back().shift;
+            world.low = world.low.cwiseMin(moved);
+            world.high = world.high.cwiseMax(moved);
+        }
+    }
+    if (!poses.empty()) {
+        result.frame.name = poses.front().to;
+        result.frame.origin = distant_origin(world);
+    }
+
+    Array<Vec3> positions;
+    positions.reserve(points);
+    for (std::size_t i = 0; i < clouds.size(); ++i) {
+        const Vec3 shift = motions[i].shift - result.frame.origin;
+        if (poses.empty() && shift.isZero(0))  // adding zero would turn -0 into 0
+            positions.insert(positions.end(), clouds[i]->positions.begin(), clouds[i]->positions.end());
+        else
+            for (const Vec3& p : clouds[i]->positions) positions.push_back(motions[i].rotation * p + shift);
+    }
+    try {
+        require_finite(positions);
+        require_supported_size(positions);
+    } catch (Error& error) {
+        error.add_frame("after the clouds were moved to one frame");
+        throw;
+    }
+    result.positions = std::move(positions);
+    return result;
 }
 
 }  // namespace
 
 MergeResult merge(Inputs inputs, const MergeParams& params, Context& context) {
     require_sound(inputs, params);
-    if (params.poses.empty()) tell_names(inputs, context);
+    if (params.poses.empty()) warn_of_names(inputs, context);
     std::vector<double> preference;
     if (params.prefer == MergeParams::Prefer::lower_uncertainty) preference = uncertainties(inputs);
 
-    PointCloud all = merging::placed_points(inputs, params.poses);
+    PointCloud all = placed_points(inputs, params.poses);
     all.columns = merging::merged_columns(inputs, params.poses, context);
     const std::span<const u32> source = all.columns.find("source")->values<u32>();
 

@@ -1,18 +1,60 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "merge/merged_columns.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
+#include <cstring>
 #include <string>
 
-#include "merge/joined_column.hpp"
+#include "merge/merge_steps.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill::merging {
 
 namespace {
+
+Buffer<std::byte> bytes_end_to_end(std::span<const Column> parts) {
+    std::size_t size = 0;
+    for (const Column& part : parts) size += part.bytes().size();
+    Array<std::byte> bytes(size);
+    std::size_t at = 0;
+    for (const Column& part : parts) {
+        if (!part.bytes().empty()) std::memcpy(bytes.data() + at, part.bytes().data(), part.bytes().size());
+        at += part.bytes().size();
+    }
+    return bytes;
+}
+
+Buffer<u64> offsets_end_to_end(std::span<const Column> parts) {
+    Array<u64> offsets{0};
+    for (const Column& part : parts) {
+        const u64 before = offsets.back();
+        for (std::size_t row = 1; row <= part.rows(); ++row) offsets.push_back(before + part.offsets()[row]);
+    }
+    return offsets;
+}
+
+Column as_doubles(std::span<const Column> parts) {
+    Array<double> values;
+    for (const Column& part : parts)
+        visit_scalar(part.type(), [&](auto zero) {
+            for (const auto value : part.values<decltype(zero)>()) values.push_back(static_cast<double>(value));
+        });
+    return {parts.front().name(), parts.front().components(), Buffer<double>(std::move(values))};
+}
+
+/// The rows of all parts, end to end. Pre: at least one part; all are lists of one type, or all have the same number of
+/// components. Different types become float64; 64-bit integers beyond 2^53 are then rounded.
+Column joined(std::span<const Column> parts) {
+    const Column& first = parts.front();
+    if (!std::ranges::all_of(parts, [&](const Column& part) { return part.type() == first.type(); })) {
+        assert(!first.is_list());
+        return as_doubles(parts);
+    }
+    return {first.name(), first.type(), first.components(), bytes_end_to_end(parts),
+            first.is_list() ? offsets_end_to_end(parts) : Buffer<u64>()};
+}
 
 const std::string newest = "source";
 const std::string older = "-of-source";
@@ -25,7 +67,7 @@ bool names_a_source(const std::string& name) {
     return rest.empty();
 }
 
-/// The column as the result will call it, turned when it has directions.
+/// The column under its name in the result, rotated when it has directions.
 Column placed(const Column& column, const RigidTransform* pose) {
     if (names_a_source(column.name())) return column.renamed(column.name() + older);
     return pose ? turned(column, pose->rotation) : column;
@@ -55,7 +97,7 @@ public:
     }
 
 private:
-    /// One column per cloud, fit to be joined; none, and told, when that cannot be.
+    /// One column per cloud, suitable for joined(). Empty, with a warning, when they cannot be joined.
     std::vector<Column> parts_of(const std::string& name) {
         std::vector<Column> parts;
         for (const ColumnTable& table : tables_)
@@ -109,7 +151,7 @@ ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> cl
         if (clouds[cloud]->columns.find(newest)) ++with_source;
     }
     if (with_source > 0)
-        context.warn(fmt::format("{} of {} {} a column 'source' already; it is called 'source{}' now", with_source,
+        context.warn(fmt::format("{} of {} already {} a column 'source'; it was renamed 'source{}'", with_source,
                                  counted(clouds.size(), "input", "inputs"), by_count(with_source, "has", "have"),
                                  older));
     ColumnTable result = Merger(std::move(tables), context).merged();

@@ -16,23 +16,23 @@ struct PosedMergeParams : MergeParams {
 SCANMILL_FILTER() {
     using P = PosedMergeParams;
     return Declare<P>("merge", 1)
-        .summary("Puts several clouds into one, moved by their poses, with one point where they overlap.")
+        .summary("Merges several clouds, moved by their poses, and keeps one point where they overlap.")
         .source("pose files: Turk and Levoy 1994")
-        .ties("Of points that overlap and are equally good the one of the earlier input stays.")
+        .ties("Of points that overlap and have equal preference the one of the earlier input is kept.")
         .not_finite("Refused, with the input, their number and the first of them.")
         .in<PointCloud>("points", "Clouds with finite coordinates and one unit; at least one.", list)
-        .out<PointCloud>("points", "All points that stay, in input order, with a column `source`.")
-        .param("poses", &P::poses_file, "A Stanford .conf or a JSON file that says where each input lies.",
-               word("none"))
-        .choice(
-            "prefer", &P::prefer,
-            {{"none", P::Prefer::none, "That of the earlier input."},
-             {"lower-uncertainty", P::Prefer::lower_uncertainty,
-              "That with the smaller number in its column `uncertainty`; of equal ones that of the earlier input."}},
-            "Which of two points stays where inputs overlap.")
-        .param("within", &P::within, "Points of different inputs that are this near overlap; 0 keeps all.", at_least(0))
-        .metric("points", Unit::count, "Points that stayed.")
-        .metric("dropped", Unit::count, "Points that gave way to one of another input.", headline)
+        .out<PointCloud>("points", "All points that are kept, in input order, with a column `source`.")
+        .param("poses", &P::poses_file, "A Stanford .conf or a JSON file with the pose of each input.", word("none"))
+        .choice("prefer", &P::prefer,
+                {{"none", P::Prefer::none, "The point of the earlier input."},
+                 {"lower-uncertainty", P::Prefer::lower_uncertainty,
+                  "The point with the smaller number in its column `uncertainty`; of equal ones that of the earlier "
+                  "input."}},
+                "Which of two points is kept where inputs overlap.")
+        .param("within", &P::within, "Points of different inputs within this distance overlap; 0 keeps all.",
+               at_least(0))
+        .metric("points", Unit::count, "Points that were kept.")
+        .metric("dropped", Unit::count, "Points that were dropped for one of another input.", headline)
         .run([](const Inputs& inputs, P params, Context& context) {
             const auto clouds = inputs.list<PointCloud>("points");
             if (params.poses_file) {

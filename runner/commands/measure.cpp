@@ -72,7 +72,8 @@ std::vector<StepInput> read_inputs(const Options& options, LengthUnit unit, Leng
         frame.unit = unit;  // --unit is for files that do not declare theirs
         truth = reframed(truth, frame);
     }
-    for (const Value* value : std::initializer_list<const Value*>{&mesh, &truth}) require_supported_range(bounding_box(positions_of(*value).span()));
+    for (const Value* value : std::initializer_list<const Value*>{&mesh, &truth})
+        require_supported_range(bounding_box(positions_of(*value).span()));
     const LengthUnit here = frame_of(mesh)->unit, there = frame_of(truth)->unit;
     if (here != there && here != LengthUnit::unknown && there != LengthUnit::unknown) truth = in_unit(truth, here);
     return {{"mesh", mesh}, {"truth", truth}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What the world does to clouds, through delaunay and alpha-solid: a clear refusal, or a solid and a count.
+/// Damaged and unusual clouds through delaunay and alpha-solid: a clear refusal, or a solid and a count.
 
 #include <gmock/gmock.h>
 
@@ -63,7 +63,7 @@ TEST(AlphaSolidOfBadInput, NaNAndInfinitePositions_AreRefusedWithTheFirst) {
     }
 }
 
-TEST(AlphaSolidOfBadInput, NaNInAnotherColumn_PassesThrough) {
+TEST(AlphaSolidOfBadInput, NaNInAnotherColumn_IsCarriedAlong) {
     PointCloud cloud = fibonacci_sphere(300, 1e-4);
     Array<double> quality(300);
     for (u32 i = 0; i < 300; ++i) quality[i] = i % 3 == 0 ? nan : i % 3 == 1 ? -infinite : i;
@@ -95,7 +95,7 @@ TEST(AlphaSolidOfBadInput, NinetyPercentDuplicates_AreMergedCountedAndChangeNoth
     expect_closed(outcome.solid, 400, 2);
 }
 
-TEST(AlphaSolidOfBadInput, TwoFarClusters_AreTwoSolidsOrOneBridgeThatIsSaid) {
+TEST(AlphaSolidOfBadInput, TwoFarClusters_AreTwoSolidsOrBridgedWithAWarning) {
     const PointCloud cloud =
         joined(fibonacci_sphere(400, 1e-4), moved(fibonacci_sphere(400, 1e-4, 2), 1, Vec3(500, 0, 0)));
     const Outcome two = through_both(cloud, many());
@@ -111,7 +111,7 @@ TEST(AlphaSolidOfBadInput, TwoFarClusters_AreTwoSolidsOrOneBridgeThatIsSaid) {
     EXPECT_FALSE(one.warnings.empty());
 }
 
-TEST(AlphaSolidOfBadInput, OneOutlierAThousandDiagonalsAway_IsCoveredAndSaidOrLeftOutAndCounted) {
+TEST(AlphaSolidOfBadInput, OneOutlierAThousandDiagonalsAway_IsCoveredWithAWarningOrLeftOutAndCounted) {
     const PointCloud cloud = joined(fibonacci_sphere(999, 1e-4), cloud_of({Vec3(2000, 1500, 2500)}));
     const Outcome all = through_both(cloud);
     ASSERT_EQ(all.refused, "accepted");

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The boundary of a set of cells: what is wrong with it, how it is mended, and which pieces and cavities it has.
+// The boundary of a set of cells: its defects and their repair, its components and cavities.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 
-#include "alpha_solid/flood.hpp"
-#include "alpha_solid/growing_solid.hpp"
-#include "alpha_solid/pieces.hpp"
+#include "alpha_solid/components.hpp"
+#include "alpha_solid/incremental_solid.hpp"
+#include "alpha_solid/widest_path_sweep.hpp"
 #include "filters/alpha_solid_cases.hpp"
 #include "scanmill/geometry/mesh/topology.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
@@ -20,9 +20,9 @@ namespace {
 
 using namespace test;
 
-Flood whole_flood(const TetMesh& tets) {
+SweepResult whole_sweep(const TetMesh& tets) {
     Context context;
-    return flood_from_outside(sweep_cells(tets, context), tets.positions.size(), {.value = 0, .coverage = 1}, context);
+    return sweep_from_outside(sweep_cells(tets, context), tets.positions.size(), {.value = 0, .coverage = 1}, context);
 }
 
 TriangleMesh mesh_of(const TetMesh& tets, std::span<const u8> labels) {
@@ -32,26 +32,27 @@ TriangleMesh mesh_of(const TetMesh& tets, std::span<const u8> labels) {
     return mesh;
 }
 
-TEST(BoundaryDefects, OfRandomCellSets_AreWhatTheMeshTopologySays) {
+TEST(BoundaryDefects, OfRandomCellSets_AgreeWithTheMeshTopology) {
     Random random(5);
     for (double density : {0.03, 0.2, 0.5, 0.8, 0.97}) {
         const TetMesh tets = tets_of(random_cube(400, 3));
         Array<u8> labels(tets.cells.size());
         for (u8& label : labels) label = random.uniform() < density ? solid : outside;
         const TriangleMesh mesh = mesh_of(tets, labels);
-        const MeshTopology facts = topology(mesh);
+        const MeshTopology properties = topology(mesh);
         const BoundaryDefects defects = boundary_defects(mesh.triangles.span(), tets.positions.size(), 2);
-        EXPECT_EQ(facts.boundary_edges, 0u);
-        EXPECT_EQ(defects.edges, facts.nonmanifold_edges);
-        EXPECT_EQ(defects.vertices.size(), facts.nonmanifold_vertices);
+        EXPECT_EQ(properties.boundary_edges, 0u);
+        EXPECT_EQ(defects.edges, properties.nonmanifold_edges);
+        EXPECT_EQ(defects.vertices.size(), properties.nonmanifold_vertices);
         EXPECT_GT(defects.edges, 0u);
-        // The same judgement from the cells round each vertex.
-        GrowingSolid growing(tets, labels, {});
-        EXPECT_EQ(growing.verdict(), GrowingSolid::Verdict::manifold);
+        // The same verdict from the cells round each vertex.
+        IncrementalSolid incremental(tets, labels, {});
+        EXPECT_EQ(incremental.verdict(), IncrementalSolid::Verdict::manifold);
         for (u32 vertex = 0; vertex < tets.positions.size(); ++vertex) {
-            growing.suspect_only(std::array{vertex});
+            incremental.suspect_only(std::array{vertex});
             const bool bad = std::ranges::binary_search(defects.vertices, vertex);
-            EXPECT_EQ(growing.verdict(), bad ? GrowingSolid::Verdict::not_manifold : GrowingSolid::Verdict::manifold);
+            EXPECT_EQ(incremental.verdict(),
+                      bad ? IncrementalSolid::Verdict::not_manifold : IncrementalSolid::Verdict::manifold);
         }
     }
 }
@@ -90,8 +91,8 @@ TEST(BoundaryDefects, SeparateTetrahedra_HaveNone) {
     EXPECT_EQ(join_vertices(mesh.triangles.span(), vertices), 2u);
 }
 
-TEST(BoundaryDefects, VertexOfManyTriangles_IsJudgedLikeAnyOther) {
-    // A double fan of 100 triangles between two poles, once whole and once pinched at two rim vertices made one.
+TEST(BoundaryDefects, VertexOfManyTriangles_IsTestedLikeAnyOther) {
+    // A double fan of 100 triangles between two poles, once whole and once pinched where two rim vertices are one.
     for (bool pinched : {false, true}) {
         Array<Triangle> triangles;
         const auto rim = [&](u32 i) { return 2 + (pinched && i % 100 == 50 ? 0 : i % 100); };
@@ -105,25 +106,25 @@ TEST(BoundaryDefects, VertexOfManyTriangles_IsJudgedLikeAnyOther) {
     }
 }
 
-TEST(GrowingSolid, CellByCell_KeepsTheVerdictOfTheWholeBoundary) {
+TEST(IncrementalSolid, CellByCell_HasTheVerdictOfTheWholeBoundary) {
     const TetMesh tets = tets_of(random_cube(120, 8));
-    const Flood flood = whole_flood(tets);
+    const SweepResult sweep = whole_sweep(tets);
     Array<u8> labels(tets.cells.size());
     std::ranges::fill(labels, outside);
-    GrowingSolid growing(tets, labels, {});
+    IncrementalSolid incremental(tets, labels, {});
     int manifold = 0;
-    for (std::size_t i = flood.cells.size(); i-- > 0;) {
-        growing.add(std::span(flood.cells).subspan(i, 1));
-        const TriangleMesh mesh = mesh_of(tets, growing.labels());
+    for (std::size_t i = sweep.cells.size(); i-- > 0;) {
+        incremental.add(std::span(sweep.cells).subspan(i, 1));
+        const TriangleMesh mesh = mesh_of(tets, incremental.labels());
         const bool expected = topology(mesh).nonmanifold_vertices == 0;
-        ASSERT_EQ(growing.verdict() == GrowingSolid::Verdict::manifold, expected) << i;
+        ASSERT_EQ(incremental.verdict() == IncrementalSolid::Verdict::manifold, expected) << i;
         manifold += expected;
-        EXPECT_EQ(growing.covered(), covered_points(tets, growing.labels()));
+        EXPECT_EQ(incremental.covered(), covered_points(tets, incremental.labels()));
     }
     EXPECT_GT(manifold, 10);
 }
 
-TEST(GrowingSolid, RepairOfRandomCellSets_IsManifoldAndOnlyAdds) {
+TEST(IncrementalSolid, RepairOfRandomCellSets_IsManifoldAndOnlyAdds) {
     Random random(6);
     for (double density : {0.05, 0.3, 0.6, 0.9}) {
         const TetMesh tets = tets_of(random_cube(300, 4));
@@ -133,22 +134,22 @@ TEST(GrowingSolid, RepairOfRandomCellSets_IsManifoldAndOnlyAdds) {
         for (double& entry : price) entry = random.uniform();
         const BoundaryDefects defects = boundary_defects(boundary_triangles(tets, labels, 1), 300, 1);
         ASSERT_FALSE(defects.vertices.empty());
-        GrowingSolid growing(tets, labels, defects.vertices);
-        growing.repair(price);
-        EXPECT_EQ(topology(mesh_of(tets, growing.labels())).nonmanifold_vertices, 0u);
-        for (std::size_t c = 0; c < labels.size(); ++c) EXPECT_LE(labels[c] == solid, growing.labels()[c] == solid);
-        // Filling what the repair has sealed keeps the boundary a manifold, and leaves one outside.
-        Array<u8> filled = growing.labels();
+        IncrementalSolid incremental(tets, labels, defects.vertices);
+        incremental.repair(price);
+        EXPECT_EQ(topology(mesh_of(tets, incremental.labels())).nonmanifold_vertices, 0u);
+        for (std::size_t c = 0; c < labels.size(); ++c) EXPECT_LE(labels[c] == solid, incremental.labels()[c] == solid);
+        // Filling the cavities that the repair has sealed keeps the boundary a manifold and the outside connected.
+        Array<u8> filled = incremental.labels();
         fill_cavities(tets, filled);
         const TriangleMesh mesh = mesh_of(tets, filled);
-        const MeshTopology facts = topology(mesh);
-        EXPECT_TRUE(facts.closed);
+        const MeshTopology properties = topology(mesh);
+        EXPECT_TRUE(properties.closed);
         fill_cavities(tets, filled);
         EXPECT_EQ(mesh_of(tets, filled).triangles.size(), mesh.triangles.size());
     }
 }
 
-/// Solid: the cells within one of two clouds, which `is_first(vertex)` tells apart.
+/// Solid: the cells within one of two clouds, which `is_first(vertex)` distinguishes.
 template <class IsFirst>
 Array<u8> solid_in_each(const TetMesh& tets, const IsFirst& is_first) {
     Array<u8> labels(tets.cells.size());
@@ -159,32 +160,32 @@ Array<u8> solid_in_each(const TetMesh& tets, const IsFirst& is_first) {
     return labels;
 }
 
-TEST(Pieces, LargestPiece_IsTheOneWithTheMostPoints) {
+TEST(Components, LargestComponent_IsTheOneWithTheMostPoints) {
     const TetMesh tets = tets_of(joined(fibonacci_sphere(100), moved(lattice_cube(3), 0.2, Vec3(9, 0, 0))));
     Array<u8> labels = solid_in_each(tets, [](u32 vertex) { return vertex < 100; });  // against 64
     EXPECT_EQ(covered_points(tets, labels), 164u);
-    keep_largest_piece(tets, labels);
+    keep_largest_component(tets, labels);
     EXPECT_EQ(covered_points(tets, labels), 100u);
     for (u32 c = 0; c < labels.size(); ++c)
         EXPECT_LE(labels[c] == solid, *std::ranges::max_element(tets.cells[c]) < 100);
     EXPECT_GT(std::ranges::count(labels, u8(left_out)), 0);
 }
 
-TEST(Pieces, OfEqualPieces_TheLowestIsKeptInWhateverOrderTheyCome) {
+TEST(Components, OfEqualComponents_TheLowestIsKeptInAnyOrder) {
     const PointCloud low = random_cube(60, 5), high = moved(random_cube(60, 5), 1, Vec3(9, 0, 0));
     for (const bool low_first : {true, false}) {
         const TetMesh tets = tets_of(low_first ? joined(low, high) : joined(high, low));
         const auto is_low = [&](u32 vertex) { return tets.positions[vertex].x() < 5; };
         Array<u8> labels = solid_in_each(tets, is_low);
         ASSERT_EQ(covered_points(tets, labels), 120u);
-        keep_largest_piece(tets, labels);
+        keep_largest_component(tets, labels);
         EXPECT_EQ(covered_points(tets, labels), 60u);
         for (u32 c = 0; c < labels.size(); ++c)
             EXPECT_EQ(labels[c] == solid, std::ranges::all_of(tets.cells[c], is_low));
     }
 }
 
-TEST(Pieces, CavityThatTouchesNoHullFacet_IsFilledAndABayIsNot) {
+TEST(Components, CavityThatTouchesNoHullFacet_IsFilledAndABayIsNot) {
     const TetMesh tets = tets_of(random_cube(300, 21));
     const auto at_hull = [&](u32 c) {
         return std::ranges::find(tets.neighbours[c], TetMesh::outside_hull) != tets.neighbours[c].end();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The definition of a valid alpha-solid, spelled out once more and without any speed, to judge the filter by.
+/// The definition of a valid alpha-solid, implemented directly and slowly, as a reference for the filter.
 
 #include <algorithm>
 #include <array>
@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "alpha_solid/alpha_solid.hpp"
-#include "alpha_solid/flood.hpp"
+#include "alpha_solid/widest_path_sweep.hpp"
 
 namespace scanmill::test {
 
 struct BruteForceVerdict {
-    std::size_t covered = 0, pieces = 0, bad_vertices = 0, bad_edges = 0;
+    std::size_t covered = 0, components = 0, bad_vertices = 0, bad_edges = 0;
 };
 
 /// Facets between cells of the solid and other cells or the outside, as corners in vertices of `tets`.
@@ -31,7 +31,7 @@ inline std::vector<Triangle> facets_between(const TetMesh& tets, std::span<const
     return facets;
 }
 
-/// Members of `count` joined by `pairs`; a number per member that joined members share.
+/// Joins `count` members by `pairs`. Returns a number per member; joined members have the same.
 inline std::vector<u32> joined_sets(std::size_t count, const std::vector<std::array<u32, 2>>& pairs) {
     std::vector<u32> set(count);
     for (u32 i = 0; i < count; ++i) set[i] = i;
@@ -46,7 +46,7 @@ inline std::vector<u32> joined_sets(std::size_t count, const std::vector<std::ar
     return set;
 }
 
-/// Do these link edges form exactly one closed fan: every end in two of them, and all in one round?
+/// Whether these link edges form exactly one closed fan: every end is in two of them, and all are in one cycle.
 inline bool is_one_closed_fan(const std::vector<std::array<u32, 2>>& link) {
     std::map<u32, std::vector<u32>> beside;
     for (const auto& [a, b] : link) {
@@ -81,9 +81,9 @@ inline BruteForceVerdict brute_force_verdict(const TetMesh& tets, std::span<cons
     for (const auto& [vertex, link] : links) verdict.bad_vertices += !is_one_closed_fan(link);
     for (const auto& [edge, count] : facets_of_edge) verdict.bad_edges += count > 2;
     const std::vector<u32> set = joined_sets(tets.positions.size(), edges);
-    std::set<u32> pieces;
-    for (const Triangle& facet : facets) pieces.insert(set[facet[0]]);
-    verdict.pieces = pieces.size();
+    std::set<u32> components;
+    for (const Triangle& facet : facets) components.insert(set[facet[0]]);
+    verdict.components = components.size();
     std::set<u32> covered;
     for (u32 c = 0; c < tets.cells.size(); ++c)
         if (inside[c]) covered.insert(tets.cells[c].begin(), tets.cells[c].end());
@@ -91,7 +91,7 @@ inline BruteForceVerdict brute_force_verdict(const TetMesh& tets, std::span<cons
     return verdict;
 }
 
-/// Keeps the cells of the piece (joined across facets) that holds the most points.
+/// Keeps the cells of the component (joined across facets) with the most points.
 inline void keep_largest(const TetMesh& tets, std::vector<u8>& inside) {
     std::vector<std::array<u32, 2>> pairs;
     for (u32 c = 0; c < tets.cells.size(); ++c)
@@ -103,10 +103,10 @@ inline void keep_largest(const TetMesh& tets, std::vector<u8>& inside) {
         if (inside[c]) points[set[c]].insert(tets.cells[c].begin(), tets.cells[c].end());
     u32 largest = 0;
     std::size_t most = 0;
-    for (const auto& [piece, members] : points)
+    for (const auto& [component, members] : points)
         if (members.size() > most) {
             most = members.size();
-            largest = piece;
+            largest = component;
         }
     for (u32 c = 0; c < tets.cells.size(); ++c) inside[c] = inside[c] && set[c] == largest;
 }
@@ -117,26 +117,26 @@ struct BruteForceSolid {
     bool valid = false;
 };
 
-/// Every different alpha-solid, from the least radius up to the hull's.
+/// Every different alpha-solid, from the least radius up to that of the hull.
 inline std::vector<BruteForceSolid> brute_force_spectrum(const TetMesh& tets, const AlphaSolidParams& params) {
     Context context;
-    const alpha::Flood flood = alpha::flood_from_outside(alpha::sweep_cells(tets, context), tets.positions.size(),
-                                                         {.value = 0, .coverage = 1}, context);
+    const alpha::SweepResult sweep = alpha::sweep_from_outside(alpha::sweep_cells(tets, context), tets.positions.size(),
+                                                               {.value = 0, .coverage = 1}, context);
     const bool single = params.components == AlphaComponents::single, all = params.coverage.value() == 1;
     const auto needed = static_cast<std::size_t>(
         std::ceil(params.coverage.value() * static_cast<double>(tets.positions.size()) - 1e-9));
     std::vector<u8> inside(tets.cells.size(), 0);
     std::vector<BruteForceSolid> spectrum;
-    for (std::size_t i = flood.cells.size(); i-- > 0;) {
-        inside[flood.cells[i]] = 1;
-        if (i > 0 && flood.values[i - 1] == flood.values[i]) continue;
+    for (std::size_t i = sweep.cells.size(); i-- > 0;) {
+        inside[sweep.cells[i]] = 1;
+        if (i > 0 && sweep.values[i - 1] == sweep.values[i]) continue;
         std::vector<u8> kept = inside;
         if (single && !all) keep_largest(tets, kept);
         const BruteForceVerdict verdict = brute_force_verdict(tets, kept);
-        if (!spectrum.empty()) spectrum.back().to = flood.values[i];
+        if (!spectrum.empty()) spectrum.back().to = sweep.values[i];
         spectrum.push_back(
-            {flood.values[i], HUGE_VAL,
-             verdict.covered >= needed && verdict.bad_vertices == 0 && (!single || !all || verdict.pieces == 1)});
+            {sweep.values[i], HUGE_VAL,
+             verdict.covered >= needed && verdict.bad_vertices == 0 && (!single || !all || verdict.components == 1)});
     }
     return spectrum;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The search for alpha and its verdicts against the definition, over many seeded random clouds and every radius.
+/// The search for alpha and its verdicts against the definition, for many seeded random clouds and every radius.
 
 #include <gmock/gmock.h>
 
@@ -27,7 +27,7 @@ std::vector<AlphaSolidParams> demands() {
     return {{}, many(), covering(90), covering(60), covering(35), covering(90, AlphaComponents::many)};
 }
 
-TEST(AlphaSolidByDefinition, BoundaryDefectsAtAnyAlpha_AreWhatTheFansSay) {
+TEST(AlphaSolidByDefinition, BoundaryDefectsAtAnyAlpha_AgreeWithTheFans) {
     int defective = 0, edge_manifold_only = 0;
     for (std::uint64_t seed = 0; seed < 150; ++seed) {
         const TetMesh tets = tets_of(random_cloud(seed));
@@ -42,7 +42,7 @@ TEST(AlphaSolidByDefinition, BoundaryDefectsAtAnyAlpha_AreWhatTheFansSay) {
             const BruteForceVerdict verdict = brute_force_verdict(tets, result.tets.inside.span());
             ASSERT_EQ(result.nonmanifold_vertices, verdict.bad_vertices) << seed << " " << factor;
             ASSERT_EQ(result.nonmanifold_edges, verdict.bad_edges) << seed << " " << factor;
-            ASSERT_EQ(result.components, verdict.pieces) << seed << " " << factor;
+            ASSERT_EQ(result.components, verdict.components) << seed << " " << factor;
             ASSERT_EQ(tets.positions.size() - result.uncovered_points.size(), verdict.covered);
             defective += verdict.bad_vertices > 0;
             edge_manifold_only += verdict.bad_vertices > 0 && verdict.bad_edges == 0;
@@ -97,7 +97,7 @@ TEST(AlphaSolidByDefinition, LatticeCube_HasASpectrumOfOne) {
 }
 
 TEST(AlphaSolidByDefinition, Triangles_AreTwiceThePointsLessTheEulerCharacteristic) {
-    // F = 2n − 2χ over the n points on the boundary, for every valid solid of whatever genus and number of pieces.
+    // F = 2n − 2χ over the n points on the boundary, for every valid solid of any genus and number of components.
     std::set<long> characteristics;
     for (std::uint64_t seed = 0; seed < 150; ++seed) {
         const AlphaSolidResult result = solid_of(random_cloud(seed), covering(60, AlphaComponents::many));

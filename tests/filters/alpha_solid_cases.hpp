@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How the tests call alpha-solid, and what they ask of every result.
+/// How the tests call alpha-solid, and what they check of every result.
 
 #include <gtest/gtest.h>
 
@@ -49,13 +49,13 @@ inline AlphaSolidParams many() { return covering(100, AlphaComponents::many); }
 
 /// V, E, F of the boundary, and that it is closed and outward round exactly the cells inside.
 inline void expect_closed(const AlphaSolidResult& result, std::size_t vertices, long euler) {
-    const MeshTopology facts = topology(result.mesh);
-    EXPECT_TRUE(facts.closed);
-    EXPECT_EQ(facts.unused_vertices, 0u);
-    EXPECT_EQ(facts.vertices, vertices);
-    EXPECT_EQ(facts.euler, euler);
-    EXPECT_EQ(facts.triangles, static_cast<std::size_t>(2 * (static_cast<long>(vertices) - euler)));
-    EXPECT_EQ(facts.components, result.components);
+    const MeshTopology properties = topology(result.mesh);
+    EXPECT_TRUE(properties.closed);
+    EXPECT_EQ(properties.unused_vertices, 0u);
+    EXPECT_EQ(properties.vertices, vertices);
+    EXPECT_EQ(properties.euler, euler);
+    EXPECT_EQ(properties.triangles, static_cast<std::size_t>(2 * (static_cast<long>(vertices) - euler)));
+    EXPECT_EQ(properties.components, result.components);
     EXPECT_EQ(result.nonmanifold_vertices, 0u);
 }
 
@@ -74,7 +74,7 @@ inline double cell_volumes(const AlphaSolidResult& result) {
 using Point = std::array<double, 3>;
 inline Point point(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-/// The boundary as a set of oriented triangles between places, whatever the vertices' numbers.
+/// The boundary as a set of oriented triangles between positions, independent of the vertices' numbers.
 inline std::set<std::array<Point, 3>> places(const TriangleMesh& mesh) {
     std::set<std::array<Point, 3>> result;
     for (const auto& [a, b, c] : mesh.triangles) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A share of the points: alpha never falls when the share rises, and what a given alpha leaves out is told.
+/// A share of the points: alpha never falls when the share rises, and points that a given alpha leaves out are
+/// reported.
 
 #include <gmock/gmock.h>
 
@@ -30,7 +31,7 @@ AlphaSolidParams given(double alpha, double percent, AlphaComponents components 
     return params;
 }
 
-/// An open plate: a lattice whose points stand up to `roughness` off it, any way.
+/// An open plate: a lattice whose points are moved by up to `roughness` along each axis.
 PointCloud open_plate(std::uint64_t seed, double roughness) {
     Random random(seed);
     Array<Vec3> positions;
@@ -45,7 +46,7 @@ PointCloud open_plate(std::uint64_t seed, double roughness) {
     return cloud;
 }
 
-/// How many of these shares need a larger alpha than the one before.
+/// Returns how many of these shares need a larger alpha than the one before.
 int expect_alpha_to_rise(const TetMesh& tets, AlphaComponents components) {
     int steps = 0;
     double before = 0;
@@ -88,7 +89,7 @@ TEST(AlphaSolidCoverage, OfTwoShapesThatTouch_RaisesAlpha) {
     }
 }
 
-TEST(AlphaSolidCoverage, OfAGivenAlphaThatHoldsTheShare_IsNoFault) {
+TEST(AlphaSolidCoverage, OfAGivenAlphaThatHoldsTheShare_IsNotReportedAsADefect) {
     // Two cubes that share one corner, and a third apart: 1 of 3 x 729 points may be left out, or all of the third.
     const PointCloud cubes = joined(cubes_sharing_a_corner(), moved(lattice_cube(3), 1, Vec3(40, 0, 0)));
     const TetMesh tets = tets_of(cubes);
@@ -99,7 +100,7 @@ TEST(AlphaSolidCoverage, OfAGivenAlphaThatHoldsTheShare_IsNoFault) {
     ASSERT_EQ(pinched.size(), 1u);
     EXPECT_THAT(pinched[0], AllOf(HasSubstr("not valid: its boundary has 1 non-manifold vertex"),
                                   Not(HasSubstr("are outside of it"))));
-    // The one of the two cubes that stays holds 729 points: enough for 47 %, not for 48 %.
+    // The one of the two cubes that is kept has 729 points: enough for 47 %, not for 48 %.
     const auto half = warnings_of(tets, given(0.71, 47));
     EXPECT_THAT(half, ElementsAre(AllOf(HasSubstr("792 of 1521 points are not in or on the solid; "),
                                         HasSubstr("cells of other solids were left out")),
@@ -112,7 +113,7 @@ TEST(AlphaSolidCoverage, OfAGivenAlphaThatHoldsTheShare_IsNoFault) {
     EXPECT_THAT(too_few[1], HasSubstr("cells of other solids were left out"));
 }
 
-TEST(AlphaSolidCoverage, OfAGivenAlpha_TellsPointsOutsideBesideAnotherFault) {
+TEST(AlphaSolidCoverage, OfAGivenAlpha_ReportsPointsOutsideBesideAnotherDefect) {
     // The pinched cubes and five points far away.
     Array<Vec3> far;
     for (int i = 0; i < 5; ++i) far.push_back(Vec3(100 + 10 * i, 7 * i * i, -5 * i));
@@ -127,18 +128,18 @@ TEST(AlphaSolidCoverage, OfAGivenAlpha_TellsPointsOutsideBesideAnotherFault) {
                 ElementsAre(HasSubstr("not valid: 5 of 1462 points are outside of it and its boundary has 1")));
 }
 
-TEST(AlphaSolidSeparate, SolidsThatAlphaJoined_AreToldWithTheWordThatKeepsThemApart) {
+TEST(AlphaSolidSeparate, SolidsThatAlphaJoined_AreReportedWithTheParameterThatKeepsThemSeparate) {
     const TetMesh tets = tets_of(two_spheres());
     const AlphaSolidResult apart = solid_of(tets, many()), one = solid_of(tets);
     ASSERT_TRUE(one.separate);
     EXPECT_EQ(one.separate->count, 2u);
     EXPECT_EQ(one.separate->alpha, apart.alpha);
-    EXPECT_THAT(warnings_of(tets, {}), testing::Contains(AllOf(HasSubstr("joins 2 solids that stand apart at "),
-                                                               HasSubstr("'components: many' keeps them apart"))));
+    EXPECT_THAT(warnings_of(tets, {}), testing::Contains(AllOf(HasSubstr("joins 2 solids that are separate at "),
+                                                               HasSubstr("'components: many' keeps them separate"))));
     EXPECT_FALSE(apart.separate);
     EXPECT_THAT(warnings_of(tets, many()), IsEmpty());
-    EXPECT_FALSE(solid_of(tets, covering(66)).separate) << "there the smaller one is left out, and told";
-    // Alpha grows here too, but there never were two.
+    EXPECT_FALSE(solid_of(tets, covering(66)).separate) << "there the smaller one is left out, with a warning";
+    // Alpha grows here too, but there is only one solid.
     EXPECT_FALSE(solid_of(cubes_sharing_a_corner()).separate);
     EXPECT_FALSE(solid_of(fibonacci_sphere(200)).separate);
 }

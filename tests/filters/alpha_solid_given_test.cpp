@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A given alpha is taken as it is; when its solid is not valid one sentence says why and which alpha works.
+/// A given alpha is used unchanged; when its solid is not valid, one sentence gives the reason and a valid alpha.
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "alpha_solid/remarks.hpp"
+#include "alpha_solid/selection.hpp"
 #include "filters/alpha_solid_cases.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
@@ -35,25 +35,25 @@ double named_alpha(const std::string& warning) {
     return value;
 }
 
-TEST(AlphaSolidGiven, CubesThatTouchInACorner_AreSaidToWithTheAlphaThatWorks) {
+TEST(AlphaSolidGiven, CubesThatTouchInACorner_AreReportedWithAValidAlpha) {
     // Across the corner the cubes' unit squares have half diagonal 0.7071; the next radius closes the corner's notch.
     const TetMesh tets = tets_of(cubes_sharing_a_corner());
     const auto warnings = warnings_of(tets, at_alpha(0.71));
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_THAT(warnings[0], HasSubstr("at alpha 0.71 u the solid is not valid: its boundary has 1 non-manifold vertex "
                                        "and 0 edges with more than two triangles; the nearest alpha"));
-    EXPECT_EQ(named_alpha(warnings[0]), 0.8661);  // √3/2 = 0.86602…, rounded up so that it works
+    EXPECT_EQ(named_alpha(warnings[0]), 0.8661);  // √3/2 = 0.86602…, rounded up so that it is valid
     EXPECT_FALSE(solid_of(tets, at_alpha(named_alpha(warnings[0]))).nearest_valid);
     EXPECT_NEAR(solid_of(tets).alpha, std::sqrt(3.0) / 2, 1e-9);
 }
 
-TEST(AlphaSolidGiven, TwoSpheres_AreSaidToBePiecesAndPointsOutside) {
+TEST(AlphaSolidGiven, TwoSpheres_AreReportedAsComponentsAndPointsOutside) {
     const TetMesh tets = tets_of(two_spheres());
     const double both = solid_of(tets, many()).alpha;
-    const auto pieces = warnings_of(tets, at_alpha(1.01 * both));
-    ASSERT_EQ(pieces.size(), 1u);
-    EXPECT_THAT(pieces[0], HasSubstr("the solid is not valid: it is in 2 pieces; the nearest alpha"));
-    EXPECT_FALSE(solid_of(tets, at_alpha(named_alpha(pieces[0]))).nearest_valid);
+    const auto components = warnings_of(tets, at_alpha(1.01 * both));
+    ASSERT_EQ(components.size(), 1u);
+    EXPECT_THAT(components[0], HasSubstr("the solid is not valid: it has 2 components; the nearest alpha"));
+    EXPECT_FALSE(solid_of(tets, at_alpha(named_alpha(components[0]))).nearest_valid);
     EXPECT_THAT(warnings_of(tets,
                             [&] {
                                 AlphaSolidParams params = many();
@@ -92,7 +92,7 @@ TEST(AlphaSolidGiven, AboveAValidSolidThatIsNearer_ThatOneIsNamed) {
     EXPECT_GT(named_below, 3);
 }
 
-TEST(AlphaSolidGiven, AValidAlpha_IsTakenWithoutAWord) {
+TEST(AlphaSolidGiven, AValidAlpha_IsUsedWithoutAWarning) {
     const TetMesh tets = tets_of(fibonacci_sphere(500, 1e-4));
     const double least = solid_of(tets).alpha;
     for (double factor : {1.0, 1.3, 4.0}) {
@@ -104,7 +104,7 @@ TEST(AlphaSolidGiven, AValidAlpha_IsTakenWithoutAWord) {
 }
 
 TEST(AlphaSolidGiven, WhereOnlyTheHullIsValid_TheSentenceNamesItsRadius) {
-    // Nothing joins two unit cubes ten apart before the ball spans from one to the other.
+    // Two unit cubes ten apart are joined only when the ball spans from one to the other.
     PointCloud cubes = joined(lattice_cube(1), moved(lattice_cube(1), 1, Vec3(10, 0, 0)));
     const TetMesh tets = tets_of(cubes);
     Context context;
@@ -129,7 +129,7 @@ TEST(AlphaSolidGiven, PointsOutsideThatTheShareAllows_AreOnlyCounted) {
     EXPECT_THAT(warnings_of(tets, params), ElementsAre(HasSubstr("not valid: 5 of 1000 points are outside of it")));
 }
 
-TEST(AlphaSolidGiven, TextWithin_HasTheFewestDigitsThatWork) {
+TEST(AlphaSolidGiven, TextWithin_HasTheFewestDigitsInside) {
     using alpha::text_within;
     EXPECT_EQ(text_within({0.8660254037844386, 0.9}, 0.7), "0.8661");
     EXPECT_EQ(text_within({1.0, 2.0}, 0.5), "1");
@@ -142,13 +142,13 @@ TEST(AlphaSolidGiven, TextWithin_HasTheFewestDigitsThatWork) {
     EXPECT_EQ(text_within({next, next}, 0.01), "0.10000000000000002");
 }
 
-TEST(AlphaSolidAmbiguity, FilledLatticeCube_IsSaidToHoldPoints) {
+TEST(AlphaSolidAmbiguity, FilledLatticeCube_IsReportedToHavePointsInside) {
     EXPECT_THAT(warnings_of(tets_of(lattice_cube(6)), {}),
                 ElementsAre(HasSubstr(
                     "125 of 343 points lie inside the solid instead of on its boundary: what is narrower than")));
 }
 
-TEST(AlphaSolidAmbiguity, AlphaFarAboveTheCover_IsSaidWithBothNumbers) {
+TEST(AlphaSolidAmbiguity, AlphaFarAboveTheCover_IsReportedWithBothNumbers) {
     // Valid first at √3/2, covered at √2/2: 1.22 times.
     const auto warnings = warnings_of(tets_of(cubes_sharing_a_corner()), {});
     ASSERT_EQ(warnings.size(), 1u);
@@ -157,7 +157,7 @@ TEST(AlphaSolidAmbiguity, AlphaFarAboveTheCover_IsSaidWithBothNumbers) {
     EXPECT_THAT(warnings[0], HasSubstr("sculpt opens what it can"));
 }
 
-TEST(AlphaSolidAmbiguity, CleanScans_AreNotRemarkedOn) {
+TEST(AlphaSolidAmbiguity, CleanScans_GiveNoWarning) {
     for (const PointCloud& cloud : {fibonacci_sphere(700, 1e-4), poisson_torus(0.06, 0.4, 20000), lattice_cube(1),
                                     l_block_surface(10, 2, 10), lattice_cube(6, 1, true)})
         EXPECT_THAT(warnings_of(tets_of(cloud), {}), IsEmpty());
@@ -180,10 +180,10 @@ PointCloud bar_biting_its_corner() {
     return cloud;
 }
 
-TEST(AlphaSolidSkull, EdgeManifoldButPinchedInOneVertex_IsNotTakenForManifold) {
+TEST(AlphaSolidSkull, EdgeManifoldButPinchedInOneVertex_IsNotReportedAsManifold) {
     const TetMesh tets = tets_of(bar_biting_its_corner());
-    // Four blocks of 4³ unit cubes and two of twice as many; the lattice's squares are walls from half their diagonal
-    // on.
+    // Four blocks of 4³ unit cubes and two of twice as many; the squares of the lattice are walls from half their
+    // diagonal on.
     const AlphaSolidResult pinched = solid_of(tets, at_alpha(0.7072));
     EXPECT_EQ(pinched.nonmanifold_edges, 0u);
     EXPECT_EQ(pinched.nonmanifold_vertices, 1u);
@@ -191,10 +191,10 @@ TEST(AlphaSolidSkull, EdgeManifoldButPinchedInOneVertex_IsNotTakenForManifold) {
     EXPECT_EQ(pinched.uncovered_points.size(), 0u);
     EXPECT_NEAR(cell_volumes(pinched), 8 * 64, 1e-9);
     // A sphere with two points made one: V − E + F = 1.
-    const MeshTopology facts = topology(pinched.mesh);
-    EXPECT_EQ(facts.euler, 1);
-    EXPECT_FALSE(facts.closed);
-    EXPECT_EQ(facts.nonmanifold_vertices, 1u);
+    const MeshTopology properties = topology(pinched.mesh);
+    EXPECT_EQ(properties.euler, 1);
+    EXPECT_FALSE(properties.closed);
+    EXPECT_EQ(properties.nonmanifold_vertices, 1u);
 
     const AlphaSolidResult result = solid_of(tets);
     EXPECT_EQ(result.choice, AlphaChoice::scan);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The vertices of well-known closed models, as if they had been scanned: which come back as what they were, and what
-/// is said about the others. Skipped where the collections are absent.
+/// The vertices of well-known closed models as clouds: which models are reconstructed, and the warnings about the
+/// others. Skipped where the collections are absent.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -31,12 +31,12 @@ Reconstruction reconstructed(const std::filesystem::path& path) {
 }
 
 /// One closed, outward manifold through every point but those inside.
-void expect_promised(const AlphaSolidResult& solid, const MeshTopology& facts) {
-    EXPECT_TRUE(facts.closed);
-    EXPECT_EQ(facts.components, 1u);
-    EXPECT_EQ(facts.unused_vertices, 0u);
+void expect_promised(const AlphaSolidResult& solid, const MeshTopology& properties) {
+    EXPECT_TRUE(properties.closed);
+    EXPECT_EQ(properties.components, 1u);
+    EXPECT_EQ(properties.unused_vertices, 0u);
     EXPECT_EQ(solid.uncovered_points.size(), 0u);
-    EXPECT_EQ(facts.vertices + solid.interior_points.size(), solid.tets.positions.size());
+    EXPECT_EQ(properties.vertices + solid.interior_points.size(), solid.tets.positions.size());
     EXPECT_GT(signed_volume(solid.mesh), 0);
     EXPECT_FALSE(intersects_itself(solid.mesh));
 }
@@ -51,41 +51,41 @@ protected:
         ASSERT_EQ(model.components, 1u);
         ASSERT_EQ(model.genus, GetParam().genus);
         result = reconstructed(*path);
-        facts = topology(result.solid.mesh);
+        properties = topology(result.solid.mesh);
     }
     Reconstruction result;
-    MeshTopology facts;
+    MeshTopology properties;
 };
 
 class AlphaSolidOfDenseModel : public AlphaSolidOfModel {};
-TEST_P(AlphaSolidOfDenseModel, HasTheModelsGenusAndAllItsPointsWithoutAWord) {
-    expect_promised(result.solid, facts);
+TEST_P(AlphaSolidOfDenseModel, HasTheModelsGenusAndAllItsPointsWithoutAWarning) {
+    expect_promised(result.solid, properties);
     const long points = static_cast<long>(result.solid.tets.positions.size());
-    EXPECT_EQ(static_cast<long>(facts.triangles), 2 * points - 4 + 4 * GetParam().genus);
-    EXPECT_EQ(facts.genus, GetParam().genus);
+    EXPECT_EQ(static_cast<long>(properties.triangles), 2 * points - 4 + 4 * GetParam().genus);
+    EXPECT_EQ(properties.genus, GetParam().genus);
     EXPECT_THAT(result.warnings, testing::IsEmpty());
 }
 INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfDenseModel, testing::ValuesIn(dense_models));
 
 class AlphaSolidOfGroovedModel : public AlphaSolidOfModel {};
-TEST_P(AlphaSolidOfGroovedModel, HasTheModelsGenusAndSaysWhichPointsAreInside) {
-    expect_promised(result.solid, facts);
+TEST_P(AlphaSolidOfGroovedModel, HasTheModelsGenusAndReportsThePointsInside) {
+    expect_promised(result.solid, properties);
     const long points = static_cast<long>(result.solid.tets.positions.size());
     const long inside = static_cast<long>(result.solid.interior_points.size());
     EXPECT_GT(inside, 0);
-    EXPECT_EQ(static_cast<long>(facts.triangles), 2 * points - 4 - 2 * inside + 4 * GetParam().genus);
-    EXPECT_EQ(facts.genus, GetParam().genus);
+    EXPECT_EQ(static_cast<long>(properties.triangles), 2 * points - 4 - 2 * inside + 4 * GetParam().genus);
+    EXPECT_EQ(properties.genus, GetParam().genus);
     ASSERT_EQ(result.warnings.size(), 1u);
     EXPECT_THAT(result.warnings[0], testing::HasSubstr(fmt::format("{} of {} points lie inside", inside, points)));
 }
 INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfGroovedModel, testing::ValuesIn(grooved_models));
 
-/// Too thin or too sparsely sampled: another genus comes out. That cannot be seen from the points, but that alpha is
-/// doubtful can.
+/// Too thin or too sparsely sampled: the result has another genus. The points do not show that, but they show that
+/// alpha is doubtful.
 class AlphaSolidOfSparseModel : public AlphaSolidOfModel {};
-TEST_P(AlphaSolidOfSparseModel, HasAnotherGenusButNotInSilence) {
-    expect_promised(result.solid, facts);
-    EXPECT_NE(facts.genus, GetParam().genus);
+TEST_P(AlphaSolidOfSparseModel, HasAnotherGenusWithAWarning) {
+    expect_promised(result.solid, properties);
+    EXPECT_NE(properties.genus, GetParam().genus);
     ASSERT_EQ(result.warnings.size(), 1u);
     EXPECT_THAT(result.warnings[0], testing::HasSubstr("what is narrower than 2 alpha may be filled"));
 }
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfSparseModel,
                                          Model{"meshes/man.off", 0}, Model{"meshes/pinion.off", 1},
                                          Model{"meshes/rotor_small.off", 1}));
 
-/// Open surfaces and posts with a few far points: a solid comes out, whose alpha spans what no scan has seen.
+/// Open surfaces and posts with a few distant points: the alpha of the solid spans regions that were not scanned.
 class AlphaSolidOfOpenModel : public testing::TestWithParam<Model> {};
 TEST_P(AlphaSolidOfOpenModel, IsASolidWithADoubtfulAlpha) {
     const auto path = found(GetParam());

@@ -20,19 +20,19 @@ AlphaSolidResult solid_of(const PointCloud& cloud, const AlphaSolidParams& param
     return alpha_solid(delaunay(cloud, {}, context).tets, params, context);
 }
 
-/// What an automatic alpha promises of any scan.
+/// The guarantees of an automatic alpha for any scan.
 void expect_valid(const AlphaSolidResult& result) {
-    const MeshTopology facts = topology(result.mesh);
-    EXPECT_TRUE(facts.closed);
-    EXPECT_EQ(facts.unused_vertices, 0u);
-    EXPECT_EQ(facts.components, 1u);
+    const MeshTopology properties = topology(result.mesh);
+    EXPECT_TRUE(properties.closed);
+    EXPECT_EQ(properties.unused_vertices, 0u);
+    EXPECT_EQ(properties.components, 1u);
     EXPECT_EQ(result.components, 1u);
     EXPECT_GE(result.alpha, result.alpha_cover);
     EXPECT_GT(signed_volume(result.mesh), 0);
-    EXPECT_EQ(facts.vertices + result.interior_points.size() + result.uncovered_points.size(),
+    EXPECT_EQ(properties.vertices + result.interior_points.size() + result.uncovered_points.size(),
               result.tets.positions.size());
     // F = 2n − 2χ over the points on the boundary.
-    EXPECT_EQ(static_cast<long>(facts.triangles), 2 * (static_cast<long>(facts.vertices) - facts.euler));
+    EXPECT_EQ(static_cast<long>(properties.triangles), 2 * (static_cast<long>(properties.vertices) - properties.euler));
 }
 
 struct Scan {
@@ -66,13 +66,13 @@ TEST(AlphaSolidOfTheBunny, ReachesIntoNoPointsNeighbourhood) {
     const AlphaSolidResult result = solid_of(*cloud);
     expect_valid(result);
     EXPECT_EQ(result.uncovered_points.size(), 0u);
-    // The scan has confidence and intensity; they must arrive at the boundary.
+    // The columns confidence and intensity of the scan must be carried to the boundary.
     ASSERT_NE(result.mesh.vertex_columns.find("confidence"), nullptr);
     EXPECT_EQ(result.mesh.vertex_columns.find("confidence")->rows(), result.mesh.positions.size());
 }
 
-TEST(AlphaSolidOfABodyInThreePieces, IsOne_BecauseTheirCutsAreOpen_AndSaysThatGapsAreSpanned) {
-    // Two rings were cut out of it: what closes the ends of the three pieces spans the gaps as well.
+TEST(AlphaSolidOfABodyInThreeParts, IsOne_BecauseTheirCutsAreOpen_WithAWarningThatGapsAreSpanned) {
+    // Two rings were cut out of it: the alpha that closes the ends of the three parts spans the gaps as well.
     SCANMILL_REAL_SCAN(path, fetched_data, "meshes/blobby_3cc.off");
     const auto cloud = read_points(path);
     for (AlphaComponents components : {AlphaComponents::single, AlphaComponents::many}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// alpha-solid's search for alpha: what the reported one is the least of.
+/// The search of alpha-solid for alpha: the reported alpha is the least valid one.
 
 #include <gmock/gmock.h>
 
@@ -56,7 +56,7 @@ TEST(AlphaSolidSearch, TheReportedAlpha_GivesTheSameSolidWhenGiven) {
 }
 
 TEST(AlphaSolidSearch, TheScan_FindsTheLeastValidAlpha) {
-    // Every smaller candidate from alpha_cover on is invalid, judged from outside by the mesh's topology.
+    // Every smaller candidate from alpha_cover on is invalid, by the topology of its mesh.
     int beyond_cover = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         const TetMesh tets = tets_of(random_cube(60, seed));

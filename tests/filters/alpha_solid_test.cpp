@@ -34,9 +34,10 @@ TEST(AlphaSolid, RegularTetrahedron_AppearsAtItsFacetsCircumradius) {
     EXPECT_NEAR(result.alpha, 1 / std::sqrt(3.0), 1e-12);
     EXPECT_EQ(result.spectrum, 1u);
     expect_closed(result, 4, 2);
-    EXPECT_EQ(refusal(tets, at_alpha(0.57)),
-              "alpha 0.57 u leaves no cell inside; from 0.5774 u there is one, from 0.5774 u cells reach 4 of 4 "
-              "points\nhint: 'alpha: auto' finds the least alpha with a closed manifold boundary");
+    EXPECT_EQ(
+        refusal(tets, at_alpha(0.57)),
+        "alpha 0.57 u leaves no cell inside; the first is inside from 0.5774 u, and from 0.5774 u cells cover 4 of 4 "
+        "points\nhint: 'alpha: auto' finds the least alpha with a closed manifold boundary");
 }
 
 TEST(AlphaSolid, FibonacciSphere_IsClosedThroughAllItsPoints) {
@@ -101,7 +102,7 @@ TEST(AlphaSolid, LBlockAboveItsSpacing_FillsTheConcaveEdge) {
 }
 
 TEST(AlphaSolid, SurfaceOfALatticeCube_IsSolidThroughout) {
-    // What walls enclose is inside, however large the cells.
+    // Everything that walls enclose is inside, however large the cells.
     const AlphaSolidResult result = solid_of(lattice_cube(8, 0.125, true));
     EXPECT_EQ(result.cells_inside, result.tets.cells.size());
     expect_closed(result, 386, 2);
@@ -117,7 +118,7 @@ TEST(AlphaSolid, FilledLatticeCube_ReportsItsInteriorPoints) {
     EXPECT_DOUBLE_EQ(signed_volume(result.mesh), 216);
 }
 
-TEST(AlphaSolid, CubesThatTouchInACorner_AreNotTakenForManifold) {
+TEST(AlphaSolid, CubesThatTouchInACorner_AreNotReportedAsManifold) {
     const TetMesh tets = tets_of(cubes_sharing_a_corner());
     const AlphaSolidResult pinched = solid_of(tets, at_alpha(0.71));
     EXPECT_EQ(pinched.nonmanifold_vertices, 1u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What must be true of every Delaunay tetrahedralisation.
+/// Properties of every Delaunay tetrahedralisation.
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ inline double volume(const TetMesh& tets) {
     return sum / 6;
 }
 
-/// Everything that tets.hpp promises, checked one by one.
+/// Checks every guarantee of tets.hpp.
 inline void expect_canonical(const TetMesh& tets) {
     ASSERT_EQ(tets.neighbours.size(), tets.cells.size());
     EXPECT_TRUE(std::ranges::is_sorted(tets.cells));
@@ -83,7 +83,7 @@ inline void expect_equal_bytes(const TetMesh& a, const TetMesh& b) {
     EXPECT_EQ(std::memcmp(a.neighbours.data(), b.neighbours.data(), a.cells.size() * 4 * sizeof(u32)), 0);
 }
 
-/// Cells as sets of places, whatever the vertices' numbers.
+/// Cells as sets of positions, independent of the vertices' numbers.
 using Places = std::set<std::array<std::array<double, 3>, 4>>;
 inline Places places(const TetMesh& tets) {
     Places result;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The memory that triangulations grow in.
+// The allocator of the triangulations.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ TEST(Slabs, BlocksOfAllSizes_AreAlignedAndShareNothing) {
     EXPECT_EQ(slabs.bytes(), 0u);
 }
 
-TEST(Slabs, TheLastBlock_TakesAllMemoryWithIt) {
+TEST(Slabs, FreeingTheLastBlock_ReleasesAllMemory) {
     Slabs slabs;
     for (int round = 0; round < 2; ++round) {
         slabs.allocate(1000);
@@ -65,7 +65,7 @@ TEST(SlabAllocator, CopiesShareAndOthersDoNot) {
     EXPECT_EQ(other.slabs()->bytes(), 0u);
 }
 
-TEST(SlabAllocator, OfAVectorThatWasMovedFrom_AllocatesOn) {
+TEST(SlabAllocator, OfAVectorThatWasMovedFrom_StillAllocates) {
     std::vector<double, SlabAllocator<double>> numbers(100, 1.5);
     const auto moved = std::move(numbers);
     EXPECT_EQ(moved.size(), 100u);

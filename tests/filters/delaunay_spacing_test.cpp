@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Weights that follow the sampling: closed forms, what neighbours allow, any order and scale.
+// Weights from the local spacing: closed forms, limits by neighbours, any order and scale.
 
 #include <gmock/gmock.h>
 
@@ -36,7 +36,7 @@ TEST(DelaunaySpacing, Weights_IsTheMeanOfSixNeighbours) {
     EXPECT_DOUBLE_EQ(few.weights[0], std::pow((3 + 3 + 3 + 10) / 4.0, 2));
 }
 
-TEST(DelaunaySpacing, Weights_IsLoweredToWhatNeighboursAllow_SoThatNothingIsHidden) {
+TEST(DelaunaySpacing, Weights_IsLoweredToWhatNeighboursAllow_SoThatNoPointIsHidden) {
     for (double factor : {0.5, 1.0, 4.0}) {
         const PointCloud blob = joined(random_cube(300, 1), moved(random_cube(300, 2), 0.05, Vec3(0.4, 0.4, 0.4)));
         const DelaunayResult result = weighted(blob, weighted_by("spacing", factor));
@@ -51,7 +51,7 @@ TEST(DelaunaySpacing, Weights_IsLoweredToWhatNeighboursAllow_SoThatNothingIsHidd
             ASSERT_LE(result.tets.weights[i], allowed * (1 + 1e-14));
             at_their_limit += result.tets.weights[i] >= allowed * (1 - 1e-14);
         }
-        EXPECT_GT(at_their_limit, 10u) << "the closure is the largest: something holds every lowered weight";
+        EXPECT_GT(at_their_limit, 10u) << "it is the largest solution: every lowered weight is at a limit";
         expect_regular(result.tets);
     }
 }
@@ -86,7 +86,7 @@ TEST(DelaunaySpacing, ScaledByAPowerOfTwo_WeightsScaleByItsSquare) {
     }
 }
 
-TEST(DelaunaySpacing, AColumnOfThatName_IsToldToBeLeftAlone) {
+TEST(DelaunaySpacing, AColumnOfThatName_IsNotReadWithAWarning) {
     PointCloud cloud = random_cube(20, 1);
     cloud.columns.add(Column("spacing", 1, Buffer<float>(Array<float>(20, 7.0f))));
     Context context;

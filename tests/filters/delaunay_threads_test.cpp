@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// delaunay among threads, when it is cancelled, and what it tells meanwhile.
+/// delaunay on several threads, its cancellation and its progress.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ TEST(DelaunayThreads, WhenCancelled_StopsWithCancelled) {
     EXPECT_LT(asked, 10);
 }
 
-TEST(DelaunayThreads, WhenCancelledAmongThreads_StopsWithCancelled) {
+TEST(DelaunayThreads, WhenCancelledOnSeveralThreads_StopsWithCancelled) {
     std::atomic<int> asked = 0;
     ContextOptions options;
     options.threads = 2;

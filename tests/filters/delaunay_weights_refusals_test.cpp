@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Weights that are none are refused with what was found.
+// Unusable weights are refused, with the numbers found.
 
 #include <gmock/gmock.h>
 
@@ -29,19 +29,19 @@ PointCloud with_one_weight(double weight) {
     return with_weights(random_cube(10, 1), weights);
 }
 
-TEST(DelaunayWeights, ValuesThatAreNoWeights_AreRefusedWithTheFirst) {
+TEST(DelaunayWeights, ValuesOutOfRange_AreRefusedWithTheFirst) {
     const double infinity = std::numeric_limits<double>::infinity();
-    for (double weight : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity, -1e-300, 1.01e200})
+    for (double weight : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity, -1e-300, 1.01e18})
         EXPECT_THAT(weights_refusal(with_one_weight(weight), weighted_by("w")),
-                    AllOf(HasSubstr("weights must be numbers from 0 to 1e+200; 1 of 10 in the column 'w' are not, the "
+                    AllOf(HasSubstr("weights must be numbers from 0 to 1e+18; 1 of 10 in the column 'w' are not, the "
                                     "first is that of point 6: "),
                           HasSubstr("hint: a weight is a squared length")));
     EXPECT_THAT(weights_refusal(with_one_weight(-2), weighted_by("w", 3)), HasSubstr("point 6: -2 times 3"));
-    EXPECT_THAT(weights_refusal(with_one_weight(1), weighted_by("w", 1e201)), HasSubstr("10 of 10"));
-    EXPECT_EQ(weights_refusal(with_one_weight(1e200), weighted_by("w")), "accepted");
+    EXPECT_THAT(weights_refusal(with_one_weight(1), weighted_by("w", 1e19)), HasSubstr("10 of 10"));
+    EXPECT_EQ(weights_refusal(with_one_weight(1e18), weighted_by("w")), "accepted");
 }
 
-TEST(DelaunayWeights, AMissingColumn_IsRefusedWithTheNamesThatThereAre) {
+TEST(DelaunayWeights, AMissingColumn_IsRefusedWithTheExistingNames) {
     PointCloud cloud = with_one_weight(1);
     cloud.columns.add(Column("weight", 1, Buffer<float>(Array<float>(10, 1.0f))));
     EXPECT_THAT(weights_refusal(cloud, weighted_by("wieght")),
@@ -71,23 +71,6 @@ TEST(DelaunayWeights, AFactorOutOfRange_IsRefused) {
     for (double factor : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         EXPECT_THAT(weights_refusal(cloud, weighted_by("w", factor)),
                     AllOf(HasSubstr("factor must be a number of 0 or more"), HasSubstr("hint: ")));
-}
-
-TEST(DelaunayWeights, SizesWhoseSquaresAreNoNumbers_AreRefusedWithAHint) {
-    for (double size : {1e-110, 1e-160, 1e110, 1e156}) {
-        const PointCloud cloud = moved(random_cube(30, 1), size);
-        EXPECT_THAT(weights_refusal(cloud, weighted_by("spacing")),
-                    AllOf(HasSubstr("with weights needs a scan between 1e-100 and 1e+100 in size, so that squares of "
-                                    "lengths are numbers; it is "),
-                          HasSubstr("hint: give it in a larger or smaller unit")))
-            << size;
-        EXPECT_THAT(weights_refusal(with_weights(cloud, Array<double>(30, 1.0)), weighted_by("w")),
-                    HasSubstr("with weights needs a scan between"));
-    }
-    for (double size : {1e-90, 1e90}) {
-        const TetMesh tets = weighted(moved(random_cube(30, 1), size)).tets;
-        EXPECT_NEAR(tets.weights[0] / size / size / weighted(random_cube(30, 1)).tets.weights[0], 1, 1e-12);
-    }
 }
 
 TEST(DelaunayWeights, AFlatScan_IsRefusedAsWithoutWeights) {

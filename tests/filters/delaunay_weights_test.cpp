@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Weighted points: the cells are those of the regular triangulation, whatever the order of the points.
+// Weighted points: the cells are those of the regular triangulation, for any order of the points.
 
 #include <gmock/gmock.h>
 
@@ -65,7 +65,7 @@ TEST(DelaunayWeights, APointInTheMiddle_IsHiddenByHeavyCorners_AndNotByLightOnes
 }
 
 TEST(DelaunayWeights, OfTwoDiagonals_TheHeavyOneIsAnEdge) {
-    // Without weights, the place of the last corner decides; here a hair of weight does.
+    // Without weights, the position of the last corner decides; here a tiny weight does.
     const PointCloud square = cloud_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 9}});
     const auto has_edge = [](const TetMesh& tets, u32 a, u32 b) {
         return std::ranges::any_of(tets.cells, [&](const Tetrahedron& cell) {
@@ -129,13 +129,13 @@ TEST(DelaunayWeights, Duplicates_AreMergedIntoTheFirst_WithTheLargestWeight) {
     EXPECT_THAT(result.tets.vertex_columns.find("w")->values<double>(), ElementsAre(1, 2, 3, 4));
     EXPECT_THAT(result.tets.weights.span(), ElementsAre(1, 5, 3, 4));
     ASSERT_EQ(context.warnings().size(), 1u);
-    EXPECT_THAT(context.warnings()[0], HasSubstr("at 2 places points with different weights were merged"));
+    EXPECT_THAT(context.warnings()[0], HasSubstr("at 2 positions points with different weights were merged"));
     // Repeating a scan changes no spacing.
     const PointCloud base = random_cube(200, 4);
     expect_same_cells(weighted(joined(base, base)).tets, weighted(base).tets);
 }
 
-TEST(DelaunayWeights, AColumnHidden_IsKeptUnderAnotherNameWhenOneIsNeeded) {
+TEST(DelaunayWeights, AColumnCalledHidden_IsRenamedWhenPointsAreHidden) {
     PointCloud cloud = cloud_of({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}, {0, 0, 0}});
     cloud.columns.add(Column("hidden", 1, Buffer<float>(Array<float>(5, 7.0f))));
     cloud.columns.add(Column("hidden-of-points", 1, Buffer<u8>(Array<u8>(5, u8(9)))));
@@ -145,17 +145,17 @@ TEST(DelaunayWeights, AColumnHidden_IsKeptUnderAnotherNameWhenOneIsNeeded) {
     EXPECT_EQ(columns.find("hidden")->type(), ScalarType::uint8);
     EXPECT_EQ(columns.find("hidden-of-points")->number(0), 9);
     EXPECT_EQ(columns.find("hidden-of-points-of-points")->number(0), 7);
-    EXPECT_THAT(context.warnings()[0], HasSubstr("it is called 'hidden-of-points-of-points' now"));
+    EXPECT_THAT(context.warnings()[0], HasSubstr("it was renamed 'hidden-of-points-of-points'"));
 
     const DelaunayResult seen = weighted(with_weights(cloud, {3.5, 3.5, 3.5, 3.5, 0.75}), weighted_by("w"));
-    EXPECT_EQ(seen.tets.vertex_columns.find("hidden")->number(0), 7) << "untouched when nothing is hidden";
+    EXPECT_EQ(seen.tets.vertex_columns.find("hidden")->number(0), 7) << "unchanged when no point is hidden";
 }
 
-TEST(DelaunayWeights, AFactorWithoutWeights_IsTold) {
+TEST(DelaunayWeights, AFactorWithoutWeights_IsReported) {
     Context context;
     delaunay(random_cube(20, 1), {std::nullopt, 2}, context);
     ASSERT_EQ(context.warnings().size(), 1u);
-    EXPECT_THAT(context.warnings()[0], HasSubstr("factor changes nothing while `weights` is none"));
+    EXPECT_THAT(context.warnings()[0], HasSubstr("factor has no effect while `weights` is none"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What becomes of the columns: nothing is lost or changed in silence.
+/// The columns of merged clouds: none is lost or changed without a warning.
 #include <gmock/gmock.h>
 
 #include "filters/merge_cases.hpp"
@@ -36,7 +36,7 @@ TEST(MergeColumns, OfEqualType_AreCarriedInOrder) {
     EXPECT_THAT(result.warnings, IsEmpty());
 }
 
-TEST(MergeColumns, OfDroppedPoints_GoWithThem) {
+TEST(MergeColumns, OfDroppedPoints_AreDropped) {
     const PointCloud a = two_points(Column("b", 1, Buffer<u8>{1, 2}));
     PointCloud b = cloud_of({{1, 0, 0}, {5, 0, 0}});
     b.columns.add(Column("b", 1, Buffer<u8>{3, 4}));
@@ -45,14 +45,14 @@ TEST(MergeColumns, OfDroppedPoints_GoWithThem) {
     EXPECT_THAT(result.points.columns.find("source")->values<u32>(), ElementsAre(0u, 0u, 1u));
 }
 
-TEST(MergeColumns, ThatSomeInputLacks_IsLeftOutAndTold) {
+TEST(MergeColumns, ThatSomeInputLacks_IsLeftOutWithAWarning) {
     const PointCloud with = two_points(Column("intensity", 1, Buffer<float>{1, 2})), without = two_points();
     const Merged result = merged({without, with, without});
     EXPECT_THAT(names(result.points.columns), ElementsAre("source"));
     EXPECT_THAT(result.warnings, ElementsAre("the column 'intensity' is left out: 2 of 3 inputs lack it"));
 }
 
-TEST(MergeColumns, OfDifferentTypes_BecomeFloat64AndAreTold) {
+TEST(MergeColumns, OfDifferentTypes_BecomeFloat64WithAWarning) {
     const PointCloud a = two_points(Column("x", 1, Buffer<u8>{1, 255}));
     const PointCloud b = two_points(Column("x", 1, Buffer<float>{0.5, -3}));
     const Merged result = merged({a, b});
@@ -61,13 +61,13 @@ TEST(MergeColumns, OfDifferentTypes_BecomeFloat64AndAreTold) {
                 ElementsAre("the column 'x' is carried as float64: it is uint8 in input 0, float32 in input 1"));
 }
 
-TEST(MergeColumns, OfLargeIntegersAndFloats_TellThatTheyAreRounded) {
+TEST(MergeColumns, OfLargeIntegersAndFloats_AreRoundedWithAWarning) {
     const PointCloud a = two_points(Column("t", 1, Buffer<u64>{1, 2})),
                      b = two_points(Column("t", 1, Buffer<float>{1, 2}));
     EXPECT_THAT(merged({a, b}).warnings, ElementsAre(HasSubstr("beyond 2^53 are rounded")));
 }
 
-TEST(MergeColumns, OfDifferentShapes_AreLeftOutAndTold) {
+TEST(MergeColumns, OfDifferentShapes_AreLeftOutWithAWarning) {
     const PointCloud a = two_points(Column("colour", 3, Buffer<u8>{1, 2, 3, 4, 5, 6}));
     const PointCloud b = two_points(Column("colour", 4, Buffer<u8>{1, 2, 3, 4, 5, 6, 7, 8}));
     const Merged result = merged({a, a, b});
@@ -87,21 +87,21 @@ TEST(MergeColumns, Lists_AreCarriedWhenTheirTypesAgree) {
                 ElementsAre(AllOf(HasSubstr("'l' is left out"), HasSubstr("lists of float32 in input 1"))));
 }
 
-TEST(MergeColumns, EarlierSources_MoveUpByOneName) {
+TEST(MergeColumns, ExistingSources_AreRenamed) {
     const PointCloud once = merged({two_points(), two_points()}).points;
     const Merged twice = merged({once, once});
     EXPECT_THAT(names(twice.points.columns), ElementsAre("source-of-source", "source"));
     EXPECT_THAT(twice.points.columns.find("source-of-source")->values<u32>(),
                 ElementsAre(0u, 0u, 1u, 1u, 0u, 0u, 1u, 1u));
     EXPECT_THAT(twice.points.columns.find("source")->values<u32>(), ElementsAre(0u, 0u, 0u, 0u, 1u, 1u, 1u, 1u));
-    EXPECT_THAT(twice.warnings, ElementsAre(HasSubstr("2 of 2 inputs have a column 'source' already")));
+    EXPECT_THAT(twice.warnings, ElementsAre(HasSubstr("2 of 2 inputs already have a column 'source'")));
     EXPECT_THAT(names(merged({twice.points}).points.columns),
                 ElementsAre("source-of-source-of-source", "source-of-source", "source"));
     EXPECT_THAT(names(merged({two_points(Column("sources", 1, Buffer<u8>{1, 2}))}).points.columns),
                 ElementsAre("sources", "source"));
 }
 
-TEST(MergeColumns, WholeNumberNormals_BecomeFloat64WhenTurned) {
+TEST(MergeColumns, IntegerNormals_BecomeFloat64WhenRotated) {
     const PointCloud cloud = two_points(Column("normal", 3, Buffer<std::int8_t>{1, 0, 0, 0, 0, 1}));
     EXPECT_EQ(merged({cloud}, posed({RigidTransform{}})).points.columns.find("normal")->type(), ScalarType::float64);
     EXPECT_EQ(merged({cloud}).points.columns.find("normal")->type(), ScalarType::int8);

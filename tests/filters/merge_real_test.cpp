@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The ten raw views of the Stanford bunny: with the right reading of its poses they lie on the model that Stanford
-/// made of them.
+/// The ten raw views of the Stanford bunny: with their poses read correctly, they lie on the model that Stanford made
+/// of them.
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
@@ -84,20 +84,20 @@ TEST_F(MergeBunny, TenViewsWithTheirPoses_LieOnTheModel) {
     EXPECT_THAT(distances(all.points, 0.95), testing::Each(testing::Lt(0.5e-3)));
 }
 
-TEST_F(MergeBunny, QuaternionsReadTheUsualWay_PutMostViewsBesideTheModel) {
+TEST_F(MergeBunny, QuaternionsReadTheUsualWay_PutMostViewsOffTheModel) {
     for (RigidTransform& pose : poses_) pose.rotation.transposeInPlace();
     const std::vector<double> medians = distances(merged(clouds_, posed(poses_)).points, 0.5);
     EXPECT_GE(std::ranges::count_if(medians, [](double median) { return median > 3e-3; }), 8);
 }
 
-TEST_F(MergeBunny, WithinASpacing_LessThanHalfStaysAndNothingIsFarFromIt) {
+TEST_F(MergeBunny, WithinASpacing_LessThanHalfIsKeptAndTheFirstViewWhole) {
     MergeParams params = posed(poses_);
     params.within = 0.5e-3;
     const Merged all = merged(clouds_, posed(poses_)), thinned = merged(clouds_, params);
     EXPECT_LT(thinned.points.size(), all.points.size() / 2);
     EXPECT_GT(thinned.points.size(), clouds_[0].size());
     EXPECT_EQ(thinned.points.size() + thinned.dropped, all.points.size());
-    EXPECT_EQ(thinned.kept[clouds_[0].size() - 1], clouds_[0].size() - 1) << "the first view stays whole";
+    EXPECT_EQ(thinned.kept[clouds_[0].size() - 1], clouds_[0].size() - 1) << "the first view is kept whole";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Where merged points lie and what becomes of their frames; overlaps, columns and pose files have tests of their own.
+/// Positions and frames of merged points. Overlaps, columns and pose files are tested in other files.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ PointCloud framed(PointCloud cloud, const Frame& frame) {
 
 Vec3 world(const PointCloud& cloud, std::size_t row) { return cloud.frame.origin + cloud.positions[row]; }
 
-TEST(Merge, TwoClouds_LieEndToEndAndKnowTheirSource) {
+TEST(Merge, TwoClouds_AreConcatenatedWithTheirSource) {
     const Merged result = merged({cloud_of({{0, 0, 0}, {1, 0, 0}}), cloud_of({{1, 0, 0}})});
     EXPECT_THAT(result.points.positions.span(), ElementsAre(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, 0)));
     EXPECT_THAT(result.points.columns.find("source")->values<u32>(), ElementsAre(0u, 0u, 1u));
@@ -65,7 +65,7 @@ TEST(Merge, OneCloudWithoutPose_ComesBackWithASource) {
     EXPECT_EQ(result.dropped, 0u);
 }
 
-TEST(Merge, CloudsOfDifferentOrigins_MeetInTheWorld) {
+TEST(Merge, CloudsOfDifferentOrigins_AgreeInTheWorld) {
     const PointCloud near = framed(cloud_of({{3, 0, 0}}), {LengthUnit::metre, Vec3(100, 0, 0), ""});
     const PointCloud far = framed(cloud_of({{1, 0, 0}}), {LengthUnit::metre, Vec3(102, 0, 0), ""});
     const Merged result = merged({near, far}, within(0.001));
@@ -73,10 +73,10 @@ TEST(Merge, CloudsOfDifferentOrigins_MeetInTheWorld) {
     EXPECT_THAT(result.kept, ElementsAre(0u)) << "both are the world's point 103 0 0";
 }
 
-TEST(Merge, Pose_TurnsAndThenMoves) {
+TEST(Merge, Pose_RotatesAndThenMoves) {
     RigidTransform pose{quarter_turn_about_z(), Vec3(10, 20, 30), LengthUnit::unknown, "", ""};
     const Merged result = merged({cloud_of({{1, 2, 3}}), cloud_of({{1, 2, 3}})}, posed({pose, RigidTransform{}}));
-    EXPECT_EQ(world(result.points, 0), Vec3(8, 21, 33)) << "1 2 3 is turned to -2 1 3";
+    EXPECT_EQ(world(result.points, 0), Vec3(8, 21, 33)) << "1 2 3 is rotated to -2 1 3";
     EXPECT_EQ(world(result.points, 1), Vec3(1, 2, 3));
 }
 
@@ -92,7 +92,7 @@ TEST(Merge, Pose_ActsOnWorldCoordinatesOfDistantScans) {
     EXPECT_EQ(world(result.points, 1), Vec3(1, 0.25, 102));
 }
 
-TEST(Merge, PoseToADistantPlace_LosesNoDigits) {
+TEST(Merge, PoseToADistantPosition_LosesNoDigits) {
     const PointCloud local = cloud_of({{1e-9, 0, 0}, {0, 3e-9, 0}, {2, 2, 2}});
     const RigidTransform pose{Eigen::Matrix3d::Identity(), Vec3(500'000, 4'900'000, 0), LengthUnit::unknown, "", ""};
     const Merged result = merged({local}, posed({pose}));
@@ -102,7 +102,7 @@ TEST(Merge, PoseToADistantPlace_LosesNoDigits) {
     EXPECT_LT((world(result.points, 2) - Vec3(500'002, 4'900'002, 2)).norm(), 1e-8);
 }
 
-TEST(Merge, PoseAndItsInverse_GiveTheCloudBack) {
+TEST(Merge, PoseAndItsInverse_RestoreTheCloud) {
     const PointCloud cloud = framed(random_sphere(500, 2, 3), {LengthUnit::unknown, Vec3(1000, -2000, 500), ""});
     const PointCloud there = merged({cloud}, posed({oblique()})).points;
     const PointCloud back = merged({there}, posed({oblique().inverse()})).points;
@@ -115,14 +115,14 @@ TEST(Merge, PoseAndItsInverse_GiveTheCloudBack) {
     EXPECT_GT(moved, 1);
 }
 
-TEST(Merge, IdentityPoses_LeaveEveryPointWhereItWas) {
+TEST(Merge, IdentityPoses_MoveNoPoint) {
     const PointCloud cloud = framed(random_cube(500, 2, 3), {LengthUnit::metre, Vec3(1 << 22, 0, 0), "a"});
     const PointCloud result = merged({cloud, cloud}, posed({RigidTransform{}, RigidTransform{}})).points;
     for (std::size_t row = 0; row < cloud.size(); ++row)
         ASSERT_LT((world(result, row) - world(cloud, row)).norm(), 1e-9) << row;
 }
 
-TEST(Merge, Normals_TurnWithTheirPoseAndKeepTheirType) {
+TEST(Merge, Normals_RotateWithTheirPoseAndKeepTheirType) {
     PointCloud cloud = cloud_of({{0, 0, 0}, {1, 0, 0}});
     cloud.columns.add(Column("normal", 3, Buffer<float>{1, 0, 0, 0, 0, 1}));
     cloud.columns.add(Column("direction", 3, Buffer<float>{1, 0, 0, 0, 0, 1}));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Spheres orthogonal to weighted points in exact arithmetic, to judge the filter's by.
+/// Spheres orthogonal to weighted points in exact arithmetic, as a reference for those of the filter.
 
 #include <CGAL/Exact_rational.h>
 
 #include <array>
 #include <vector>
 
+#include "alpha_solid/cell_spheres.hpp"
 #include "alpha_solid/sphere_polynomials.hpp"
-#include "alpha_solid/weighted_spheres.hpp"
 
 namespace scanmill::test {
 
@@ -30,7 +30,7 @@ inline Number power(const Ball& ball, const WeightedPoint& p) {
 }
 
 /// The smallest sphere orthogonal to the points: its centre is the first plus a combination of the edges, found by
-/// Cramer's rule. Weights as they are, so `squared` may be negative.
+/// Cramer's rule. Weights are not lowered, so `squared` may be negative.
 inline Ball orthogonal_sphere(const std::vector<WeightedPoint>& points) {
     const std::size_t n = points.size() - 1;
     const Vector origin = vector(*points[0].position);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What the tests ask of the cells of weighted points.
+/// Checks of the cells of weighted points.
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ inline void expect_same_cells(const TetMesh& a, const TetMesh& b) {
     EXPECT_TRUE(same_bytes(a.neighbours, b.neighbours));
 }
 
-/// Cells as sets of places, whatever the vertices' numbers.
+/// Cells as sets of positions, independent of the vertices' numbers.
 inline std::set<std::array<Point, 4>> cell_places(const TetMesh& tets) {
     std::set<std::array<Point, 4>> result;
     for (const Tetrahedron& cell : tets.cells) {

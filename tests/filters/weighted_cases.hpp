@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Clouds with weights, and how the tests make tetrahedra of them.
+/// Clouds with weights, and how the tests tetrahedralise them.
 
 #include <string>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <deque>
 
-#include "alpha_solid/flood.hpp"
+#include "alpha_solid/widest_path_sweep.hpp"
 #include "filters/orthogonal_spheres.hpp"
 #include "filters/weighted_cases.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-/// The definition, in exact arithmetic, of a wall at squared radius `value`.
+/// The definition, in exact arithmetic: whether the facet is a wall at squared radius `value`.
 bool is_wall(const TetMesh& tets, u32 cell, int corner, double value) {
     const double largest = std::ranges::max(tets.weights);
     const auto at = [&](u32 vertex) { return WeightedPoint{&tets.positions[vertex], tets.weights[vertex]}; };
@@ -63,14 +63,14 @@ TEST(AlphaSolidWeights, Solid_IsTheBruteForceFloodFill) {
     int compared = 0;
     for (const TetMesh& tets : all) {
         Context context;
-        const Flood flood =
-            flood_from_outside(sweep_cells(tets, context), tets.positions.size(), {.value = 0, .coverage = 1}, context);
+        const SweepResult sweep =
+            sweep_from_outside(sweep_cells(tets, context), tets.positions.size(), {.value = 0, .coverage = 1}, context);
         for (double quantile : {0.05, 0.1, 0.2, 0.3, 0.5}) {
-            std::size_t i = static_cast<std::size_t>(quantile * static_cast<double>(flood.values.size()));
-            while (i + 1 < flood.values.size() && flood.values[i + 1] > flood.values[i] * (1 - 1e-6)) ++i;
-            if (i + 1 == flood.values.size()) continue;
+            std::size_t i = static_cast<std::size_t>(quantile * static_cast<double>(sweep.values.size()));
+            while (i + 1 < sweep.values.size() && sweep.values[i + 1] > sweep.values[i] * (1 - 1e-6)) ++i;
+            if (i + 1 == sweep.values.size()) continue;
             ++compared;
-            const double alpha = std::sqrt(std::sqrt(flood.values[i] * flood.values[i + 1]));
+            const double alpha = std::sqrt(std::sqrt(sweep.values[i] * sweep.values[i + 1]));
             const AlphaSolidResult result = solid_of(tets, at_alpha(alpha));
             const Array<u8> expected = brute_force_inside(tets, alpha * alpha);
             EXPECT_TRUE(std::ranges::equal(result.tets.inside, expected)) << quantile;

@@ -18,7 +18,7 @@
 #include <stdexcept>
 
 #include "answer.hpp"
-#include "delaunay/spacing_weights.hpp"
+#include "delaunay/point_weights.hpp"
 #include "scanmill/base/random.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/value.hpp"

@@ -36,8 +36,8 @@ void require_supported_range(const BoundingBox& box) {
     int axis = 0;
     const double side = sides.maxCoeff(&axis);
     if (side == 0 || (side >= least_side && side <= largest_side)) return;
-    throw Error("the scan is {:.3g} of its own unit long, from {:.3g} to {:.3g} in {}; supported are {:g} to {:g}", side,
-                box.low[axis], box.high[axis], "xyz"[axis], least_side, largest_side)
+    throw Error("the scan is {:.3g} of its own unit long, from {:.3g} to {:.3g} in {}; supported are {:g} to {:g}",
+                side, box.low[axis], box.high[axis], "xyz"[axis], least_side, largest_side)
         .hint(side > largest_side ? "remove stray points, or scale the scan" : "scale the scan to a larger unit");
 }
 

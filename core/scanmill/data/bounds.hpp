@@ -22,8 +22,8 @@ BoundingBox bounding_box(std::span<const Vec3> positions);
 
 /// Sides of the box of a scan, in its own unit, for which squares and cubes of all lengths in it have all their digits.
 inline constexpr double least_side = 1e-9, largest_side = 1e9;
-/// Throws Error with the box's range when its longest side is above largest_side, or above 0 and below least_side. Scans
-/// are checked once, where they are read; algorithms rely on it.
+/// Throws Error with the box's range when its longest side is above largest_side, or above 0 and below least_side.
+/// Scans are checked once, where they are read; algorithms rely on it.
 void require_supported_range(const BoundingBox& box);
 
 /// A good origin for world positions inside `box`: along every axis whose coordinates are large against the diagonal, a

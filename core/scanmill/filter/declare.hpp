@@ -18,7 +18,7 @@
 
 #include "scanmill/filter/constraint.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/detail/member.hpp"
+#include "scanmill/filter/member.hpp"
 #include "scanmill/filter/ports.hpp"
 #include "scanmill/filter/spec.hpp"
 

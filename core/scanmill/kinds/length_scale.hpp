@@ -10,8 +10,8 @@ namespace scanmill {
 
 /// What `%diag` and `spacing` mean for this value. The diagonal is that of all its positions, of a mesh those that its
 /// triangles use; the spacing of points is by point_spacing, of meshes by edge_spacing, of everything else by its
-/// positions. Both are computed at most once, on demand. `%diag` throws Error when all positions are equal. Metrics have
-/// the diagonal that they report, and no spacing.
+/// positions. Both are computed at most once, on demand. `%diag` throws Error when all positions are equal. Metrics
+/// have the diagonal that they report, and no spacing.
 LengthScale length_scale(const Value& value);
 
 class PointStream;

@@ -10,12 +10,12 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/feature_net.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
 #include "scanmill/geometry/size_limits.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill {
 

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <tuple>
 
-#include "scanmill/geometry/spatial/angle.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill {
 

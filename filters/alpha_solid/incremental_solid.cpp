@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "alpha_solid/growing_solid.hpp"
+#include "alpha_solid/incremental_solid.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -7,20 +7,20 @@
 namespace scanmill::alpha {
 
 namespace {
-/// Always judged one by one.
+/// Up to this number, suspects are always tested one by one.
 constexpr std::size_t few_suspects = 1024;
 }  // namespace
 
-GrowingSolid::GrowingSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects)
+IncrementalSolid::IncrementalSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects)
     : tets_(tets),
       labels_(std::move(labels)),
       many_(std::max<std::size_t>(few_suspects, tets.positions.size() / 16)),
       is_suspect_(tets.positions.size()),
       covered_(tets.positions.size()),
       anchor_(tets.positions.size()),
-      place_(tets.cells.size()) {
+      slot_(tets.cells.size()) {
     std::ranges::fill(covered_, u8(0));
-    std::ranges::fill(place_, u64(0));
+    std::ranges::fill(slot_, u64(0));
     suspect_only(suspects);
     for (u32 cell = 0; cell < labels_.size(); ++cell)
         for (u32 vertex : tets_.cells[cell]) {
@@ -29,7 +29,7 @@ GrowingSolid::GrowingSolid(const TetMesh& tets, Array<u8> labels, std::span<cons
         }
 }
 
-void GrowingSolid::solidify(u32 seed) {
+void IncrementalSolid::solidify(u32 seed) {
     stack_.assign(1, seed);
     labels_[seed] = solid;
     while (!stack_.empty()) {
@@ -48,12 +48,12 @@ void GrowingSolid::solidify(u32 seed) {
     }
 }
 
-void GrowingSolid::add(std::span<const u32> cells) {
+void IncrementalSolid::add(std::span<const u32> cells) {
     for (u32 cell : cells)
         if (labels_[cell] != solid) solidify(cell);
 }
 
-void GrowingSolid::add_joined(std::span<const u32> cells) {
+void IncrementalSolid::add_joined(std::span<const u32> cells) {
     for (u32 cell : cells)
         if (labels_[cell] == outside) labels_[cell] = left_out;
     for (u32 cell : cells) {
@@ -63,7 +63,7 @@ void GrowingSolid::add_joined(std::span<const u32> cells) {
     }
 }
 
-GrowingSolid::Verdict GrowingSolid::verdict() {
+IncrementalSolid::Verdict IncrementalSolid::verdict() {
     for (; next_suspect_ < suspects_.size(); ++next_suspect_) {
         if (!std::exchange(next_changed_, false)) return Verdict::not_manifold;
         if (!is_manifold_at(suspects_[next_suspect_])) return Verdict::not_manifold;
@@ -74,7 +74,7 @@ GrowingSolid::Verdict GrowingSolid::verdict() {
     return Verdict::manifold;
 }
 
-void GrowingSolid::suspect_only(std::span<const u32> vertices) {
+void IncrementalSolid::suspect_only(std::span<const u32> vertices) {
     suspects_.assign(vertices.begin(), vertices.end());
     next_suspect_ = 0;
     next_changed_ = true;
@@ -82,25 +82,25 @@ void GrowingSolid::suspect_only(std::span<const u32> vertices) {
     for (u32 vertex : suspects_) is_suspect_[vertex] = 1;
 }
 
-void GrowingSolid::collect_star(u32 vertex) {
+void IncrementalSolid::collect_star(u32 vertex) {
     base_ += star_.size();
     star_.assign(1, anchor_[vertex]);
-    place_[anchor_[vertex]] = base_;
+    slot_[anchor_[vertex]] = base_;
     for (std::size_t i = 0; i < star_.size(); ++i) {
         const u32 cell = star_[i];
         for (int corner = 0; corner < 4; ++corner) {
             const u32 across = tets_.neighbours[cell][corner];
-            if (tets_.cells[cell][corner] == vertex || across == TetMesh::outside_hull || place_[across] >= base_)
+            if (tets_.cells[cell][corner] == vertex || across == TetMesh::outside_hull || slot_[across] >= base_)
                 continue;
-            place_[across] = base_ + star_.size();
+            slot_[across] = base_ + star_.size();
             star_.push_back(across);
         }
     }
 }
 
-/// The boundary triangles are one fan exactly when the solid cells round the vertex hang together across facets, and so
-/// do the others, the unbounded outside included.
-bool GrowingSolid::is_manifold_at(u32 vertex) {
+/// The boundary triangles are one fan exactly when the solid cells round the vertex are face-connected, and so are the
+/// others, the unbounded outside included.
+bool IncrementalSolid::is_manifold_at(u32 vertex) {
     collect_star(vertex);
     const u32 hull = static_cast<u32>(star_.size());
     parent_.resize(hull + 1);
@@ -124,7 +124,7 @@ bool GrowingSolid::is_manifold_at(u32 vertex) {
                 if (is_solid) continue;
             } else {
                 if ((labels_[across] == solid) != is_solid) continue;
-                other = static_cast<u32>(place_[across] - base_);
+                other = static_cast<u32>(slot_[across] - base_);
             }
             const u32 a = find(i), b = find(other);
             if (a == b) continue;
@@ -135,25 +135,25 @@ bool GrowingSolid::is_manifold_at(u32 vertex) {
     return solid_parts == 0 || other_parts == 0 || (solid_parts == 1 && other_parts == 1);
 }
 
-void GrowingSolid::repair(std::span<const double> price) {
+void IncrementalSolid::repair(std::span<const double> price) {
     std::vector<u32> cheapest;
     while (true) {
         cheapest.clear();
-        std::vector<u32> still_bad;
+        std::vector<u32> still_non_manifold;
         for (; next_suspect_ < suspects_.size(); ++next_suspect_) {
             const u32 vertex = suspects_[next_suspect_];
             if (is_manifold_at(vertex)) {
                 is_suspect_[vertex] = 0;
                 continue;
             }
-            still_bad.push_back(vertex);
+            still_non_manifold.push_back(vertex);
             double least = std::numeric_limits<double>::infinity();
             for (u32 cell : star_)
                 if (labels_[cell] != solid) least = std::min(least, price[cell]);
             for (u32 cell : star_)
                 if (labels_[cell] != solid && price[cell] == least) cheapest.push_back(cell);
         }
-        suspects_ = std::move(still_bad);
+        suspects_ = std::move(still_non_manifold);
         next_suspect_ = 0;
         next_changed_ = true;
         if (suspects_.empty()) return;

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A solid that grows cell by cell and always knows whether its boundary is a 2-manifold.
+/// A solid to which cells are added, with a test of whether its boundary is a 2-manifold.
 ///
-/// A new cell changes the boundary only at its four vertices, so only those are suspect afterwards. They are judged
-/// lazily: one non-manifold vertex is enough to reject a solid, and as long as it stays so no other need be looked at.
+/// A new cell changes the boundary only at its four vertices, so only those need a new test. Tests are lazy: one
+/// non-manifold vertex is enough to reject a solid, and as long as it stays non-manifold no other is tested.
 
 #include <span>
 
-#include "alpha_solid/labels.hpp"
-#include "scanmill/data/tets.hpp"
+#include "alpha_solid/components.hpp"
 
 namespace scanmill::alpha {
 
-class GrowingSolid {
+class IncrementalSolid {
 public:
     /// `suspects` are the vertices whose triangles may not be exactly one closed fan; all others are known to be.
-    GrowingSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects);
+    IncrementalSolid(const TetMesh& tets, Array<u8> labels, std::span<const u32> suspects);
 
     /// Makes cells solid, and with each one every left-out cell that it joins to the solid across facets.
     void add(std::span<const u32> cells);
@@ -26,14 +25,13 @@ public:
     enum class Verdict {
         manifold,
         not_manifold,
-        many_suspects  ///< so many vertices are suspect that looking at the whole boundary is cheaper: see
-                       ///< suspect_only()
+        many_suspects  ///< so many vertices are suspect that testing the whole boundary is cheaper: see suspect_only()
     };
     Verdict verdict();
     /// Replaces the suspects, as in the constructor.
     void suspect_only(std::span<const u32> vertices);
     /// Adds, round every non-manifold vertex, the cells with the least `price` that are not solid, all vertices at
-    /// once; again until none is left. `price` is per cell. Each round solidifies a cell, so it ends.
+    /// once; repeats until no vertex is non-manifold. `price` is per cell. Each pass makes a cell solid, so it ends.
     void repair(std::span<const double> price);
 
     const Array<u8>& labels() const { return labels_; }
@@ -48,8 +46,8 @@ private:
 
     const TetMesh& tets_;
     Array<u8> labels_;
-    /// Oldest first from `next_suspect_` on: what was bad from the start is likely to stay so for long. That one is not
-    /// manifold unless its star has changed since it was looked at.
+    /// From `next_suspect_` on, oldest first: what was non-manifold from the start is likely to stay so for long. The
+    /// first one is non-manifold unless its star has changed since its test.
     std::vector<u32> suspects_;
     std::size_t next_suspect_ = 0;
     bool next_changed_ = true;
@@ -58,8 +56,8 @@ private:
     std::size_t covered_count_ = 0;
     /// Any cell round each vertex.
     Array<u32> anchor_;
-    /// place_[c] - base_ is the place of cell c in star_, when not negative.
-    Array<u64> place_;
+    /// slot_[c] - base_ is the index of cell c in star_, when not negative.
+    Array<u64> slot_;
     u64 base_ = 1;
     std::vector<u32> star_, stack_;
     std::vector<u32> parent_;

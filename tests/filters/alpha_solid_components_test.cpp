@@ -20,7 +20,7 @@ TEST(AlphaSolid, TwoObjects_StayTwoWhenManyAreAllowed) {
     EXPECT_EQ(result.uncovered_points.size(), 0u);
 }
 
-TEST(AlphaSolid, TwoObjects_AreBridgedWhenOneIsAskedForWithAllPoints) {
+TEST(AlphaSolid, TwoObjects_AreBridgedWhenOneIsRequestedWithAllPoints) {
     const AlphaSolidResult result = solid_of(two_spheres());
     EXPECT_EQ(result.components, 1u);
     EXPECT_EQ(result.uncovered_points.size(), 0u);
@@ -28,7 +28,7 @@ TEST(AlphaSolid, TwoObjects_AreBridgedWhenOneIsAskedForWithAllPoints) {
     expect_closed(result, result.mesh.positions.size(), 2);
 }
 
-TEST(AlphaSolid, TheLargerObject_IsKeptWhenItsShareIsEnough) {
+TEST(AlphaSolid, TheLargerObject_IsKeptWhenItsShareSuffices) {
     const TetMesh tets = tets_of(two_spheres());
     std::vector<std::string> warnings;
     ContextOptions options;
@@ -68,7 +68,7 @@ TEST(AlphaSolid, Outliers_AreLeftOutAndReportedWhenTheShareAllowsIt) {
     }
 }
 
-TEST(AlphaSolid, AnyShareOfRandomPoints_IsHeldByOneClosedManifold) {
+TEST(AlphaSolid, AnyShareOfRandomPoints_IsCoveredByAClosedManifold) {
     // Random clumps: solids of many sizes that touch and merge.
     int kept_apart = 0;
     for (std::uint64_t seed = 0; seed < 30; ++seed) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "alpha_solid/flood.hpp"
+#include "alpha_solid/widest_path_sweep.hpp"
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <deque>
 
-#include "alpha_solid/pieces.hpp"
+#include "alpha_solid/components.hpp"
 #include "filters/alpha_solid_cases.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
@@ -24,19 +24,19 @@ Array<SweepCell> cells_of(const TetMesh& tets) {
     return sweep_cells(tets, context);
 }
 
-Flood flood_of(const TetMesh& tets, const FloodLimits& limits) {
+SweepResult sweep_of(const TetMesh& tets, const SweepLimits& limits) {
     Context context;
-    return flood_from_outside(cells_of(tets), tets.positions.size(), limits, context);
+    return sweep_from_outside(cells_of(tets), tets.positions.size(), limits, context);
 }
 
-Flood whole_flood(const TetMesh& tets) { return flood_of(tets, {.value = 0, .coverage = 1}); }
+SweepResult whole_sweep(const TetMesh& tets) { return sweep_of(tets, {.value = 0, .coverage = 1}); }
 
 std::vector<PointCloud> various_clouds() {
     return {random_cube(150, 1), lattice_cube(3), lattice_cube(4, 0.1, true), fibonacci_sphere(200, 1e-3),
             joined(fibonacci_sphere(100), moved(fibonacci_sphere(80), 0.5, Vec3(3, 0, 0)))};
 }
 
-/// The definition, in exact arithmetic: is the facet a wall at squared radius `value`?
+/// The definition, in exact arithmetic: whether the facet is a wall at squared radius `value`.
 bool is_wall(const TetMesh& tets, u32 cell, int corner, double value) {
     const auto point = [&](u32 vertex) {
         const Vec3& p = tets.positions[vertex];
@@ -62,7 +62,7 @@ bool is_wall(const TetMesh& tets, u32 cell, int corner, double value) {
     return (attached ? least : CGAL::squared_radius(a, b, c)) <= value;
 }
 
-/// The definition: everything that can be reached from outside without crossing a wall.
+/// The definition: outside is everything that can be reached from outside the hull without crossing a wall.
 Array<u8> brute_force_solid(const TetMesh& tets, double value) {
     Array<u8> labels(tets.cells.size());
     std::ranges::fill(labels, solid);
@@ -84,35 +84,35 @@ Array<u8> brute_force_solid(const TetMesh& tets, double value) {
     return labels;
 }
 
-Array<u8> labels_at(const TetMesh& tets, const Flood& flood, double value) {
+Array<u8> labels_at(const TetMesh& tets, const SweepResult& sweep, double value) {
     Array<u8> labels(tets.cells.size());
     std::ranges::fill(labels, solid);
-    for (std::size_t i = 0; i < flood.outside_above(value); ++i) labels[flood.cells[i]] = outside;
+    for (std::size_t i = 0; i < sweep.outside_above(value); ++i) labels[sweep.cells[i]] = outside;
     return labels;
 }
 
-TEST(Flood, AtManyLevels_IsTheBruteForceFloodFill) {
+TEST(WidestPathSweep, AtManyLevels_IsTheBruteForceFloodFill) {
     for (const PointCloud& cloud : various_clouds()) {
         const TetMesh tets = tets_of(cloud);
-        const Flood flood = whole_flood(tets);
-        ASSERT_EQ(flood.cells.size(), tets.cells.size());
+        const SweepResult sweep = whole_sweep(tets);
+        ASSERT_EQ(sweep.cells.size(), tets.cells.size());
         for (double quantile : {0.05, 0.3, 0.6, 0.9, 0.99}) {
             // Between two values that differ by more than rounding, so that exact and rounded values agree.
-            std::size_t i = static_cast<std::size_t>(quantile * static_cast<double>(flood.values.size()));
-            while (i + 1 < flood.values.size() && flood.values[i + 1] > flood.values[i] * (1 - 1e-6)) ++i;
-            if (i + 1 == flood.values.size()) continue;
-            const double value = std::sqrt(flood.values[i] * flood.values[i + 1]);
-            EXPECT_EQ(labels_at(tets, flood, value), brute_force_solid(tets, value)) << quantile;
+            std::size_t i = static_cast<std::size_t>(quantile * static_cast<double>(sweep.values.size()));
+            while (i + 1 < sweep.values.size() && sweep.values[i + 1] > sweep.values[i] * (1 - 1e-6)) ++i;
+            if (i + 1 == sweep.values.size()) continue;
+            const double value = std::sqrt(sweep.values[i] * sweep.values[i + 1]);
+            EXPECT_EQ(labels_at(tets, sweep, value), brute_force_solid(tets, value)) << quantile;
         }
     }
 }
 
-TEST(Flood, EveryCell_ComesAtItsWidestPath) {
+TEST(WidestPathSweep, EveryCell_ComesAtItsWidestPath) {
     for (const PointCloud& cloud : various_clouds()) {
         const TetMesh tets = tets_of(cloud);
         const Array<SweepCell> values = cells_of(tets);
-        const Flood flood = whole_flood(tets);
-        EXPECT_TRUE(std::ranges::is_sorted(flood.values, std::greater<>()));
+        const SweepResult sweep = whole_sweep(tets);
+        EXPECT_TRUE(std::ranges::is_sorted(sweep.values, std::greater<>()));
         // Bellman–Ford: relax until nothing changes.
         Array<double> out(tets.cells.size());
         std::ranges::fill(out, -1.0);
@@ -129,11 +129,11 @@ TEST(Flood, EveryCell_ComesAtItsWidestPath) {
                     }
                 }
         }
-        for (std::size_t i = 0; i < flood.cells.size(); ++i) ASSERT_EQ(flood.values[i], out[flood.cells[i]]);
+        for (std::size_t i = 0; i < sweep.cells.size(); ++i) ASSERT_EQ(sweep.values[i], out[sweep.cells[i]]);
     }
 }
 
-TEST(Flood, FacetValues_AreTheSameFromBothSides) {
+TEST(WidestPathSweep, FacetValues_AreTheSameFromBothSides) {
     for (const PointCloud& cloud : various_clouds()) {
         const TetMesh tets = tets_of(cloud);
         const Array<SweepCell> values = cells_of(tets);
@@ -147,34 +147,34 @@ TEST(Flood, FacetValues_AreTheSameFromBothSides) {
     }
 }
 
-TEST(Flood, Cover_IsTheLeastValueThatCoversTheShare) {
+TEST(WidestPathSweep, Cover_IsTheLeastValueThatCoversTheShare) {
     for (const PointCloud& cloud : various_clouds()) {
         const TetMesh tets = tets_of(cloud);
-        const Flood whole = whole_flood(tets);
+        const SweepResult whole = whole_sweep(tets);
         std::vector<double> cover(tets.positions.size(), HUGE_VAL);  // per point, the least out of its cells
         for (std::size_t i = 0; i < whole.cells.size(); ++i)
             for (u32 vertex : tets.cells[whole.cells[i]]) cover[vertex] = std::min(cover[vertex], whole.values[i]);
         std::ranges::sort(cover);
         for (double share : {1.0, 0.9, 0.5, 1e-9}) {
-            const Flood flood = flood_of(tets, {.coverage = share});
+            const SweepResult sweep = sweep_of(tets, {.coverage = share});
             const auto needed = static_cast<std::size_t>(std::ceil(share * static_cast<double>(cover.size())));
-            EXPECT_EQ(flood.needed, needed);
-            EXPECT_EQ(flood.cover, cover[needed - 1]);
-            // It stops early, but never inside a group of equal values, nor before cover's.
-            EXPECT_TRUE(std::ranges::equal(flood.values, std::span(whole.values).first(flood.values.size())));
-            EXPECT_EQ(flood.values.back(), flood.cover);
-            if (flood.values.size() < whole.values.size()) {
-                EXPECT_LT(whole.values[flood.values.size()], flood.cover);
+            EXPECT_EQ(sweep.needed, needed);
+            EXPECT_EQ(sweep.cover, cover[needed - 1]);
+            // It stops early, but never inside a group of equal values or before that of cover.
+            EXPECT_TRUE(std::ranges::equal(sweep.values, std::span(whole.values).first(sweep.values.size())));
+            EXPECT_EQ(sweep.values.back(), sweep.cover);
+            if (sweep.values.size() < whole.values.size()) {
+                EXPECT_LT(whole.values[sweep.values.size()], sweep.cover);
             }
         }
     }
 }
 
-TEST(Flood, AShareThatIsAWholeNumberOfPoints_IsNotRoundedUp) {
+TEST(WidestPathSweep, AShareThatIsAWholeNumberOfPoints_IsNotRoundedUp) {
     const TetMesh tets = tets_of(random_cube(1000, 2));
-    EXPECT_EQ(flood_of(tets, {.coverage = 0.999}).needed, 999u);
-    EXPECT_EQ(flood_of(tets, {.coverage = 0.07}).needed, 70u);
-    EXPECT_EQ(flood_of(tets, {.coverage = 0.0701}).needed, 71u);
+    EXPECT_EQ(sweep_of(tets, {.coverage = 0.999}).needed, 999u);
+    EXPECT_EQ(sweep_of(tets, {.coverage = 0.07}).needed, 70u);
+    EXPECT_EQ(sweep_of(tets, {.coverage = 0.0701}).needed, 71u);
 }
 
 }  // namespace

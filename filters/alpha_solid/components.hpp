@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Face-connected components of cells, the cavities that cells enclose, and the points that they cover.
+
+#include <span>
+
+#include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/data/tets.hpp"
+
+namespace scanmill::alpha {
+
+/// The state of a cell while a solid is being chosen. Only `solid` cells are in the solid.
+enum Label : u8 {
+    outside = 0,
+    solid = 1,
+    left_out = 2  ///< in the alpha-solid, but in a component of it that is not kept
+};
+
+/// Keeps, of the solid cells, those of the component (joined across facets) with the most points; of equal ones that
+/// with the lowest point (by x, then y, then z; then the one whose highest point is lower). Labels the others
+/// `left_out`.
+void keep_largest_component(const TetMesh& tets, std::span<u8> labels);
+
+/// Makes enclosed cells solid: cells that are not solid and that no path through such cells joins to the outside of the
+/// hull.
+void fill_cavities(const TetMesh& tets, std::span<u8> labels);
+
+/// Per vertex 1 when it has a solid cell, else 0.
+Array<u8> coverage(const TetMesh& tets, std::span<const u8> labels, unsigned threads);
+std::size_t covered_points(const TetMesh& tets, std::span<const u8> labels);
+
+/// The number of points in each component of an alpha-solid to which cells are added.
+///
+/// Components are joined across facets; they may share points where they touch. When two are joined, the cells of the
+/// smaller one are visited once, so the visits per cell are at most the doublings of its component.
+class IncrementalComponents {
+public:
+    /// Cells that are not `outside` are in the alpha-solid. Cost: about 40 bytes per cell.
+    IncrementalComponents(const TetMesh& tets, std::span<const u8> labels);
+
+    /// Pre: the cells were outside.
+    void add(std::span<const u32> cells);
+
+    /// Points of a component that has the most, and the number of components that have as many.
+    std::size_t most_points() const { return most_points_; }
+    std::size_t components_with_most() const { return components_with_[most_points_]; }
+
+private:
+    void add(u32 cell);
+    void join(u32 a, u32 b);
+    std::size_t common_points(u32 smaller, u32 larger);
+    bool contains(u32 component, u32 vertex);
+
+    const TetMesh& tets_;
+    DisjointSets components_;
+    Array<u8> is_in_;
+    /// The cells of a component form a ring.
+    Array<u32> next_;
+    /// At the root of a component.
+    Array<u32> cell_count_, point_count_;
+    /// Cells round vertex v: around_[first_[v]] up to around_[first_[v + 1]].
+    Array<u32> first_, around_;
+    /// Per number of points, the components that have as many.
+    Array<u32> components_with_;
+    std::size_t most_points_ = 0;
+    /// Per vertex, the last pass of common_points() that visited it.
+    Array<u32> visited_;
+    u32 pass_ = 0;
+};
+
+}  // namespace scanmill::alpha
