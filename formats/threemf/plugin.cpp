@@ -4,6 +4,6 @@
 
 SCANMILL_FORMAT() {
     using namespace scanmill;
-    // Its files begin as every ZIP archive does: the extension must tell.
+    // Its files begin like every ZIP archive, so only the extension identifies them.
     return {{"3MF", {"3mf"}, {}, {Kind::mesh}, false}, {}, {{Kind::mesh, threemf::write_threemf}}};
 }
