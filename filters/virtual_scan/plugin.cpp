@@ -9,9 +9,9 @@ SCANMILL_FILTER() {
     return Declare<P>("virtual-scan", 1)
         .summary("Scans a mesh or a shape as a real scanner would: from views, with noise, outliers and hidden parts.")
         .source("z-buffer: Catmull 1974; edge functions: Pineda 1988")
-        .ties("Where two triangles are equally near along a ray, the one that comes first is hit.")
+        .ties("Where two triangles are equally near along a ray, the one with the lower row is hit.")
         .not_finite("Refused, with their number and the first of them.")
-        .in<TriangleMesh>("mesh", "What is scanned, of any topology; leave it out to scan a shape.", optional)
+        .in<TriangleMesh>("mesh", "The surface to scan, of any topology; omit it to scan a shape.", optional)
         .out<PointCloud>("points", "The hits, view by view, with columns `normal` and `view`; outliers at the end.")
         .choice("shape", &P::shape,
                 {{"none", P::Shape::none, "The mesh is scanned."},
@@ -24,22 +24,24 @@ SCANMILL_FILTER() {
                   "A box with a large hole through its middle and four small ones; size: x, y, z, the two radii."},
                  {"hyperboloid", P::Shape::hyperboloid,
                   "A saddle above a disc, part of a hyperboloid of one sheet; size: radius, height in the middle."}},
-                "What is scanned when there is no mesh, by formula and not through triangles.")
-        .param("size", &P::size, "The shape's dimensions in the scan's own unit; empty takes those around 1 u.",
+                "The surface to scan when there is no mesh, by formula and not through triangles.")
+        .param("size", &P::size, "The shape's dimensions in the scan's own unit; empty takes defaults around 1 u.",
                above(0))
-        .param("views", &P::views,
-               "How many views, evenly spread; or three numbers per view, the direction from the object to the sensor.")
+        .param(
+            "views", &P::views,
+            "Number of views, evenly spread; or three numbers per view, the direction from the object to the sensor.")
         .param("resolution", &P::resolution, "Distance between neighbouring rays.", above(0))
         .param("noise", &P::noise, "Standard deviation of the error along the ray.", at_least(0))
-        .param("outliers", &P::outliers, "Points anywhere in the grown bounding box, as a share of the surface points.",
-               at_least(0), at_most(10))
-        .param("overlap", &P::overlap, "Share that stays of the points that an earlier view has already seen.",
+        .param("outliers", &P::outliers,
+               "Points anywhere in the enlarged bounding box, as a share of the surface points.", at_least(0),
+               at_most(10))
+        .param("overlap", &P::overlap, "Share that is kept of the points that an earlier view has already seen.",
                at_least(0), at_most(1))
-        .param("max-angle", &P::max_angle, "Nothing comes back where ray and surface normal make a larger angle.",
+        .param("max-angle", &P::max_angle, "Hits where ray and surface normal make a larger angle are dropped.",
                above(0), at_most(90))
         .metric("points", Unit::count, "Points of the scan, outliers included.", headline)
-        .metric("outliers", Unit::count, "Points that lie on no surface.")
-        .metric("dropped", Unit::count, "Points left out because an earlier view had seen their place.")
+        .metric("outliers", Unit::count, "Points that are not on the surface.")
+        .metric("dropped", Unit::count, "Points dropped because an earlier view had seen their position.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("points", virtual_scan(inputs.find<TriangleMesh>("mesh"), params, context).points);
         });

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// A mesh as a scene: a z-buffer in double precision, one ray through every pixel's centre.
 ///
-/// Which side of an edge a pixel lies on is computed from the edge's ends in a fixed order, so the two triangles of an
-/// edge get the same number with opposite signs: no ray slips between them (Pineda 1988 for the edge functions).
+/// The side of an edge on which a pixel lies is computed from the edge's ends in a fixed order, so the two triangles of
+/// an edge get the same number with opposite signs, and no ray passes between them. Source: Catmull 1974 for the
+/// z-buffer, Pineda 1988 for the edge functions.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,6 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/array.hpp"
-#include "scanmill/geometry/size_limits.hpp"
 #include "scanmill/kinds/length_scale.hpp"
 #include "virtual_scan/scene.hpp"
 
@@ -19,7 +19,7 @@ namespace scanmill::scan {
 
 namespace {
 
-constexpr u32 nothing = ~u32(0);
+constexpr u32 no_triangle = ~u32(0);
 
 struct DepthImage {
     Array<double> depth;
@@ -71,7 +71,7 @@ void draw(const Vec3& a, const Vec3& b, const Vec3& c, u32 row_of_triangle, cons
 
 DepthImage depth_image(const TriangleMesh& mesh, const View& view) {
     const std::size_t pixels = view.width * view.height;
-    DepthImage image{Array<double>(pixels, std::numeric_limits<double>::infinity()), Array<u32>(pixels, nothing)};
+    DepthImage image{Array<double>(pixels, std::numeric_limits<double>::infinity()), Array<u32>(pixels, no_triangle)};
     Array<Vec3> projected(mesh.positions.size());
     for (std::size_t i = 0; i < projected.size(); ++i) projected[i] = view.project(mesh.positions[i]);
     for (u32 row = 0; row < mesh.triangles.size(); ++row) {
@@ -89,7 +89,7 @@ std::vector<Hit> hits_of(const TriangleMesh& mesh, const View& view) {
     for (std::size_t row = 0; row < view.height; ++row)
         for (std::size_t column = 0; column < view.width; ++column) {
             const std::size_t pixel = row * view.width + column;
-            if (image.triangle[pixel] == nothing) continue;
+            if (image.triangle[pixel] == no_triangle) continue;
             const auto& [a, b, c] = mesh.triangles[image.triangle[pixel]];
             const Vec3& corner = mesh.positions[a];
             Vec3 normal = (mesh.positions[b] - corner).cross(mesh.positions[c] - corner).normalized();
@@ -115,12 +115,7 @@ Scene scene_of(const TriangleMesh& mesh) {
         throw Error("the mesh has no extent: {} one point",
                     mesh.triangles.size() == 1 ? "its only triangle is"
                                                : fmt::format("all {} triangles are", mesh.triangles.size()))
-            .hint("`scanmill info` tells what a file holds");
-    require_finite_size(scene.box);
-    if (const double size = scene.box.diagonal(); !(size >= least_size && size <= largest_size))
-        throw Error("the mesh is {:.3g} u in size; between {} and {} u is needed for products of lengths to be numbers",
-                    size, least_size, largest_size)
-            .hint("give it in another unit, as numbers nearer 1");
+            .hint("`scanmill info` shows the content of a file");
     scene.hull.assign(used.positions.begin(), used.positions.end());
     scene.scale.unit = mesh.frame.unit;
     scene.scale.diagonal = [diagonal = scene.box.diagonal()] { return diagonal; };

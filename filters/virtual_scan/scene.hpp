@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What is scanned, a mesh or a shape, behind one question: what do the rays of a view meet first?
+/// The scanned surface, a mesh or a shape, as the first hits of the rays of a view.
 
 #include <functional>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace scanmill::scan {
 
-/// A ray's first meeting with the surface.
+/// The first point of the surface on a ray.
 struct Hit {
     Vec3 position;
     Vec3 normal;  ///< unit length, turned to the sensor
@@ -24,20 +24,19 @@ struct Scene {
     BoundingBox box;
     /// The surface lies within their convex hull.
     std::vector<Vec3> hull;
-    /// What relative lengths refer to.
+    /// The reference of relative lengths.
     LengthScale scale;
-    /// The hits of all rays, row by row from the lowest, each from left to right; rays that meet nothing give none.
-    /// Callable from several threads.
+    /// The hits of all rays, row by row from the lowest, each from left to right; rays that miss the surface give none.
+    /// Thread-safe.
     std::function<std::vector<Hit>(const View&)> hits;
 };
 
-/// Between them products of lengths stay finite, of any proportions: discriminants of quadrics hold the fourth power of
-/// height over radius times the square of a length, ten sizes in all.
-constexpr double least_size = 1e-30, largest_size = 1e30;
+/// The supported range of scans, in the scan's unit.
+constexpr double least_size = 1e-9, largest_size = 1e9;
 
-/// Refers to the mesh. Throws Error for a mesh that cannot be scanned. See rasteriser.cpp.
+/// References the mesh. Throws Error for a mesh that cannot be scanned. See rasteriser.cpp.
 Scene scene_of(const TriangleMesh& mesh);
-/// Throws Error for wrong sizes. See shapes.cpp.
+/// Throws Error for wrong dimensions. See shapes.cpp.
 Scene scene_of(VirtualScanParams::Shape shape, std::span<const Length> size);
 
 }  // namespace scanmill::scan

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Remembers points and tells whether one lies near a new one: which parts earlier views have already seen.
+/// The parts that earlier views have already seen: a set of points that answers whether one is near a new point.
 
 #include <span>
 #include <vector>
@@ -15,7 +15,7 @@ public:
     /// `radius` above 0; `origin` near the points.
     SeenPoints(const Vec3& origin, double radius) : origin_(origin), radius_(radius) {}
 
-    /// Whether a remembered point is nearer than the radius.
+    /// Whether a point of the set is nearer than the radius.
     bool near(const Vec3& point) const;
     void add(std::span<const Vec3> points);
 
@@ -27,7 +27,7 @@ private:
     Vec3 origin_;
     double radius_;
     std::vector<Vec3> points_;
-    /// The points of cell slot s are first_[s], next_[first_[s]] …; cells may share a slot, distances tell them apart.
+    /// The points of cell slot s are first_[s], next_[first_[s]] …; cells may share a slot, distances distinguish them.
     std::vector<u32> first_, next_;
 };
 

@@ -2,18 +2,16 @@
 /// Shapes given by formulas as scenes: every ray is intersected with the surface itself, not with a mesh of it.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <numbers>
 #include <optional>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "virtual_scan/first_root.hpp"
-#include "virtual_scan/holed_block.hpp"
-#include "virtual_scan/hyperboloid.hpp"
-#include "virtual_scan/ray.hpp"
 #include "virtual_scan/scene.hpp"
+#include "virtual_scan/sign_changes.hpp"
 
 namespace scanmill::scan {
 
@@ -21,7 +19,64 @@ namespace {
 
 using Shape = VirtualScanParams::Shape;
 
+struct Ray {
+    Vec3 start, direction;  // a whole line: it enters shapes before `start` too
+    Vec3 at(double depth) const { return start + depth * direction; }
+};
+
 using FirstHit = std::function<std::optional<Hit>(const Ray&)>;
+
+// Boxes.
+
+struct Passage {
+    double enter, leave;  ///< depths; enter ≤ leave
+    Vec3 normal;          ///< outwards, of the face through which the ray enters
+};
+
+/// By slabs (Kay, Kajiya 1986); of faces at the same depth, that of the lowest axis counts. A ray within a face passes
+/// through.
+std::optional<Passage> passage_through(const Ray& ray, const BoundingBox& box) {
+    double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
+    Vec3 normal = Vec3::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double speed = ray.direction[axis];
+        if (speed == 0) {
+            if (ray.start[axis] < box.low[axis] || ray.start[axis] > box.high[axis]) return {};
+            continue;
+        }
+        const double near = ((speed > 0 ? box.low : box.high)[axis] - ray.start[axis]) / speed;
+        const double far = ((speed > 0 ? box.high : box.low)[axis] - ray.start[axis]) / speed;
+        if (near > enter) {
+            enter = near;
+            normal = Vec3::Zero();
+            normal[axis] = speed > 0 ? -1 : 1;
+        }
+        leave = std::min(leave, far);
+    }
+    if (!(enter <= leave)) return {};
+    return Passage{enter, leave, normal};
+}
+
+/// The point at which the ray enters the box: exactly on the plane of the face, whatever the rounding along the ray.
+Hit entry_of(const Ray& ray, const BoundingBox& box, const Passage& passage) {
+    const auto outwards = passage.normal.array();
+    const Vec3 within = ray.at(passage.enter);
+    return {(outwards > 0).select(box.high, (outwards < 0).select(box.low, within)), passage.normal};
+}
+
+/// The union of boxes: a ray from outside enters it where it first enters one of them.
+std::optional<Hit> meet_boxes(const Ray& ray, std::span<const BoundingBox> boxes) {
+    double first = std::numeric_limits<double>::infinity();
+    std::optional<Hit> hit;
+    for (const BoundingBox& box : boxes)
+        if (const auto passage = passage_through(ray, box); passage && passage->enter < first) {
+            first = passage->enter;
+            hit = entry_of(ray, box, *passage);
+        }
+    return hit;
+}
+
+// Sphere, torus and cylinder.
 
 std::optional<Hit> meet_sphere(const Ray& ray, double radius) {
     const double middle = -ray.start.dot(ray.direction);
@@ -67,18 +122,6 @@ std::optional<Hit> meet_torus(const Ray& ray, double major, double minor) {
     return Hit{position, normal_at(position)};
 }
 
-/// The union of boxes: a ray from outside enters it where it first enters one of them.
-std::optional<Hit> meet_boxes(const Ray& ray, std::span<const BoundingBox> boxes) {
-    double first = std::numeric_limits<double>::infinity();
-    std::optional<Hit> hit;
-    for (const BoundingBox& box : boxes)
-        if (const auto passage = passage_through(ray, box); passage && passage->enter < first) {
-            first = passage->enter;
-            hit = entry_of(ray, box, *passage);
-        }
-    return hit;
-}
-
 std::optional<Hit> meet_cylinder(const Ray& ray, double radius, double half_height) {
     const Vec3& d = ray.direction;
     double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
@@ -107,6 +150,122 @@ std::optional<Hit> meet_cylinder(const Ray& ray, double radius, double half_heig
     return Hit{position, Vec3(0, 0, std::copysign(1.0, -d.z()))};
 }
 
+// A block with holes drilled through it.
+
+struct HoledBlock {
+    struct Hole {
+        double x, y, radius;
+    };
+    BoundingBox box;
+    std::array<Hole, 5> holes;  ///< along z; they neither meet each other nor the block's sides
+};
+
+/// The distance of the centres of the small holes from the middle, as a share of the block's sides.
+constexpr double eccentricity = 0.35;
+
+void require_apart(const Vec3& size, double large_radius, double small_radius) {
+    const double side = std::min(size.x(), size.y());
+    if (!(2 * large_radius < side))
+        throw Error("the large hole of radius {} u does not fit into the block of {} x {} u", large_radius, size.x(),
+                    size.y())
+            .hint(fmt::format("its radius must be below {} u", side / 2));
+    const double to_side = (0.5 - eccentricity) * side;
+    const double between = eccentricity * std::hypot(size.x(), size.y()) - large_radius;
+    const double room = std::min(to_side, between);
+    if (!(small_radius < room))
+        throw Error("the small holes of radius {} u touch the large one or the sides of the block of {} x {} u",
+                    small_radius, size.x(), size.y())
+            .hint(fmt::format("beside a large hole of radius {} u theirs must be below {} u", large_radius, room));
+}
+
+/// The hole that contains the point, its wall excluded; else nullptr.
+const HoledBlock::Hole* hole_round(const HoledBlock& block, const Vec3& point) {
+    for (const HoledBlock::Hole& hole : block.holes) {
+        const double x = point.x() - hole.x, y = point.y() - hole.y;
+        if (x * x + y * y < hole.radius * hole.radius) return &hole;
+    }
+    return nullptr;
+}
+
+/// The depth at which a ray inside the hole leaves it through its wall. Pre: the ray is not along z.
+double way_out(const Ray& ray, const HoledBlock::Hole& hole) {
+    const double dx = ray.direction.x(), dy = ray.direction.y();
+    const double x = ray.start.x() - hole.x, y = ray.start.y() - hole.y;
+    const double speed = dx * dx + dy * dy;
+    const double middle = -(x * dx + y * dy) / speed;
+    const double nearest_x = x + middle * dx, nearest_y = y + middle * dy;
+    const double square = hole.radius * hole.radius - nearest_x * nearest_x - nearest_y * nearest_y;
+    return middle + std::sqrt(std::max(square, 0.0) / speed);
+}
+
+/// Around the origin: the large hole in the middle, the small ones at (± 0.35 x, ± 0.35 y). Throws Error when holes
+/// would touch each other or the block's sides. Pre: sizes above 0.
+HoledBlock holed_block(const Vec3& size, double large_radius, double small_radius) {
+    require_apart(size, large_radius, small_radius);
+    const double x = eccentricity * size.x(), y = eccentricity * size.y(), r = small_radius;
+    return {{-size / 2, size / 2}, {{{0, 0, large_radius}, {-x, -y, r}, {x, -y, r}, {-x, y, r}, {x, y, r}}}};
+}
+
+/// The walls of the holes belong to the surface.
+std::optional<Hit> meet_holed_block(const Ray& ray, const HoledBlock& block) {
+    const auto passage = passage_through(ray, block.box);
+    if (!passage) return {};
+    const Hit entry = entry_of(ray, block.box, *passage);
+    const HoledBlock::Hole* hole = hole_round(block, entry.position);
+    if (!hole) return entry;
+    if (ray.direction.x() == 0 && ray.direction.y() == 0) return {};
+    // Holes do not meet, so solid or the outside lies behind the wall of this one.
+    const double depth = way_out(ray, *hole);
+    if (!(depth < passage->leave)) return {};
+    Vec3 position = ray.at(depth);
+    const Vec3 outwards = Vec3(position.x() - hole->x, position.y() - hole->y, 0).normalized();
+    position.x() = hole->x + hole->radius * outwards.x();
+    position.y() = hole->y + hole->radius * outwards.y();
+    return Hit{position, -outwards};
+}
+
+// The upper half of a hyperboloid of one sheet above a disc: an open saddle whose curvatures are known. Source: Wang
+// 2006, section 4.4.1, whose h is height · radius here.
+
+/// z = height / radius · √(x² − y² + radius²) where x² + y² ≤ radius².
+struct Hyperboloid {
+    double radius, height;
+};
+
+/// The roots of a x² + b x + c, ascending, as many as there are; without the cancellation of the textbook formula.
+std::vector<double> roots_of(double a, double b, double c) {
+    if (a == 0) return b == 0 ? std::vector<double>{} : std::vector<double>{-c / b};
+    const double square = b * b - 4 * a * c;
+    if (square < 0) return {};
+    const double q = -0.5 * (b + std::copysign(std::sqrt(square), b));
+    if (q == 0) return {0};
+    return {std::min(q / a, c / q), std::max(q / a, c / q)};
+}
+
+BoundingBox bounds_of(const Hyperboloid& surface) {
+    const double r = surface.radius;
+    return {{-r, -r, 0}, {r, r, std::numbers::sqrt2 * surface.height}};
+}
+
+/// From either side; the normal is turned against the ray.
+std::optional<Hit> meet_hyperboloid(const Ray& ray, const Hyperboloid& surface) {
+    const Vec3& d = ray.direction;
+    const Vec3 o = ray.at(-ray.start.dot(d));  // the point nearest the origin: depths are small from there
+    const double r = surface.radius, slope = surface.height / r, square = slope * slope;
+    const double a = d.z() * d.z() - square * (d.x() * d.x() - d.y() * d.y());
+    const double b = 2 * (o.z() * d.z() - square * (o.x() * d.x() - o.y() * d.y()));
+    const double c = o.z() * o.z() - square * (o.x() * o.x() - o.y() * o.y() + r * r);
+    for (const double depth : roots_of(a, b, c)) {
+        const Vec3 p = o + depth * d;
+        if (p.z() < 0 || p.x() * p.x() + p.y() * p.y() > r * r) continue;
+        const Vec3 normal = Vec3(-square * p.x(), square * p.y(), p.z()).normalized();
+        return Hit{p, normal.dot(d) > 0 ? Vec3(-normal) : normal};
+    }
+    return {};
+}
+
+// Shapes by name.
+
 struct Kind {
     const char* name;
     std::vector<const char*> dimensions;
@@ -131,15 +290,13 @@ Kind kind_of(Shape shape) {
 
 double dimension_of(const Length& length, const std::string& name) {
     if (length.in() != Length::In::scan_unit)
-        throw Error("{} is {}; a shape has no unit, diagonal or spacing to measure by before it has its size", name,
-                    length.text())
+        throw Error("{} is {}; a shape has no unit, diagonal or spacing before it has its size", name, length.text())
             .hint(fmt::format("give it in the scan's own unit, as {} u", number_text(length.amount())));
     const double dimension = length.value();
     if (!(dimension > 0) || !std::isfinite(dimension))
         throw Error("{} is {} u; it must be above 0", name, dimension).hint("give it a size, as 1 u");
     if (!(dimension >= least_size && dimension <= largest_size))
-        throw Error("{} is {:.3g} u; between {} and {} u is needed for products of lengths to be numbers", name,
-                    dimension, least_size, largest_size)
+        throw Error("{} is {:.3g} u; {:.0e} to {:.0e} u is supported", name, dimension, least_size, largest_size)
             .hint("give all sizes in another unit, as numbers nearer 1");
     return dimension;
 }
@@ -150,14 +307,14 @@ std::vector<double> dimensions_of(const Kind& kind, std::span<const Length> size
         throw Error("a {} has {} ({}); size has {}", kind.name,
                     counted(kind.dimensions.size(), "dimension", "dimensions"), fmt::join(kind.dimensions, ", "),
                     size.size())
-            .hint(fmt::format("say `size: [{} u]`, or leave size out", fmt::join(kind.defaults, " u, ")));
+            .hint(fmt::format("write `size: [{} u]`, or omit size", fmt::join(kind.defaults, " u, ")));
     std::vector<double> dimensions;
     for (std::size_t i = 0; i < size.size(); ++i)
         dimensions.push_back(dimension_of(size[i], fmt::format("the {} of the {}", kind.dimensions[i], kind.name)));
     return dimensions;
 }
 
-/// The shape's first hit and its bounds.
+/// The first hit of a ray on the shape, and the bounds of the shape.
 std::pair<FirstHit, BoundingBox> surface_of(Shape shape, const std::vector<double>& size) {
     switch (shape) {
         case Shape::none: break;
@@ -189,11 +346,11 @@ std::pair<FirstHit, BoundingBox> surface_of(Shape shape, const std::vector<doubl
         }
         case Shape::holed_block: {
             const HoledBlock block = holed_block({size[0], size[1], size[2]}, size[3], size[4]);
-            return {[block](const Ray& ray) { return first_hit(ray, block); }, block.box};
+            return {[block](const Ray& ray) { return meet_holed_block(ray, block); }, block.box};
         }
         case Shape::hyperboloid: {
             const Hyperboloid surface{size[0], size[1]};
-            return {[surface](const Ray& ray) { return first_hit(ray, surface); }, bounds_of(surface)};
+            return {[surface](const Ray& ray) { return meet_hyperboloid(ray, surface); }, bounds_of(surface)};
         }
     }
     return {};
@@ -203,17 +360,22 @@ std::pair<FirstHit, BoundingBox> surface_of(Shape shape, const std::vector<doubl
 
 Scene scene_of(Shape shape, std::span<const Length> size) {
     Scene scene;
-    auto [first_hit, box] = surface_of(shape, dimensions_of(kind_of(shape), size));
+    const Kind kind = kind_of(shape);
+    auto [first_hit, box] = surface_of(shape, dimensions_of(kind, size));
+    if (const double longest = (box.high - box.low).maxCoeff(); longest > largest_size)
+        throw Error("the longest side of the {} is {:.3g} u; at most {:.0e} u is supported", kind.name, longest,
+                    largest_size)
+            .hint("give all sizes in another unit, as numbers nearer 1");
     scene.box = box;
     for (int corner = 0; corner < 8; ++corner)
         scene.hull.push_back({(corner & 1 ? box.high : box.low).x(), (corner & 2 ? box.high : box.low).y(),
                               (corner & 4 ? box.high : box.low).z()});
     scene.scale.diagonal = [diagonal = box.diagonal()] { return diagonal; };
-    scene.hits = [meet = std::move(first_hit)](const View& view) {
+    scene.hits = [first_hit = std::move(first_hit)](const View& view) {
         std::vector<Hit> hits;
         for (std::size_t row = 0; row < view.height; ++row)
             for (std::size_t column = 0; column < view.width; ++column)
-                if (const auto hit = meet({view.point(view.across(column), view.along(row), 0), view.forward}))
+                if (const auto hit = first_hit({view.point(view.across(column), view.along(row), 0), view.forward}))
                     hits.push_back(*hit);
         return hits;
     };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Where a polynomial crosses zero, by bisection between the roots of its derivative: slower than Ferrari's formulas,
-/// and without their loss of digits.
+/// The sign changes of a polynomial, by bisection between those of its derivative: slower than Ferrari's formulas, and
+/// without their loss of digits.
 
 #include <array>
 #include <cmath>
@@ -17,8 +17,8 @@ double evaluate(const std::array<double, Size>& coefficients, double x) {
     return value;
 }
 
-/// All x in (low, high] where the polynomial changes its sign, ascending, each to within `width`. Two of them nearer
-/// than that may be taken for a touching root; touching roots are passed over.
+/// All x in (low, high] where the polynomial changes its sign, ascending, each to within `width`. Roots without a
+/// change of sign are not found, and two sign changes nearer than `width` may be missed as such a root.
 template <std::size_t Size>
 std::vector<double> sign_changes(const std::array<double, Size>& coefficients, double low, double high, double width) {
     if constexpr (Size < 2) {

@@ -11,8 +11,8 @@ namespace scanmill::scan {
 namespace {
 
 std::vector<Vec3> fibonacci_sphere(std::size_t count) {
-    // The golden angle π (3 − √5): turning by products instead of angles, because sin and cos differ between
-// processors.
+    // The golden angle π (3 − √5): turned by products instead of angles, because sin and cos differ between
+    // processors.
     constexpr double cosine = -0.73736887807831989, sine = 0.67549029426152362;
     std::vector<Vec3> directions;
     double x = 1, y = 0;
@@ -64,7 +64,7 @@ std::vector<Vec3> view_directions(std::span<const double> views) {
         const Vec3 direction(views[i], views[i + 1], views[i + 2]);
         const double largest = direction.cwiseAbs().maxCoeff();
         if (!direction.allFinite() || largest == 0)
-            throw Error("view {} looks from ({} {} {}), which is no direction", i / 3, views[i], views[i + 1],
+            throw Error("view {} looks from ({} {} {}), which is not a direction", i / 3, views[i], views[i + 1],
                         views[i + 2])
                 .hint("three finite numbers, not all 0: [0, 0, 1] looks from above");
         directions.push_back((direction / largest).normalized());
@@ -75,7 +75,7 @@ std::vector<Vec3> view_directions(std::span<const double> views) {
 View view_from(const Vec3& direction, const Vec3& centre, double resolution) {
     View view;
     view.forward = -direction;
-    // Upwards is as near to z as can be; seen from above or below, to y.
+    // Up is as near to z as possible; seen from above or below, to y.
     const Vec3 vertical = std::abs(direction.z()) < 0.999 ? Vec3::UnitZ() : Vec3::UnitY();
     view.right = vertical.cross(direction).normalized();
     view.up = direction.cross(view.right).normalized();

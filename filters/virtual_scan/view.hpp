@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Where the sensor stands: directions, and the frame of rays that one direction makes.
+/// View directions, and the grid of rays of one direction.
 
 #include <span>
 #include <vector>
@@ -36,7 +36,7 @@ struct View {
 
 /// The frame of the direction, without rays yet: `width` and `height` are 0.
 View view_from(const Vec3& direction, const Vec3& centre, double resolution);
-/// Number of rays that cover the points' projections; infinite when not countable.
+/// Number of rays that cover the projections of the points.
 double rays_over(const View& view, std::span<const Vec3> points);
 /// The view with just those rays. Pre: rays_over() is small enough to hold.
 View covering(View view, std::span<const Vec3> points);

@@ -16,24 +16,23 @@ namespace {
 
 using Shape = VirtualScanParams::Shape;
 constexpr double most_rays = 1 << 28;
-/// Independent random numbers for each purpose, whatever the others draw.
+/// Independent random numbers for each purpose.
 enum Stream : std::uint64_t { noise_stream, overlap_stream, outlier_stream };
 
 scan::Scene scene_of(const TriangleMesh* mesh, const VirtualScanParams& params) {
     if (mesh && params.shape != Shape::none)
-        throw Error("there is a mesh and a shape to scan; only one is possible")
-            .hint("leave out `shape`, or wire no mesh");
+        throw Error("there is a mesh and a shape to scan; only one is possible").hint("omit `shape`, or wire no mesh");
     if (mesh) return scan::scene_of(*mesh);
     if (params.shape == Shape::none)
         throw Error("there is nothing to scan: no mesh, and no shape named")
-            .hint("wire a mesh, or say `shape: sphere`");
+            .hint("wire a mesh, or write `shape: sphere`");
     return scan::scene_of(params.shape, params.size);
 }
 
-/// As what is scanned; too fine a resolution takes too many rays, and noise may be as small as it likes.
-void require_within_sizes(std::string_view name, double length) {
+/// Lower limits are not needed: too fine a resolution needs too many rays, and any noise is small enough.
+void require_supported(std::string_view name, double length) {
     if (length > scan::largest_size)
-        throw Error("the {} is {:.3g} u; what is scanned is at most {} u in size", name, length, scan::largest_size)
+        throw Error("the {} is {:.3g} u; at most {:.0e} u is supported", name, length, scan::largest_size)
             .hint("give it as a share of the object: 0.5 %diag");
 }
 
@@ -41,17 +40,17 @@ void require_sound(const VirtualScanParams& params, double resolution, double no
     if (!(resolution > 0) || !std::isfinite(resolution))
         throw Error("the resolution is {} u; it must be above 0", resolution)
             .hint("0.5 %diag puts some 200 points across the object");
-    require_within_sizes("resolution", resolution);
+    require_supported("resolution", resolution);
     if (!(noise >= 0) || !std::isfinite(noise))
-        throw Error("the noise is {} u; it must be 0 or more", noise).hint("say `noise: 0 u` for none");
-    require_within_sizes("noise", noise);
+        throw Error("the noise is {} u; it must be 0 or more", noise).hint("write `noise: 0 u` for none");
+    require_supported("noise", noise);
     const double outliers = params.outliers.value(), overlap = params.overlap.value();
     if (!(outliers >= 0 && outliers <= 10))
         throw Error("outliers is {}; it must be from 0 % to 1000 %", params.outliers.text())
             .hint("it is a share of the points: 1 % adds one to a hundred");
     if (!(overlap >= 0 && overlap <= 1))
         throw Error("overlap is {}; it must be from 0 % to 100 %", params.overlap.text())
-            .hint("100 % keeps all that several views see, 0 % only what the first of them does");
+            .hint("100 % keeps the points of all views, 0 % only those of the first view");
     const double angle = params.max_angle.in_degrees();
     if (!(angle > 0 && angle <= 90))
         throw Error("max-angle is {}; it must be above 0 deg and at most 90 deg", params.max_angle.text())
@@ -71,32 +70,28 @@ double rays_over(std::span<const scan::View> views, const scan::Scene& scene) {
     return total;
 }
 
-/// Said by the rays that another resolution takes.
-std::string resolution_that_fits(const scan::Scene& scene, const std::vector<Vec3>& directions, double resolution) {
-    const double total = rays_over(views_at(scene, directions, resolution), scene);
-    return fmt::format("a resolution of {:.3g} u or coarser fits", 1.01 * resolution * std::sqrt(total / most_rays));
+/// Computed from the number of rays at a fine resolution.
+std::string resolution_that_fits(const scan::Scene& scene, const std::vector<Vec3>& directions) {
+    const double fine = 1e-6 * scene.box.diagonal();
+    const double total = rays_over(views_at(scene, directions, fine), scene);
+    return fmt::format("a resolution of {:.3g} u or coarser fits", 1.01 * fine * std::sqrt(total / most_rays));
 }
 
 std::vector<scan::View> views_over(const scan::Scene& scene, const std::vector<Vec3>& directions, double resolution,
                                    std::size_t& rays) {
     std::vector<scan::View> views = views_at(scene, directions, resolution);
     const double total = rays_over(views, scene);
-    if (!std::isfinite(total))
-        throw Error("{} at a resolution of {:.6g} u {} more rays than can be counted; at most {} are possible",
-                    counted(views.size(), "view", "views"), resolution, by_count(views.size(), "takes", "take"),
-                    most_rays)
-            .hint(resolution_that_fits(scene, directions, 1e-6 * scene.box.diagonal()));
     if (!(total <= most_rays))
         throw Error("{} at a resolution of {:.6g} u {} {:.6g} rays; at most {} are possible",
                     counted(views.size(), "view", "views"), resolution, by_count(views.size(), "takes", "take"), total,
                     most_rays)
-            .hint(resolution_that_fits(scene, directions, resolution));
+            .hint(resolution_that_fits(scene, directions));
     for (scan::View& view : views) view = scan::covering(view, scene.hull);
     rays = static_cast<std::size_t>(total);
     return views;
 }
 
-/// Points and their columns as they grow.
+/// The points of the result and their columns.
 struct Samples {
     Array<Vec3> positions;
     Array<double> normals;
@@ -109,15 +104,15 @@ struct Samples {
     }
 };
 
-/// By its series, because the C library's differs in the last bit between processors, and a face may lie just at the
-/// limit. Pre: 0 ≤ angle ≤ π/2.
+/// By its series, because the result of the C library differs in the last bit between processors, and a face may lie
+/// exactly at the limit. Pre: 0 ≤ angle ≤ π/2.
 double cosine(double angle) {
     double value = 1;
     for (int degree = 24; degree > 0; degree -= 2) value = 1 - value * angle * angle / (degree * (degree - 1));
     return value;
 }
 
-/// Hits that the sensor can see at its angle, view by view.
+/// The hits within `max_angle`, view by view.
 std::vector<std::vector<scan::Hit>> returns_of(const scan::Scene& scene, const std::vector<scan::View>& views,
                                                Angle max_angle, Context& context) {
     const double least_cosine = max_angle.in_degrees() < 90 ? cosine(max_angle.in_radians()) : 0;
@@ -131,7 +126,7 @@ std::vector<std::vector<scan::Hit>> returns_of(const scan::Scene& scene, const s
     return returns;
 }
 
-/// Removes, view by view, all but `share` of the hits that lie near an earlier view's kept ones; returns how many.
+/// Removes, view by view, all but `share` of the hits near kept ones of an earlier view. Returns the number removed.
 std::size_t thin_overlap(std::vector<std::vector<scan::Hit>>& returns, const Vec3& origin, double radius, double share,
                          const Random& random) {
     std::size_t dropped = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A scanner without a scanner: points on a known surface, as seen from given views, with the flaws of real scans.
+/// A simulated scanner: points on a known surface, as seen from given views, with the flaws of real scans.
 ///
-/// Every view casts parallel rays on a square grid. What a ray meets first gives one point: occlusion is exact. Both
-/// sides of a surface reflect, as in life; on a closed mesh only its outside is ever met first.
+/// Every view casts parallel rays on a square grid. The first hit of a ray gives one point, so occlusion is exact. Both
+/// sides of a surface reflect; of a closed mesh only the outside is ever hit.
 
 #include <vector>
 
@@ -16,11 +16,11 @@ namespace scanmill {
 
 struct VirtualScanParams {
     enum class Shape { none, sphere, torus, box, cylinder, l_block, holed_block, hyperboloid };
-    /// What is scanned when no mesh is; intersected by formula, not through a mesh.
+    /// The surface when there is no mesh; intersected by formula, not through a mesh.
     Shape shape = Shape::none;
-    /// The shape's dimensions in the scan's own unit; empty means those in brackets. sphere: radius [1], around 0.
-    /// torus: from the z axis to the tube's centre, tube's radius [1, 0.4], around 0. box: x, y, z [1, 1, 1], around 0.
-    /// cylinder: radius, height along z [0.5, 1], around 0. l_block: size s, thickness t [1, 1]: [0, 2 s]² × [0, t]
+    /// The shape's dimensions in the scan's own unit; empty means the defaults in brackets. sphere: radius [1], around
+    /// 0. torus: from the z axis to the tube's centre, tube's radius [1, 0.4], around 0. box: x, y, z [1, 1, 1], around
+    /// 0. cylinder: radius, height along z [0.5, 1], around 0. l_block: size s, thickness t [1, 1]: [0, 2 s]² × [0, t]
     /// without the quadrant above s in x and y. holed_block: x, y, z, radius of the large hole, radius of the small
     /// ones [0.88, 0.95, 0.41, 0.21, 0.05]: a box around 0 with five holes through it along z, the large one in the
     /// middle, four small ones at (± 0.35 x, ± 0.35 y). hyperboloid: radius r, height h [1, 0.75]: the open surface
@@ -33,13 +33,13 @@ struct VirtualScanParams {
     Length resolution = Length::percent_of_diagonal(0.5);
     /// Standard deviation of the normally distributed error along the ray.
     Length noise;
-    /// How many points lie anywhere in the bounding box grown by a tenth on all sides, as a share of the surface
+    /// The number of points anywhere in the bounding box enlarged by a tenth on all sides, as a share of the surface
     /// points.
     Ratio outliers = Ratio::percent(0);
-    /// Which share stays of the points that an earlier view has already seen: that have a kept point of an earlier view
-    /// nearer than `resolution`, before noise. 100 %: views do not know of each other; 0 %: no two views overlap.
+    /// The share that is kept of the points that an earlier view has already seen: that have a kept point of an earlier
+    /// view nearer than `resolution`, before noise. 100 %: views are independent; 0 %: no two views overlap.
     Ratio overlap = Ratio::percent(100);
-    /// Nothing comes back from where ray and surface normal make a larger angle; above 0, at most 90 deg.
+    /// Hits where ray and surface normal make a larger angle are dropped; above 0, at most 90 deg.
     Angle max_angle = Angle::degrees(80);
 };
 
@@ -60,19 +60,19 @@ struct VirtualScanResult {
     double noise = 0;
 };
 
-/// Scans `mesh`, or `params.shape` when mesh is nullptr. Relative lengths refer to what is scanned: `%diag` to its
+/// Scans `mesh`, or `params.shape` when mesh is nullptr. Relative lengths refer to the scanned surface: `%diag` to its
 /// bounding box, `spacing` to the mesh's median edge; both may be given resolved.
 ///
-/// A mesh needs no topology: soups, holes and pieces inside one another are scanned as they are. Triangles without
+/// A mesh needs no topology: triangle soups, holes and nested components are allowed. Triangles without
 /// area, or seen edge on, are never hit; where two triangles are equally near, the lower row counts; rays through a
-/// shared edge or vertex never slip between triangles. Throws Error: a mesh and a shape, or neither; a mesh without
+/// shared edge or vertex never pass between triangles. Throws Error: a mesh and a shape, or neither; a mesh without
 /// triangles, with indices out of range, with a NaN or infinite vertex, without extent; a wrong number of sizes or
-/// views, a direction of length 0; a parameter out of its range, noise or resolution above 1e30 u; a mesh not between
-/// 1e-30 and 1e30 u in size; more than 2^28 rays; not a single point.
+/// views, a direction of length 0; a parameter out of its range, a dimension of a shape, noise or resolution beyond the
+/// supported range; more than 2^28 rays; not a single point.
 /// Deterministic: bytes depend on the seed, not on the number of threads; views are scanned in parallel.
 /// Cost: time O(rays + pixels of the triangles' boxes), 48 bytes per point and, for
 /// meshes, 12 per ray of the views under way.
-/// Reports the metrics `points`, `outliers` and `dropped`.
+/// Metrics: `points`, `outliers` and `dropped`.
 VirtualScanResult virtual_scan(const TriangleMesh* mesh, const VirtualScanParams& params, Context& context);
 
 }  // namespace scanmill

@@ -17,8 +17,8 @@ namespace {
 constexpr u32 most_components = 4;
 
 template <class T>
-void put(unsigned char* place, T number) {
-    std::memcpy(place, &number, sizeof(T));
+void put(unsigned char* to, T number) {
+    std::memcpy(to, &number, sizeof(T));
 }
 
 Vec3 row_of(const Column& column, std::size_t row) {
@@ -42,10 +42,10 @@ std::size_t rows_without_direction(const Column& column) {
 }
 
 Attribute normal_attribute(const Column& column) {
-    const auto fill = [&column](unsigned char* place) {
-        for (std::size_t row = 0; row < column.rows(); ++row, place += 3 * sizeof(float)) {
+    const auto fill = [&column](unsigned char* at) {
+        for (std::size_t row = 0; row < column.rows(); ++row, at += 3 * sizeof(float)) {
             const Eigen::Vector3f normal = y_up(row_of(column, row).stableNormalized()).cast<float>();
-            std::memcpy(place, normal.data(), 3 * sizeof(float));
+            std::memcpy(at, normal.data(), 3 * sizeof(float));
         }
     };
     return {"NORMAL", TINYGLTF_COMPONENT_TYPE_FLOAT, 3, false, fill};
@@ -63,14 +63,14 @@ std::array<std::uint16_t, 256> linear_fractions() {
 }
 
 Attribute colour_attribute(const Column& column) {
-    const auto fill = [&column](unsigned char* place) {
+    const auto fill = [&column](unsigned char* at) {
         const auto linear = linear_fractions();
         const u8* channels = column.values<u8>().data();
         const u32 count = column.components();
-        for (std::size_t row = 0; row < column.rows(); ++row, channels += count, place += 4 * sizeof(std::uint16_t)) {
-            for (u32 channel = 0; channel < 3; ++channel) put(place + 2 * channel, linear[channels[channel]]);
+        for (std::size_t row = 0; row < column.rows(); ++row, channels += count, at += 4 * sizeof(std::uint16_t)) {
+            for (u32 channel = 0; channel < 3; ++channel) put(at + 2 * channel, linear[channels[channel]]);
             constexpr std::uint16_t per_step = 257;  // 255 × 257 = 65535
-            put(place + 6, static_cast<std::uint16_t>(count == 4 ? channels[3] * per_step : 65535));
+            put(at + 6, static_cast<std::uint16_t>(count == 4 ? channels[3] * per_step : 65535));
         }
     };
     return {"COLOR_0", TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, 4, true, fill};
@@ -85,16 +85,16 @@ constexpr int component_type() {
     return TINYGLTF_COMPONENT_TYPE_FLOAT;
 }
 
-/// Every number of the column as the type that glTF has for it.
+/// Every number of the column in the type that glTF has for it.
 template <class T>
 Attribute number_attribute(const Column& column) {
     using Written = std::conditional_t<component_type<T>() == TINYGLTF_COMPONENT_TYPE_FLOAT, float, T>;
     Attribute attribute{"", component_type<T>(), column.components(), false, {}};
-    attribute.fill = [&column, stride = attribute.stride()](unsigned char* place) {
+    attribute.fill = [&column, stride = attribute.stride()](unsigned char* at) {
         const T* number = column.values<T>().data();
-        for (std::size_t row = 0; row < column.rows(); ++row, place += stride)
+        for (std::size_t row = 0; row < column.rows(); ++row, at += stride)
             for (u32 component = 0; component < column.components(); ++component, ++number)
-                put(place + component * sizeof(Written), static_cast<Written>(*number));
+                put(at + component * sizeof(Written), static_cast<Written>(*number));
     };
     return attribute;
 }
@@ -103,7 +103,7 @@ struct Fitness {
     std::size_t not_finite = 0, too_large = 0, rounded = 0;
 };
 
-/// How the numbers fare as float; whole numbers of 32 and 64 bits count as rounded when the float is another one.
+/// The numbers that float cannot hold. Integers of 32 and 64 bits count as rounded when they are beyond 2^24.
 template <class T>
 Fitness fitness_of(std::span<const T> numbers) {
     Fitness found;
@@ -124,7 +124,7 @@ Fitness fitness_of(std::span<const T> numbers) {
     return found;
 }
 
-/// Why glTF cannot hold the column; empty when it can. Tells when it is rounded.
+/// The reason why glTF cannot hold the column; empty when it can. Warns when it is rounded.
 std::string why_left_out(const Column& column, const WriteOptions& options) {
     if (column.is_list()) return "it holds lists";
     if (column.components() > most_components)
@@ -180,9 +180,8 @@ std::vector<Attribute> attributes_of(const ColumnTable& columns, const WriteOpti
             Attribute attribute = visit_scalar(column.type(), [&]<class T>(T) { return number_attribute<T>(column); });
             attribute.name = names.add(column.name(), identifier(expected), expected);
             if (lost > 0)
-                warn(options.on_warning,
-                     "GLB holds the column 'normal' as '{}' and not as its normals: {} no direction", attribute.name,
-                     counted(lost, "of them has", "of them have"));
+                warn(options.on_warning, "GLB contains the column 'normal' as '{}' and not as normals: {} no direction",
+                     attribute.name, counted(lost, "of them has", "of them have"));
             attributes.push_back(std::move(attribute));
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Columns as vertex attributes of glTF: which of its few types each one gets, and what none can hold.
+/// Columns as vertex attributes of glTF: the type that each one gets, and which columns cannot be written.
 
 #include <functional>
 #include <string>
@@ -17,17 +17,18 @@ struct Attribute {
     int component_type;  ///< of tinygltf
     u32 components;
     bool is_normalised = false;
-    /// Writes every row at `place`, stride() bytes apart; what lies between stays as it is.
-    std::function<void(unsigned char* place)> fill;
+    /// Writes the rows to `rows`, stride() bytes apart; the bytes between them are not changed.
+    std::function<void(unsigned char* rows)> fill;
 
-    /// glTF wants every row on four bytes.
+    /// glTF requires rows to be aligned to four bytes.
     std::size_t stride() const;
 };
 
-/// With y up: the direction or position, turned by a right angle around x.
+/// A direction or position with y up: rotated by a right angle around x.
 inline Vec3 y_up(const Vec3& v) { return {v.x(), v.z(), -v.y()}; }
 
-/// All that the columns become, in their order; what is left out or changed is told. The columns must outlive it.
+/// The attributes of the columns, in their order. Warns about columns that are left out or changed. The columns must
+/// outlive the result.
 std::vector<Attribute> attributes_of(const ColumnTable& columns, const WriteOptions& options);
 
 }  // namespace scanmill::glb

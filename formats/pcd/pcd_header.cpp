@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cstring>
-#include <optional>
 #include <set>
 #include <span>
 
@@ -16,6 +15,21 @@
 namespace scanmill::pcd {
 
 namespace {
+
+using pcl::PCLPointField;
+
+constexpr std::array<std::pair<ScalarType, PCLPointField::PointFieldTypes>, 10> types{{
+    {ScalarType::int8, PCLPointField::INT8},
+    {ScalarType::uint8, PCLPointField::UINT8},
+    {ScalarType::int16, PCLPointField::INT16},
+    {ScalarType::uint16, PCLPointField::UINT16},
+    {ScalarType::int32, PCLPointField::INT32},
+    {ScalarType::uint32, PCLPointField::UINT32},
+    {ScalarType::int64, PCLPointField::INT64},
+    {ScalarType::uint64, PCLPointField::UINT64},
+    {ScalarType::float32, PCLPointField::FLOAT32},
+    {ScalarType::float64, PCLPointField::FLOAT64},
+}};
 
 constexpr std::array<std::string_view, 3> encodings{"ascii", "binary", "binary_compressed"};
 constexpr u64 most_row_bytes = 1u << 20;
@@ -82,7 +96,7 @@ private:
             read_encoding();
             return true;
         } else if (key != "VERSION" && key != "TYPE") {
-            throw Error("line {}: {} is no part of a PCD header", line_, quote(key));
+            throw Error("line {}: {} is not part of a PCD header", line_, quote(key));
         }
         return false;
     }
@@ -96,17 +110,17 @@ private:
                 throw Error("line {}: two fields are called {}", line_, quote(name));
     }
 
-    /// Where the sensor was, and the quaternion w x y z of how it was turned. Old files have no such line.
+    /// The position of the sensor, and its rotation as a quaternion w x y z. Old files have no such line.
     void read_viewpoint() {
-        constexpr std::array<double, 7> nowhere{0, 0, 0, 1, 0, 0, 0};
-        if (words_.size() != nowhere.size() + 1)
+        constexpr std::array<double, 7> identity{0, 0, 0, 1, 0, 0, 0};
+        if (words_.size() != identity.size() + 1)
             throw Error("line {}: VIEWPOINT has {}; expected {}", line_,
-                        counted(words_.size() - 1, "number", "numbers"), nowhere.size());
-        for (std::size_t i = 0; i < nowhere.size(); ++i) {
+                        counted(words_.size() - 1, "number", "numbers"), identity.size());
+        for (std::size_t i = 0; i < identity.size(); ++i) {
             double number = 0;
             if (!parse_number(words_[i + 1], number))
-                throw Error("line {}: {} is no number for VIEWPOINT", line_, quote(words_[i + 1]));
-            header_.has_viewpoint |= number != nowhere[i];
+                throw Error("line {}: {} is not a number for VIEWPOINT", line_, quote(words_[i + 1]));
+            header_.has_viewpoint |= number != identity[i];
             header_.viewpoint.append(i > 0 ? " " : "").append(words_[i + 1]);
         }
     }
@@ -160,7 +174,7 @@ private:
             throw Error("its header promises {}, and {} × {} of them", counted(*promised_, "point", "points"),
                         header_.width, header_.height);
         if (padded_ && header_.encoding == PcdHeader::Encoding::compressed)
-            throw Error("its compressed points have padding (the field _), which PCL does not read rightly")
+            throw Error("its compressed points have padding (the field _), which PCL does not read correctly")
                 .hint("save it as binary or ascii");
         if (header_.points == 0 || header_.row_bytes == 0) throw Error("holds no points");
         require_room();
@@ -182,14 +196,14 @@ private:
                 header_.bytes_behind = without_padding(left - promised);
                 break;
             case PcdHeader::Encoding::compressed: {
-                constexpr u64 best_ratio = 264;  // LZF makes at most 264 bytes of three; one byte never makes more
+                constexpr u64 best_ratio = 264;  // LZF expands three bytes to at most 264; one byte never gives more
                 std::array<std::uint32_t, 2> sizes{};
                 require(left >= sizeof sizes);
                 std::memcpy(sizes.data(), bytes_.data() + header_.body, sizeof sizes);
                 require(left - sizeof sizes >= sizes[0]);
                 header_.bytes_behind = without_padding(left - sizeof sizes - sizes[0]);
                 if (sizes[1] != promised || promised > best_ratio * sizes[0])
-                    throw Error("its header promises {} of {}; the compressed block says {} in {}",
+                    throw Error("its header promises {} of {}; the compressed block declares {} in {}",
                                 counted(header_.points, "point", "points"), counted(header_.row_bytes, "byte", "bytes"),
                                 counted(sizes[1], "byte", "bytes"), sizes[0])
                         .hint("the file is damaged: fetch or export it again");
@@ -197,7 +211,7 @@ private:
         }
     }
 
-    /// PCL's own writer fills the last page of the file with zeros; those say nothing.
+    /// PCL's own writer fills the last page of the file with zeros, which are ignored.
     u64 without_padding(u64 behind) const {
         const bool is_padding = bytes_.substr(bytes_.size() - behind).find_first_not_of('\0') == std::string_view::npos;
         return is_padding ? 0 : behind;
@@ -218,5 +232,15 @@ private:
 PcdHeader checked_header(std::string_view bytes) { return HeaderParser(bytes).header(); }
 
 std::string_view name_of(PcdHeader::Encoding encoding) { return encodings[static_cast<std::size_t>(encoding)]; }
+
+std::optional<ScalarType> scalar_type(std::uint8_t datatype) {
+    for (const auto& [ours, theirs] : types)
+        if (theirs == datatype) return ours;
+    return std::nullopt;
+}
+
+std::uint8_t datatype(ScalarType type) {
+    return std::ranges::find(types, type, &std::pair<ScalarType, PCLPointField::PointFieldTypes>::first)->second;
+}
 
 }  // namespace scanmill::pcd

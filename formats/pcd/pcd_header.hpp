@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What must be known of a PCD header before PCL, which believes it, takes memory for what it promises.
+/// The header of a PCD file, checked before PCL, which trusts it, allocates memory for the points it declares; and the
+/// types of its fields.
 
+#include <pcl/PCLPointField.h>
+
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "scanmill/data/array.hpp"
+#include "scanmill/data/columns.hpp"
 
 namespace scanmill::pcd {
 
@@ -20,14 +24,18 @@ struct PcdHeader {
     std::size_t body = 0;  ///< where the points begin
     std::size_t lines = 0;  ///< of the header
     std::vector<std::string> comments;
-    std::string viewpoint;  ///< as written; empty when there is none
-    bool has_viewpoint = false;  ///< one that is not at the origin, or turned
-    u64 bytes_behind = 0;  ///< the last point, but for zeros; in text there are none
+    std::string viewpoint;  ///< as written; empty when absent
+    bool has_viewpoint = false;  ///< not at the origin, or rotated
+    u64 bytes_behind = 0;  ///< after the last point, unless all are zero; 0 for ascii
 };
 
-/// Throws Error when the header is broken, contradicts itself, or promises more than the file's bytes can hold.
+/// Throws Error when the header is malformed, contradicts itself, or declares more than the bytes of the file can hold.
 PcdHeader checked_header(std::string_view bytes);
 
 std::string_view name_of(PcdHeader::Encoding encoding);
+
+/// Empty for a datatype that PCL does not define.
+std::optional<ScalarType> scalar_type(std::uint8_t datatype);
+std::uint8_t datatype(ScalarType type);
 
 }  // namespace scanmill::pcd

@@ -1,27 +1,184 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <pcl/PCLPointCloud2.h>
 #include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
 
+#include <cstring>
+#include <set>
 #include <sstream>
 
 #include "pcd/pcd.hpp"
-#include "pcd/pcd_fields.hpp"
 #include "pcd/pcd_header.hpp"
-#include "pcd/pcd_rows.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/text_cursor.hpp"
 
 namespace scanmill::pcd {
 
 namespace {
 
 using Encoding = PcdHeader::Encoding;
+using pcl::PCLPointCloud2;
+using pcl::PCLPointField;
 
-/// PCL splits the lines of a broken header in another way than we do, and then its fields reach beyond the points.
-void require_fields_inside(const pcl::PCLPointCloud2& cloud, const PcdHeader& header) {
+// Columns from the bytes of PCL's rows.
+
+std::size_t rows_of(const PCLPointCloud2& cloud) { return std::size_t(cloud.width) * cloud.height; }
+
+ScalarType require_type(const PCLPointField& field) {
+    const std::optional<ScalarType> type = scalar_type(field.datatype);
+    if (!type) throw Error("the field '{}' has the unknown type {}", field.name, field.datatype);
+    return *type;
+}
+
+/// The bytes of these fields, row by row.
+template <class T>
+Buffer<T> gathered(const PCLPointCloud2& cloud, std::span<const PCLPointField* const> fields, std::size_t count) {
+    Array<T> values(rows_of(cloud) * fields.size() * count);
+    T* to = values.data();
+    for (std::size_t row = 0; row < rows_of(cloud); ++row)
+        for (const PCLPointField* field : fields) {
+            std::memcpy(to, cloud.data.data() + row * cloud.point_step + field->offset, count * sizeof(T));
+            to += count;
+        }
+    return Buffer(std::move(values));
+}
+
+Column column_of(const PCLPointCloud2& cloud, std::span<const PCLPointField* const> fields, std::string name,
+                 std::size_t count) {
+    return visit_scalar(require_type(*fields.front()), [&]<class T>(T) {
+        return Column(std::move(name), static_cast<u32>(fields.size() * count), gathered<T>(cloud, fields, count));
+    });
+}
+
+/// Four bytes per point, packed into a number with blue lowest.
+Column colours_of(const PCLPointCloud2& cloud, const PCLPointField& field) {
+    const std::size_t channels = field.name == "rgba" ? 4 : 3;
+    Array<u8> colours(rows_of(cloud) * channels);
+    for (std::size_t row = 0; row < rows_of(cloud); ++row) {
+        std::uint32_t packed = 0;
+        std::memcpy(&packed, cloud.data.data() + row * cloud.point_step + field.offset, sizeof packed);
+        const std::array<u8, 4> rgba{static_cast<u8>(packed >> 16), static_cast<u8>(packed >> 8),
+                                     static_cast<u8>(packed), static_cast<u8>(packed >> 24)};
+        std::copy_n(rgba.begin(), channels, colours.begin() + static_cast<std::ptrdiff_t>(row * channels));
+    }
+    return Column("colour", static_cast<u32>(channels), Buffer(std::move(colours)));
+}
+
+bool is_packed_colour(const PCLPointField& field) {
+    const std::optional<ScalarType> type = scalar_type(field.datatype);
+    return (field.name == "rgb" || field.name == "rgba") && field.count == 1 && type && size_of(*type) == 4;
+}
+
+/// The field of that name, or nullptr.
+const PCLPointField* field_named(const PCLPointCloud2& cloud, std::string_view name) {
+    const auto found = std::ranges::find(cloud.fields, name, &PCLPointField::name);
+    return found == cloud.fields.end() ? nullptr : &*found;
+}
+
+/// The three fields of these names; empty unless all exist, with one number each of the same type.
+std::vector<const PCLPointField*> triple(const PCLPointCloud2& cloud, std::array<std::string_view, 3> names) {
+    std::vector<const PCLPointField*> fields;
+    for (std::string_view name : names) {
+        const PCLPointField* field = field_named(cloud, name);
+        if (!field || field->count != 1 || (!fields.empty() && field->datatype != fields.front()->datatype)) return {};
+        fields.push_back(field);
+    }
+    return fields;
+}
+
+std::string free_name(const ColumnTable& table, const std::string& wanted, const ReadOptions& options) {
+    std::string name = wanted;
+    for (std::size_t number = 2; table.find(name); ++number) name = wanted + "_" + std::to_string(number);
+    if (name != wanted)
+        warn(options.on_warning, "the field {} became the column '{}': its own name is taken", quote(wanted), name);
+    return name;
+}
+
+/// x, y and z of every row. Throws Error when one of the fields is missing or has several numbers.
+Array<Vec3> positions_of(const PCLPointCloud2& cloud) {
+    Array<Vec3> positions(rows_of(cloud));
+    constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const PCLPointField* field = field_named(cloud, axes[axis]);
+        if (!field || field->count != 1) throw Error("has no field '{}'; points need x, y and z", axes[axis]);
+        visit_scalar(require_type(*field), [&]<class T>(T) {
+            for (std::size_t row = 0; row < positions.size(); ++row) {
+                T value;
+                std::memcpy(&value, cloud.data.data() + row * cloud.point_step + field->offset, sizeof value);
+                positions[row][static_cast<Eigen::Index>(axis)] = static_cast<double>(value);
+            }
+        });
+    }
+    return positions;
+}
+
+/// Everything else, by the names that pcd.hpp gives. A field whose name is already that of a column (packed colours and
+/// normals) gets another one, with a warning.
+ColumnTable columns_of(const PCLPointCloud2& cloud, const ReadOptions& options) {
+    ColumnTable table;
+    std::set<std::string_view> taken{"x", "y", "z", "_"};
+    using Names = std::array<std::string_view, 3>;
+    for (const Names& names : {Names{"normal_x", "normal_y", "normal_z"}, Names{"nx", "ny", "nz"}})
+        if (const auto normal = triple(cloud, names); !normal.empty() && !table.find("normal")) {
+            table.add(column_of(cloud, normal, "normal", 1));
+            taken.insert(names.begin(), names.end());
+        }
+    for (const PCLPointField& field : cloud.fields) {
+        if (taken.contains(field.name)) continue;
+        if (is_packed_colour(field) && !table.find("colour"))
+            table.add(colours_of(cloud, field));
+        else
+            table.add(column_of(cloud, std::array{&field}, free_name(table, field.name, options), field.count));
+    }
+    return table;
+}
+
+// The bytes of the rows.
+
+/// Reads one number of the field's type to `to`.
+void read_number(TextCursor& text, const PCLPointField& field, std::uint8_t* to) {
+    const std::optional<ScalarType> type = scalar_type(field.datatype);
+    if (!type) throw Error("the field '{}' has the unknown type {}", field.name, field.datatype);
+    visit_scalar(*type, [&]<class T>(T value) {
+        if (!text.number(value))
+            throw Error("line {}: {} is not a {} for the field '{}'", text.line(), quote(text.last_token()),
+                        scanmill::name_of(*type), field.name);
+        std::memcpy(to, &value, sizeof value);
+    });
+}
+
+/// The rows of an ascii file into `cloud.data`. PCL's own reader would read unreadable numbers as zeros. Throws Error
+/// with the line: a row with another number of numbers than a point has, a number that its field's type cannot hold,
+/// fewer or more rows than the header declares. Pre: the cloud has the fields and the size of `header`.
+void read_rows(std::string_view bytes, const PcdHeader& header, PCLPointCloud2& cloud) {
+    TextCursor text(bytes.substr(header.body), {.line = header.lines + 1});
+    for (u64 row = 0; row < header.points; ++row) {
+        if (!text.next_row())
+            throw Error("its header promises {}; {} {}", counted(header.points, "point", "points"), row,
+                        by_count(row, "follows", "follow"))
+                .hint("the file is truncated: fetch or export it again");
+        u64 numbers = 0;
+        for (const PCLPointField& field : cloud.fields) {
+            const std::size_t size = size_of(scalar_type(field.datatype).value_or(ScalarType::float64));
+            for (std::size_t i = 0; i < field.count && text.more(); ++i, ++numbers)
+                read_number(text, field, cloud.data.data() + row * cloud.point_step + field.offset + i * size);
+        }
+        numbers += text.count_tokens();
+        if (numbers != header.row_numbers)
+            throw Error("line {}: found {}; a point has {}", text.line(), counted(numbers, "number", "numbers"),
+                        header.row_numbers);
+    }
+    if (text.next_row())
+        throw Error("line {}: more rows than the {} of the header", text.line(),
+                    counted(header.points, "point", "points"));
+}
+
+/// PCL splits the lines of a malformed header differently, and its fields may then reach beyond the points.
+void require_fields_inside(const PCLPointCloud2& cloud, const PcdHeader& header) {
     bool fits = cloud.point_step == header.row_bytes && cloud.data.size() == header.points * header.row_bytes;
-    for (const pcl::PCLPointField& field : cloud.fields) {
+    for (const PCLPointField& field : cloud.fields) {
         const std::optional<ScalarType> type = scalar_type(field.datatype);
         if (!type) throw Error("the field {} has the unknown type {}", quote(field.name), field.datatype);
         fits = fits && field.offset + u64(field.count) * size_of(*type) <= cloud.point_step;
@@ -32,10 +189,10 @@ void require_fields_inside(const pcl::PCLPointCloud2& cloud, const PcdHeader& he
             .hint("SIZE, TYPE and COUNT must have an entry for every field");
 }
 
-pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) {
-    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // what PCL has to say goes into our own sentence
+PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) {
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);  // our own message replaces those of PCL
     pcl::PCDReader reader;
-    pcl::PCLPointCloud2 cloud;
+    PCLPointCloud2 cloud;
     Eigen::Vector4f origin;
     Eigen::Quaternionf orientation;
     int version = 0, data_type = 0;
@@ -51,7 +208,7 @@ pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) 
                                         static_cast<unsigned int>(header.body));
     }
     if (trouble < 0)
-        throw Error("PCL cannot make {} of {} of {} data", counted(header.points, "point", "points"),
+        throw Error("PCL cannot decode {} from {} of {} data", counted(header.points, "point", "points"),
                     counted(bytes.size() - header.body, "byte", "bytes"), name_of(header.encoding))
             .hint("the file is damaged: fetch or export it again");
     return cloud;
@@ -61,7 +218,7 @@ pcl::PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) 
 
 LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     const PcdHeader header = checked_header(file.bytes);
-    const pcl::PCLPointCloud2 cloud = read_cloud(file.bytes, header);
+    const PCLPointCloud2 cloud = read_cloud(file.bytes, header);
     if (header.height > 1 && header.width > 1)
         warn(options.on_warning, "the grid of {} × {} points became a list in file order", header.width, header.height);
     if (header.bytes_behind > 0)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <pcl/PCLPointCloud2.h>
 #include <pcl/io/pcd_io.h>
 
 #include "pcd/pcd.hpp"
-#include "pcd/pcd_fields.hpp"
+#include "pcd/pcd_header.hpp"
 #include "scanmill/formats/common/column_names.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/common/writing.hpp"
@@ -29,7 +30,7 @@ bool is_colour(const Column& column) {
            column.components() <= 4;
 }
 
-/// Fields are separated by blanks, so a name must not hold one.
+/// Fields are separated by blanks, so a name must not contain one.
 std::string field_name(std::string name) {
     for (char& c : name)
         if (static_cast<unsigned char>(c) <= ' ' || c == '\x7f') c = '_';
@@ -41,7 +42,7 @@ struct WrittenColumn {
     std::string field;  ///< for columns without a meaning of their own
 };
 
-/// Every column under a name that no other field has; names that had to change are told.
+/// Every column under a unique field name. Changed names give a warning.
 std::vector<WrittenColumn> written_columns(const PointCloud& cloud, const WriteOptions& options) {
     WrittenNames names("PCD", options, {"x", "y", "z", "_", "normal_x", "normal_y", "normal_z", "rgb", "rgba"});
     std::vector<WrittenColumn> columns;

@@ -24,7 +24,7 @@ struct Entry {
     u64 size;  ///< not compressed
 };
 
-/// Numbers and texts one after the other, zero and empty when they reach beyond the archive.
+/// Reads numbers and texts in sequence; they are zero and empty beyond the end of the archive.
 class Cursor {
 public:
     Cursor(std::string_view archive, std::size_t at) : archive_(archive), at_(at), is_good_(at <= archive.size()) {}
@@ -52,7 +52,7 @@ private:
     bool is_good_;
 };
 
-/// The content that the local header at `offset` announces, `size` bytes.
+/// The content after the local header at `offset`, `size` bytes.
 std::optional<std::string_view> content_at(std::string_view archive, u64 offset, u64 size) {
     Cursor header(archive, offset);
     if (header.number<u32>() != local_mark) return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<std::string_view> content_at(std::string_view archive, u64 offset,
     return header.is_good() ? std::optional(content) : std::nullopt;
 }
 
-/// The next entry of the directory, all of whose sizes are in its ZIP64 field.
+/// The next entry of the directory, with all sizes in its ZIP64 field.
 std::optional<Entry> entry_at(std::string_view archive, Cursor& directory) {
     Entry entry{};
     if (directory.number<u32>() != central_mark) return std::nullopt;
@@ -110,7 +110,7 @@ std::optional<std::vector<Entry>> entries_of(std::string_view archive) {
     return entries;
 }
 
-/// What the local header and the directory say alike.
+/// The fields that the local header and the directory have in common.
 void put_common(const Entry& entry, OutputBuffer& out) {
     constexpr std::uint16_t version = 20, no_flags = 0, midnight = 0, new_year_1980 = 1 << 5 | 1, no_extra = 0;
     out.binary(version);

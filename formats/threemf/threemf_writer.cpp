@@ -1,23 +1,171 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Model/COM/NMR_DLLInterfaces.h>
+#include <Model/Classes/NMR_ModelTypes.h>
 #include <xxhash.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/formats/common/column_names.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/common/writing.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 #include "scanmill/io/output_buffer.hpp"
 #include "threemf/plain_zip.hpp"
-#include "threemf/printed_mesh.hpp"
 #include "threemf/threemf.hpp"
 
 namespace scanmill::threemf {
 
 namespace {
 
-/// An object of lib3mf, given back at the end.
+/// A mesh as 3MF writes it: with coordinates of six decimals.
+struct WrittenMesh {
+    /// The translation of the object, whose numbers are exact in six digits. A vertex plus this is the world position.
+    Eigen::Vector3f offset = Eigen::Vector3f::Zero();
+    std::vector<NMR::MODELMESHVERTEX> vertices;
+    std::vector<NMR::MODELMESHTRIANGLE> triangles;
+};
+
+/// Six times the volume, relative to the first vertex.
+double six_volumes(const TriangleMesh& mesh) {
+    const Vec3 base = mesh.positions[mesh.triangles[0][0]];
+    double sum = 0;
+    for (const Triangle& triangle : mesh.triangles) {
+        const Vec3 a = mesh.positions[triangle[0]] - base, b = mesh.positions[triangle[1]] - base,
+                   c = mesh.positions[triangle[2]] - base;
+        sum += a.dot(b.cross(c));
+    }
+    return sum;
+}
+
+constexpr double decimals = 1e6;  // lib3mf writes six of them
+
+/// The number that lib3mf writes for a float: it truncates after the sixth decimal, in single precision.
+double as_written(float number) {
+    return std::trunc(static_cast<double>(number * static_cast<float>(decimals))) / decimals;
+}
+
+/// The float for which lib3mf writes the text nearest to the number.
+float for_writing(double number) {
+    const float nearest = static_cast<float>(number);
+    float best = nearest;
+    for (const double above : {0.5 / decimals, 1 / decimals}) {
+        const float candidate = static_cast<float>(number + std::copysign(above, number));
+        if (std::abs(as_written(candidate) - number) < std::abs(as_written(best) - number)) best = candidate;
+    }
+    return best;
+}
+
+/// A number near this one that is exact in the six digits that lib3mf writes for a transform, for readers in single and
+/// in double precision.
+float short_number(double number) {
+    constexpr double six_digits = 999999.5, whole_floats = 1 << 24;
+    double step = 1, digits = std::abs(number), odd = digits;
+    for (; digits >= six_digits; digits /= 10) step *= 10;
+    // The step is 2^k 5^k; its powers of 2 are no digits of a float.
+    for (double ten = 1; ten < step; ten *= 10) odd /= 2;
+    for (; odd >= whole_floats; odd /= 2) step *= 2;
+    return static_cast<float>(std::round(number / step) * step);
+}
+
+Eigen::Vector3f offset_of(const TriangleMesh& mesh) {
+    BoundingBox box = bounding_box(mesh.positions.span());
+    box.low += mesh.frame.origin;
+    box.high += mesh.frame.origin;
+    return distant_origin(box).unaryExpr(&short_number);
+}
+
+/// Warns about triangles whose different corners are written with equal coordinates. Throws Error when all are.
+void warn_of_collapsed(const TriangleMesh& mesh, const std::vector<NMR::MODELMESHVERTEX>& vertices,
+                       const WriteOptions& options) {
+    const auto equal = [&](u32 a, u32 b) {
+        if (mesh.positions[a] == mesh.positions[b]) return false;
+        for (int axis = 0; axis < 3; ++axis)
+            if (as_written(vertices[a].m_fPosition[axis]) != as_written(vertices[b].m_fPosition[axis])) return false;
+        return true;
+    };
+    std::size_t collapsed = 0;
+    for (const auto& [a, b, c] : mesh.triangles) collapsed += equal(a, b) || equal(b, c) || equal(c, a) ? 1 : 0;
+    if (collapsed == 0) return;
+    if (collapsed == mesh.triangles.size())
+        throw Error("nothing is left of the object: its diagonal is {:.3g} {}, and 3MF is written with six decimals",
+                    surface_box(mesh).diagonal(), symbol(mesh.frame.unit))
+            .hint("convert it to a smaller unit first: scanmill convert --to-unit um IN OUT");
+    warn(options.on_warning,
+         "{} of {} collapsed: corners that differ are equal in 3MF's six decimals; a smaller unit "
+         "keeps them apart",
+         counted(collapsed, "triangle", "triangles"), mesh.triangles.size());
+}
+
+/// Throws Error, with numbers, unless the mesh is a closed, oriented manifold whose triangles face outwards, with
+/// finite coordinates.
+void require_solid(const TriangleMesh& mesh) {
+    if (mesh.triangles.empty()) throw Error("nothing to write: the mesh has no triangles, and 3MF holds solids only");
+    require_finite(mesh.positions.span(), "vertices");
+    const MeshTopology found = topology(mesh);
+    if (!found.closed)
+        throw Error(
+            "3MF holds closed, oriented manifolds only; the mesh has {} in {}, {} in three or more triangles, {} "
+            "disagree, {} of several fans and {} a vertex twice",
+            counted(found.boundary_edges, "boundary edge", "boundary edges"),
+            counted(found.boundary_loops, "loop", "loops"), counted(found.nonmanifold_edges, "edge", "edges"),
+            counted(found.misoriented_edges, "edge whose two triangles", "edges whose two triangles"),
+            counted(found.nonmanifold_vertices, "vertex", "vertices"),
+            counted(found.degenerate_triangles, "triangle that names", "triangles that name"))
+            .hint("STL, GLB and VTP hold open meshes; alpha-solid makes closed ones from points");
+    const double volume = six_volumes(mesh) / 6;
+    if (volume == 0)
+        throw Error("3MF holds solids only; the volume of the mesh is 0, so it has no inside")
+            .hint("STL, GLB and VTP hold meshes of any shape");
+    if (!(volume > 0))
+        throw Error("3MF holds solids only; the mesh encloses the volume {:.6g}: its triangles do not face outwards",
+                    volume)
+            .hint("reverse the triangles, or write STL, GLB or VTP");
+}
+
+/// Warns when coordinates move by more than a millionth of the diagonal.
+WrittenMesh written(const TriangleMesh& mesh, const WriteOptions& options) {
+    constexpr double most = 1e9, bearable = 1e-6;
+    WrittenMesh result;
+    result.offset = offset_of(mesh);
+    const Vec3 shift = mesh.frame.origin - result.offset.cast<double>();
+    result.vertices.reserve(mesh.positions.size());
+    double moved = 0;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        const Vec3 local = shift + mesh.positions[i];
+        NMR::MODELMESHVERTEX& vertex = result.vertices.emplace_back();
+        for (int axis = 0; axis < 3; ++axis) {
+            if (!(std::abs(local[axis]) < most))
+                throw Error("vertex {} has the coordinate {}, and 3MF's library supports none beyond {}", i,
+                            number_text(world(mesh.frame, mesh.positions[i])[axis]), number_text(most))
+                    .hint("write STL, GLB or VTP, or change the unit");
+            const float number = for_writing(local[axis]);
+            vertex.m_fPosition[axis] = number;
+            moved = std::max(moved, std::abs(as_written(number) - local[axis]));
+        }
+    }
+    const double diagonal = bounding_box(mesh.positions.span()).diagonal();
+    if (moved > bearable * diagonal)
+        warn(options.on_warning,
+             "coordinates moved by up to {:.2g}, {:.2g} of the diagonal: 3MF is written in single precision with six "
+             "decimals; a smaller unit keeps more of them",
+             moved, moved / diagonal);
+    warn_of_collapsed(mesh, result.vertices, options);
+    result.triangles.reserve(mesh.triangles.size());
+    for (const Triangle& triangle : mesh.triangles)
+        result.triangles.push_back({{triangle[0], triangle[1], triangle[2]}});
+    return result;
+}
+
+// Through lib3mf.
+
+/// An object of lib3mf, released by the destructor.
 class Handle {
 public:
     Handle() = default;
@@ -42,7 +190,7 @@ void require(LIB3MFRESULT result, const Handle& of, std::string_view step) {
         .hint("write STL, GLB or VTP");
 }
 
-/// Where lib3mf puts the archive: it goes back to fill in sizes.
+/// The output of lib3mf, which seeks back to write sizes.
 struct Archive {
     std::string bytes;
     std::size_t at = 0;
@@ -68,7 +216,7 @@ XXH128_hash_t hash_of(const std::vector<T>& rows, u64 seed) {
 }
 
 /// A UUID of version 8 (RFC 9562), the same for the same geometry.
-std::string uuid_of(const PrintedMesh& mesh, u64 number) {
+std::string uuid_of(const WrittenMesh& mesh, u64 number) {
     const XXH128_hash_t vertices = hash_of(mesh.vertices, number);
     const XXH128_hash_t hash = hash_of(mesh.triangles, vertices.low64 ^ vertices.high64);
     const u64 high = hash.high64, low = hash.low64;
@@ -76,7 +224,7 @@ std::string uuid_of(const PrintedMesh& mesh, u64 number) {
                        0x8000 | (low >> 48 & 0x3fff), low & 0xffffffffffff);
 }
 
-/// As 3MF numbers them.
+/// The number of the unit in 3MF.
 DWORD unit_of(LengthUnit unit) {
     switch (unit) {
         case LengthUnit::micrometre: return NMR::MODELUNIT_MICROMETER;
@@ -90,7 +238,7 @@ DWORD unit_of(LengthUnit unit) {
     return NMR::MODELUNIT_MILLIMETER;
 }
 
-void add_object(const Handle& model, PrintedMesh& mesh, const std::string& name) {
+void add_object(const Handle& model, WrittenMesh& mesh, const std::string& name) {
     Handle object, item;
     require(NMR::lib3mf_model_addmeshobject(model.get(), object.receive()), model, "make an object");
     require(NMR::lib3mf_meshobject_setgeometry(object.get(), mesh.vertices.data(), DWORD(mesh.vertices.size()),
@@ -102,9 +250,9 @@ void add_object(const Handle& model, PrintedMesh& mesh, const std::string& name)
     NMR::MODELTRANSFORM transform{};
     for (int axis = 0; axis < 3; ++axis) {
         transform.m_fFields[axis][axis] = 1;
-        transform.m_fFields[axis][3] = mesh.place[axis];
+        transform.m_fFields[axis][3] = mesh.offset[axis];
     }
-    const bool is_moved = mesh.place != Eigen::Vector3f::Zero();
+    const bool is_moved = mesh.offset != Eigen::Vector3f::Zero();
     require(NMR::lib3mf_model_addbuilditem(model.get(), object.get(), is_moved ? &transform : nullptr, item.receive()),
             model, "add the object");
     require(NMR::lib3mf_builditem_setuuidutf8(item.get(), uuid_of(mesh, 2).c_str()), item, "take a UUID");
@@ -119,8 +267,8 @@ void write_threemf(const Value& value, OutputBuffer& out, const WriteOptions& op
     tell_bare_triangles(mesh, "3MF", options);
     if (mesh.frame.unit == LengthUnit::unknown)
         warn(options.on_warning,
-             "3MF needs a unit and none is known: 1 was written as 1 mm; say the unit, as with --unit mm");
-    PrintedMesh shape = printed(mesh, options);
+             "3MF needs a unit and none is known: 1 was written as 1 mm; declare the unit, for example with --unit mm");
+    WrittenMesh shape = written(mesh, options);
     Handle model, writer;
     require(NMR::lib3mf_createmodel(model.receive()), model, "begin");
     require(NMR::lib3mf_model_setunit(model.get(), unit_of(mesh.frame.unit)), model, "take the unit");

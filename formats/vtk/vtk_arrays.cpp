@@ -2,6 +2,7 @@
 #include "vtk/vtk_arrays.hpp"
 
 #include <vtkAOSDataArrayTemplate.h>
+#include <vtkCommand.h>
 #include <vtkDoubleArray.h>
 #include <vtkPoints.h>
 #include <vtkStringArray.h>
@@ -12,6 +13,7 @@
 #include <limits>
 #include <numeric>
 
+#include "scanmill/base/error.hpp"
 #include "scanmill/formats/common/column_names.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/common/writing.hpp"
@@ -20,7 +22,8 @@ namespace scanmill::vtk {
 
 namespace {
 
-bool tell_if_list(const Column& column, std::string_view format, const WriteOptions& options) {
+/// Whether the column is a list, which is left out with a warning.
+bool is_left_out(const Column& column, std::string_view format, const WriteOptions& options) {
     if (column.is_list())
         warn(options.on_warning, "{} left out the lists of the column '{}'; PLY keeps them", format, column.name());
     return column.is_list();
@@ -30,7 +33,7 @@ vtkSmartPointer<vtkDataArray> view(const Column& column, std::string_view name) 
     return array_of(column.type(), column.bytes().data(), column.rows(), column.components(), name);
 }
 
-/// Tells VTK what the well-known columns mean.
+/// Marks the well-known columns for VTK.
 void mark(const Column& column, const vtkSmartPointer<vtkDataArray>& array, vtkDataSetAttributes& attributes) {
     const u32 components = column.components();
     const bool is_float = column.type() == ScalarType::float32 || column.type() == ScalarType::float64;
@@ -51,13 +54,23 @@ vtkSmartPointer<vtkCellArray> cells_with(vtkSmartPointer<Array> vertices, vtkIdT
     return cells;
 }
 
-/// VTK's arrays are never for reading only; its writers change nothing.
+/// VTK's arrays are never read-only; its writers change nothing.
 template <class T>
 T* writable(const void* numbers) {
     return const_cast<T*>(static_cast<const T*>(numbers));
 }
 
 constexpr int keep_the_memory = 1;  // vtk: "save"
+
+/// Collects the first error message that VTK would print.
+class KeptError : public vtkCommand {
+public:
+    static KeptError* New() { return new KeptError; }
+    void Execute(vtkObject*, unsigned long, void* text) override {
+        if (sentence.empty() && text) sentence = static_cast<const char*>(text);
+    }
+    std::string sentence;
+};
 
 bool fits_32_bits(std::size_t count) { return count <= std::numeric_limits<vtkTypeInt32>::max(); }
 
@@ -92,7 +105,7 @@ void add_columns(const ColumnTable& columns, std::string_view format, const Writ
                  vtkDataSetAttributes& attributes) {
     WrittenNames names(format, options);
     for (const Column& column : columns) {
-        if (tell_if_list(column, format, options)) continue;
+        if (is_left_out(column, format, options)) continue;
         const auto array = view(column, names.add(column.name(), valid_text(column.name())));
         attributes.AddArray(array);
         mark(column, array, attributes);
@@ -103,7 +116,7 @@ void add_columns(const ColumnTable& columns, std::string_view prefix, std::strin
                  const WriteOptions& options, vtkFieldData& field) {
     WrittenNames names(format, options);
     for (const Column& column : columns) {
-        if (tell_if_list(column, format, options)) continue;
+        if (is_left_out(column, format, options)) continue;
         const std::string name = names.add(column.name(), valid_text(column.name()));
         field.AddArray(view(column, std::string(prefix) + name));
     }
@@ -172,6 +185,23 @@ void add_frame(const Frame& frame, Text form, vtkFieldData& field) {
     origin->SetNumberOfComponents(3);
     origin->InsertNextTypedTuple(frame.origin.data());
     field.AddArray(origin);
+}
+
+void write(vtkXMLWriter& writer, vtkPointSet& data, OutputBuffer& out) {
+    const auto kept = vtkSmartPointer<KeptError>::New();
+    writer.AddObserver(vtkCommand::ErrorEvent, kept);
+    writer.SetInputData(&data);
+    writer.SetDataModeToAppended();
+    writer.EncodeAppendedDataOff();
+    writer.SetCompressorTypeToNone();
+    writer.SetHeaderTypeToUInt64();
+    writer.SetByteOrderToLittleEndian();
+    writer.WriteToOutputStringOn();
+    if (writer.Write() == 0 || !kept->sentence.empty())
+        throw Error("VTK could not write it: {}", kept->sentence.empty() ? "no reason was given" : kept->sentence)
+            .hint("write PLY");
+    out.text("<?xml version=\"1.0\"?>\n");
+    out.text(writer.GetOutputString());
 }
 
 }  // namespace scanmill::vtk

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Our values as VTK's arrays, and VTK's XML files as bytes: what VTP and VTU share.
+/// Our values as VTK's arrays, and VTK's XML files as bytes; shared by VTP and VTU.
 ///
-/// Columns, and whatever else already lies in memory as VTK wants it, are viewed and not copied: the value must outlive
-/// the data set. Column names are kept, but for control characters and bytes that are no UTF-8, which become '_' and
-/// are told. `normal` (3 numbers), `colour` (3 or 4 uint8) and `texture` (2 numbers) are also marked as VTK's normals,
-/// scalars and texture coordinates. Lists have no form in VTK: they are left out and told.
+/// Columns, and other data whose layout in memory is VTK's, are viewed and not copied: the value must outlive the data
+/// set. Column names are kept, except control characters and invalid UTF-8, which become '_', with a warning. `normal`
+/// (3 numbers), `colour` (3 or 4 uint8) and `texture` (2 numbers) are also marked as VTK's normals, scalars and texture
+/// coordinates. VTK has no lists: they are left out, with a warning.
 ///
-/// In the field data, as far as known: `unit` (a text as `mm`), `frame` (its name), `origin` (three doubles near the
-/// data; the positions contain it already, so it is what a viewer of single precision may subtract).
+/// In the field data, as far as known: `unit` (a text such as `mm`), `frame` (its name), `origin` (three doubles near
+/// the data; the positions already include it, so a viewer with single precision may subtract it).
 
 #include <vtkCellArray.h>
 #include <vtkDataSetAttributes.h>
@@ -26,8 +26,7 @@
 
 namespace scanmill::vtk {
 
-/// `name` as an attribute of XML: VTK writes names as they are, so what XML needs for itself is escaped here. Pre:
-/// valid UTF-8.
+/// `name` as an attribute of XML: VTK writes names without escaping them. Pre: valid UTF-8.
 std::string escaped(std::string_view name);
 
 /// A view of `rows` × `components` numbers.
@@ -38,10 +37,10 @@ vtkSmartPointer<vtkDataArray> array_of(std::span<const T> numbers, u32 component
     return array_of(scalar_type_of<T>(), numbers.data(), numbers.size() / components, components, name);
 }
 
-/// Adds the columns; `format` is for what is told.
+/// Adds the columns; `format` is the name of the format in warnings.
 void add_columns(const ColumnTable& columns, std::string_view format, const WriteOptions& options,
                  vtkDataSetAttributes& attributes);
-/// The same among arrays that belong to the whole file, each name behind `prefix`.
+/// The same for arrays of the whole file; `prefix` precedes each name.
 void add_columns(const ColumnTable& columns, std::string_view prefix, std::string_view format,
                  const WriteOptions& options, vtkFieldData& field);
 
@@ -53,12 +52,12 @@ vtkSmartPointer<vtkCellArray> cells_of(std::span<const u32> vertices, vtkIdType 
 /// The cells { first }, { first + 1 }, … , `count` of them: makes points visible.
 vtkSmartPointer<vtkCellArray> single_points(u32 first, std::size_t count);
 
-/// As numbers, a text is one uint8 for each byte of its UTF-8: meshio reads no file that has strings.
+/// As numbers, a text is one uint8 for each byte of its UTF-8: meshio does not read files with strings.
 enum class Text { as_string, as_numbers };
 void add_frame(const Frame& frame, Text text, vtkFieldData& field);
 void add_text(std::string_view name, std::span<const std::string> texts, vtkFieldData& field);
 
-/// Writes the data set: XML with one block of raw binary behind it, not compressed, so that equal data are equal bytes
+/// Writes the data set: XML followed by one block of raw binary, not compressed, so that equal data give equal bytes
 /// everywhere. Throws Error when VTK fails.
 void write(vtkXMLWriter& writer, vtkPointSet& data, OutputBuffer& out);
 

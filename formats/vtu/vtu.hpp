@@ -3,8 +3,8 @@
 /// VTU, the XML files of VTK's unstructured grids: tetrahedra, for ParaView, PyVista and meshers.
 ///
 /// Positions are world coordinates, as double. Columns, unit and frame: vtk/vtk_arrays.hpp; `unit` and `frame` are the
-/// bytes of their text, since meshio reads no file that has strings. Cell data: `inside`, 1 or
-/// 0, when the cells are labelled. Neighbours are not written: the cells say which share a facet.
+/// bytes of their text, because meshio does not read files with strings. Cell data: `inside`, 1 or 0, when the cells
+/// are labelled. Neighbours are not written, because they follow from the cells.
 
 #include "scanmill/formats/common/format.hpp"
 

@@ -103,7 +103,8 @@ TEST(VirtualScanOutliers, ExactlyTheShare_AtTheEndInTheGrownBox) {
     }
 }
 
-/// The least distance between points of different views, and the number of points that have such a one nearer than r.
+/// The least distance between points of different views, and the number of points with a point of an earlier view
+/// nearer than r.
 std::pair<double, std::size_t> between_views(const VirtualScanResult& result, double r) {
     const auto views = result.points.columns.find("view")->values<std::int32_t>();
     double least = std::numeric_limits<double>::infinity();
@@ -129,7 +130,7 @@ TEST(VirtualScanOverlap, None_LeavesNoTwoViewsNearerThanTheResolution) {
     EXPECT_GE(between_views(result, 0.08).first, 0.08);
     EXPECT_EQ(result.points.size() + result.dropped, whole.points.size());
     EXPECT_GT(result.dropped, whole.points.size() / 2) << "twelve views see a sphere three times over";
-    // The first view loses nothing, and nobody's surface is lost: every dropped point has a kept one nearby.
+    // No part of the surface is lost: every dropped point has a kept one nearby.
     for (const Vec3& p : whole.points.positions) {
         double least = 9;
         for (const Vec3& q : result.points.positions) least = std::min(least, (p - q).norm());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Meshes scanned through the z-buffer: on the surface, nothing behind another, no ray through a crack.
+/// Meshes scanned through the z-buffer: points lie on the surface, hidden parts are missing, and no ray passes between
+/// triangles.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -41,8 +42,8 @@ std::vector<double> normals_of(const VirtualScanResult& result) {
     return {values.begin(), values.end()};
 }
 
-/// Möller and Trumbore's test, written apart from the z-buffer: the depths at which a line meets the triangle's inside,
-/// with `slack` on its rim.
+/// The test of Möller and Trumbore, independent of the z-buffer: the depth at which a line meets the inside of the
+/// triangle, `slack` away from its edges.
 std::optional<double> meets(const TriangleMesh& mesh, const Triangle& t, const Vec3& start, const Vec3& direction) {
     const Vec3& a = mesh.positions[t[0]];
     const Vec3 ab = mesh.positions[t[1]] - a, ac = mesh.positions[t[2]] - a;
@@ -134,7 +135,7 @@ TEST(VirtualScanMesh, GeodesicSphere_PointsLieWithinTheSagitta) {
     }
 }
 
-TEST(VirtualScanMesh, ClosedConvexMesh_NoRaySlipsBetweenTriangles) {
+TEST(VirtualScanMesh, ClosedConvexMesh_NoRayPassesBetweenTriangles) {
     // Rays through vertices and along edges: a cube cut into many triangles, seen straight on, pixels on its lattice.
     const TriangleMesh mesh = cube(4);
     const VirtualScanResult result = scan(mesh, rays_every(0.25, {0, 0, 1, 1, 0, 0, 0, -1, 0}));
@@ -183,7 +184,7 @@ TEST(VirtualScanMesh, LBlock_AgreesWithTheSameShapeByFormula) {
         ASSERT_LT((by_mesh.points.positions[i] - by_formula.points.positions[i]).norm(), 1e-12);
 }
 
-TEST(VirtualScanMesh, FrameAndUnit_AreTheMeshs) {
+TEST(VirtualScanMesh, FrameAndUnit_AreThoseOfTheMesh) {
     TriangleMesh mesh = cube();
     mesh.frame = {LengthUnit::millimetre, Vec3(1000, 0, 0), "part"};
     VirtualScanParams params = rays_every(0.1, {6});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The block with holes and the hyperboloid: every point satisfies the formula, the number of points the area seen.
+/// The block with holes and the hyperboloid: every point satisfies the formula, and the number of points the visible
+/// area.
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
@@ -79,8 +80,8 @@ TEST(VirtualScanBlock, FromAbove_ShowsItsTopWithoutTheHoles) {
     }
 }
 
-/// Of rays at the slope s into a hole of height h, those pass that are in its upper rim and in its lower one, which
-/// lies s h aside; the others end on its wall.
+/// Of rays at the slope s into a hole of height h, those inside both its upper and its lower circle, which are shifted
+/// by s h, pass through; the others end on its wall.
 TEST(VirtualScanBlock, FromASlope_ShowsTheWallsOfItsHoles) {
     VirtualScanParams params = block_of({88.0, 95.0, 20.0, 21.0, 5.0}, 0.1);
     params.views = {0.25, 0, 1};
@@ -124,7 +125,8 @@ TEST(VirtualScanBlock, HolesThatMeet_AreRefused) {
     EXPECT_THAT(refusal(block_of({10.0, 20.0, 5.0, 5.0, 1.0}, 0.1)),
                 HasSubstr("the large hole of radius 5 u does not fit into the block of 10 x 20 u"));
     // To the sides 0.15 · 10 = 1.5; to the large hole 0.35 √(10² + 10²) − 4 = 0.9497.
-    EXPECT_THAT(refusal(block_of({10.0, 10.0, 5.0, 1.0, 1.6}, 0.1)), HasSubstr("the small holes of radius 1.6 u meet"));
+    EXPECT_THAT(refusal(block_of({10.0, 10.0, 5.0, 1.0, 1.6}, 0.1)),
+                HasSubstr("the small holes of radius 1.6 u touch"));
     EXPECT_THAT(refusal(block_of({10.0, 10.0, 5.0, 4.0, 0.95}, 0.1)), HasSubstr("the small holes of radius 0.95 u"));
     EXPECT_EQ(refusal(block_of({10.0, 10.0, 5.0, 4.0, 0.949}, 0.1)), "not refused");
     EXPECT_THAT(refusal(block_of({1.0}, 0.1)), HasSubstr("has 5 dimensions (x, y, z, large hole's radius, small"));
@@ -157,7 +159,7 @@ TEST(VirtualScanHyperboloid, FromAboveAndBelow_ShowsItsDisc) {
     }
 }
 
-/// Seen along x, at each y the surface reaches from h / r √(r² − y²) in the middle to √2 times that at the rim.
+/// Seen along x, at each y the surface reaches from h / r √(r² − y²) in the middle to √2 times that at the border.
 TEST(VirtualScanHyperboloid, FromTheSide_HidesItsFarHalf) {
     VirtualScanParams params = saddle_of(2, 1.5, 0.01);
     params.views = {1, 0, 0};

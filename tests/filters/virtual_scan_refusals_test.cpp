@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Everything that virtual-scan refuses.
+/// The refusals of virtual-scan.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -15,7 +15,6 @@ namespace {
 using Shape = VirtualScanParams::Shape;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 VirtualScanParams sphere(double resolution) {
     VirtualScanParams params;
@@ -88,11 +87,7 @@ TEST(VirtualScanRefusals, TooManyRays_WithAResolutionThatFits) {
     const std::string text = refusal(sphere(1e-5));
     EXPECT_THAT(text, HasSubstr("12 views"));
     EXPECT_THAT(text, HasSubstr("at most 268435456"));
-    const std::string countless = refusal(sphere(1e-300));
-    EXPECT_THAT(countless, AllOf(HasSubstr("12 views at a resolution of 1e-300 u take more rays than can be counted"),
-                                 Not(HasSubstr("inf"))));
-    const auto hint_of = [](const std::string& what) { return what.substr(what.find("hint")); };
-    EXPECT_EQ(hint_of(countless), hint_of(text)) << "whatever was asked for";
+    EXPECT_THAT(text, HasSubstr("hint: a resolution of 0.000"));
     VirtualScanParams params = sphere(1e-5);
     params.views = {1};
     EXPECT_THAT(refusal(params), HasSubstr("1 view at a resolution of 1e-05 u takes"));
@@ -115,7 +110,7 @@ TEST(VirtualScanRefusals, ParametersOutOfRange) {
     EXPECT_THAT(refusal(params), HasSubstr("at most 90 deg"));
 }
 
-TEST(VirtualScanRefusals, ViewsThatAreNone) {
+TEST(VirtualScanRefusals, InvalidViews) {
     VirtualScanParams params = sphere(0.1);
     for (const std::vector<double>& views :
          {std::vector<double>{0}, {2.5}, {-3}, {1e9}, {std::numeric_limits<double>::quiet_NaN()}}) {
@@ -141,67 +136,38 @@ TEST(VirtualScanRefusals, SizesThatFitNoShape) {
     EXPECT_THAT(refusal(params), HasSubstr("does not leave a hole"));
 }
 
-TEST(VirtualScanRefusals, SizesWithoutProducts) {
+TEST(VirtualScanRefusals, SizesBeyondTheSupportedRange) {
     VirtualScanParams params = sphere(0.1);
     params.resolution = Length::percent_of_diagonal(5);
-    for (const double extreme : {1e200, 1e-200, 1.01e30, 0.99e-30}) {
+    for (const double extreme : {1.01e9, 0.99e-9}) {
         params.shape = Shape::hyperboloid;
         params.size = {1.0, extreme};
         EXPECT_THAT(refusal(params), HasSubstr(fmt::format("the height of the hyperboloid is {:.3g} u", extreme)));
         params.size = {extreme, 1.0};
-        EXPECT_THAT(refusal(params), HasSubstr("between 1e-30 and 1e+30 u"));
+        EXPECT_THAT(refusal(params), HasSubstr("1e-09 to 1e+09 u is supported"));
         params.shape = Shape::torus;
         params.size = {2 * extreme, extreme};
         EXPECT_THAT(refusal(params), HasSubstr("of the torus is"));
     }
+    params.size = {4e8, 2e8};
+    EXPECT_THAT(refusal(params), HasSubstr("the longest side of the torus is 1.2e+09 u; at most 1e+09 u is supported"));
 }
 
-TEST(VirtualScanRefusals, NoiseAndResolutionBeyondAnySize) {
-    for (const double extreme : {1.01e30, 1e155, 1e300, 1.7e308}) {
-        EXPECT_THAT(refusal(sphere(extreme)), HasSubstr(fmt::format("the resolution is {:.3g} u", extreme)));
-        VirtualScanParams params = sphere(0.1);
-        params.noise = extreme;
-        EXPECT_THAT(refusal(params), AllOf(HasSubstr(fmt::format("the noise is {:.3g} u", extreme)),
-                                           HasSubstr("at most 1e+30 u"), HasSubstr("%diag")));
-        const TriangleMesh mesh = cube();
-        params.shape = Shape::none;
-        EXPECT_THAT(refusal(params, &mesh), HasSubstr("the noise is"));
-    }
+TEST(VirtualScanRefusals, NoiseAndResolutionBeyondTheSupportedRange) {
+    EXPECT_THAT(refusal(sphere(1.01e9)), HasSubstr("the resolution is 1.01e+09 u; at most 1e+09 u is supported"));
     VirtualScanParams params = sphere(0.1);
-    params.noise = 1e30;
-    Context context;
-    EXPECT_NO_THROW(require_finite(virtual_scan(nullptr, params, context).points.positions.span(), "points"));
+    params.noise = 1.01e9;
+    EXPECT_THAT(refusal(params),
+                AllOf(HasSubstr("the noise is 1.01e+09 u; at most 1e+09 u is supported"), HasSubstr("%diag")));
+    const TriangleMesh mesh = cube();
+    params.shape = Shape::none;
+    EXPECT_THAT(refusal(params, &mesh), HasSubstr("the noise is"));
 }
 
-TEST(VirtualScanRefusals, MeshesWithoutProducts) {
-    for (const double edge : {1e-300, 1e-160, 0.5e-30, 1e30, 1e160, 1e308}) {
-        const TriangleMesh mesh = cube(edge);
-        EXPECT_THAT(refusal({}, &mesh), AllOf(HasSubstr("the mesh is"), HasSubstr("between 1e-30 and 1e+30 u")));
-    }
-    TriangleMesh mesh = cube();
-    mesh.positions = {Vec3(-1.5e308, 0, 0), Vec3(1.25e308, 0, 0), Vec3(0, 1e308, 0)};
-    mesh.triangles = {{0, 1, 2}};
-    EXPECT_THAT(refusal({}, &mesh), HasSubstr("from -1.5e+308 to 1.25e+308 lie farther apart"));
-}
-
-TEST(VirtualScanRefusals, MeshesNearTheLimits_GiveThePointsOfAnyOther) {
-    const TriangleMesh plain_mesh = cube();
-    VirtualScanParams params;
-    params.resolution = Length::percent_of_diagonal(5);
-    Context context;
-    const Buffer<Vec3> plain = virtual_scan(&plain_mesh, params, context).points.positions;
-    ASSERT_GT(plain.size(), 500u);
-    for (const double unit : {0x1p-99, 0x1p98}) {
-        const TriangleMesh mesh = cube(unit);
-        const Buffer<Vec3> scaled = virtual_scan(&mesh, params, context).points.positions;
-        ASSERT_EQ(scaled.size(), plain.size());
-        for (std::size_t i = 0; i < plain.size(); ++i) ASSERT_EQ(scaled[i], Vec3(unit * plain[i]));
-    }
-}
-
+/// Powers of two, so that nothing is rounded otherwise.
 TEST(VirtualScanRefusals, SizesNearTheLimits_GiveThePointsOfAnyOther) {
     for (const auto& [shape, second] : {std::pair(Shape::hyperboloid, 0.75), std::pair(Shape::torus, 0.4)})
-        for (const double unit : {0x1p-97, 0x1p99}) {  // powers of two, so that nothing is rounded otherwise
+        for (const double unit : {0x1p-28, 0x1p28}) {
             VirtualScanParams params = sphere(0.1);
             params.shape = shape;
             params.size = {1.0, second};
@@ -217,14 +183,29 @@ TEST(VirtualScanRefusals, SizesNearTheLimits_GiveThePointsOfAnyOther) {
     VirtualScanParams params = sphere(0.1);
     params.shape = Shape::hyperboloid;
     params.resolution = Length::percent_of_diagonal(2);
-    params.size = {1e30, 1e-30};
+    params.size = {4e8, 1e-9};
     Context context;
     EXPECT_NO_THROW(require_finite(virtual_scan(nullptr, params, context).points.positions.span(), "points"));
-    params.size = {1e-30, 1e30};
+    params.size = {1e-9, 4e8};
     EXPECT_THAT(refusal(params), HasSubstr("none of 968 rays")) << "a line, between the rays";
 }
 
-TEST(VirtualScanRefusals, SizesThatNeedSomethingToMeasureBy) {
+TEST(VirtualScanRefusals, MeshesNearTheLimits_GiveThePointsOfAnyOther) {
+    const TriangleMesh plain_mesh = cube();
+    VirtualScanParams params;
+    params.resolution = Length::percent_of_diagonal(5);
+    Context context;
+    const Buffer<Vec3> plain = virtual_scan(&plain_mesh, params, context).points.positions;
+    ASSERT_GT(plain.size(), 500u);
+    for (const double unit : {0x1p-29, 0x1p29}) {
+        const TriangleMesh mesh = cube(unit);
+        const Buffer<Vec3> scaled = virtual_scan(&mesh, params, context).points.positions;
+        ASSERT_EQ(scaled.size(), plain.size());
+        for (std::size_t i = 0; i < plain.size(); ++i) ASSERT_EQ(scaled[i], Vec3(unit * plain[i]));
+    }
+}
+
+TEST(VirtualScanRefusals, SizesRelativeToTheShape) {
     VirtualScanParams params = sphere(0.1);
     for (const Length size : {Length::percent_of_diagonal(5), Length::spacings(5), Length(5, Length::In::millimetre)}) {
         params.size = {size};

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "virtual_scan/first_root.hpp"
+#include "virtual_scan/sign_changes.hpp"
 #include "virtual_scan/virtual_scan.hpp"
 
 namespace scanmill::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What assimp finds in the files that we write: every mesh of the scene where its nodes put it.
+/// Our files as read by assimp: every mesh of the scene, transformed by its nodes.
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -21,7 +21,7 @@ struct SeenByAssimp {
 };
 
 inline void add_seen(const aiScene& scene, const aiNode& node, const aiMatrix4x4& parent, SeenByAssimp& seen) {
-    const aiMatrix4x4 place = parent * node.mTransformation;
+    const aiMatrix4x4 transform = parent * node.mTransformation;
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
         ++seen.meshes;
@@ -29,7 +29,7 @@ inline void add_seen(const aiScene& scene, const aiNode& node, const aiMatrix4x4
         seen.faces += mesh.mNumFaces;
         seen.primitive_types |= mesh.mPrimitiveTypes;
         for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-            const aiVector3D p = place * mesh.mVertices[v];
+            const aiVector3D p = transform * mesh.mVertices[v];
             seen.positions.emplace_back(p.x, p.y, p.z);
             seen.box.low = seen.box.low.cwiseMin(seen.positions.back());
             seen.box.high = seen.box.high.cwiseMax(seen.positions.back());
@@ -41,7 +41,7 @@ inline void add_seen(const aiScene& scene, const aiNode& node, const aiMatrix4x4
             }
         }
     }
-    for (unsigned i = 0; i < node.mNumChildren; ++i) add_seen(scene, *node.mChildren[i], place, seen);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add_seen(scene, *node.mChildren[i], transform, seen);
 }
 
 template <class T>

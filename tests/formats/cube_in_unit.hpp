@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The solid that most tests of writers write.
+/// The solid of most writer tests.
 
 #include "support/shapes.hpp"
 

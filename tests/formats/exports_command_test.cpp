@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exports by the program: as outputs of a workflow, by `convert`, and what `info`, a wrong kind or a full disk say.
+// Exports by the program: as outputs of a workflow and by `convert`; messages of `info`, and those about a wrong kind
+// and a full disk.
 
 #include "formats/assimp_support.hpp"
 #include "formats/vtk_support.hpp"
@@ -20,7 +21,7 @@ steps:
   - alpha-solid:
 )";
 
-TEST(ExportsCommand, Outputs_OfEveryKind_AreWrittenAlikeForAnyThreads) {
+TEST(ExportsCommand, Outputs_OfEveryKind_AreEqualForAnyThreads) {
     const TemporaryFolder folder;
     folder.write("w.yaml", sphere + R"(outputs:
   "{scan}.points.vtp": virtual-scan
@@ -44,7 +45,7 @@ TEST(ExportsCommand, Outputs_OfEveryKind_AreWrittenAlikeForAnyThreads) {
     EXPECT_GT(tets->GetNumberOfCells(), tets->GetNumberOfPoints());
 }
 
-TEST(ExportsCommand, Output_OfAKindThatTheFormatCannotHold_IsFoundBeforeTheRun) {
+TEST(ExportsCommand, Output_OfAKindThatTheFormatCannotHold_IsReportedBeforeTheRun) {
     const TemporaryFolder folder;
     folder.write("w.yaml", sphere + "outputs: {\"{scan}.3mf\": virtual-scan, \"{scan}.vtp\": delaunay}\n");
     const ProgramResult checked = scanmill_program({"check", "w.yaml"}, {.folder = folder.path()});
@@ -54,7 +55,7 @@ TEST(ExportsCommand, Output_OfAKindThatTheFormatCannotHold_IsFoundBeforeTheRun) 
                       HasSubstr("'delaunay' is tets, which no '.vtp' file can hold; expected vtu")));
 }
 
-TEST(ExportsCommand, Convert_Writes_AndInfoSaysThatItDoesNotRead) {
+TEST(ExportsCommand, Convert_Writes_AndInfoReportsThatTheFormatIsNotRead) {
     const TemporaryFolder folder;
     write_file(folder / "a.ply", std::make_shared<const TriangleMesh>(cube(2)));
     for (const auto& [file, name] : {std::pair("a.vtp", "VTP"), {"a.glb", "GLB"}, {"a.3mf", "3MF"}}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// GLB: normals, colours and other columns, and what of them glTF has no place for.
+// GLB: normals, colours and other columns, and those that glTF cannot hold.
 
 #include "formats/assimp_support.hpp"
 #include "formats/cube_in_unit.hpp"
@@ -13,7 +13,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(GlbAttributes, Normals_AreTurnedAndMadeUnit_AndColoursAreLinear) {
+TEST(GlbAttributes, Normals_AreRotatedAndNormalised_AndColoursAreLinear) {
     PointCloud cloud = two_points();
     cloud.columns.add(Column("normal", 3, Buffer<float>{0, 0, 2, 0.6f, 0.8f, 0}));
     cloud.columns.add(Column("colour", 3, Buffer<u8>{0, 188, 255, 10, 0, 0}));
@@ -61,7 +61,7 @@ TEST(GlbAttributes, OtherColumns_AreAttributesOfTheirOwn) {
     EXPECT_EQ(glb.number<float>("_INTENSITY", 1, 0), 0.25f);
 }
 
-TEST(GlbLosses, AreToldByName) {
+TEST(GlbLosses, AreReportedByName) {
     PointCloud cloud = two_points();
     cloud.columns.add(Column("lists", Buffer<u64>{0, 1, 1}, Buffer<u32>{4}));
     cloud.columns.add(Column("wide", 5, Buffer<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
@@ -85,18 +85,17 @@ TEST(GlbLosses, AreToldByName) {
     EXPECT_EQ(glb.primitive()["attributes"].size(), 4u) << "POSITION, _TIME, _A_B, _A_B_2";
 }
 
-TEST(GlbLosses, NormalsWithoutDirection_AreNoNormals) {
+TEST(GlbLosses, NormalsWithoutDirection_AreNotWrittenAsNormals) {
     PointCloud cloud = two_points();
     cloud.columns.add(Column("normal", 3, Buffer<float>{0, 0, 1, 0, 0, 0}));
     Told told;
     const Container glb(cloud, &told);
     EXPECT_FALSE(glb.attribute("NORMAL"));
     EXPECT_EQ(glb.number<float>("_NORMAL", 0, 2), 1.f);
-    EXPECT_THAT(told.sentences,
-                ElementsAre(HasSubstr("'normal' as '_NORMAL' and not as its normals: 1 of them has no")));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("'normal' as '_NORMAL' and not as normals: 1 of them has no")));
 }
 
-TEST(GlbLosses, OfFacesAndEdges_AreTold) {
+TEST(GlbLosses, OfFacesAndEdges_AreReported) {
     TriangleMesh mesh = cube_in(LengthUnit::metre);
     mesh.face_columns.add(Column("group", 1, Buffer<u8>(Array<u8>(12, u8(1)))));
     mesh.sharp_edges = {{0, 1}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What is in a GLB file, whoever reads it.
+/// The content of a GLB file, parsed without our reader.
 
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ T number_at(std::string_view bytes, std::size_t at) {
     return number;
 }
 
-/// A GLB taken apart by its specification.
+/// A GLB split by its specification.
 struct Container {
     std::string bytes;
     Json json;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// GLB: shape, size and place as assimp sees them, and the rules of the container and its JSON.
+// GLB: shape, size and position as read by assimp, and the rules of the container and its JSON.
 
 #include "formats/assimp_support.hpp"
 #include "formats/cube_in_unit.hpp"
@@ -57,7 +57,7 @@ TEST(GlbWriter, Mesh_HasItsTrianglesAndBoxInEveryUnit) {
     }
 }
 
-TEST(GlbWriter, Container_ObeysItsSpecification) {
+TEST(GlbWriter, Container_FollowsItsSpecification) {
     const Container glb(cube_in(LengthUnit::metre));
     EXPECT_TRUE(glb.bytes.starts_with("glTF"));
     EXPECT_EQ(number_at<u32>(glb.bytes, 4), 2u);
@@ -73,7 +73,7 @@ TEST(GlbWriter, Container_ObeysItsSpecification) {
     for (const Json& view : glb.json["bufferViews"]) EXPECT_EQ(view.value("byteOffset", 0) % 4, 0);
 }
 
-TEST(GlbWriter, FarFromZero_TheNodeHoldsThePlaceAndVerticesTheirMicrometres) {
+TEST(GlbWriter, FarFromZero_TheNodeHasTheOriginAndVerticesKeepMicrometres) {
     PointCloud cloud;
     cloud.frame = {LengthUnit::metre, Vec3(5e5, 5.5e6, 0), "site"};
     cloud.positions = {Vec3(0, 0, 0), Vec3(1e-6, 0.25, 0.5), Vec3(1, 1, 1)};
@@ -92,10 +92,11 @@ TEST(GlbWriter, FarFromZero_TheNodeHoldsThePlaceAndVerticesTheirMicrometres) {
     }
 }
 
-TEST(GlbWriter, UnknownUnit_IsTakenAsMetreAndTold) {
+TEST(GlbWriter, UnknownUnit_IsAssumedToBeMetreWithAWarning) {
     Told told;
     const SeenByAssimp seen = through_assimp(cube(3), "a.glb", &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the unit is not known: 1 was written as 1 m; say the unit")));
+    EXPECT_THAT(told.sentences,
+                ElementsAre(HasSubstr("the unit is not known: 1 was written as 1 m; declare the unit")));
     EXPECT_EQ(seen.box.high, Vec3(3, 3, 0));
 }
 
@@ -119,7 +120,7 @@ TEST(GlbRefuses, WhatGltfForbids) {
                 HasSubstr("extensions for it: vtu"));
 }
 
-TEST(GlbRefuses, MoreThan32BitsCount_BeforeItReadsThem) {
+TEST(GlbRefuses, MoreThan32BitSizes_BeforeReadingThePoints) {
     PointCloud cloud;
     const Vec3 one(1, 2, 3);
     cloud.positions = Buffer<Vec3>(nullptr, &one, 400'000'000);  // only counted

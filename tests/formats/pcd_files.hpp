@@ -20,7 +20,7 @@ inline std::string xyz_header(u32 points, const std::string& data, const std::st
     return header("x y z", "4 4 4", "F F F", points, data, more);
 }
 
-/// An LZF stream that holds the bytes as they are, in runs of at most 32.
+/// An LZF stream of the uncompressed bytes, in runs of at most 32.
 inline std::string lzf_literals(const std::string& bytes) {
     std::string stream;
     for (std::size_t at = 0; at < bytes.size(); at += 32) {

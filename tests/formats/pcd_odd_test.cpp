@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PCD through its module: what is refused, and what is odd and told.
+// PCD through its module: refusals, and unusual files with warnings.
 
 #include <random>
 
@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(PcdReader_Refuses, WhatItsHeaderCannotMean) {
+TEST(PcdReader_Refuses, InvalidHeaders) {
     const auto refusal = [](const std::string& text) { return sentence_of([&] { read_bytes(text, "a.pcd"); }); };
     const std::string good = xyz_header(2, "ascii") + "1 2 3\n4 5 6\n";
     const auto with = [&](const std::string& from, const std::string& to) {
@@ -28,10 +28,10 @@ TEST(PcdReader_Refuses, WhatItsHeaderCannotMean) {
     EXPECT_THAT(refusal(with("SIZE 4 4 4", "SIZE 4 4")), HasSubstr("3 fields and gives 2 sizes"));
     EXPECT_THAT(refusal(with("SIZE 4 4 4", "SIZE 4 4 3")), HasSubstr("the size 3"));
     EXPECT_THAT(refusal(with("x y z", "x y w")), HasSubstr("no field 'z'"));
-    EXPECT_THAT(refusal(with("HEIGHT 1", "LENGTH 1")), HasSubstr("no part of a PCD header"));
+    EXPECT_THAT(refusal(with("HEIGHT 1", "LENGTH 1")), HasSubstr("not part of a PCD header"));
     EXPECT_THAT(refusal(xyz_header(0, "ascii")), HasSubstr("holds no points"));
     EXPECT_THAT(refusal(with("4 5 6\n", "4 5  \n")), HasSubstr("line 13: found 2 numbers; a point has 3"));
-    EXPECT_THAT(refusal(with("4 5 6\n", "4 5 x\n")), HasSubstr("line 13: 'x' is no float32 for the field 'z'"));
+    EXPECT_THAT(refusal(with("4 5 6\n", "4 5 x\n")), HasSubstr("line 13: 'x' is not a float32 for the field 'z'"));
     EXPECT_THAT(refusal(with("4 5 6\n", "7 8 9 10\n")), HasSubstr("line 13: found 4 numbers"));
     EXPECT_THAT(refusal(with("4 5 6\n", "4 5 6\n7 8 9\n")), HasSubstr("line 14: more rows than the 2 points"));
     EXPECT_THAT(refusal(with("4 5 6\n", "\n\n\n\n\n\n\n")), HasSubstr("promises 2 points; 1 follow"));
@@ -46,7 +46,7 @@ TEST(PcdReader_Refuses, PaddingInCompressedFiles) {
                 HasSubstr("padding"));
 }
 
-TEST(PcdReader_Refuses, MorePointsThanTheFileCanHold_WithoutTakingMemoryForThem) {
+TEST(PcdReader_Refuses, MorePointsThanTheFileCanHold_WithoutAllocatingThem) {
     for (const char* data : {"ascii", "binary", "binary_compressed"}) {
         std::string text = xyz_header(7, data) + "0 0 0\n";
         for (std::string_view key : {"WIDTH 7", "POINTS 7"})
@@ -58,15 +58,15 @@ TEST(PcdReader_Refuses, MorePointsThanTheFileCanHold_WithoutTakingMemoryForThem)
     EXPECT_THROW(read_bytes(text, "a.pcd"), Error);
 }
 
-TEST(PcdReader_Refuses, ACompressedBlockThatLies) {
+TEST(PcdReader_Refuses, ACompressedBlockOfAnotherSize) {
     const std::string fields(24, '\0');
     const std::string block = compressed_block(fields);
     const auto refusal = [](const std::string& body) {
         return sentence_of([&] { read_bytes(xyz_header(2, "binary_compressed") + body, "a.pcd"); });
     };
     EXPECT_THAT(refusal(block.substr(0, 20)), HasSubstr("bytes follow it"));
-    EXPECT_THAT(refusal(bytes_of(u32(25)) + bytes_of(u32(23)) + block.substr(8)), HasSubstr("says 23 bytes"));
-    EXPECT_THAT(refusal(bytes_of(u32(10)) + bytes_of(u32(24)) + block.substr(8)), HasSubstr("PCL cannot make"));
+    EXPECT_THAT(refusal(bytes_of(u32(25)) + bytes_of(u32(23)) + block.substr(8)), HasSubstr("declares 23 bytes"));
+    EXPECT_THAT(refusal(bytes_of(u32(10)) + bytes_of(u32(24)) + block.substr(8)), HasSubstr("PCL cannot decode"));
 }
 
 TEST(PcdReader, DamagedFiles_NeverEndTheProgram) {
@@ -95,7 +95,7 @@ TEST(PcdReader_Normals, AreKnownByEitherOfTheirNames) {
     EXPECT_EQ(cloud->columns.find("normal")->number(0, 2), 1);
 }
 
-TEST(PcdReader_Fields, ThatTakeAnothersColumn_AreRenamedAndTold) {
+TEST(PcdReader_Fields, WithTheNameOfAnotherColumn_AreRenamedWithAWarning) {
     Told told;
     const auto cloud =
         points_in("FIELDS x y z rgb colour label\n" + pcd_head + "POINTS 1\nDATA ascii\n1 2 3 0 5 6\n", "a.pcd", &told);
@@ -111,12 +111,12 @@ TEST(PcdReader_Fields, ThatTakeAnothersColumn_AreRenamedAndTold) {
 TEST(PcdReader_Viewpoint, IsSevenNumbers) {
     const std::string fields = "FIELDS x y z a b c\n" + pcd_head;
     EXPECT_THAT(refusal_of(fields + "VIEWPOINT 0 0 0 one 0 0 0\nDATA ascii\n1 2 3 4 5 6\n", "a.pcd"),
-                HasSubstr("line 7: 'one' is no number for VIEWPOINT"));
+                HasSubstr("line 7: 'one' is not a number for VIEWPOINT"));
     EXPECT_THAT(refusal_of(fields + "VIEWPOINT 0 0 0\nDATA ascii\n1 2 3 4 5 6\n", "a.pcd"),
                 HasSubstr("line 7: VIEWPOINT has 3 numbers; expected 7"));
 }
 
-TEST(PcdReader_WindowsLineEnds, AreNoPartOfCommentsAndNames) {
+TEST(PcdReader_WindowsLineEnds, AreNotPartOfCommentsAndNames) {
     Told told;
     std::string text =
         "# unit mm\n# frame part\nFIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA ascii\n1 2 3 4 5 6\n";
@@ -135,7 +135,7 @@ TEST(PcdReader_FieldsWithoutTypes_ThatReachBeyondThePoint, AreRefused) {
                 HasSubstr("fields that do not add up to 16 bytes per point"));
 }
 
-TEST(PcdReader_BytesBehindTheLastPoint, AreTold) {
+TEST(PcdReader_BytesAfterTheLastPoint, AreReported) {
     Told told;
     points_in("FIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA binary\n" + std::string(24, '\0') + "later", "a.pcd",
               &told);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PCD files from other programs' collections. Their counts and sums were found with another reader.
+// PCD files from the collections of other programs. Their counts and sums were computed with another reader.
 
 #include <gmock/gmock.h>
 
@@ -76,7 +76,7 @@ Vec3 finite_sum(const PointCloud& cloud) {
     return sum;
 }
 
-TEST(PcdSamples, HaveTheirPointsAndColumns_AsAnotherReaderFoundThem) {
+TEST(PcdSamples, HaveTheirPointsAndColumns_AsComputedWithAnotherReader) {
     SCANMILL_REAL_SCAN(folder, shared_data, "6-formats/pcd");
     std::set<std::string> unknown;
     for (const auto& entry : fs::recursive_directory_iterator(folder))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PCD through its module: what is read.
+// PCD through its module: reading.
 
 #include "formats/pcd_files.hpp"
 #include "support/temporary_folder.hpp"
@@ -67,7 +67,7 @@ TEST(PcdReader, PackedColoursAndNormals_BecomeTheWellKnownColumns) {
     EXPECT_THAT(rgba->columns.find("colour")->values<u8>(), ElementsAre(0x10, 0x20, 0x30, 0xff));
 }
 
-TEST(PcdReader, FieldsOfSeveralNumbersAndPadding_AreTakenAsTheyAre) {
+TEST(PcdReader, FieldsOfSeveralNumbersAndPadding_AreRead) {
     const std::string text =
         "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z _ histogram\nSIZE 4 4 4 1 4\nTYPE F F F U F\nCOUNT 1 1 1 4 3\n"
         "WIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary\n" +
@@ -79,7 +79,7 @@ TEST(PcdReader, FieldsOfSeveralNumbersAndPadding_AreTakenAsTheyAre) {
     EXPECT_THAT(cloud->columns.find("histogram")->values<float>(), ElementsAre(7, 8, 9));
 }
 
-TEST(PcdReader, GridAndSensorPose_AreTold) {
+TEST(PcdReader, GridAndSensorPose_AreReported) {
     Told told;
     std::string text = xyz_header(4, "ascii", "# unit mm\n# frame bench\n") + "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
     text.replace(text.find("WIDTH 4\nHEIGHT 1"), 16, "WIDTH 2\nHEIGHT 2");
@@ -90,24 +90,24 @@ TEST(PcdReader, GridAndSensorPose_AreTold) {
     EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the grid of 2 × 2 points"), HasSubstr("VIEWPOINT 0 0 5")));
 }
 
-TEST(PcdReader, BlankLinesOfAnAsciiFile_AreNoPoints) {
+TEST(PcdReader, BlankLinesOfAnAsciiFile_AreNotPoints) {
     const auto cloud = points_in(xyz_header(3, "ascii") + "1 2 3\r\n\r\n4 5 6\r\n  \r\n7 8 9\r\n", "a.pcd");
     EXPECT_EQ(world_of(*cloud, 1), Vec3(4, 5, 6));
     EXPECT_EQ(world_of(*cloud, 2), Vec3(7, 8, 9));
 }
 
-TEST(PcdReader, AsciiIntegers_KeepEveryDigitAndNoneIsBent) {
+TEST(PcdReader, AsciiIntegers_KeepEveryDigitOrAreRefused) {
     const std::string good = header("x y z id", "4 4 4 8", "F F F U", 1, "ascii");
     const auto cloud = points_in(good + "1 2 3 9007199254740993\n", "a.pcd");
     EXPECT_THAT(cloud->columns.find("id")->values<std::uint64_t>(), ElementsAre(9007199254740993u));
     const std::string bytes = header("x y z id", "4 4 4 1", "F F F U", 1, "ascii");
     for (const char* number : {"300", "-1", "1.5", "nan"})
         EXPECT_THAT(sentence_of([&] { read_bytes(bytes + "1 2 3 " + number + "\n", "a.pcd"); }),
-                    HasSubstr("is no uint8 for the field 'id'"))
+                    HasSubstr("is not a uint8 for the field 'id'"))
             << number;
 }
 
-TEST(PcdReader, ViewpointOfNoRotation_IsNotTold) {
+TEST(PcdReader, IdentityViewpoint_IsNotReported) {
     Told told;
     std::string text = xyz_header(1, "ascii") + "1 2 3\n";
     text.replace(text.find("0 0 0 1 0 0 0"), 13, "0.0 0 0 1.0 0 0 0");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PCD through its module: what is written, and that reading it back changes nothing.
+// PCD through its module: writing, and reading back without a change.
 
 #include "formats/pcd_files.hpp"
 #include "support/temporary_folder.hpp"
@@ -25,7 +25,7 @@ PointCloud every_column() {
     return cloud;
 }
 
-TEST(PcdWriter, EveryColumn_ComesBackTheSame) {
+TEST(PcdWriter, EveryColumn_IsReadBackUnchanged) {
     const TemporaryFolder folder;
     const PointCloud cloud = every_column();
     Told told;
@@ -37,7 +37,7 @@ TEST(PcdWriter, EveryColumn_ComesBackTheSame) {
     EXPECT_THAT(told.sentences, IsEmpty());
 }
 
-TEST(PcdWriter, Positions_AreDoublesOnlyWhereFloatsWouldLose) {
+TEST(PcdWriter, Positions_AreDoublesOnlyWhereFloatsAreInexact) {
     const TemporaryFolder folder;
     PointCloud cloud;
     cloud.frame.origin = Vec3(5e6, 0, 0);
@@ -52,7 +52,7 @@ TEST(PcdWriter, Positions_AreDoublesOnlyWhereFloatsWouldLose) {
     EXPECT_THAT(content_of(folder / "b.pcd"), HasSubstr("SIZE 4 4 4"));
 }
 
-TEST(PcdWriter_Losses, NamesThatPcdNeedsForItself_AreChangedAndTold) {
+TEST(PcdWriter_Losses, NamesReservedByPcd_AreChangedWithAWarning) {
     const TemporaryFolder folder;
     Told told;
     PointCloud cloud;
@@ -67,7 +67,7 @@ TEST(PcdWriter_Losses, NamesThatPcdNeedsForItself_AreChangedAndTold) {
         EXPECT_TRUE(back->columns.find(name)) << name;
 }
 
-TEST(PcdWriter_Losses, ListsAreTold) {
+TEST(PcdWriter_Losses, ListsAreReported) {
     const TemporaryFolder folder;
     Told told;
     PointCloud cloud;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What is in a 3MF package by lib3mf's own reader.
+/// The content of a 3MF package as read by lib3mf.
 
 #include <Model/COM/NMR_DLLInterfaces.h>
 
@@ -8,12 +8,12 @@
 
 namespace scanmill::test {
 
-/// The one object of a package, with what assimp does not tell.
+/// The only object of a package, with the properties that assimp does not give.
 struct SeenBy3mf {
     DWORD unit = 99;
     std::string name, uuid;
-    Vec3 place = Vec3::Zero();
-    std::vector<Vec3> vertices;  ///< without the place
+    Vec3 offset = Vec3::Zero();
+    std::vector<Vec3> vertices;  ///< without the offset
 };
 
 inline std::string bytes_of_3mf(const TriangleMesh& mesh, Told* told = nullptr) {
@@ -30,7 +30,7 @@ inline SeenBy3mf read_by_3mf(std::string bytes) {
     PLib3MFModelBuildItem* item = nullptr;
     PLib3MFModelObjectResource* object = nullptr;
     BOOL found = 0;
-    MODELTRANSFORM place;
+    MODELTRANSFORM offset;
     DWORD count = 0;
     char text[200] = "";
     ULONG length = 0;
@@ -43,7 +43,7 @@ inline SeenBy3mf read_by_3mf(std::string bytes) {
     EXPECT_EQ(lib3mf_builditemiterator_movenext(items, &found), 0);
     EXPECT_TRUE(found);
     EXPECT_EQ(lib3mf_builditemiterator_getcurrent(items, &item), 0);
-    EXPECT_EQ(lib3mf_builditem_getobjecttransform(item, &place), 0);
+    EXPECT_EQ(lib3mf_builditem_getobjecttransform(item, &offset), 0);
     EXPECT_EQ(lib3mf_builditem_getobjectresource(item, &object), 0);
     EXPECT_EQ(lib3mf_object_getnameutf8(object, text, sizeof text, &length), 0);
     seen.name = text;
@@ -55,7 +55,7 @@ inline SeenBy3mf read_by_3mf(std::string bytes) {
         EXPECT_EQ(lib3mf_meshobject_getvertex(object, i, &v), 0);
         seen.vertices.emplace_back(v.m_fPosition[0], v.m_fPosition[1], v.m_fPosition[2]);
     }
-    for (int axis = 0; axis < 3; ++axis) seen.place[axis] = place.m_fFields[axis][3];
+    for (int axis = 0; axis < 3; ++axis) seen.offset[axis] = offset.m_fFields[axis][3];
     return seen;
 }
 

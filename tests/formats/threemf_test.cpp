@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 3MF: what assimp and lib3mf's own reader find.
+// 3MF as read by assimp and lib3mf.
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(ThreemfWriter, Cube_IsACubeForOthers) {
+TEST(ThreemfWriter, Cube_IsReadAsACube) {
     Told told;
     const SeenByAssimp seen = through_assimp(cube_in(LengthUnit::millimetre, 2.5), "a.3mf", &told);
     EXPECT_THAT(told.sentences, IsEmpty());
@@ -31,7 +31,7 @@ TEST(ThreemfWriter, Cube_IsACubeForOthers) {
     EXPECT_EQ(seen.box.high, Vec3(2.5, 2.5, 2.5));
 }
 
-TEST(ThreemfWriter, NumbersOfFewDecimals_AreWrittenAsTheyAre) {
+TEST(ThreemfWriter, NumbersOfFewDecimals_AreWrittenExactly) {
     for (const double edge : {10.0, 12.0, 15.5, 0.001, 8.123, 1234.5}) {
         const SeenByAssimp seen = through_assimp(cube_in(LengthUnit::millimetre, edge), "a.3mf");
         EXPECT_EQ(seen.box.high.cast<float>(), Vec3(edge, edge, edge).cast<float>()) << edge;
@@ -39,23 +39,23 @@ TEST(ThreemfWriter, NumbersOfFewDecimals_AreWrittenAsTheyAre) {
     }
 }
 
-/// A solid far from zero, and a vertex of no triangle that is not.
-TriangleMesh far_cube(const Vec3& place, bool has_stray) {
+/// A solid far from zero, optionally with a vertex at zero that no triangle uses.
+TriangleMesh far_cube(const Vec3& offset, bool has_stray) {
     TriangleMesh mesh = cube_in(LengthUnit::millimetre, 2000);
     Array<Vec3> positions;
-    for (const Vec3& p : mesh.positions) positions.push_back(p + place);
+    for (const Vec3& p : mesh.positions) positions.push_back(p + offset);
     if (has_stray) positions.push_back({0, 0, 0});
     mesh.positions = std::move(positions);
     return mesh;
 }
 
-TEST(ThreemfWriter, FarPlace_IsTheSameInSingleAndDouble) {
+TEST(ThreemfWriter, FarOffset_IsTheSameInSingleAndDouble) {
     for (const double far : {123456.75, 432099123.0, 5.421e9, 9.99e11}) {
         const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(far_cube({far, -far / 3, 0}, false)));
         for (int axis = 0; axis < 2; ++axis) {
             double text = 0;
-            parse_number(fmt::format("{:.6g}", seen.place[axis]), text);
-            EXPECT_EQ(text, seen.place[axis]) << far;
+            parse_number(fmt::format("{:.6g}", seen.offset[axis]), text);
+            EXPECT_EQ(text, seen.offset[axis]) << far;
         }
     }
 }
@@ -67,8 +67,8 @@ TEST(ThreemfWriter, VertexOfNoTriangle_IsLeftOutAndMovesNothing) {
     ASSERT_EQ(seen.vertices.size(), 8u);
     BoundingBox box;
     for (const Vec3& v : seen.vertices) {
-        box.low = box.low.cwiseMin(seen.place + v);
-        box.high = box.high.cwiseMax(seen.place + v);
+        box.low = box.low.cwiseMin(seen.offset + v);
+        box.high = box.high.cwiseMax(seen.offset + v);
     }
     EXPECT_LT((box.low - Vec3(4.321e8, 5.421e8, 0)).cwiseAbs().maxCoeff(), 2e-3);
     EXPECT_LT((box.high - Vec3(4.321e8 + 2000, 5.421e8 + 2000, 2000)).cwiseAbs().maxCoeff(), 2e-3);
@@ -87,10 +87,10 @@ TEST(ThreemfWriter, EveryUnit_IsDeclared) {
     }
 }
 
-TEST(ThreemfWriter, UnknownUnit_IsTakenAsMillimetreAndTold) {
+TEST(ThreemfWriter, UnknownUnit_IsAssumedToBeMillimetreWithAWarning) {
     Told told;
     EXPECT_EQ(read_by_3mf(bytes_of_3mf(cube(1), &told)).unit, static_cast<DWORD>(NMR::MODELUNIT_MILLIMETER));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 was written as 1 mm; say the unit")));
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 was written as 1 mm; declare the unit")));
 }
 
 TEST(ThreemfWriter, FrameName_IsTheObjects) {
@@ -99,7 +99,7 @@ TEST(ThreemfWriter, FrameName_IsTheObjects) {
     EXPECT_EQ(read_by_3mf(bytes_of_3mf(mesh)).name, "Teil <7> & _");
 }
 
-TEST(ThreemfWriter, Coordinates_AreRoundedAtTheSixthDecimal_NotCut) {
+TEST(ThreemfWriter, Coordinates_AreRoundedAtTheSixthDecimal_NotTruncated) {
     TriangleMesh mesh = cube_in(LengthUnit::millimetre);
     Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
     for (Vec3& p : positions) p = p * 0.9999999 - Vec3::Constant(0.4999999);
@@ -108,22 +108,22 @@ TEST(ThreemfWriter, Coordinates_AreRoundedAtTheSixthDecimal_NotCut) {
         for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::abs(v[axis]), 0.5, 1e-7);
 }
 
-TEST(ThreemfWriter, TinyShapes_AreToldToMove) {
+TEST(ThreemfWriter, TinyShapes_AreMovedWithAWarning) {
     Told told;
     bytes_of_3mf(cube_in(LengthUnit::metre, 0.0123456789), &told);
     EXPECT_THAT(told.sentences,
                 ElementsAre(AllOf(HasSubstr("coordinates moved by up to"), HasSubstr("a smaller unit"))));
 }
 
-TEST(ThreemfWriter, FarFromZero_PlaceAndVerticesAddUp) {
+TEST(ThreemfWriter, FarFromZero_OffsetAndVerticesAddUp) {
     TriangleMesh mesh = cube_in(LengthUnit::metre);
     mesh.frame.origin = Vec3(1234567, -7654321.5, 0);
     Told told;
     const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(mesh, &told));
     EXPECT_THAT(told.sentences, IsEmpty());
     for (std::size_t i = 0; i < 8; ++i)
-        EXPECT_LT((seen.place + seen.vertices[i] - (mesh.frame.origin + mesh.positions[i])).norm(), 3e-6) << i;
-    EXPECT_NE(seen.place, Vec3::Zero());
+        EXPECT_LT((seen.offset + seen.vertices[i] - (mesh.frame.origin + mesh.positions[i])).norm(), 3e-6) << i;
+    EXPECT_NE(seen.offset, Vec3::Zero());
 }
 
 TEST(ThreemfWriter, EqualValues_GiveEqualBytes_AndOthersOtherUuids) {

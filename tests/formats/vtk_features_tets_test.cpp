@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Features as VTP and tetrahedra as VTU, as VTK reads them.
+// Features as VTP and tetrahedra as VTU, as read by VTK.
 
 #include <vtkTetra.h>
 
@@ -12,7 +12,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// An open crease 0-1-2 that ends in the corner 2, and a closed hole 2-3-1; vertex 4 belongs to nothing.
+/// An open crease 0-1-2 that ends in the corner 2, and a closed hole 2-3-1; vertex 4 is in neither.
 FeatureGraph crease_and_hole() {
     FeatureGraph graph;
     graph.frame = {LengthUnit::inch, Vec3(0, 0, 8), "part"};
@@ -42,7 +42,7 @@ TEST(VtpFeatures, PolylinesAndCorners_AreCellsWithTheirTypes) {
     EXPECT_THAT(texts_in(data->GetFieldData(), "frame"), ElementsAre("part"));
 }
 
-TEST(VtpFeatures, EveryPoint_KnowsItsVertexAndTheNormalsOnBothSides) {
+TEST(VtpFeatures, EveryPoint_HasItsVertexAndTheNormalsOnBothSides) {
     const auto data = through_vtp(crease_and_hole());
     vtkPointData* columns = data->GetPointData();
     EXPECT_THAT(numbers_in(columns->GetArray("vertex")), ElementsAre(0, 1, 2, 2, 3, 1, 2));
@@ -109,7 +109,7 @@ TEST(VtuWriter, CellsWithoutLabel_HaveNone) {
     EXPECT_EQ(through_vtu(tets)->GetCellData()->GetNumberOfArrays(), 0);
 }
 
-TEST(VtuWriter, Weights_StandAtThePoints_BesideAColumnOfThatName) {
+TEST(VtuWriter, Weights_ArePointData_BesideAColumnOfThatName) {
     TetMesh tets = two_cells();
     EXPECT_EQ(through_vtu(tets)->GetPointData()->GetNumberOfArrays(), 1);
     tets.weights = {0, 0.25, 1, 4, 9};
@@ -120,7 +120,7 @@ TEST(VtuWriter, Weights_StandAtThePoints_BesideAColumnOfThatName) {
     EXPECT_THAT(numbers_in(grid->GetPointData()->GetArray("weights-of-tets")), ElementsAre(0, 0.25, 1, 4, 9));
 }
 
-TEST(VtuReader_Refuses, ToRead_AndSaysSo) {
+TEST(VtuReader_Refuses, ToRead_WithAMessage) {
     const std::string bytes = write_bytes("a.vtu", std::make_shared<const TetMesh>(two_cells()));
     EXPECT_EQ(bytes, write_bytes("b.vtu", std::make_shared<const TetMesh>(two_cells())));
     EXPECT_THAT(refusal_of(bytes, "a.txt"), HasSubstr("VTU is written for other programs, and not read"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What VTK's own readers find in the files that we write.
+/// Our files as read by VTK.
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -26,7 +26,7 @@ vtkSmartPointer<Data> read_by_vtk(const fs::path& file) {
     return reader->GetOutput();
 }
 
-/// The value as the bytes of a file, read back; warnings into `told`.
+/// The value, written to a file and read back; warnings into `told`.
 template <class T>
 vtkSmartPointer<vtkPolyData> through_vtp(const T& object, Told* told = nullptr) {
     const TemporaryFolder folder;

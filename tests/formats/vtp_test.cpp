@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTP: what VTK reads of points and meshes is what was written, to the last bit.
+// VTP: VTK reads points and meshes exactly as written.
 
 #include <limits>
 
@@ -33,7 +33,7 @@ void expect_type_kept(int vtk_type) {
     EXPECT_EQ(static_cast<const T*>(array->GetVoidPointer(1))[0], highest);
 }
 
-TEST(VtpWriter, EveryType_StaysWhatItIs) {
+TEST(VtpWriter, EveryType_IsKept) {
     expect_type_kept<std::int8_t>(VTK_TYPE_INT8);
     expect_type_kept<std::uint8_t>(VTK_TYPE_UINT8);
     expect_type_kept<std::int16_t>(VTK_TYPE_INT16);
@@ -46,7 +46,7 @@ TEST(VtpWriter, EveryType_StaysWhatItIs) {
     expect_type_kept<double>(VTK_TYPE_FLOAT64);
 }
 
-TEST(VtpWriter, Points_AreCells_AndWellKnownColumnsAreKnown) {
+TEST(VtpWriter, Points_AreCells_AndWellKnownColumnsAreMarked) {
     PointCloud cloud = two_points();
     cloud.frame = {LengthUnit::millimetre, Vec3::Zero(), "bench \"A\" <1>"};
     cloud.columns.add(Column("normal", 3, Buffer<float>{0, 0, 1, 0, 1, 0}));
@@ -83,7 +83,7 @@ TEST(VtpWriter, FarFromZero_MicrometresAreKept) {
     EXPECT_THAT(texts_in(data->GetFieldData(), "frame"), IsEmpty());
 }
 
-TEST(VtpWriter, NaN_StaysWhatItIs) {
+TEST(VtpWriter, NaN_IsKept) {
     PointCloud cloud = two_points();
     const double nan = std::numeric_limits<double>::quiet_NaN();
     cloud.positions = {Vec3(nan, 2, 3), Vec3(4, 5, 6)};
@@ -94,7 +94,7 @@ TEST(VtpWriter, NaN_StaysWhatItIs) {
     EXPECT_TRUE(std::isnan(data->GetPointData()->GetArray("quality")->GetComponent(0, 0)));
 }
 
-TEST(VtpWriter, Mesh_KeepsColumnsOfFacesAndEdges_AndWhichEdgesAreSharp) {
+TEST(VtpWriter, Mesh_KeepsColumnsOfFacesAndEdges_AndSharpEdges) {
     TriangleMesh mesh;
     mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
     mesh.triangles = {{0, 2, 1}, {3, 0, 1}};
@@ -117,7 +117,7 @@ TEST(VtpWriter, Mesh_KeepsColumnsOfFacesAndEdges_AndWhichEdgesAreSharp) {
     EXPECT_THAT(numbers_in(data->GetFieldData()->GetArray("sharp_edges")), ElementsAre(1, 3));
 }
 
-TEST(VtpWriter_Names, ThatXmlNeedsForItself_AreKept_AndBytesThatAreNoText_AreTold) {
+TEST(VtpWriter_Names, WithReservedCharacters_AreKept_AndInvalidTextIsReported) {
     PointCloud cloud = two_points();
     for (const char* name : {"a<b>\"&'", "Größe", "line\nend", "bad\xff", "bad_"})
         cloud.columns.add(Column(name, 1, Buffer<float>{7, 8}));
@@ -131,7 +131,7 @@ TEST(VtpWriter_Names, ThatXmlNeedsForItself_AreKept_AndBytesThatAreNoText_AreTol
                                             HasSubstr("the column 'bad_' under the name 'bad__2'")));
 }
 
-TEST(VtpWriter_Losses, ListsAreTold) {
+TEST(VtpWriter_Losses, ListsAreReported) {
     PointCloud cloud = two_points();
     cloud.columns.add(Column("seen_by", Buffer<u64>{0, 2, 3}, Buffer<u32>{4, 5, 6}));
     Told told;
@@ -146,7 +146,7 @@ TEST(VtpWriter, EqualValues_GiveEqualBytes) {
     EXPECT_TRUE(bytes.starts_with("<?xml"));
 }
 
-TEST(VtpWriter_Refuses, KindsThatItCannotHold_AndSaysWhatCan) {
+TEST(VtpWriter_Refuses, KindsThatItCannotHold_WithTheFormatsThatCan) {
     TetMesh tets;
     tets.positions = {Vec3(0, 0, 0)};
     const Error error = error_of([&] { write_bytes("a.vtp", std::make_shared<const TetMesh>(tets)); });
@@ -161,7 +161,7 @@ TEST(VtpWriter_Refuses, KindsThatItCannotHold_AndSaysWhatCan) {
                 HasSubstr("beyond what VTP can write"));
 }
 
-TEST(VtpReader_Refuses, ToRead_AndSaysSo) {
+TEST(VtpReader_Refuses, ToRead_WithAMessage) {
     const std::string bytes = write_bytes("a.vtp", std::make_shared<const PointCloud>(two_points()));
     for (const char* name : {"a.vtp", "misnamed.ply"})
         EXPECT_THAT(error_of([&] { read_bytes(bytes, name); }).what(),
