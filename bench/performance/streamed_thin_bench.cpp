@@ -28,7 +28,7 @@
 #include <vector>
 
 #include "scanmill/filter/random.hpp"
-#include "voxel_thin/streamed_thin.hpp"
+#include "voxel_thin/voxel_thin.hpp"
 
 namespace {
 
