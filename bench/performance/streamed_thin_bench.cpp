@@ -30,8 +30,7 @@
 #include <vector>
 
 #include "scanmill/base/random.hpp"
-#include "scanmill/formats/open_point_stream.hpp"
-#include "voxel_thin/streamed_thin.hpp"
+#include "voxel_thin/voxel_thin.hpp"
 
 namespace {
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "region_grow/finished_mesh.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 
@@ -32,7 +35,44 @@ std::vector<Edge> bent_edges(const Surface& surface, Angle sharp_angle) {
     return edges;
 }
 
+using Place = std::array<double, 3>;
+
+Place place_of(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+/// Whichever way it is passed.
+std::pair<Place, Place> segment(const Vec3& a, const Vec3& b) { return std::minmax({place_of(a), place_of(b)}); }
+
+/// Of the wanted vertices the summed normals of their triangles.
+void add_normals(const TriangleMesh& mesh, std::map<u32, Vec3>& normals) {
+    std::vector<bool> wanted(mesh.positions.size(), false);
+    for (const auto& [vertex, normal] : normals) wanted[vertex] = true;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        if (!wanted[a] && !wanted[b] && !wanted[c]) continue;
+        const auto& p = mesh.positions;
+        const Vec3 normal = (p[b] - p[a]).normalized().cross((p[c] - p[a]).normalized()).normalized();
+        for (u32 corner : {a, b, c})
+            if (wanted[corner]) normals[corner] += normal;
+    }
+}
+
 }  // namespace
+
+std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits,
+                                        const Context& context) {
+    std::size_t looks = 0;
+    std::vector<PatchEdge> edges;
+    for (const Triangle& triangle : surface.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const u32 from = triangle[i], to = triangle[(i + 1) % 3];
+            if (surface.states[from] != PlaceState::front || surface.states[to] != PlaceState::front ||
+                surface.fans.right_of(from, to) != nobody)
+                continue;
+            if (looks++ % 64 == 0) context.check_cancelled();
+            const u32 beyond = chooser.beyond_sharp_edge(from, to, limits);
+            if (beyond != nobody) edges.push_back({from, to, beyond});
+        }
+    return edges;
+}
 
 FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const PatchEdge> patch_edges,
                          Angle sharp_angle) {
@@ -66,6 +106,34 @@ FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::s
     std::ranges::sort(sharp);
     mesh.sharp_edges = std::move(sharp);
     return finished;
+}
+
+void tell_far_sides(FeatureGraph& features, const FinishedMesh& finished, const Samples& samples,
+                    std::span<const PatchEdge> patch_edges) {
+    if (patch_edges.empty()) return;
+    const auto vertex = [&](u32 place) {
+        return static_cast<u32>(std::ranges::lower_bound(finished.rows, samples.rows[place]) - finished.rows.begin());
+    };
+    std::map<u32, Vec3> normals;
+    std::map<std::pair<Place, Place>, u32> beyond;
+    const auto& p = finished.mesh.positions;
+    for (const PatchEdge& edge : patch_edges) {
+        beyond[segment(p[vertex(edge.from)], p[vertex(edge.to)])] = vertex(edge.beyond);
+        normals[vertex(edge.beyond)] = Vec3::Zero();
+    }
+    add_normals(finished.mesh, normals);
+
+    Array<Vec3> right(features.right_normals.begin(), features.right_normals.end());
+    for (const FeaturePolyline& line : features.polylines) {
+        if (line.type == FeatureType::crease) continue;
+        for (u32 i = line.begin; i < line.end; ++i) {
+            const u32 next = i + 1 < line.end ? i + 1 : line.begin;
+            const auto found = beyond.find(
+                segment(features.positions[features.vertices[i]], features.positions[features.vertices[next]]));
+            if (found != beyond.end()) right[i] = normals[found->second].normalized();
+        }
+    }
+    features.right_normals = std::move(right);
 }
 
 }  // namespace scanmill::growing

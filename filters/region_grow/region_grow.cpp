@@ -3,33 +3,140 @@
 
 #include <Eigen/Geometry>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 
-#include "region_grow/far_sides.hpp"
+#include "region_grow/components.hpp"
 #include "region_grow/finished_mesh.hpp"
-#include "region_grow/given_normals.hpp"
-#include "region_grow/narrow_holes.hpp"
-#include "region_grow/normal_signs.hpp"
-#include "region_grow/pieces.hpp"
-#include "region_grow/pinches.hpp"
-#include "region_grow/refusals.hpp"
-#include "region_grow/report.hpp"
+#include "region_grow/growth.hpp"
+#include "region_grow/holes.hpp"
+#include "region_grow/normals.hpp"
 #include "region_grow/search_radii.hpp"
-#include "region_grow/seeds.hpp"
-#include "region_grow/small_holes.hpp"
+#include "region_grow/surface.hpp"
 #include "region_grow/thin_parts.hpp"
-#include "region_grow/thinned_bins.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill {
 
 namespace {
 
 using namespace growing;
+
+constexpr const char* few_points_hint =
+    "look at the file with `scanmill info`; thin less coarsely if the scan was thinned";
+
+void require_in_range(const RegionGrowParams& params, std::size_t points) {
+    const double least = params.min_angle.in_degrees(), bend = params.max_normal_angle.in_degrees();
+    if (!(least >= 0 && least < 60))
+        throw Error("min-angle is {} degrees; it must be at least 0 and below 60, what no triangle exceeds", least);
+    if (!(bend > 0 && bend <= 180))
+        throw Error("max-normal-angle is {} degrees; it must be above 0 and at most 180", bend);
+    if (params.search_radius) {
+        const double radius = params.search_radius->value();
+        if (!(radius > 0 && std::isfinite(radius))) throw Error("search-radius is {}; it must be above 0", radius);
+    }
+    if (params.close_holes > 100) throw Error("close-holes is {}; at most 100 edges are closed", params.close_holes);
+    if (params.start && *params.start >= points)
+        throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points);
+}
+
+void require_area(const Samples& samples, std::size_t points) {
+    if (points == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(few_points_hint);
+    if (samples.size() < 3)
+        throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", samples.size(), points)
+            .hint(few_points_hint);
+    // The place farthest from the first, and the one farthest from the line through both.
+    const auto& p = samples.positions;
+    const auto farthest = [&](const auto& distance) { return *std::ranges::max_element(p, {}, distance); };
+    const Vec3 end = farthest([&](const Vec3& x) { return (x - p[0]).squaredNorm(); });
+    const Vec3 along = (end - p[0]).normalized();
+    const auto off_line = [&](const Vec3& x) { return (x - p[0]).cross(along).norm(); };
+    const double off = off_line(farthest(off_line));
+    if (off <= 1e-9 * (end - p[0]).norm())
+        throw Error("all {} distinct points lie on one line, to within {:.2g} u; a surface needs some off it",
+                    samples.size(), off)
+            .hint("scan more than a single profile, or check that the columns x, y and z are read as such");
+}
+
+void refuse_start(u32 row) {
+    throw Error("no triangle can start at row {}: no two other points near it make one within the limits", row)
+        .hint("start at another point, on a flat and evenly sampled part, or leave start to `auto`");
+}
+
+void refuse_all(const Surface& surface, const RegionGrowParams& params, LengthUnit unit, unsigned threads) {
+    const Samples& samples = surface.samples;
+    const std::string radius = params.search_radius ? fmt::format("search-radius {} u", params.search_radius->value())
+                                                    : std::string("the automatic search-radius");
+    throw Error("no three of the {} distinct points make a triangle with angles of at least {} and {}", samples.size(),
+                params.min_angle.text(), radius)
+        .hint(fmt::format("enlarge search-radius, or lessen min-angle; points in layers, thin with bins of {:.3g} {}",
+                          2 * bins_as_dense(surface, threads), symbol(unit)));
+}
+
+void count_all(const RegionGrowResult& result, Context& context) {
+    const auto count = [&](std::string_view name, std::size_t value) {
+        context.metric(name, static_cast<double>(value));
+    };
+    count("triangles", result.mesh.triangles.size());
+    count("components", result.components);
+    count("loops", result.loops);
+    count("holes", result.holes);
+    count("thin-loops", result.thin_loops);
+    count("unused-points", result.unused_points);
+    count("duplicates", result.duplicates);
+    count("patch-edges", result.patch_edges);
+    count("creases", result.creases);
+    count("corners", result.corners);
+    count("closed-holes", result.closed_holes);
+    count("removed-triangles", result.removed_triangles);
+    count("ambiguous", result.ambiguous_loops);
+    count("without-area", result.triangles_without_area);
+    count("relaxed-triangles", static_cast<std::size_t>(std::ranges::count_if(
+                                   result.passes, [](u8 pass) { return pass > 0 && pass < closing_pass; })));
+}
+
+void warn_of_unused(const RegionGrowResult& result, const Surface& surface, Context& context) {
+    const std::size_t places = surface.samples.size(), unused = result.unused_points;
+    if (200 * unused > places)
+        context.warn(fmt::format(
+            "{} of {} distinct points are in no triangle; thin the scan, or remove its noise first", unused, places));
+}
+
+void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, Context& context) {
+    if (thin.loops == 0) return;
+    const std::string_view unit = symbol(result.mesh.frame.unit);
+    context.warn(fmt::format(
+        "{} of {} boundary loops {} where two sides, or layers, are nearer to each other than {} bins, the "
+        "nearest {:.3g} "
+        "{} with bins of {:.3g} {}: the surface may go on there; thin less where the object is thin, more "
+        "where the scan "
+        "is noisy",
+        thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_bins, thin.least, unit, thin.bin, unit));
+}
+
+void warn_of_seams(const Surface& surface, Context& context) {
+    if (!surface.oriented) return;
+    if (const std::size_t places = places_at_seams(surface); places > 2)
+        context.warn(fmt::format(
+            "the surface ends at {} points where normals of the column 'normal' turn to the opposite from one point to "
+            "the next, as those do that were turned towards a camera; drop the column if it goes on there",
+            places));
+}
+
+void report(const RegionGrowResult& result, const FeatureCounts& lines, const Surface& surface, const ThinParts& thin,
+            Context& context) {
+    count_all(result, context);
+    warn_of_unused(result, surface, context);
+    for (std::string& sentence : doubts(lines)) context.warn(std::move(sentence));
+    warn_of_seams(surface, context);
+    warn_of_thin_parts(result, thin, context);
+}
 
 /// The given limits and those that parked edges are retried under.
 std::vector<Limits> limits_of(const RegionGrowParams& params) {

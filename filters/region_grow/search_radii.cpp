@@ -1,16 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "region_grow/search_radii.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <vector>
 
-#include "region_grow/median.hpp"
 #include "scanmill/base/parallel.hpp"
 
 namespace scanmill::growing {
 
 namespace {
+
+/// The upper one of two middles; reorders the values. Pre: at least one, none NaN. Cost: linear.
+template <class Values>
+double median(Values& values) {
+    const auto middle = std::next(values.begin(), static_cast<std::ptrdiff_t>(values.size() / 2));
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 constexpr std::size_t counted_neighbours = 12;
 /// On average over all directions of a surface.
@@ -104,6 +114,39 @@ double bins_as_dense(const Surface& surface, unsigned threads) {
     Array<double> radii =
         automatic_radii(surface.samples, surface.neighbourhoods, surface.normals, surface.roughness, {}, threads).radii;
     return median(radii) / (2 * std::numbers::sqrt3);
+}
+
+Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Context& context) {
+    const Column* column = cloud.columns.find("bin-size");
+    if (!column) return {};
+    if (column->components() != 1 || column->rows() != cloud.size()) {
+        context.warn("the column `bin-size` is not one number per point; the search radius follows from the density");
+        return {};
+    }
+    const auto bin = [&](u32 row) {
+        const double size = column->number(row);
+        return std::isfinite(size) && size > 0 ? size : 0;
+    };
+    Array<double> bins(samples.size());
+    for (std::size_t place = 0; place < bins.size(); ++place) bins[place] = bin(samples.rows[place]);
+    for (const auto& [place, row] : samples.repeats)
+        if (const double size = bin(row); size > 0 && (bins[place] == 0 || size < bins[place])) bins[place] = size;
+    return bins;
+}
+
+void tell_contradiction(std::span<const double> thinned, const SearchRadii& found, LengthUnit unit, Context& context) {
+    std::vector<double> said, seen;
+    for (std::size_t place = 0; place < thinned.size(); ++place) {
+        if (found.too_dense[place] == 0) continue;
+        said.push_back(thinned[place]);
+        seen.push_back(found.too_dense[place]);
+    }
+    if (2 * said.size() <= thinned.size()) return;
+    context.warn(
+        fmt::format("{} of {} points lie too dense for what their column `bin-size` says: as after bins of {:.3g} {}, "
+                    "not {:.3g}; their search radius follows from the density. Thin the points again, drop the column, "
+                    "or check the scan's unit",
+                    said.size(), thinned.size(), median(seen), symbol(unit), median(said)));
 }
 
 }  // namespace scanmill::growing

@@ -3,7 +3,10 @@
 /// How far a triangle may reach, where nobody said it: from the bins that the places were thinned with, or from how
 /// dense they are.
 
+#include "region_grow/distinct_points.hpp"
 #include "region_grow/surface.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/context.hpp"
 
 namespace scanmill::growing {
 
@@ -38,5 +41,15 @@ SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighb
 
 /// The bin size whose thinning would leave points as dense as they are at the middle place.
 double bins_as_dense(const Surface& surface, unsigned threads);
+
+// What a thinning says of its bins, in the column `bin-size` that voxel-thin makes.
+
+/// Per place the size in the column, of several rows the least; 0 where none is finite and above 0. Empty without the
+/// column, and, told, when it is not one number per row.
+Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Context& context);
+
+/// Tells when at more than half of the places points lie too dense for the bins, as `found` says: then the column is
+/// about other points, or in another unit.
+void tell_contradiction(std::span<const double> thinned, const SearchRadii& found, LengthUnit unit, Context& context);
 
 }  // namespace scanmill::growing

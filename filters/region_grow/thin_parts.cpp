@@ -2,6 +2,7 @@
 #include "region_grow/thin_parts.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -80,6 +81,23 @@ ThinParts find_thin_parts(const Surface& surface, const Pieces& pieces, const Co
     }
     if (parts.loops > 0) parts.least = least.distance, parts.bin = least.bin;
     return parts;
+}
+
+std::size_t places_at_seams(const Surface& surface) {
+    constexpr std::size_t nearest = 6;
+    OpposedNormals opposed;
+    for (u32 place = 0; place < surface.states.size(); ++place) {
+        if (surface.states[place] != PlaceState::front) continue;
+        const std::span<const u32> others = surface.neighbourhoods.of(place);
+        for (u32 other : others.first(std::min(nearest, others.size()))) {
+            if (surface.states[other] != PlaceState::front ||
+                !are_opposed(surface.normals[place], surface.normals[other]))
+                continue;
+            opposed.add(surface.normals[place], surface.positions[other] - surface.positions[place]);
+            break;
+        }
+    }
+    return opposed.are_on_one_side() ? 0 : opposed.beside;
 }
 
 }  // namespace scanmill::growing

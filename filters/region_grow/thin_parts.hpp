@@ -3,7 +3,7 @@
 /// Loops that may be no ends of the surface: they lie where two sides of something are too near each other for points
 /// so far apart to tell them from one.
 
-#include "region_grow/pieces.hpp"
+#include "region_grow/components.hpp"
 #include "scanmill/filter/context.hpp"
 
 namespace scanmill::growing {
@@ -26,5 +26,9 @@ struct ThinParts {
 ///
 /// Pre: every place has one fan; search radii follow from bins. Cost: a search round every place on a border.
 ThinParts find_thin_parts(const Surface& surface, const Pieces& pieces, const Context& context);
+
+/// Places on the border beside one on the border whose normal is opposed, in their plane: the surface ends there only
+/// because the given normals say so; none where they are on one side. Pre: the normals' signs count. Cost: linear.
+std::size_t places_at_seams(const Surface& surface);
 
 }  // namespace scanmill::growing

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int most_levels = 21;
 
-/// Where a point lies in the finest cells: three bits a level, those of the first halving highest.
+/// A point's cell at the deepest level: three bits per level, those of the first division highest.
 struct Located {
     u64 code;
     u32 row;
@@ -34,7 +34,7 @@ u64 code_of(const Vec3& p, const Vec3& origin, double finest) {
     return code;
 }
 
-/// The low corner of the cell of this level that the code lies in, in such cells.
+/// The low corner of the code's cell at this level, counted in cells of this level.
 Vec3 cell_of(u64 code, int level) {
     Vec3 cell = Vec3::Zero();
     for (int i = 0; i < level; ++i)
@@ -53,7 +53,7 @@ public:
           origin_(origin),
           edge_(edge) {}
 
-    /// `points` are those of one cell of this level, by code.
+    /// `points` are all points of one cell of this level, sorted by code.
     void thin(std::span<const Located> points, int level) {
         if (points.size() > 1 && level < most_levels && std::ldexp(edge_, -level) > least_size(points)) {
             const int shift = 3 * (most_levels - 1 - level);
@@ -80,17 +80,16 @@ private:
         return least;
     }
 
-    /// Only at the last level can a leaf be larger than its points allow. Duplicates need no leaves of their own.
+    /// Only at the deepest level can a leaf be larger than its points allow. Duplicates are never divided.
     void require_fine_enough(std::span<const Located> points, int level) const {
         const double edge = std::ldexp(edge_, -level), least = least_size(points);
-        const auto is_elsewhere = [&](const Located& point) {
+        const auto differs = [&](const Located& point) {
             return positions_[point.row] != positions_[points.front().row];
         };
-        if (level < most_levels || edge <= least || std::ranges::none_of(points, is_elsewhere)) return;
-        throw Error(
-            "the octree's finest leaves have edges of {:.3g} u, a {}th of the scan, and a point asks for {:.3g} u",
-            edge, u64(1) << most_levels, least)
-            .hint("remove what lies far away, or ask for a larger tolerance");
+        if (level < most_levels || edge <= least || std::ranges::none_of(points, differs)) return;
+        throw Error("the octree's smallest leaves have edges of {:.3g} u, 1/{} of its root, and a point needs {:.3g} u",
+                    edge, u64(1) << most_levels, least)
+            .hint("remove points far away from the object, or give a larger tolerance");
     }
 
     void keep_one(std::span<const Located> points, int level) {
@@ -104,9 +103,9 @@ private:
             best = point.row;
             best_squared = squared;
         }
-        choice.kept.push_back(best);
-        choice.members.push_back(static_cast<u32>(points.size()));
-        choice.edges.push_back(edge);
+        choice.rows.kept.push_back(best);
+        choice.rows.members.push_back(static_cast<u32>(points.size()));
+        choice.rows.edges.push_back(edge);
         if (points.size() == 1) return;
         choice.smallest = choice.smallest > 0 ? std::min(choice.smallest, edge) : edge;
         choice.largest = std::max(choice.largest, edge);
@@ -122,11 +121,11 @@ private:
 struct Root {
     Vec3 low;
     double edge;
-    int levels;  ///< how often its edge is halved until it is the basic voxel's
+    int levels;  ///< between the root and the basic voxels
 };
 
-/// The smallest cell of the grids from `origin`, of edges `base` times a power of two, that holds the box: how far the
-/// origin is takes no level away from it.
+/// The smallest cell that holds the box, of the grids from `origin` with edges `base` times a power of two. It need not
+/// contain `origin`, so a distant origin costs no levels.
 Root root_over(const BoundingBox& box, const Vec3& origin, double base) {
     int levels = 0;
     for (double edge = base;; edge *= 2, ++levels) {
@@ -135,29 +134,27 @@ Root root_over(const BoundingBox& box, const Vec3& origin, double base) {
     }
 }
 
-/// Removes the points of basic voxels that hold fewer than `min_points`, and counts both. The points are sorted by
-/// code.
-void remove_noise(Array<Located>& points, int levels, u32 min_points, OctreeChoice& choice) {
-    // A root with more levels than the codes has finest cells that are larger than basic voxels.
+/// Removes points of basic voxels with fewer than `min_points`. Counts them and the voxels. Pre: sorted by code.
+void remove_noise(Array<Located>& points, int levels, u32 min_points, KeptRows& rows) {
+    // A root more than 21 levels above the basic voxels has deepest cells larger than these: then those count.
     const int shift = 3 * (most_levels - std::min(levels, most_levels));
     std::size_t kept = 0;
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
         while (end < points.size() && points[end].code >> shift == points[begin].code >> shift) ++end;
-        ++choice.basic_voxels;
+        ++rows.voxels;
         if (end - begin < min_points)
-            choice.noise += end - begin;
+            rows.noise += end - begin;
         else
             for (std::size_t i = begin; i < end; ++i) points[kept++] = points[i];
     }
     points.resize(kept);
 }
 
-void sort_by_row(OctreeChoice& choice) {
-    Array<std::tuple<u32, u32, double>> leaves(choice.kept.size());
-    for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i] = {choice.kept[i], choice.members[i], choice.edges[i]};
+void sort_by_row(KeptRows& rows) {
+    Array<std::tuple<u32, u32, double>> leaves(rows.kept.size());
+    for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i] = {rows.kept[i], rows.members[i], rows.edges[i]};
     std::ranges::sort(leaves);
-    for (std::size_t i = 0; i < leaves.size(); ++i)
-        std::tie(choice.kept[i], choice.members[i], choice.edges[i]) = leaves[i];
+    for (std::size_t i = 0; i < leaves.size(); ++i) std::tie(rows.kept[i], rows.members[i], rows.edges[i]) = leaves[i];
 }
 
 }  // namespace
@@ -173,11 +170,11 @@ OctreeChoice choose_in_octree(std::span<const Vec3> positions, std::span<const u
     context.check_cancelled();
 
     Octree octree(positions, size_of_row, sizes, root.low, root.edge);
-    remove_noise(points, root.levels, min_points, octree.choice);
+    remove_noise(points, root.levels, min_points, octree.choice.rows);
     if (!points.empty()) octree.thin(points, 0);
     OctreeChoice choice = std::move(octree.choice);
     if (choice.largest == 0) choice.smallest = choice.largest = base;
-    sort_by_row(choice);
+    sort_by_row(choice.rows);
     return choice;
 }
 

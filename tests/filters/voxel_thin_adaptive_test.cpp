@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The octree: beside its definition, and on shapes that are flat in one place and curved in another.
+/// The octree: compared with its definition, and on shapes with flat and curved parts.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -27,13 +27,13 @@ OctreeChoice chosen(const PointCloud& cloud, std::span<const double> sizes, doub
                                    min_points, context);
 }
 
-/// The definition, cell by cell and without codes.
+/// The definition, evaluated cell by cell without codes.
 struct ByDefinition {
     const PointCloud& cloud;
     std::span<const double> sizes;
     std::map<u32, double> edge_of_kept = {};
 
-    void cut(const std::vector<u32>& rows, const Vec3& low, double edge) {
+    void divide(const std::vector<u32>& rows, const Vec3& low, double edge) {
         double least = 1e300;
         for (const u32 row : rows) least = std::min(least, sizes[row]);
         if (rows.size() <= 1 || edge <= least) {
@@ -49,18 +49,18 @@ struct ByDefinition {
                 .push_back(row);
         }
         for (u32 child = 0; child < 8; ++child)
-            cut(children[child], low + edge / 2 * Vec3(child >> 2 & 1, child >> 1 & 1, child & 1), edge / 2);
+            divide(children[child], low + edge / 2 * Vec3(child >> 2 & 1, child >> 1 & 1, child & 1), edge / 2);
     }
 };
 
-TEST(VoxelThinAdaptive, FourPointsByHand_AreCutAsEachAllows) {
-    // Root of edge 4: the left half may stay whole below x = 2, the right one is cut to edges of 1.
+TEST(VoxelThinAdaptive, FourPointsByHand_AreDividedAsEachAllows) {
+    // Root of edge 4: the left half stays whole, the right half is divided to edges of 1.
     const PointCloud cloud = cloud_of({{0, 0, 0}, {1, 1, 1}, {2.25, 0, 0}, {3.25, 0, 0}});
     const std::vector<double> sizes{2, 2, 1, 1};
     const OctreeChoice choice = chosen(cloud, sizes, 1);
-    EXPECT_THAT(choice.kept, ElementsAre(1u, 2u, 3u));
-    EXPECT_THAT(choice.members, ElementsAre(2u, 1u, 1u));
-    EXPECT_THAT(choice.edges, ElementsAre(2, 1, 1));
+    EXPECT_THAT(choice.rows.kept, ElementsAre(1u, 2u, 3u));
+    EXPECT_THAT(choice.rows.members, ElementsAre(2u, 1u, 1u));
+    EXPECT_THAT(choice.rows.edges, ElementsAre(2, 1, 1));
     EXPECT_EQ(choice.largest, 2);
     EXPECT_EQ(choice.smallest, 2);
 }
@@ -69,23 +69,23 @@ TEST(VoxelThinAdaptive, PointAloneInItsLeaf_IsNoiseOnlyIfAloneInItsBasicVoxel) {
     // Basic voxels of 2 hold two points, two points and one; the second is divided into leaves of one point each.
     const PointCloud cloud = cloud_of({{0, 0, 0}, {1, 1, 1}, {2.25, 0, 0}, {3.25, 0, 0}, {6.5, 0, 0}});
     const OctreeChoice choice = chosen(cloud, std::vector<double>{2, 2, 1, 1, 1}, 2, 2);
-    EXPECT_THAT(choice.kept, ElementsAre(1u, 2u, 3u));
-    EXPECT_THAT(choice.members, ElementsAre(2u, 1u, 1u));
-    EXPECT_EQ(choice.basic_voxels, 3u);
-    EXPECT_EQ(choice.noise, 1u);
+    EXPECT_THAT(choice.rows.kept, ElementsAre(1u, 2u, 3u));
+    EXPECT_THAT(choice.rows.members, ElementsAre(2u, 1u, 1u));
+    EXPECT_EQ(choice.rows.voxels, 3u);
+    EXPECT_EQ(choice.rows.noise, 1u);
 }
 
 TEST(VoxelThinAdaptive, PointAloneInItsBasicVoxel_IsNoiseInALargeLeafToo) {
     // All three may share a leaf of 4, whose centre the last one is nearest to; it is alone in its basic voxel of 1.
     const PointCloud cloud = cloud_of({{0, 0, 0}, {0.5, 0, 0}, {2.25, 2.25, 2.25}});
     const OctreeChoice choice = chosen(cloud, std::vector<double>(3, 4), 1, 2);
-    EXPECT_THAT(choice.kept, ElementsAre(1u));
-    EXPECT_THAT(choice.members, ElementsAre(2u));
-    EXPECT_EQ(choice.noise, 1u);
-    EXPECT_THAT(chosen(cloud, std::vector<double>(3, 4), 1, 1).kept, ElementsAre(2u));
+    EXPECT_THAT(choice.rows.kept, ElementsAre(1u));
+    EXPECT_THAT(choice.rows.members, ElementsAre(2u));
+    EXPECT_EQ(choice.rows.noise, 1u);
+    EXPECT_THAT(chosen(cloud, std::vector<double>(3, 4), 1, 1).rows.kept, ElementsAre(2u));
     const OctreeChoice nothing = chosen(cloud, std::vector<double>(3, 4), 1, 3);
-    EXPECT_TRUE(nothing.kept.empty());
-    EXPECT_EQ(nothing.noise, 3u);
+    EXPECT_TRUE(nothing.rows.kept.empty());
+    EXPECT_EQ(nothing.rows.noise, 3u);
 }
 
 /// A sphere of radius 10 decides the basic voxels. One of radius 1 forces their division down to single points.
@@ -112,21 +112,21 @@ TEST(VoxelThinAdaptive, MinPointsOnACurvedPart_RemovesIsolatedPointsOnly) {
     EXPECT_GE(result.noise, 5u);
     EXPECT_EQ(result.kept.size() + result.removed, cloud.size());
     // Noise is what a grid of the basic voxels makes of it.
-    VoxelThinParams grid = bins_of(result.bin_size);
+    VoxelThinParams grid = voxels_of(result.bin_size);
     grid.min_points = 2;
     EXPECT_EQ(result.noise, thin(cloud, grid).noise);
 }
 
 TEST(VoxelThinAdaptive, TwoEquallyNear_KeepsTheLowerRow) {
     const PointCloud cloud = cloud_of({{0, 0, 0}, {1.25, 1, 1}, {0.75, 1, 1}, {1, 1.25, 1}});
-    EXPECT_THAT(chosen(cloud, std::vector<double>(4, 2), 2).kept, ElementsAre(1u));
+    EXPECT_THAT(chosen(cloud, std::vector<double>(4, 2), 2).rows.kept, ElementsAre(1u));
 }
 
-TEST(VoxelThinAdaptive, Duplicates_AreNeverCutApart) {
+TEST(VoxelThinAdaptive, Duplicates_AreNeverDivided) {
     const PointCloud cloud = cloud_of({{1, 1, 1}, {0, 0, 0}, {1, 1, 1}});
     const OctreeChoice choice = chosen(cloud, std::vector<double>(3, 1e-300), 1);
-    EXPECT_THAT(choice.kept, ElementsAre(0u, 1u));
-    EXPECT_THAT(choice.members, ElementsAre(2u, 1u));
+    EXPECT_THAT(choice.rows.kept, ElementsAre(0u, 1u));
+    EXPECT_THAT(choice.rows.members, ElementsAre(2u, 1u));
 }
 
 TEST(VoxelThinAdaptive, RandomSizes_AgreeWithTheDefinition) {
@@ -138,16 +138,16 @@ TEST(VoxelThinAdaptive, RandomSizes_AgreeWithTheDefinition) {
         ByDefinition expected{cloud, sizes};
         std::vector<u32> rows(cloud.size());
         for (u32 row = 0; row < rows.size(); ++row) rows[row] = row;
-        expected.cut(rows, bounding_box(cloud.positions.span()).low, 0.04 * 32);
+        expected.divide(rows, bounding_box(cloud.positions.span()).low, 0.04 * 32);
         std::map<u32, double> edges;
-        for (std::size_t i = 0; i < choice.kept.size(); ++i) edges[choice.kept[i]] = choice.edges[i];
+        for (std::size_t i = 0; i < choice.rows.kept.size(); ++i) edges[choice.rows.kept[i]] = choice.rows.edges[i];
         EXPECT_EQ(edges, expected.edge_of_kept) << seed;
-        EXPECT_TRUE(std::ranges::is_sorted(choice.kept));
+        EXPECT_TRUE(std::ranges::is_sorted(choice.rows.kept));
         EXPECT_GT(choice.largest, 2 * choice.smallest);
     }
 }
 
-TEST(VoxelThinAdaptive, AGridThatBeginsFarAway_CutsLeavesAsSmall) {
+TEST(VoxelThinAdaptive, DistantGridOrigin_LeavesAreAsSmall) {
     const PointCloud sphere = fibonacci_sphere(5000);
     VoxelThinParams params = within(0.01, VoxelThinParams::Rule::adaptive);
     const auto near = static_cast<double>(thin(sphere, params).kept.size());
@@ -157,24 +157,24 @@ TEST(VoxelThinAdaptive, AGridThatBeginsFarAway_CutsLeavesAsSmall) {
     }
 }
 
-TEST(VoxelThinAdaptive, LeavesThatCannotBeAsSmallAsAsked_AreRefused) {
-    // The close pair asks for leaves of 1e-8, where 21 halvings of a root over 10 give 5e-6.
+TEST(VoxelThinAdaptive, LeavesSmallerThan21Divisions_AreRefused) {
+    // The close pair needs leaves of 1e-8; 21 divisions of a root above 10 give 5e-6.
     const PointCloud cloud = cloud_of({{0, 0, 0}, {1e-7, 0, 0}, {10, 10, 10}});
     const Array<double> sizes{1e-8, 1e-8, 1};
-    EXPECT_THAT(sentence_of([&] { chosen(cloud, sizes, 1); }), HasSubstr("a point asks for 1e-08 u"));
+    EXPECT_THAT(sentence_of([&] { chosen(cloud, sizes, 1); }), HasSubstr("a point needs 1e-08 u"));
     const PointCloud twice = cloud_of({{0, 0, 0}, {0, 0, 0}, {10, 10, 10}});
-    EXPECT_THAT(chosen(twice, sizes, 1).kept, ElementsAre(0u, 2u));
+    EXPECT_THAT(chosen(twice, sizes, 1).rows.kept, ElementsAre(0u, 2u));
 }
 
-TEST(VoxelThinAdaptive, OnASphere_ThinsAboutAsTheQuantileDoes) {
+TEST(VoxelThinAdaptive, Sphere_KeepsAboutAsManyPointsAsTheQuantile) {
     const PointCloud sphere = fibonacci_sphere(50'000);
     const auto adaptive = thin(sphere, within(0.01, VoxelThinParams::Rule::adaptive)).kept.size();
     const auto quantile = thin(sphere, within(0.01)).kept.size();
     EXPECT_NEAR(static_cast<double>(adaptive) / static_cast<double>(quantile), 1, 0.15);
 }
 
-TEST(VoxelThinAdaptive, WhereTheScanIsFlat_FarFewerPointsStay) {
-    // A plate with a hemisphere of radius 1 on it: the plate allows the largest bins, the hemisphere small ones.
+TEST(VoxelThinAdaptive, FlatParts_KeepFarFewerPoints) {
+    // A plate with a hemisphere of radius 1 on it: the plate allows the largest voxels, the hemisphere small ones.
     Array<Vec3> points;
     for (int i = -100; i <= 100; ++i)
         for (int j = -100; j <= 100; ++j)
@@ -190,8 +190,8 @@ TEST(VoxelThinAdaptive, WhereTheScanIsFlat_FarFewerPointsStay) {
         return plate_and_ball;
     };
     EXPECT_LT(counts(adaptive)[0], 0.3 * counts(quantile)[0]);
-    // Two thirds of 0.01 over 2, rooted: the sphere's own bins, which no leaf there exceeds.
-    EXPECT_GT(counts(adaptive)[1], 0.95 * counts(thin(cloud, bins_of(std::sqrt(0.01 / 3))))[1]);
+    // The size that the sphere allows, which no leaf there exceeds.
+    EXPECT_GT(counts(adaptive)[1], 0.95 * counts(thin(cloud, voxels_of(std::sqrt(0.01 / 3))))[1]);
 }
 
 }  // namespace

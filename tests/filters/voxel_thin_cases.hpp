@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How the tests call voxel-thin.
+/// Helpers to call voxel-thin.
 
-#include "voxel_thin/local_bins.hpp"
+#include "voxel_thin/local_sizes.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill::test {
 
-inline VoxelThinParams bins_of(double size) {
+/// Voxels of this edge.
+inline VoxelThinParams voxels_of(double size) {
     VoxelThinParams params;
     params.bin_size = size;
     return params;
 }
 
-/// The bin size derived from a tolerance in the scan's unit.
+/// A voxel size derived from a tolerance in the scan's unit.
 inline VoxelThinParams within(double tolerance, VoxelThinParams::Rule rule = VoxelThinParams::Rule::quantile) {
     VoxelThinParams params;
     params.tolerance = tolerance;
@@ -33,10 +34,10 @@ std::span<const T> column(const VoxelThinResult& result, std::string_view name) 
     return result.points.columns.find(name)->values<T>();
 }
 
-/// The bin that a surface with this M1 + 2 M2 + M3 is thinned by.
-inline double bin_for(double derivatives, double tolerance,
-                      VoxelThinParams::Guarantee guarantee = VoxelThinParams::Guarantee::centres) {
-    return voxel::bin_for_edge(voxel::longest_edge(derivatives, tolerance), guarantee);
+/// The voxel size that a surface with this M1 + 2 M2 + M3 allows.
+inline double size_for(double derivatives, double tolerance,
+                       VoxelThinParams::Guarantee guarantee = VoxelThinParams::Guarantee::centres) {
+    return voxel::size_for_edge(voxel::longest_edge(derivatives, tolerance), guarantee);
 }
 
 }  // namespace scanmill::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What happens to the columns of thinned points, and the column that says by which bins.
+/// Columns of thinned points, and the column `bin-size`.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -21,44 +21,44 @@ TEST(VoxelThinColumns, Columns_AreCarriedWithTheirRows) {
     cloud.frame = {LengthUnit::millimetre, Vec3(100, 0, 0), "part"};
     cloud.columns.add(Column("weight", 1, Buffer<float>{1.f, 2.f, 3.f}));
     cloud.columns.add(Column("colour", 3, Buffer<u8>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
-    const VoxelThinResult result = thin(cloud, bins_of(1));
+    const VoxelThinResult result = thin(cloud, voxels_of(1));
     EXPECT_EQ(result.points.frame, cloud.frame);
     EXPECT_THAT(result.points.columns.find("weight")->values<float>(), ElementsAre(2.f, 3.f));
     EXPECT_THAT(result.points.columns.find("colour")->values<u8>(), ElementsAre(4, 5, 6, 7, 8, 9));
 }
 
 TEST(VoxelThinColumns, BinSize_IsAColumnOfEveryKeptPoint) {
-    const VoxelThinResult once = thin(cloud_of({{0, 0, 0}, {0.5, 0.5, 0.5}, {7, 7, 7}}), bins_of(0.7));
+    const VoxelThinResult once = thin(cloud_of({{0, 0, 0}, {0.5, 0.5, 0.5}, {7, 7, 7}}), voxels_of(0.7));
     EXPECT_THAT(column<double>(once, "bin-size"), ElementsAre(0.7, 0.7));
-    // Thinning again says the bins of the last time, and that the older ones gave way.
+    // Thinning again replaces the column, with a warning.
     Context context;
-    const VoxelThinResult twice = voxel_thin(once.points, bins_of(3.5), context);
+    const VoxelThinResult twice = voxel_thin(once.points, voxels_of(3.5), context);
     EXPECT_THAT(column<double>(twice, "bin-size"), ElementsAre(3.5, 3.5));
     EXPECT_EQ(twice.points.columns.size(), 1u);
     EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("`bin-size`")));
 }
 
-TEST(VoxelThinColumns, BinSize_OfEarlierLargerBinsStays) {
+TEST(VoxelThinColumns, BinSize_OfEarlierLargerVoxelsStays) {
     PointCloud cloud = cloud_of({{0, 0, 0}, {5, 5, 5}, {7, 7, 7}});
     cloud.columns.add(Column("bin-size", 1, Buffer<float>{2.f, 1.f, 4.f}));
     Context context;
-    const VoxelThinResult again = voxel_thin(cloud, bins_of(1.5), context);
+    const VoxelThinResult again = voxel_thin(cloud, voxels_of(1.5), context);
     EXPECT_THAT(column<double>(again, "bin-size"), ElementsAre(2, 1.5, 4));
-    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("2 of 3 kept points were thinned with larger bins before"),
-                                                HasSubstr("gives way")));
+    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("2 of 3 kept points were thinned with larger voxels before"),
+                                                HasSubstr("is replaced")));
     Context one;
-    voxel_thin(again.points, bins_of(3), one);
-    EXPECT_THAT(one.warnings(), Contains(HasSubstr("1 of 3 kept points was thinned with larger bins before; its")));
-    // Of a column in which any number is no size, none is believed.
+    voxel_thin(again.points, voxels_of(3), one);
+    EXPECT_THAT(one.warnings(), Contains(HasSubstr("1 of 3 kept points was thinned with larger voxels before; its")));
+    // A column with a single invalid size is ignored.
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const double nothing : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+    for (const double invalid : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
         PointCloud other = cloud_of({{0, 0, 0}, {5, 5, 5}, {7, 7, 7}});
-        other.columns.add(Column("bin-size", 1, Buffer<double>{2, nothing, 4}));
-        EXPECT_THAT(column<double>(thin(other, bins_of(1.5)), "bin-size"), Each(1.5)) << nothing;
+        other.columns.add(Column("bin-size", 1, Buffer<double>{2, invalid, 4}));
+        EXPECT_THAT(column<double>(thin(other, voxels_of(1.5)), "bin-size"), Each(1.5)) << invalid;
     }
 }
 
-TEST(VoxelThinColumns, BinSize_OfADerivedSizeIsThatSize) {
+TEST(VoxelThinColumns, BinSize_IsADerivedSizeToo) {
     const VoxelThinResult result = thin(random_sphere(20'000, 1), within(0.02));
     EXPECT_THAT(column<double>(result, "bin-size"), Each(result.bin_size));
 }

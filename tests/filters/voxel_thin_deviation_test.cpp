@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The promise: the scan's distance to a triangulation of the kept points stays within the tolerance.
+/// The distance between the scan and a triangulation of the kept points stays within the tolerance.
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
@@ -16,7 +16,7 @@
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 #include "sculpt/sculpt.hpp"
 #include "support/shapes.hpp"
-#include "voxel_thin/local_bins.hpp"
+#include "voxel_thin/local_sizes.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -31,7 +31,7 @@ double largest_distance(std::span<const Vec3> points, std::span<const Vec3> corn
     return std::sqrt(largest);
 }
 
-/// The solid that the kept points enclose: of points on a convex surface all of them.
+/// The solid that the points enclose. On a convex surface all points are its vertices.
 TriangleMesh solid_of(const PointCloud& points) {
     Context context;
     const DelaunayResult cells = delaunay(points, {}, context);
@@ -66,7 +66,7 @@ PointCloud random_cylinder(std::size_t count, std::uint64_t seed) {
     return {{}, std::move(points), {}};
 }
 
-/// From the kept points' triangulation as the cylinder is unrolled; away from the rims and the seam.
+/// Distance from the Delaunay triangulation of the unrolled cylinder, away from its boundary and seam.
 double deviation_on_cylinder(const PointCloud& scan, const PointCloud& kept) {
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
     using Vertex = CGAL::Triangulation_vertex_base_with_info_2<u32, Kernel>;
@@ -83,10 +83,10 @@ double deviation_on_cylinder(const PointCloud& scan, const PointCloud& kept) {
 }
 
 constexpr std::uint64_t seeds = 3;
-/// Kept points lie near their bins' centres where the scan is dense: they never come near what the bound allows.
+/// Where the scan is dense, kept points lie near their voxels' centres, so the bound is never reached.
 constexpr double usual_share = 0.5;
 
-/// From the mesh that region-grow makes of the kept points; away from the rims of an open surface.
+/// Distance from the mesh that region-grow makes of the kept points, away from the boundary of an open surface.
 double deviation_from_growth(const PointCloud& scan, const PointCloud& kept, double highest) {
     Context context;
     const TriangleMesh mesh = region_grow(kept, {}, context).mesh;
@@ -125,19 +125,19 @@ TEST(VoxelThinDeviation, OfACylinder_StaysWithinTheTolerance) {
             expect_kept(random_cylinder(20'000, seed), tolerance, deviation_on_cylinder, 0.7);
 }
 
-/// By hand: two bins that touch at a corner, and in each the only point lies in the corner farthest from the other.
-TEST(VoxelThinDeviation, PointsInBinsThatTouch_AreAsNearAsAllowedOnlyWithTheGuaranteeForPoints) {
+/// By hand: two voxels that share a corner, each with a point in the corner farthest from the other voxel.
+TEST(VoxelThinDeviation, PointsInAdjacentVoxels_AreWithinTheAllowedEdgeOnlyWithTheGuaranteeForPoints) {
     const double edge = 1;
     for (const auto guarantee : {VoxelThinParams::Guarantee::points, VoxelThinParams::Guarantee::centres}) {
-        const double size = voxel::bin_for_edge(edge, guarantee);
-        const VoxelThinResult result = thin(cloud_of({{0, 0, 0}, Vec3::Constant(1.99 * size)}), bins_of(size));
+        const double size = voxel::size_for_edge(edge, guarantee);
+        const VoxelThinResult result = thin(cloud_of({{0, 0, 0}, Vec3::Constant(1.99 * size)}), voxels_of(size));
         ASSERT_EQ(result.kept.size(), 2u);
         const double distance = (result.points.positions[0] - result.points.positions[1]).norm();
         EXPECT_EQ(distance <= edge, guarantee == VoxelThinParams::Guarantee::points) << distance;
     }
 }
 
-/// Leaves grow from tips of radius 1/4 to a waist eight times as flat.
+/// Leaves vary from tips of radius 1/4 to a waist eight times as flat.
 TEST(VoxelThinDeviation, OfAnEllipsoidThinnedAdaptively_StaysWithinTheTolerance) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         Array<Vec3> points;

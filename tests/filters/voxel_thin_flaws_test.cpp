@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// A bin size from a tolerance on scans as they are: duplicates, uneven density, noise, lines far apart.
+/// Derived voxel sizes on imperfect scans: duplicates, uneven density, noise, distant scan lines.
 #include <gmock/gmock.h>
 
 #include <numeric>
@@ -27,18 +27,18 @@ TEST(VoxelThinFlaws, Duplicates_ChangeNoSizeAndAreCounted) {
     for (std::size_t i = 0; i < single.size(); ++i) ASSERT_EQ(twice[i], 2 * single[i]);
 }
 
-TEST(VoxelThinFlaws, HalfOfTheScanAHundredTimesAsDense_StillTellsTheRadius) {
+TEST(VoxelThinFlaws, HalfOfTheScanAHundredTimesAsDense_GivesTheSameSize) {
     Array<Vec3> points;
     for (const Vec3& p : random_sphere(100'000, 1).positions)
         if (p.x() < 0) points.push_back(p);
     for (const Vec3& p : random_sphere(1000, 2).positions)
         if (p.x() >= 0) points.push_back(p);
     const VoxelThinResult result = thin({{}, std::move(points), {}}, within(0.01));
-    EXPECT_NEAR(result.bin_size / bin_for(2, 0.01, Guarantee::points), 1, 0.1);
+    EXPECT_NEAR(result.bin_size / size_for(2, 0.01, Guarantee::points), 1, 0.1);
 }
 
-/// Noise as large as a bin: the surface seems to be all bumps. The size falls, but never below the closest points.
-TEST(VoxelThinFlaws, NoiseOfABin_MakesBinsSmallerAndNothingFails) {
+/// Noise of a voxel's size looks like curvature. The derived size falls, but not below the closest points.
+TEST(VoxelThinFlaws, NoiseOfAVoxel_MakesVoxelsSmaller) {
     const PointCloud clean = random_sphere(20'000, 1);
     const double size = thin(clean, within(0.01)).bin_size;
     Random random(5);
@@ -67,8 +67,8 @@ TEST(VoxelThinFlaws, MinPointsAndMargin_WorkAsWithAGivenSize) {
     for (const u32 count : column<u32>(derived, "stands-for")) EXPECT_GE(count, 4u);
 }
 
-TEST(VoxelThinFlaws, ScanLinesFarApart_AreCountedAndTold) {
-    // Lines 50 spacings apart: 25 neighbours lie on one. A sphere beside them shows a surface.
+TEST(VoxelThinFlaws, DistantScanLines_AreCountedWithAWarning) {
+    // Lines 50 spacings apart: 25 neighbours lie on one line. The sphere beside them determines a size.
     Array<Vec3> points;
     for (int line = 0; line < 4; ++line)
         for (int i = 0; i < 200; ++i) points.push_back(Vec3(i * 0.01, line * 0.5, 0));
@@ -77,8 +77,8 @@ TEST(VoxelThinFlaws, ScanLinesFarApart_AreCountedAndTold) {
     const VoxelThinResult result = voxel_thin(cloud, within(0.01), context);
     EXPECT_EQ(context.metrics().find("undetermined")->value, 800);
     ASSERT_EQ(context.warnings().size(), 1u);
-    EXPECT_THAT(context.warnings()[0], HasSubstr("800 of 3800 places"));
-    EXPECT_NEAR(result.bin_size / bin_for(2, 0.01, Guarantee::points), 1, 0.05) << "they take no part in the choice";
+    EXPECT_THAT(context.warnings()[0], HasSubstr("800 of 3800 distinct points"));
+    EXPECT_NEAR(result.bin_size / size_for(2, 0.01, Guarantee::points), 1, 0.05) << "the lines are ignored";
 }
 
 TEST(VoxelThinFlaws, RealScan_IsThinnedByEveryRule) {

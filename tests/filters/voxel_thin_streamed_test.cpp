@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thinning a file piece by piece is thinning the scan in memory, bit for bit.
+/// Thinning a file in chunks gives the result of thinning the scan in memory, bit for bit.
 
-#include "voxel_thin/streamed_thin.hpp"
+#include "voxel_thin/voxel_thin.hpp"
 
 #include <gmock/gmock.h>
 
@@ -32,7 +32,7 @@ Thinned thinned_stream(const std::filesystem::path& path, const VoxelThinParams&
     options.threads = threads;
     Context context(options);
     const auto stream = open_point_stream(path, {}, threads);
-    if (!stream) throw Error("'{}' is not read piece by piece", path.string());
+    if (!stream) throw Error("'{}' is not read in chunks", path.string());
     Thinned thinned{voxel_thin(*stream, params, context), {}};
     thinned.metrics = context.metrics();
     return thinned;
@@ -71,9 +71,9 @@ std::filesystem::path written(const TemporaryFolder& folder, const char* name, c
 TEST(VoxelThinOfAStream, IsThatInMemory_OfDoublesWithColumns) {
     const TemporaryFolder folder;
     const auto path = written(folder, "sphere.ply", sphere(Vec3(0.1, 0, 0)));
-    expect_as_in_memory(path, bins_of(0.05));
-    expect_as_in_memory(path, bins_of(0.0002));  // bins numbered in 64 bits
-    VoxelThinParams params = bins_of(0.01);
+    expect_as_in_memory(path, voxels_of(0.05));
+    expect_as_in_memory(path, voxels_of(0.0002));  // voxels numbered in 64 bits
+    VoxelThinParams params = voxels_of(0.01);
     params.min_points = 3;
     params.margin = 0.003;
     expect_as_in_memory(path, params);
@@ -81,18 +81,18 @@ TEST(VoxelThinOfAStream, IsThatInMemory_OfDoublesWithColumns) {
 
 TEST(VoxelThinOfAStream, IsThatInMemory_FarFromZero) {
     const TemporaryFolder folder;
-    expect_as_in_memory(written(folder, "sphere.ply", sphere(Vec3(4e6, 5e6, -7e6))), bins_of(0.05));
+    expect_as_in_memory(written(folder, "sphere.ply", sphere(Vec3(4e6, 5e6, -7e6))), voxels_of(0.05));
 }
 
 TEST(VoxelThinOfAStream, IsThatInMemory_OfText) {
     const TemporaryFolder folder;
     PointCloud cloud = sphere(Vec3(0, 100, 0));
     cloud.columns = {};
-    expect_as_in_memory(written(folder, "sphere.xyz", cloud), bins_of(0.05));
+    expect_as_in_memory(written(folder, "sphere.xyz", cloud), voxels_of(0.05));
 }
 
-TEST(VoxelThinOfAStream, KeepsTheFirstOfEqualPoints_AcrossPieces) {
-    // The same eight corners of a bin, a hundred thousand times: all are equally far from its centre.
+TEST(VoxelThinOfAStream, KeepsTheFirstOfEqualPoints_AcrossChunks) {
+    // Eight points equally far from the centre of a voxel, a hundred thousand times each.
     PointCloud cloud;
     Array<Vec3> positions;
     for (u32 i = 0; i < 800'000; ++i)
@@ -100,7 +100,7 @@ TEST(VoxelThinOfAStream, KeepsTheFirstOfEqualPoints_AcrossPieces) {
     positions.emplace_back(0, 0, 0);
     cloud.positions = std::move(positions);
     const TemporaryFolder folder;
-    const Thinned thinned = thinned_stream(written(folder, "a.ply", cloud), bins_of(1), 4);
+    const Thinned thinned = thinned_stream(written(folder, "a.ply", cloud), voxels_of(1), 4);
     ASSERT_EQ(thinned.result.kept.size(), 1u);
     EXPECT_EQ(thinned.result.kept[0], 0u);
 }
@@ -109,14 +109,14 @@ TEST(VoxelThinOfAStream, RefusesWhatIsRefusedInMemory) {
     const TemporaryFolder folder;
     const auto path = written(folder, "sphere.ply", sphere(Vec3::Zero()));
     for (const double size : {0.0, -1.0, 1e-9})
-        EXPECT_EQ(sentence_of([&] { thinned_stream(path, bins_of(size), 1); }),
-                  sentence_of([&] { thin(*read_points(path), bins_of(size)); }));
-    VoxelThinParams params = bins_of(0.001);
+        EXPECT_EQ(sentence_of([&] { thinned_stream(path, voxels_of(size), 1); }),
+                  sentence_of([&] { thin(*read_points(path), voxels_of(size)); }));
+    VoxelThinParams params = voxels_of(0.001);
     params.min_points = 1000;
-    EXPECT_THAT(sentence_of([&] { thinned_stream(path, params, 1); }), HasSubstr("nothing would be left"));
+    EXPECT_THAT(sentence_of([&] { thinned_stream(path, params, 1); }), HasSubstr("no point would be kept"));
 }
 
-TEST(VoxelThinOfAStream, OfManyShortRows_TakesTheMemoryOfFewPieces) {
+TEST(VoxelThinOfAStream, OfManyShortRows_TakesTheMemoryOfFewChunks) {
     std::string rows;
     for (int i = 0; i < 3'000'000; ++i) {
         rows += std::to_string(i % 10) + ' ';
@@ -126,10 +126,10 @@ TEST(VoxelThinOfAStream, OfManyShortRows_TakesTheMemoryOfFewPieces) {
     const auto path = folder.write("a.xyz", rows);
     for (const unsigned threads : {1u, 2u}) {
         std::size_t kept = 0;
-        const auto peak = peak_of([&] { kept = thinned_stream(path, bins_of(1), threads).result.kept.size(); });
+        const auto peak = peak_of([&] { kept = thinned_stream(path, voxels_of(1), threads).result.kept.size(); });
         EXPECT_EQ(kept, 100u);
-        if (!peak) GTEST_SKIP() << "the system does not tell peaks of memory";
-#ifndef __SANITIZE_THREAD__  // which remembers who touched what
+        if (!peak) GTEST_SKIP() << "the system does not report peak memory";
+#ifndef __SANITIZE_THREAD__  // which needs memory of its own for every access
         EXPECT_LT(*peak, 80 << 20) << threads << " threads";  // 76 as the header says, and the stack of a thread
 #endif
     }
@@ -137,7 +137,7 @@ TEST(VoxelThinOfAStream, OfManyShortRows_TakesTheMemoryOfFewPieces) {
 
 TEST(VoxelThinOfAStream, IsThatInMemory_OfARealScan) {
     SCANMILL_REAL_SCAN(path, shared_data, "8-derived/happy_stand_merged_1M.ply");
-    expect_as_in_memory(path, bins_of(0.002));
+    expect_as_in_memory(path, voxels_of(0.002));
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A grid of voxels over a cloud, and in each occupied voxel the point nearest the centre: the main loop of thinning,
+/// for points in memory and for points that are read in chunks.
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/context.hpp"
+
+namespace scanmill::voxel {
+
+/// Voxel (i, j, k) holds floor((p - origin) / size); its number is (i, j, k) - first, counted row by row.
+struct VoxelGrid {
+    Vec3 origin;
+    double size;
+    Vec3 first;  // whole numbers
+    std::array<u64, 3> voxels;
+
+    u64 size_in_voxels() const { return voxels[0] * voxels[1] * voxels[2]; }
+};
+
+/// The part of the grid that overlaps `box`. Pre: the box is finite, size above 0. Throws Error for more than 2^21
+/// voxels along an axis (with the smallest size that fits) and for an origin more than 2^31 voxels away.
+VoxelGrid grid_over(const BoundingBox& box, const Vec3& origin, double size);
+
+/// Points in order, in chunks that can be read one by one.
+struct PointChunks {
+    /// First row of every chunk, and the number of points as last element.
+    std::vector<std::size_t> begin;
+    /// The points of a chunk. May fill and return `buffer` where they are not in memory. Called from several threads,
+    /// each with its own buffer.
+    std::function<std::span<const Vec3>(std::size_t chunk, Array<Vec3>& buffer)> read;
+
+    std::size_t size() const { return begin.back(); }
+};
+
+struct KeptRows {
+    /// Ascending.
+    Array<u32> kept;
+    /// Per kept row the number of points in its voxel; empty unless asked for.
+    Array<u32> members;
+    /// Per kept row the edge of its voxel; empty where all are the grid's.
+    Array<double> edges;
+    std::size_t noise = 0;  ///< points in voxels with fewer than min_points
+    std::size_t voxels = 0;  ///< occupied
+};
+
+/// Pre: at least one point, all in the grid's box; fewer than 2^32.
+/// Post: of equally near points the first; the same for any division into chunks and any number of threads.
+/// Cost: O(n) time; 24 to 72 bytes per occupied voxel, an eighth of a byte per point (4 bytes more to count members),
+/// 32 bytes (48 where the grid has 2^32 voxels or more) per point of 16 chunks, and 24 more when they are read into
+/// buffers.
+KeptRows nearest_to_centres(const PointChunks& points, const VoxelGrid& grid, u32 min_points, Context& context,
+                            bool count_members = false);
+
+}  // namespace scanmill::voxel

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Hole triangulations, and which loops are closed: one on either side of every limit.
+#include <gmock/gmock.h>
+
+#include "filters/region_grow_cases.hpp"
+#include "filters/region_grow_patch.hpp"
+#include "region_grow/holes.hpp"
+#include "region_grow/normals.hpp"
+#include "scanmill/base/random.hpp"
+#include "voxel_thin/voxel_thin.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace growing;
+using namespace test;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+/// As sorted corners; lengths as in the positions given.
+std::vector<Triangle> filling(const Patch& patch, const std::vector<u32>& loop, double circle, double bend) {
+    std::vector<u32> corners;
+    for (u32 x : loop) corners.push_back(patch.place(x));
+    NearTriangles near;
+    std::vector<Triangle> triangles;
+    for (Triangle t :
+         cheapest_filling(patch.surface(), near, corners, {circle, std::cos(bend / 180 * std::numbers::pi)})) {
+        for (u32& corner : t) corner = patch.name_of(corner);
+        EXPECT_LT(std::ranges::find(loop, t[0]), std::ranges::find(loop, t[1])) << "in the loop's direction";
+        std::ranges::sort(t);
+        triangles.push_back(t);
+    }
+    return triangles;
+}
+
+constexpr double any = std::numeric_limits<double>::infinity();
+
+/// A square of side 2 with one corner lifted by 1. Over the diagonal 0-2 two triangles of √5, over 1-3 one of 2 and
+/// one of √6.
+const std::vector<Vec3> lifted{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 1), Vec3(0, 2, 0)};
+
+TEST(RegionGrowFilling_FourCorners, TakesTheDiagonalOfLessArea) {
+    EXPECT_THAT(filling(Patch(lifted), {0, 1, 2, 3}, any, 150),
+                UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
+}
+
+TEST(RegionGrowFilling_Square, BreaksTheTieByTheFirstCorners) {
+    const std::vector<Vec3> square{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)};
+    EXPECT_THAT(filling(Patch(square), {0, 1, 2, 3}, any, 150),
+                UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
+    EXPECT_THAT(filling(Patch(square), {1, 2, 3, 0}, any, 150),
+                UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+}
+
+TEST(RegionGrowFilling_Circles, LimitTheTrianglesNotTheirNumber) {
+    const std::vector<Vec3> square{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)};
+    EXPECT_THAT(filling(Patch(square), {0, 1, 2, 3}, 1.415, 150), testing::SizeIs(2));
+    EXPECT_THAT(filling(Patch(square), {0, 1, 2, 3}, 1.414, 150), IsEmpty());
+    // A slit 1 wide and 40 long, and a round hole of radius 1.5: twelve corners each.
+    std::vector<Vec3> slit, round;
+    std::vector<u32> loop;
+    for (u32 i = 0; i < 12; ++i) {
+        slit.push_back(i < 6 ? Vec3(i * 8, 0, 0) : Vec3((11 - i) * 8, 1, 0));
+        const double angle = 2 * std::numbers::pi * i / 12;
+        round.push_back(1.5 * Vec3(std::cos(angle), std::sin(angle), 0));
+        loop.push_back(i);
+    }
+    for (Vec3& p : slit) p.x() /= 8;
+    EXPECT_THAT(filling(Patch(slit), loop, 0.75, 150), testing::SizeIs(10));
+    EXPECT_THAT(filling(Patch(round), loop, 1.45, 150), IsEmpty());
+    EXPECT_THAT(filling(Patch(round), loop, 1.51, 150), testing::SizeIs(10));
+}
+
+TEST(RegionGrowFilling_ATriangleInTheWay, IsPassedOrNothingIsFilled) {
+    // One that stabs triangle 0 1 3 in (0.5, 0.5, 0) and neither 0 1 2 nor 0 2 3, and one that stabs them all.
+    std::vector<Vec3> positions = lifted;
+    for (const Vec3& p : {Vec3(0.5, 0.5, -3), Vec3(0.4, 0.6, -3), Vec3(0.5, 0.5, 0.1)}) positions.push_back(p);
+    Patch under(positions);
+    under.add(4, 5, 6);
+    EXPECT_THAT(filling(under, {0, 1, 2, 3}, any, 150), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+    positions[6] = Vec3(0.5, 0.5, 3);
+    Patch through(positions);
+    through.add(4, 5, 6);
+    EXPECT_THAT(filling(through, {0, 1, 2, 3}, any, 150), IsEmpty());
+}
+
+TEST(RegionGrowFilling_ATriangleInTheWay, IsSeenHoweverFarItsCornersAre) {
+    // Through the whole lid, ten times as far as any search radius.
+    std::vector<Vec3> positions = lifted;
+    for (const Vec3& p : {Vec3(0.5, 0.5, -40), Vec3(0.4, 0.6, -40), Vec3(0.5, 0.5, 40)}) positions.push_back(p);
+    Patch through(positions);
+    EXPECT_THAT(filling(through, {0, 1, 2, 3}, any, 150), testing::SizeIs(2));
+    through.add(4, 5, 6);
+    EXPECT_THAT(filling(through, {0, 1, 2, 3}, any, 150), IsEmpty());
+}
+
+TEST(RegionGrowFilling_EdgesThatAreThere, AreNotRepeated) {
+    std::vector<Vec3> positions = lifted;
+    positions.push_back(Vec3(1, 1, -3));
+    Patch patch(positions);
+    patch.add(1, 3, 4);
+    EXPECT_THAT(filling(patch, {0, 1, 2, 3}, any, 150), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+}
+
+TEST(RegionGrowFilling_Bends, OfATentsRoofDecide) {
+    // Beyond edge 0-1 the surface comes back over the hole, 15 degrees above it: a bend of 165 degrees.
+    const double slope = std::tan(std::numbers::pi / 12);
+    Patch patch({Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(1, 1, 0), Vec3(1, 1.5, 1.5 * slope)});
+    patch.add(1, 0, 3);
+    EXPECT_THAT(filling(patch, {0, 1, 2}, any, 166), ElementsAre(Triangle{0, 1, 2}));
+    EXPECT_THAT(filling(patch, {0, 1, 2}, any, 164), IsEmpty());
+}
+
+constexpr double degree = std::numbers::pi / 180;
+
+/// A loop with a strip round it that falls off outwards by `fall` degrees: 0 lies in the loop's plane, 90 is a wall
+/// below it, and more a fold back under it. With flaps: at so many edges the strip's triangle is three round a point
+/// that is folded into the hole.
+Patch strip_round(const std::vector<Vec3>& loop, const std::vector<Vec3>& outwards, double fall,
+                  std::size_t flaps = 0) {
+    const u32 count = static_cast<u32>(loop.size());
+    std::vector<Vec3> positions = loop;
+    for (u32 i = 0; i < count; ++i)
+        positions.push_back(loop[i] +
+                            0.3 * (std::cos(fall * degree) * outwards[i] - std::sin(fall * degree) * Vec3::UnitZ()));
+    const auto flap_at = [&](std::size_t flap) { return static_cast<u32>(flap * count / 2); };
+    for (std::size_t flap = 0; flap < flaps; ++flap) {
+        const u32 i = flap_at(flap), next = (i + 1) % count;
+        positions.push_back((loop[i] + loop[next]) / 2 - 0.2 * outwards[i] - Vec3(0, 0, 0.01));
+    }
+    Patch patch(positions);
+    u32 flap = 0;
+    for (u32 i = 0; i < count; ++i) {
+        const u32 next = (i + 1) % count, middle = 2 * count + flap;
+        if (flap < flaps && i == flap_at(flap)) {
+            patch.add(next, i, middle);
+            patch.add(i, count + i, middle);
+            patch.add(count + i, next, middle);
+            ++flap;
+        } else
+            patch.add(next, i, count + i);
+        patch.add(count + i, count + next, next);
+        // The strip's other side is none of these tests' holes.
+        patch.set_search_radius(count + i, 1e-6);
+    }
+    return patch;
+}
+
+Patch ring(u32 corners, double radius, double fall, std::size_t flaps = 0) {
+    std::vector<Vec3> loop, outwards;
+    for (u32 i = 0; i < corners; ++i) {
+        const double angle = 2 * std::numbers::pi * i / corners;
+        outwards.push_back(Vec3(std::cos(angle), std::sin(angle), 0));
+        loop.push_back(radius * outwards.back());
+    }
+    return strip_round(loop, outwards, fall, flaps);
+}
+
+/// 1 wide and so long, a corner at every unit.
+Patch slit(u32 length, double fall) {
+    std::vector<Vec3> loop, outwards;
+    for (u32 x = 0; x <= length; ++x) {
+        loop.push_back(Vec3(x, 0, 0));
+        outwards.push_back(-Vec3::UnitY());
+    }
+    for (u32 x = length + 1; x-- > 0;) {
+        loop.push_back(Vec3(x, 1, 0));
+        outwards.push_back(Vec3::UnitY());
+    }
+    for (const std::size_t corner : {std::size_t(0), loop.size() - 1}) outwards[corner].x() = -0.5;
+    for (const std::size_t corner : {std::size_t(length), std::size_t(length) + 1}) outwards[corner].x() = 0.5;
+    for (Vec3& out : outwards) out.normalize();
+    return strip_round(loop, outwards, fall);
+}
+
+/// `circle`: the largest, as in the positions given.
+NarrowHoles closed(Patch patch, double circle, double bend = 180, std::size_t most_edges = 4) {
+    ContextOptions options;
+    return close_narrow_holes(patch.surface(), {circle / 4, most_edges, bend * degree}, Context(options));
+}
+
+TEST(RegionGrowNarrow_RoundHoles, AreClosedWhereTheirCircleIsNone) {
+    EXPECT_EQ(closed(ring(16, 1, 0), 1.001).closed, 1u);
+    EXPECT_EQ(closed(ring(16, 1, 0), 0.99).closed, 0u);
+    EXPECT_EQ(closed(ring(16, 1, 0), 0.99, 180, 15).closed, 0u);
+    EXPECT_EQ(closed(ring(16, 1, 0), 0.99, 180, 16).closed, 1u) << "of any size";
+}
+
+TEST(RegionGrowNarrow_Slits, OfAtMost100EdgesAreClosed) {
+    EXPECT_EQ(closed(slit(49, 0), 0.75).closed, 1u) << "100 edges";
+    EXPECT_EQ(closed(slit(50, 0), 0.75).closed, 0u) << "102 edges";
+}
+
+TEST(RegionGrowNarrow_LoopsThatTheSurfaceFacesAwayFrom, StayOpen) {
+    for (const double fall : {0.0, 60.0, 90.0, 117.0}) EXPECT_EQ(closed(ring(16, 1, fall), 1.1).closed, 1u) << fall;
+    for (const double fall : {123.0, 150.0}) EXPECT_EQ(closed(ring(16, 1, fall), 1.1).closed, 0u) << fall;
+}
+
+TEST(RegionGrowNarrow_LongLoops, StayOpenFromSteeperSidesThanShortOnes) {
+    // The corners lie up to 15.008 from the middle.
+    for (const double fall : {0.0, 60.0, 75.0}) EXPECT_EQ(closed(slit(30, fall), 1).closed, 1u) << fall;
+    for (const double fall : {81.0, 90.0, 110.0}) EXPECT_EQ(closed(slit(30, fall), 1).closed, 0u) << fall;
+    EXPECT_EQ(closed(slit(30, 90), 15.02 / 2).closed, 1u);
+    EXPECT_EQ(closed(slit(30, 90), 15.00 / 2).closed, 0u);
+}
+
+TEST(RegionGrowNarrow_Bends, EndTheSurfaceWhereTheyShould) {
+    // A lid bends by the fall of the strip; strips opposite to each other differ by twice as much.
+    EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 103).closed, 1u);
+    EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 97).closed, 0u) << "the rims differ";
+    EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 97, 16).closed, 1u) << "of any size";
+    EXPECT_EQ(closed(ring(16, 1, 85), 1.1, 171).closed, 1u);
+    EXPECT_EQ(closed(ring(16, 1, 88), 1.1, 171).closed, 0u);
+    EXPECT_EQ(closed(ring(16, 1, 88), 1.1, 172).closed, 1u) << "a tip";
+}
+
+TEST(RegionGrowNarrow_ATriangleThatIsInTheWay, GivesWayAtLoopsOfAtMost30Corners) {
+    const NarrowHoles at_30 = closed(ring(30, 3, 0, 1), 3.1);
+    EXPECT_EQ(at_30.closed, 1u);
+    EXPECT_EQ(at_30.replaced, 1u);
+    const NarrowHoles at_31 = closed(ring(31, 3, 0, 1), 3.1);
+    EXPECT_EQ(at_31.closed, 0u);
+    EXPECT_EQ(at_31.replaced, 0u);
+    EXPECT_EQ(closed(ring(30, 3, 0, 1), 2.5).replaced, 0u) << "a hole all the same";
+}
+
+TEST(RegionGrowNarrow_TwoTrianglesInTheWay, GiveWayAtLoopsOfAtMost12Corners) {
+    const NarrowHoles at_12 = closed(ring(12, 1, 0, 2), 1.1);
+    EXPECT_EQ(at_12.closed, 1u);
+    EXPECT_EQ(at_12.replaced, 2u);
+    EXPECT_EQ(closed(ring(13, 1, 0, 2), 1.1).closed, 0u);
+}
+
+TEST(RegionGrowNarrow_Closing, CanBeCancelledAtEveryLoop) {
+    Patch patch = ring(16, 1, 0);
+    ContextOptions options;
+    options.is_cancelled = [] { return true; };
+    EXPECT_THROW(close_narrow_holes(patch.surface(), {0.3, 4, 3}, Context(options)), Cancelled);
+}
+
+/// Two planes of step 1 that meet in a crease of so many degrees, which fades out to both of its ends.
+PointCloud fading_crease(double bend) {
+    std::vector<Vec3> points;
+    for (int across = -10; across <= 10; ++across)
+        for (int y = -20; y <= 20; ++y) {
+            const double half = bend / 2 * degree * std::cos(std::numbers::pi * y / 40);
+            points.push_back(Vec3(across * std::cos(half), y, -std::abs(across) * std::sin(half)));
+        }
+    return cloud_from(std::move(points));
+}
+
+TEST(RegionGrow_CreasesThatFadeOut, ArePatchEdgesWhateverIsClosed) {
+    for (const double bend : {70.0, 90.0, 100.0, 110.0, 120.0, 130.0}) {
+        SCOPED_TRACE(bend);
+        RegionGrowParams params = with_max_normal_angle(60);
+        params.search_radius = Length(2 * std::numbers::sqrt3);
+        const RegionGrowResult result = grown(fading_crease(bend), params);
+        expect_consistent(result);
+        params.close_holes = 0;
+        const RegionGrowResult open = grown(fading_crease(bend), params);
+        EXPECT_EQ(result.loops, bend > 80 ? 2u : 1u);
+        EXPECT_EQ(result.patch_edges > 0, bend > 80);
+        EXPECT_EQ(result.patch_edges, open.patch_edges);
+        EXPECT_EQ(result.mesh.triangles.size(), open.mesh.triangles.size());
+    }
+}
+
+TEST(RegionGrow_OpenPocket, StaysOpenThoughNarrow) {
+    // Of 30 x 2.5 x 10: across its mouth fits no circle as large as a hole's.
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        Random random(seed);
+        std::vector<Vec3> points;
+        const Vec3 size(30, 2.5, 10);
+        const double sides = size.x() * size.z(), ends = size.y() * size.z(), floor = size.x() * size.y();
+        for (int i = 0; i < 60'000; ++i) {
+            Vec3 p(random.uniform(0, size.x()), random.uniform(0, size.y()), random.uniform(0, size.z()));
+            const double face = random.uniform(0, 2 * sides + 2 * ends + floor);
+            if (face < 2 * sides)
+                p.y() = face < sides ? 0 : size.y();
+            else if (face < 2 * sides + 2 * ends)
+                p.x() = face < 2 * sides + ends ? 0 : size.x();
+            else
+                p.z() = 0;
+            points.push_back(p + Vec3(0.3, 0.2, 0.1));
+        }
+        VoxelThinParams params;
+        params.bin_size = Length(1);
+        Context context;
+        const RegionGrowResult result = grown(voxel_thin(cloud_from(std::move(points)), params, context).points);
+        expect_consistent(result);
+        EXPECT_EQ(result.components, 1u) << seed;
+        EXPECT_EQ(result.loops, 1u) << seed;
+        EXPECT_EQ(topology(result.mesh).euler, 1) << seed;
+    }
+}
+
+}  // namespace
+}  // namespace scanmill
