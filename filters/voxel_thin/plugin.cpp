@@ -30,7 +30,8 @@ SCANMILL_FILTER() {
                 "How the voxel size follows from the sizes that the points allow.")
         .param("quantile", &P::quantile, "The share of the points whose smaller sizes are ignored.", at_least(0),
                at_most(1))
-        .param("neighbours", &P::neighbours, "Number of nearest other points that determine the curvature at a point.",
+        .param("neighbours", &P::neighbours,
+               "Number of nearest points, without the point itself, that determine the curvature at a point.",
                at_least(6), at_most(1000))
         .choice("origin", &P::origin,
                 {{"nearest", LocalSurfaceParams::Origin::nearest, "The point itself."},

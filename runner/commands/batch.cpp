@@ -48,7 +48,7 @@ int run_batch(const Options& options) {
             .hint("a workflow is run by: scanmill run WORKFLOW SCAN…");
     const Warn warn = warning_teller();
     const std::unique_ptr<Cache> cache = open_cache(options.execute.cache, warn);
-    Workforce workforce(options.execute, cache.get());
+    const std::unique_ptr<Session> session = open_session(options.execute, cache.get());
     FilterLibrary library = open_library();
     CheckedBatch checked = check_batch(text, options.file, library);
     nlohmann::ordered_json found = nlohmann::ordered_json::array();
@@ -67,9 +67,8 @@ int run_batch(const Options& options) {
     const auto hash = [&](const std::filesystem::path& file) {
         return cache ? cache->file_hash(file) : content_hash(file);
     };
-    Task task{checked.batch.name, options.file, make_graph(parts, library, hash), checked.batch.limits};
-    task.streams_events = true;
-    return execute(task, library, cache.get(), workforce, warn, options.execute);
+    SessionTask task{checked.batch.name, options.file, make_graph(parts, library, hash), checked.batch.limits};
+    return execute(task, true, *session, library, warn, options.execute);
 }
 
 }  // namespace

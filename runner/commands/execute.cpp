@@ -2,14 +2,11 @@
 #include "commands/execute.hpp"
 
 #include <fmt/format.h>
-#include <sched.h>
-#include <unistd.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <charconv>
 #include <csignal>
 #include <limits>
-#include <set>
 
 #include "commands/commands.hpp"
 #include "output/event_stream.hpp"
@@ -17,16 +14,6 @@
 #include "output/progress.hpp"
 #include "output/run_output.hpp"
 #include "output/stderr_text.hpp"
-#include "scanmill/base/error.hpp"
-#include "scanmill/io/atomic_file.hpp"
-#include "scanmill/records/reasons.hpp"
-#include "scanmill/records/recorder.hpp"
-#include "scanmill/run/run.hpp"
-#include "scanmill/session/machine.hpp"
-#include "scanmill/session/memory_need.hpp"
-#include "scanmill/worker/resources.hpp"
-#include "scanmill/worker/worker_processes.hpp"
-#include "scanmill/worker/workers.hpp"
 
 namespace scanmill::runner {
 
@@ -38,29 +25,6 @@ volatile std::sig_atomic_t interrupt_requested = 0;
 void on_interrupt(int signal) {
     interrupt_requested = 1;
     std::signal(signal, SIG_DFL);  // a second one ends the program at once
-}
-
-/// Better before the first step than after the last.
-void require_writable(const std::filesystem::path& folder) {
-    std::error_code trouble;
-    std::filesystem::create_directories(folder, trouble);
-    if (!trouble && ::access(folder.c_str(), W_OK | X_OK) != 0) trouble.assign(errno, std::generic_category());
-    if (trouble)
-        throw Error("results cannot be put into '{}': {}", folder.string(), trouble.message())
-            .hint("name another output folder: -o DIR");
-}
-
-/// What changed since the last run into the same folder; without records of one nothing is known.
-void explain_from_records(std::vector<NodeForesight>& foresight, FilterLibrary& library, const RunGraph& graph,
-                          const std::filesystem::path& folder, const Warn& warn) {
-    const std::filesystem::path file = folder / records_file;
-    std::error_code absent;
-    if (!std::filesystem::exists(file, absent)) return;
-    try {
-        explain(foresight, library, graph, RunRecords::read(file));
-    } catch (const Error& error) {
-        warn(fmt::format("what changed since the last run is not known: {}", error.sentence()));
-    }
 }
 
 /// The command line's own reading takes -1 for the largest number and 010 for eight.
@@ -92,37 +56,19 @@ std::string what_bars_folder(const std::string& folder) {
 
 constexpr unsigned most_jobs = 1024;
 
-/// As many as there is work for and cores, and as memory allows when each takes the largest scan.
-unsigned default_jobs(const RunGraph& graph) {
-    const u64 held = available_memory() / std::max<u64>(1, memory_need(graph));
-    return static_cast<unsigned>(std::clamp<u64>(std::min<u64>(graph.cells.size(), held), 1, cores()));
-}
-
 }  // namespace
 
-Workforce::Workforce(const ExecuteOptions& options, const Cache* cache) {
-    if (options.jobs == 0u || options.dry_run) return;
-    WorkerProcessSettings settings;
-    settings.command = {"/proc/self/exe", "worker"};
-    if (cache) settings.cache_folder = cache->folder().string();
-    settings.keep_policy = static_cast<int>(keep_policy(options.cache));
-    settings.on_note = [warn = warn_](std::string text) {
-        if (*warn) (*warn)(std::move(text));
-    };
-    processes_ = std::make_unique<WorkerProcesses>(std::move(settings));
-    try {
-        processes_->start_early();
-    } catch (const Error&) {
-        // It is tried again, and told, when there is work.
-    }
-}
-
-Workforce::~Workforce() = default;
-
-unsigned cores() {
-    cpu_set_t usable;
-    if (::sched_getaffinity(0, sizeof usable, &usable) == 0) return static_cast<unsigned>(CPU_COUNT(&usable));
-    return 1;
+std::unique_ptr<Session> open_session(const ExecuteOptions& options, Cache* cache) {
+    SessionSettings settings;
+    settings.output_folder = options.output_folder;
+    settings.jobs = options.jobs;
+    settings.threads = options.threads;
+    settings.fail_fast = options.fail_fast;
+    settings.keep = keep_policy(options.cache);
+    if (!options.dry_run) settings.worker_command = {"/proc/self/exe", "worker"};
+    settings.command_line = options.command_line;
+    settings.is_cancelled = [] { return interrupt_requested != 0; };
+    return std::make_unique<Session>(std::move(settings), cache);
 }
 
 void add_execute_options(CLI::App& command, ExecuteOptions& options) {
@@ -151,61 +97,30 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
     command.add_flag("-q,--quiet", options.quiet, "No progress on stderr");
 }
 
-int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& workforce, const Warn& warn,
+int execute(const SessionTask& task, bool streams_events, Session& session, FilterLibrary& library, const Warn& warn,
             const ExecuteOptions& options) {
     const RunGraph& graph = task.graph;
-    std::vector<NodeForesight> foresight = foresee(graph, cache, keep_policy(options.cache));
-    if (cache) explain_from_records(foresight, library, graph, options.output_folder, warn);
+    session.on_warning(warn);
+    std::vector<NodeForesight> predictions = session.predict(graph, library);
     if (options.dry_run) {
-        fmt::print("{}", options.json ? graph_json(graph, foresight) + "\n" : printable(graph_text(graph, foresight)));
+        fmt::print("{}",
+                   options.json ? graph_json(graph, predictions) + "\n" : printable(graph_text(graph, predictions)));
         return done;
     }
 
-    require_writable(options.output_folder);
-    std::set<std::filesystem::path> folders;
-    for (const RunCell& cell : graph.cells)
-        for (const RunOutput& output : cell.outputs) folders.insert(output.file.parent_path());
-    for (const std::filesystem::path& folder : folders) remove_abandoned_parts(folder);
-
-    const unsigned jobs = options.jobs ? *options.jobs : default_jobs(graph);
-    if (jobs == 0 && (task.limits.cell_seconds > 0 || task.limits.step_seconds > 0))
-        warn("with -j 0 no limit of time is kept");
-    RunSettings settings;
-    settings.threads = options.threads > 0 ? options.threads : std::max(1u, cores() / std::max(1u, jobs));
-    settings.limits = task.limits;
-    settings.fail_fast = options.fail_fast;
-    settings.cache = cache;
-    settings.shares_values = jobs > 0 && cache && keep_policy(options.cache) != KeepRule::Policy::never;
-    settings.foresight = std::move(foresight);
-    settings.is_cancelled = [] { return interrupt_requested != 0; };
-    std::signal(SIGPIPE, SIG_IGN);  // whoever reads what is said may go: the work goes on
+    std::signal(SIGPIPE, SIG_IGN);  // the work goes on when whoever reads the output ends
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
-    Progress progress(graph, settings.foresight, std::max(1u, jobs), options.quiet);
-    const Warn warn_beside = [&](std::string text) { progress.say_beside([&] { warn(std::move(text)); }); };
-    workforce.tell(warn_beside);
-    std::unique_ptr<Workers> in_process;
-    if (!workforce.processes())
-        in_process =
-            std::make_unique<InProcessWorker>(library, cache, keep_policy(options.cache), settings.is_cancelled);
-    else
-        workforce.processes()->resize(jobs);
-    Workers& workers = in_process ? *in_process : *workforce.processes();
-
+    Progress progress(graph, predictions, std::max(1u, session.jobs(graph)), options.quiet);
+    session.on_warning([&](std::string text) { progress.say_beside([&] { warn(std::move(text)); }); });
     std::optional<EventStream> events;
-    RunStart start{task.name, task.file,        options.command_line, graph.seed,      settings.threads,
-                   jobs,      SCANMILL_VERSION, machine_text(),       libraries_text()};
-    Recorder recorder(std::filesystem::path(options.output_folder) / records_file, std::move(start), library, graph,
-                      warn_beside);
-    std::vector<RunObserver*> observing{&progress, &recorder};
-    if (options.json && task.streams_events) observing.push_back(&events.emplace(graph));
-    if (events) events->begin(task.name, jobs, settings.threads, recorder.run());
-    Observers observers(observing);
-    const RunReport report = run(library, graph, workers, settings, observers);
+    std::vector<RunObserver*> observers{&progress};
+    if (options.json && streams_events) observers.push_back(&events.emplace(graph));
+    const RunReport report = session.run(task, library, std::move(predictions), observers, [&](const RunStarted& run) {
+        if (events) events->begin(task.name, run.jobs, run.threads, run.run);
+    });
     progress.finish();
-    if (workforce.processes()) workforce.processes()->dismiss();
-    recorder.finish(report);
-    if (cache) cache->evict();
+    session.on_warning(warn);
 
     if (events) {
         events->end(report);

@@ -7,12 +7,7 @@
 #include <memory>
 
 #include "commands/cache_options.hpp"
-#include "scanmill/batch/batch.hpp"
-#include "scanmill/graph/graph.hpp"
-
-namespace scanmill {
-class WorkerProcesses;
-}
+#include "scanmill/session/session.hpp"
 
 namespace scanmill::runner {
 
@@ -28,34 +23,12 @@ struct ExecuteOptions {
 
 void add_execute_options(CLI::App& command, ExecuteOptions& options);
 
-/// A graph, and how it is called in the records.
-struct Task {
-    std::string name, file;  ///< of the workflow or the batch
-    RunGraph graph;
-    Limits limits;
-    bool streams_events = false;  ///< --json prints what happens as it happens, a line each; else a report at the end
-};
+/// The session for these options; no worker process starts for a dry run.
+std::unique_ptr<Session> open_session(const ExecuteOptions& options, Cache* cache);
 
-/// Worker processes, the first of which starts while there is still much to be read and planned. None with -j 0.
-class Workforce {
-public:
-    Workforce(const ExecuteOptions& options, const Cache* cache);
-    ~Workforce();
-
-    WorkerProcesses* processes() { return processes_.get(); }
-    /// Who is told what workers say of their surroundings.
-    void tell(Warn warn) { *warn_ = std::move(warn); }
-
-private:
-    std::shared_ptr<Warn> warn_ = std::make_shared<Warn>();
-    std::unique_ptr<WorkerProcesses> processes_;
-};
-
-/// Prints what would be done, with --dry-run, or does it. Returns the exit code.
-int execute(const Task& task, FilterLibrary& library, Cache* cache, Workforce& workforce, const Warn& warn,
+/// Prints what would be done, with --dry-run, or does it and prints the report; with `streams_events`, --json prints
+/// one event per line while the run goes on. Returns the exit code.
+int execute(const SessionTask& task, bool streams_events, Session& session, FilterLibrary& library, const Warn& warn,
             const ExecuteOptions& options);
-
-/// Cores that this process may use.
-unsigned cores();
 
 }  // namespace scanmill::runner

@@ -17,6 +17,9 @@ struct CheckedWorkflow {
     Plan plan;  ///< to be run only without errors
 };
 
+/// The file; when there is none and it is a bare name, the shipped workflow of that name.
+std::string workflow_file(const std::string& file_or_name);
+
 /// Throws Error when the file itself cannot be read.
 CheckedWorkflow check_workflow(const std::string& file, const FilterLibrary& library, const Settings& settings);
 /// The same of a file that was read already.

@@ -110,7 +110,7 @@ int measure(Options options) {
         warnings.push_back(std::move(text));
     };
     ContextOptions running;
-    running.threads = options.threads > 0 ? options.threads : cores();
+    running.threads = options.threads > 0 ? options.threads : usable_cores();
     running.seed = options.seed;
     running.on_warning = [&](std::string_view text) { warn(std::string(text)); };
     try {

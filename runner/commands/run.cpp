@@ -41,12 +41,12 @@ std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std
 int run_workflow(const Options& options) {
     const Warn warn = warning_teller();
     const std::unique_ptr<Cache> cache = open_cache(options.execute.cache, warn);
-    Workforce workforce(options.execute, cache.get());
+    const std::unique_ptr<Session> session = open_session(options.execute, cache.get());
     FilterLibrary library = open_library();
-    const std::string text = read_workflow_file(options.workflow);
-    if (is_batch(text))
-        throw Error("'{}' is a batch, not a workflow", options.workflow).hint("scanmill batch " + options.workflow);
-    const CheckedWorkflow checked = check_workflow(options.workflow, text, library, parse_settings(options.settings));
+    const std::string file = workflow_file(options.workflow);
+    const std::string text = read_workflow_file(file);
+    if (is_batch(text)) throw Error("'{}' is a batch, not a workflow", file).hint("scanmill batch " + file);
+    const CheckedWorkflow checked = check_workflow(file, text, library, parse_settings(options.settings));
     print(checked.diagnostics);
     if (checked.diagnostics.has_errors()) {
         if (options.execute.json) print_files_json({to_json(checked.diagnostics)});
@@ -56,20 +56,23 @@ int run_workflow(const Options& options) {
     RunRequest request;
     for (const std::string& scan : options.scans) request.scans.emplace_back(scan);
     request.inputs = parse_inputs(options.inputs);
+    if (!checked.plan.workflow.inputs.empty())  // `--in` feeds the first input, too
+        if (auto first = request.inputs.extract(checked.plan.workflow.inputs.front().name))
+            for (const std::filesystem::path& file : first.mapped()) request.scans.emplace_back(file);
     request.output_folder = options.execute.output_folder;
     request.unit = parse_unit(options.unit);
     request.seed = options.execute.seed;
     request.only = options.only;
     request.until = options.until;
     request.save = options.save;
-    Task task{workflow_name(checked.plan),
-              options.workflow,
-              make_graph(checked.plan, library, request,
-                         [&](const std::filesystem::path& file) {
-                             return cache ? cache->file_hash(file) : content_hash(file);
-                         }),
-              {}};
-    return execute(task, library, cache.get(), workforce, warn, options.execute);
+    SessionTask task{workflow_name(checked.plan),
+                     file,
+                     make_graph(checked.plan, library, request,
+                                [&](const std::filesystem::path& file) {
+                                    return cache ? cache->file_hash(file) : content_hash(file);
+                                }),
+                     {}};
+    return execute(task, false, *session, library, warn, options.execute);
 }
 
 }  // namespace
@@ -78,12 +81,15 @@ void add_run(CLI::App& app, Action& chosen, std::vector<std::string> command_lin
     CLI::App* command = app.add_subcommand("run", "Runs a workflow over one scan or many");
     auto options = std::make_shared<Options>();
     options->execute.command_line = std::move(command_line);
-    command->add_option("WORKFLOW", options->workflow, "The workflow file")->required();
+    command
+        ->add_option("WORKFLOW", options->workflow,
+                     "The workflow file, or the name of a shipped one, such as bernardini-1997")
+        ->required();
     command->add_option(
         "SCAN", options->scans,
         "Files that feed the workflow's first input: one run each, or all of them one run when that input is a "
         "list");
-    command->add_option("--in", options->inputs, "Files for the other inputs: NAME=FILE[,FILE…]")
+    command->add_option("--in", options->inputs, "Files for an input: NAME=FILE[,FILE…]")
         ->take_all()
         ->allow_extra_args(false);
     command->add_option("--unit", options->unit, "The scans' unit of length: um, mm, cm, m, in, ft");

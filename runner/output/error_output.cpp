@@ -23,7 +23,11 @@ void print_json(const Json& json) {
 }  // namespace
 
 void print(const Error& error, bool json) {
-    tell("error: {}\n", printable(error.what()));
+    // Each part on one line: a file's name may contain a line break.
+    std::string text = "error: " + printable_line(error.sentence());
+    for (const std::string& frame : error.frames()) text += "\n  " + printable_line(frame);
+    if (!error.hint().empty()) text += "\nhint: " + printable_line(error.hint());
+    tell("{}\n", text);
     if (!json) return;
     Json described{{"message", error.sentence()}, {"where", error.frames()}};
     if (!error.hint().empty()) described["hint"] = error.hint();

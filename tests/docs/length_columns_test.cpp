@@ -26,8 +26,11 @@ Names matches_in(const std::string& text, const std::string& pattern) {
 
 TEST(LengthColumns, TheGuideNamesThemWhereItTellsOfConvert) {
     const std::filesystem::path source = SCANMILL_SOURCE_DIR;
-    const std::string list = content_of(source / "runner/length_columns.cpp");
-    const Names scaled = matches_in(list, "\\{\"([a-z0-9-]+)\", (?:false|true)\\}");
+    Names scaled;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "filters"))
+        if (entry.path().extension() == ".cpp")
+            scaled.merge(matches_in(content_of(entry.path()),
+                                    "Column\\(\"([a-z0-9-]+)\"[^\n]*with_length_exponent\\((?:1|-1)\\)"));
     ASSERT_TRUE(scaled.contains("bin-size") && scaled.contains("curvature-1"));
     const std::string guide = content_of(source / "docs/user-guide.md");
     const std::size_t begin = guide.find("`--to-unit mm` multiplies");

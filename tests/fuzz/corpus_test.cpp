@@ -50,7 +50,6 @@ const std::set<std::string> refused{
     "poses/no_pose.json",
     "poses/word_unknown.conf",
     "pts/count_only.pts",
-    "pts/count_wrong.pts",
     "ptx/singular.ptx",
     "setting/comma",
     "setting/dollar_alone",

@@ -98,7 +98,15 @@ public:
     /// The first output is the primary one.
     template <class T>
     Declare& out(std::string port, std::string help) {
-        declaration_.spec.outputs.push_back({std::move(port), kind_of<T>(), std::move(help), false, false, {}});
+        declaration_.spec.outputs.push_back({std::move(port), kind_of<T>(), std::move(help)});
+        return *this;
+    }
+    /// An output of the kind of the value at the input `like`, which is declared before it.
+    Declare& out_like(std::string port, std::string like, std::string help) {
+        PortSpec spec{std::move(port), {}, std::move(help)};
+        if (const PortSpec* input = declaration_.spec.input(like)) spec.kind = input->kind;
+        spec.like = std::move(like);
+        declaration_.spec.outputs.push_back(std::move(spec));
         return *this;
     }
     /// The member may be one that the params struct inherits.

@@ -15,6 +15,7 @@ Json to_json(const PortSpec& port) {
     if (port.list) json["list"] = true;
     if (port.optional) json["optional"] = true;
     for (const Kind kind : port.also) json["also"].push_back(name_of(kind));
+    if (!port.like.empty()) json["like"] = port.like;
     if (!port.maker.empty()) json["maker"] = port.maker;
     return json;
 }
@@ -64,6 +65,7 @@ PortSpec port_from(const Json& json) {
     PortSpec port{json.at("name"), kind_from(json.at("kind")), json.at("help"), json.value("list", false),
                   json.value("optional", false)};
     for (const auto& also : json.value("also", Json::array())) port.also.push_back(kind_from(also));
+    port.like = json.value("like", "");
     port.maker = json.value("maker", "");
     return port;
 }
@@ -145,8 +147,10 @@ Manifest parse_manifest(std::string_view text) try {
     if (json.contains("streams"))
         spec.streams = StreamSpec{json["streams"].at("given").get<std::vector<std::string>>()};
     return manifest;
-} catch (const Json::exception& error) {
-    throw Error("is no manifest: {}", error.what());
+} catch (const Json::parse_error&) {
+    throw Error("is no manifest: invalid JSON");
+} catch (const Json::exception&) {
+    throw Error("is no manifest: a member is missing or has another type");
 }
 
 }  // namespace scanmill

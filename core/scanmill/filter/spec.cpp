@@ -109,6 +109,7 @@ const MetricSpec* FilterSpec::metric(std::string_view wanted) const {
 }
 
 std::string kinds_text(const PortSpec& port) {
+    if (!port.like.empty()) return fmt::format("the kind of '{}'", port.like);
     std::string text(name_of(port.kind));
     for (const Kind kind : port.also) text.append(" or ").append(name_of(kind));
     return text;
@@ -124,6 +125,11 @@ void require_sound(const FilterSpec& spec) {
     require_names(spec.name, "output", spec.outputs);
     require_names(spec.name, "parameter", spec.parameters);
     require_names(spec.name, "metric", spec.metrics);
+    for (const PortSpec& output : spec.outputs)
+        if (const PortSpec* input = output.like.empty() ? nullptr : spec.input(output.like);
+            !output.like.empty() && (!input || input->optional || input->kind != output.kind))
+            throw Error("filter {}: the output '{}' follows '{}', which must be a required input", spec.name,
+                        output.name, output.like);
     if (!spec.inputs.empty()) require_said(spec.name, "ties", spec.ties);
     const auto has_coordinates = [](const PortSpec& port) {
         return port.takes(kind_of<PointCloud>()) || port.takes(kind_of<TriangleMesh>());

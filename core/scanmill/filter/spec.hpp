@@ -21,7 +21,8 @@ struct PortSpec {
     bool list = false;      ///< takes any number of values; inputs only
     bool optional = false;  ///< may stay unwired; inputs only
     std::vector<Kind> also{};  ///< kinds that it takes as well; inputs only. Such a port is wired by `in` alone
-    std::string maker{};       ///< the filter that its value usually comes from; empty: any that gives the kind
+    std::string like{};  ///< the input whose kind the value has; outputs only. `kind` is then that input's first
+    std::string maker{};  ///< the filter that its value usually comes from; empty: any that gives the kind
 
     bool takes(Kind other) const { return kind == other || std::ranges::find(also, other) != also.end(); }
     bool operator==(const PortSpec&) const = default;

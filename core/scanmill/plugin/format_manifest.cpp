@@ -44,8 +44,10 @@ FormatManifest parse_format_manifest(std::string_view text) try {
     spec.reads = json.value("reads", true);
     if (spec.name.empty() || spec.extensions.empty()) throw Error("names no format, or no extension");
     return manifest;
-} catch (const Json::exception& error) {
-    throw Error("is no manifest: {}", error.what());
+} catch (const Json::parse_error&) {
+    throw Error("is no manifest: invalid JSON");
+} catch (const Json::exception&) {
+    throw Error("is no manifest: a member is missing or has another type");
 }
 
 }  // namespace scanmill

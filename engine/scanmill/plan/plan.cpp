@@ -115,10 +115,20 @@ private:
         return nullptr;
     }
 
-    std::size_t add_step(const ExpandedStep& step, const FilterSpec& spec, const WiringScope& scope) {
+    /// Outputs that follow an input get the kind of what is wired to it.
+    FilterSpec with_kinds(FilterSpec spec, const std::vector<PlannedInput>& inputs) const {
+        for (PortSpec& output : spec.outputs)
+            if (const auto wired = std::ranges::find(inputs, output.like, &PlannedInput::port);
+                !output.like.empty() && wired != inputs.end())
+                output.kind = kind_of(plan_, wired->sources.front());
+        return spec;
+    }
+
+    std::size_t add_step(const ExpandedStep& step, const FilterSpec& declared, const WiringScope& scope) {
         ParameterSet set =
-            step_parameters(step, spec, {plan_.workflow.file, *settings_, diagnostics_, settings_diagnostics_});
-        std::vector<PlannedInput> inputs = wire(*step.syntax, spec, scope, diagnostics_);
+            step_parameters(step, declared, {plan_.workflow.file, *settings_, diagnostics_, settings_diagnostics_});
+        std::vector<PlannedInput> inputs = wire(*step.syntax, declared, scope, diagnostics_);
+        const FilterSpec spec = with_kinds(declared, inputs);
         std::string key = structure_key(spec, set, inputs);
         const auto [place, is_new] = step_of_key_.emplace(key, plan_.steps.size());
         if (is_new)

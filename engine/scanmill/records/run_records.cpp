@@ -78,7 +78,19 @@ RunRecords::RunRecords(std::unique_ptr<Database> database) : database_(std::move
 RunRecords::RunRecords(RunRecords&&) noexcept = default;
 RunRecords::~RunRecords() = default;
 
+/// A symbolic link may lead anywhere; runs write only into their output folder.
+static void require_in_its_folder(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::is_symlink(file, ignored)) return;
+    const std::filesystem::path folder = std::filesystem::weakly_canonical(file.parent_path(), ignored);
+    const std::filesystem::path target = std::filesystem::weakly_canonical(file, ignored);
+    if (target.parent_path() != folder)
+        throw Error("'{}' is a symbolic link to '{}', outside the output folder", file.string(), target.string())
+            .hint("remove the link, or choose another output folder");
+}
+
 RunRecords RunRecords::append_to(const std::filesystem::path& file) {
+    require_in_its_folder(file);
     return about(file.string(), [&] {
         auto database = std::make_unique<Database>(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
         database->migrate();

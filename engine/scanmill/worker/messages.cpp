@@ -113,11 +113,10 @@ ParameterSet parameters_from(const Json& rows, const FilterSpec& spec) {
 }
 
 Json to_json(const PlannedStep& step) {
-    Json json{{"filter", step.spec.name},
-              {"version", step.spec.version},
-              {"label", step.label},
-              {"parameters", rows_of(step.parameters)},
-              {"expect", Json::array()}};
+    Json json{{"filter", step.spec.name}, {"version", step.spec.version},
+              {"label", step.label},      {"parameters", rows_of(step.parameters)},
+              {"kinds", Json::array()},   {"expect", Json::array()}};
+    for (const PortSpec& output : step.spec.outputs) json["kinds"].push_back(output.kind.name());
     for (const PlannedExpectation& expected : step.expectations)
         json["expect"].push_back({expected.name, static_cast<int>(expected.relation), static_cast<int>(expected.unit),
                                   end_of(expected.low), end_of(expected.high), expected.text});
@@ -132,6 +131,8 @@ std::shared_ptr<const PlannedStep> step_from(const Json& json, const FilterLibra
     auto step = std::make_shared<PlannedStep>();
     step->label = json.at("label");
     step->spec = *spec;
+    for (std::size_t i = 0; i < step->spec.outputs.size(); ++i)
+        step->spec.outputs[i].kind = kind_from(json.at("kinds").at(i));
     step->parameters = parameters_from(json.at("parameters"), *spec);
     for (const Json& row : json.at("expect")) {
         const Unit unit = static_cast<Unit>(row.at(2).get<int>());

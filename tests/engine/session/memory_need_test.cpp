@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run may need in memory follows from its scans' files and from how they are read.
-#include "scanmill/session/memory_need.hpp"
+#include "scanmill/session/session.hpp"
 
 #include "engine/run/run_fixture.hpp"
 

@@ -81,8 +81,6 @@ LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options)
 
 namespace {
 
-constexpr std::string_view count_hint = "the file is truncated or its count is wrong: correct or remove that line";
-
 class XyzReader {
 public:
     XyzReader(const FileBytes& file, std::string_view text, const ReadOptions& options)
@@ -104,7 +102,7 @@ public:
                  by_count(layout_.unread_comments, "was", "were"));
         read_rows();
         std::optional<Column> normals = normals_behind_points();
-        if (!normals) require_promised();
+        if (!normals) check_count();
         require_countable(positions_.size(), "points");
 
         LoadedFile loaded;
@@ -176,7 +174,7 @@ private:
     bool begins_block(double number) {
         constexpr double most = 1e15;  // whole, and within 64 bits
         if (blocks_.empty() || !(number >= 0 && number <= most) || number != std::trunc(number)) return false;
-        require_promised();
+        check_count();
         blocks_.push_back({static_cast<u64>(number), text_.line(), positions_.size()});
         return true;
     }
@@ -201,14 +199,19 @@ private:
             .hint("if the commas are decimal ones, write points in their place");
     }
 
-    /// That the last block is as long as its count says.
-    void require_promised() const {
+    /// Warns when the last block is not as long as its count declares. A PWN file is refused: its count separates
+    /// points from normals.
+    void check_count() const {
         if (blocks_.empty()) return;
         const Block& block = blocks_.back();
-        if (const std::size_t found = positions_.size() - block.first; found != block.promised)
-            throw Error("line {} promises {}; {} {}", block.line, counted(block.promised, "point", "points"), found,
-                        by_count(found, "follows", "follow"))
-                .hint(std::string(count_hint));
+        const std::size_t found = positions_.size() - block.first;
+        if (found == block.promised) return;
+        if (extension_ == "pwn")
+            throw Error("line {} declares {}; {} {}", block.line, counted(block.promised, "point", "points"), found,
+                        by_count(found, "row follows", "rows follow"))
+                .hint("the file is truncated or its count is wrong: correct that line");
+        warn(options_.on_warning, "line {} declares {}; {} {}: the count is wrong, or the file is incomplete",
+             block.line, counted(block.promised, "point", "points"), found, by_count(found, "follows", "follow"));
     }
 
     /// The second half of the rows, taken away from them, when the only count says that they are twice as many as there

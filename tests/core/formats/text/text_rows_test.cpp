@@ -54,8 +54,9 @@ TEST(TextRows, CountAndNames_ComeInEitherOrder) {
 }
 
 TEST(TextRows, Count_OfManyPoints_TakesNoMemoryForThem) {
-    EXPECT_THAT(refusal_of("1099511627776\n1 2 3\n", "a.pts"),
-                HasSubstr("line 1 promises 1099511627776 points; 1 follow"));
+    Told told;
+    EXPECT_EQ(points_in("1099511627776\n1 2 3\n", "a.pts", &told)->size(), 1u);
+    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("line 1 declares 1099511627776 points; 1 follows")));
 }
 
 TEST(PtsLayout, FourColumns_AreIntensity_SevenWithColour) {
@@ -92,9 +93,13 @@ TEST(TextBlocks, OfSeveralScans_AreOneCloud_WithAColumn_Told) {
     EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3 scans were read as one cloud")));
 }
 
-TEST(TextBlocks, ThatBreakTheirPromise_AreRefusedWithTheLineOfTheCount) {
-    EXPECT_THAT(refusal_of("2\n1 2 3\n1\n4 5 6\n", "a.pts"), HasSubstr("line 1 promises 2 points; 1 follow"));
-    EXPECT_THAT(refusal_of("1\n1 2 3\n2\n4 5 6\n", "a.pts"), HasSubstr("line 3 promises 2 points; 1 follow"));
+TEST(TextBlocks, OfAnotherLengthThanTheirCount_AreReadWithAWarningThatGivesBoth) {
+    for (const auto& [text, warning] : {std::pair("2\n1 2 3\n1\n4 5 6\n", "line 1 declares 2 points; 1 follows"),
+                                        std::pair("1\n1 2 3\n2\n4 5 6\n", "line 3 declares 2 points; 1 follows")}) {
+        Told told;
+        EXPECT_EQ(points_in(text, "a.pts", &told)->size(), 2u);
+        EXPECT_THAT(told.sentences, testing::Contains(HasSubstr(warning)));
+    }
     EXPECT_THAT(refusal_of("1\n1 2 3\n1.5\n4 5 6\n", "a.pts"), HasSubstr("line 3: found 1 column"));
 }
 
@@ -108,8 +113,10 @@ TEST(PwnLayout, NormalsOfOtherLengths_AreTold_AndInAnotherFileAWrongCount) {
     Told told;
     EXPECT_EQ(points_in("1\n1 2 3\n0 0 5\n", "a.pwn", &told)->size(), 1u);
     EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("not all normals have unit length")));
-    EXPECT_THAT(refusal_of("1\n1 2 3\n0 0 5\n", "a.xyz"), HasSubstr("line 1 promises 1 point; 2 follow"));
-    EXPECT_THAT(refusal_of("2\n1 2 3\n4 5 6\n0 0 1\n", "a.pwn"), HasSubstr("line 1 promises 2 points; 3 follow"));
+    Told count;
+    EXPECT_EQ(points_in("1\n1 2 3\n0 0 5\n", "a.xyz", &count)->size(), 2u);
+    EXPECT_THAT(count.sentences, ElementsAre(HasSubstr("line 1 declares 1 point; 2 follow")));
+    EXPECT_THAT(refusal_of("2\n1 2 3\n4 5 6\n0 0 1\n", "a.pwn"), HasSubstr("line 1 declares 2 points; 3 rows follow"));
 }
 
 TEST(TaggedPoints, RowsOfP_AreThePoints_OthersAreTold) {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/describe/file_info.hpp"
+
+#include <algorithm>
+
+#include "scanmill/formats/files.hpp"
+#include "scanmill/kinds/document.hpp"
+#include "scanmill/kinds/field_visitor.hpp"
+#include "scanmill/kinds/length_scale.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// The columns of every table, by the table's name.
+class ListColumns : public FieldChange {
+public:
+    explicit ListColumns(Json& json) : json_(json) {}
+    void columns(const char* name, ColumnTable& table) override {
+        Json rows = Json::array();
+        for (const Column& column : table)
+            rows.push_back(
+                {{"name", column.name()}, {"type", name_of(column.type())}, {"components", column.components()}});
+        json_[std::string_view(name) == "vertex-columns" ? "columns" : name] = std::move(rows);
+    }
+
+private:
+    Json& json_;
+};
+
+}  // namespace
+
+Json file_info(const std::string& file) {
+    std::vector<std::string> warnings;
+    ReadOptions options;
+    options.on_warning = [&](std::string text) { warnings.push_back(std::move(text)); };
+    const LoadedFile loaded = read_file(file, options);
+    const Value& value = loaded.value;
+    Json json{{"file", file}, {"format", loaded.format}, {"encoding", loaded.encoding}, {"kind", value.kind().name()}};
+    for (const Metric& property : properties_of(value).values)
+        json[property.name] =
+            property.unit == Unit::boolean ? Json(property.value != 0) : Json(static_cast<long long>(property.value));
+    ListColumns columns(json);
+    visited(value, columns);
+    const Buffer<Vec3> positions = positions_of(value);
+    const Frame frame = frame_of(value).value_or(Frame{});
+    if (const BoundingBox box = bounding_box(positions.span()); !box.empty()) {
+        json["low"] = json_of(box.low + frame.origin);
+        json["high"] = json_of(box.high + frame.origin);
+        json["diagonal"] = box.diagonal();
+        json["spacing"] = length_scale(value).spacing();
+    }
+    if (is_geometric(value.kind())) {
+        json["not-finite"] = std::ranges::count_if(positions, [](const Vec3& p) { return !p.allFinite(); });
+        json["unit"] = unit_json(frame.unit);
+    }
+    if (!frame.name.empty()) json["frame"] = frame.name;
+    if (frame.origin != Vec3::Zero()) json["origin"] = json_of(frame.origin);
+    if (!loaded.comments.empty()) json["comments"] = loaded.comments;
+    if (!warnings.empty()) json["warnings"] = warnings;
+    return json;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/session/session.hpp"
+
+#include <fmt/format.h>
+#include <gnu/libc-version.h>
+#include <sched.h>
+#include <sys/utsname.h>
+#include <tbb/version.h>
+#include <unistd.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <set>
+#include <thread>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/io/atomic_file.hpp"
+#include "scanmill/records/reasons.hpp"
+#include "scanmill/records/recorder.hpp"
+#include "scanmill/worker/resources.hpp"
+#include "scanmill/worker/worker_processes.hpp"
+#include "scanmill/worker/workers.hpp"
+#include "scanmill/workflow/sizes.hpp"
+
+namespace scanmill {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Before the first step rather than after the last.
+void require_writable(const fs::path& folder) {
+    std::error_code trouble;
+    fs::create_directories(folder, trouble);
+    if (!trouble && ::access(folder.c_str(), W_OK | X_OK) != 0) trouble.assign(errno, std::generic_category());
+    if (trouble)
+        throw Error("results cannot be put into '{}': {}", folder.string(), trouble.message())
+            .hint("name another output folder: -o DIR");
+}
+
+/// Parts of files that an earlier run did not complete.
+void remove_incomplete_outputs(const RunGraph& graph) {
+    std::set<fs::path> folders;
+    for (const RunCell& cell : graph.cells)
+        for (const RunOutput& output : cell.outputs) folders.insert(output.file.parent_path());
+    for (const fs::path& folder : folders) remove_abandoned_parts(folder);
+}
+
+std::string processor() {
+    std::ifstream facts("/proc/cpuinfo");
+    for (std::string line; std::getline(facts, line);)
+        if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(": ") + 2));
+    return "unknown processor";
+}
+
+}  // namespace
+
+Session::Session(SessionSettings settings, Cache* cache) : settings_(std::move(settings)), cache_(cache) {
+    if (settings_.jobs == 0u || settings_.worker_command.empty()) return;
+    WorkerProcessSettings workers;
+    workers.command = settings_.worker_command;
+    if (cache_) workers.cache_folder = cache_->folder().string();
+    workers.keep_policy = static_cast<int>(settings_.keep);
+    workers.on_note = [warn = warn_](std::string text) {
+        if (*warn) (*warn)(std::move(text));
+    };
+    processes_ = std::make_unique<WorkerProcesses>(std::move(workers));
+    try {
+        processes_->start_early();
+    } catch (const Error&) {
+        // Starting it is tried again, and a failure reported, when there is work.
+    }
+}
+
+Session::~Session() = default;
+
+std::vector<NodeForesight> Session::predict(const RunGraph& graph, FilterLibrary& library) const {
+    std::vector<NodeForesight> predictions = foresee(graph, cache_, settings_.keep);
+    const fs::path records = settings_.output_folder / records_file;
+    std::error_code absent;
+    if (!cache_ || !fs::exists(records, absent)) return predictions;
+    try {
+        explain(predictions, library, graph, RunRecords::read(records));
+    } catch (const Error& error) {
+        if (*warn_) (*warn_)(fmt::format("what changed since the last run is not known: {}", error.sentence()));
+    }
+    return predictions;
+}
+
+unsigned Session::jobs(const RunGraph& graph) const {
+    if (settings_.jobs) return *settings_.jobs;
+    const u64 held = available_memory() / std::max<u64>(1, memory_need(graph));
+    return static_cast<unsigned>(std::clamp<u64>(std::min<u64>(graph.cells.size(), held), 1, usable_cores()));
+}
+
+RunReport Session::run(const SessionTask& task, FilterLibrary& library, std::vector<NodeForesight> predictions,
+                       const std::vector<RunObserver*>& observers,
+                       const std::function<void(const RunStarted&)>& on_start) {
+    require_writable(settings_.output_folder);
+    remove_incomplete_outputs(task.graph);
+    const std::function<void(std::string)> warn = [warn = warn_](std::string text) {
+        if (*warn) (*warn)(std::move(text));
+    };
+    const unsigned jobs = this->jobs(task.graph);
+    if (jobs == 0 && (task.limits.cell_seconds > 0 || task.limits.step_seconds > 0))
+        warn("limits of time are not enforced without worker processes");
+    RunSettings run_settings;
+    run_settings.threads =
+        settings_.threads > 0 ? settings_.threads : std::max(1u, usable_cores() / std::max(1u, jobs));
+    run_settings.limits = task.limits;
+    run_settings.fail_fast = settings_.fail_fast;
+    run_settings.cache = cache_;
+    run_settings.shares_values = jobs > 0 && cache_ && settings_.keep != KeepRule::Policy::never;
+    run_settings.foresight = std::move(predictions);
+    run_settings.is_cancelled = settings_.is_cancelled;
+    std::unique_ptr<Workers> in_process;
+    if (processes_)
+        processes_->resize(jobs);
+    else
+        in_process = std::make_unique<InProcessWorker>(library, cache_, settings_.keep, settings_.is_cancelled);
+    Workers& workers = processes_ ? static_cast<Workers&>(*processes_) : *in_process;
+
+    RunStart start{task.name, task.file,        settings_.command_line, task.graph.seed, run_settings.threads,
+                   jobs,      SCANMILL_VERSION, machine_text(),         libraries_text()};
+    Recorder recorder(settings_.output_folder / records_file, std::move(start), library, task.graph, warn);
+    on_start({jobs, run_settings.threads, recorder.run()});
+    std::vector<RunObserver*> all = observers;
+    all.push_back(&recorder);
+    Observers observing(all);
+    const RunReport report = scanmill::run(library, task.graph, workers, run_settings, observing);
+    if (processes_) processes_->dismiss();
+    recorder.finish(report);
+    if (cache_) cache_->evict();
+    return report;
+}
+
+u64 memory_need(const RunGraph& graph) {
+    constexpr u64 times_the_file = 100, times_a_streamed_file = 4;
+    u64 most = 0;
+    for (const RunNode& node : graph.nodes) {
+        if (!node.is_scan) continue;
+        std::error_code gone;
+        const u64 bytes = std::filesystem::file_size(node.leaf.file, gone);
+        if (!gone) most = std::max(most, bytes * (node.leaf.is_streamed ? times_a_streamed_file : times_the_file));
+    }
+    return most;
+}
+
+unsigned usable_cores() {
+    cpu_set_t usable;
+    if (::sched_getaffinity(0, sizeof usable, &usable) == 0) return static_cast<unsigned>(CPU_COUNT(&usable));
+    return 1;
+}
+
+std::string machine_text() {
+    utsname system{};
+    ::uname(&system);
+    const u64 memory = static_cast<u64>(::sysconf(_SC_PHYS_PAGES)) * static_cast<u64>(::sysconf(_SC_PAGESIZE));
+    return fmt::format("{}, {}, {}, {} {} {}", processor(),
+                       counted(std::thread::hardware_concurrency(), "core", "cores"), byte_size_text(memory),
+                       system.sysname, system.release, system.machine);
+}
+
+std::string libraries_text() {
+    const std::string eigen = fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
+    return fmt::format("Eigen {}, oneTBB {}, glibc {}, GCC {}", eigen, TBB_VERSION_STRING, ::gnu_get_libc_version(),
+                       __VERSION__);
+}
+
+}  // namespace scanmill
