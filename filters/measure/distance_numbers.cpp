@@ -6,8 +6,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "measure/compensated_sum.hpp"
-
 namespace scanmill::measuring {
 
 namespace {
@@ -71,7 +69,7 @@ DistanceNumbers numbers_of_both(const DistanceNumbers& one, std::span<const doub
     DistanceNumbers numbers;
     numbers.samples = one.samples + other.samples;
     numbers.mean = (one.mean + other.mean) / 2;
-    numbers.mean_spread = std::hypot(*one.mean_spread, *other.mean_spread) / 2;
+    numbers.mean_spread = std::sqrt(*one.mean_spread * *one.mean_spread + *other.mean_spread * *other.mean_spread) / 2;
     numbers.rms = std::sqrt((one.rms * one.rms + other.rms * other.rms) / 2);
     Array<double> all(distances_of_one.begin(), distances_of_one.end());
     all.insert(all.end(), distances_of_other.begin(), distances_of_other.end());

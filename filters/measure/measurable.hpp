@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What must be true of parameters and surfaces before anything is measured. All throw Error with a way out.
+/// What must be true of parameters, surfaces and frames before anything is measured. Every Error has a hint.
 
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "measure/measure.hpp"
+#include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
 
 namespace scanmill::measuring {
@@ -16,10 +18,21 @@ void require_sound(const MeasureParams& params);
 /// The thresholds in the mesh's unit, above 0 and finite.
 std::vector<double> thresholds_for(const TriangleMesh& mesh, const MeasureParams& params);
 
-/// A diagonal whose square is a number. `name`: "mesh" or "truth".
-void require_squares(const BoundingBox& box, std::string_view name);
-
-/// Consistent and finite, of such a size, and at least one triangle has an area.
+/// Consistent and finite, and at least one triangle has an area. `name`: "mesh" or "truth".
 void require_surface(const TriangleMesh& mesh, std::string_view name);
+
+/// The truth's positions in the mesh's unit, relative to the mesh's origin. The same buffer if the frames are equal.
+/// Throws Error if both frames have names and these differ.
+Buffer<Vec3> in_frame_of(const Frame& mesh, const Frame& truth, const Buffer<Vec3>& positions);
+
+/// Refuses two bounding boxes (of the same frame) whose sizes or positions show that unit or frame differ:
+///  - every extent of one is k times that of the other, within 5 %, where k is the ratio of two units (10 for mm and
+///    cm, 25.4 for in and mm, 1000 for mm and m …). Extents are compared in ascending order, so that a turned box
+///    compares; those below a tenth of the diagonal in both boxes do not count;
+///  - one diagonal is more than 30 times the other, unless the truth is the smaller one and may be a part (points);
+///  - the boxes are more than a tenth of the longer diagonal apart.
+/// Smaller differences are measured. Returns warnings: one if a diagonal is more than twice the other, else none.
+std::vector<std::string> require_comparable(const BoundingBox& mesh, const BoundingBox& truth, bool truth_may_be_part,
+                                            LengthUnit unit);
 
 }  // namespace scanmill::measuring

@@ -2,15 +2,11 @@
 #include "measure/measure.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
-#include "measure/borders.hpp"
-#include "measure/comparable.hpp"
-#include "measure/compensated_sum.hpp"
 #include "measure/measurable.hpp"
-#include "measure/nearest_distances.hpp"
-#include "measure/self_intersections.hpp"
-#include "measure/surface_samples.hpp"
+#include "measure/sampled_distances.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/mesh.hpp"
@@ -21,17 +17,6 @@ namespace {
 
 using namespace measuring;
 
-/// Those in a triangle.
-Array<Vec3> surface_vertices(const TriangleMesh& mesh) {
-    Array<u8> is_used(mesh.positions.size(), u8(0));
-    for (const Triangle& triangle : mesh.triangles)
-        for (u32 vertex : triangle) is_used[vertex] = 1;
-    Array<Vec3> vertices;
-    for (std::size_t i = 0; i < is_used.size(); ++i)
-        if (is_used[i]) vertices.push_back(mesh.positions[i]);
-    return vertices;
-}
-
 double rounding_within(const BoundingBox& one, const BoundingBox& other) {
     double largest = 0;
     for (const BoundingBox& box : {one, other})
@@ -39,32 +24,33 @@ double rounding_within(const BoundingBox& one, const BoundingBox& other) {
     return rounding_of(largest);
 }
 
-/// What one surface's samples and vertices found on the other side.
-struct Side {
+/// Distances from one surface's samples and vertices to the other.
+struct Direction {
     SurfaceSamples samples;
-    NearestDistances nearest;
+    NearestDistances nearest;   ///< of the samples
+    NearestDistances vertices;  ///< by vertex
     DistanceNumbers numbers;
 };
 
-Side measured_side(const TriangleMesh& mesh, const TriangleTree& other, const MeasureParams& params, u64 stream,
-                   double rounding, Context& context) {
-    Side side;
-    side.samples = sample_surface(mesh, params.samples, context.random().stream(stream), context.threads());
-    side.nearest = nearest_distances(side.samples.positions, other, rounding, context);
-    const Array<Vec3> vertices = surface_vertices(mesh);
-    side.numbers = numbers_of(side.nearest.distances, nearest_distances(vertices, other, rounding, context).distances);
-    return side;
+Direction measured_direction(const TriangleMesh& mesh, const TriangleTree& other, const MeasureParams& params,
+                             u64 stream, double rounding, Context& context) {
+    Direction result;
+    result.samples = sample_surface(mesh, params.samples, context.random().stream(stream), context.threads());
+    result.nearest = nearest_distances(result.samples.positions, other, rounding, context);
+    result.vertices = nearest_of_vertices(mesh.positions.span(), mesh.triangles.span(), other, rounding, context);
+    result.numbers = numbers_of(result.nearest.distances, result.vertices.distances);
+    return result;
 }
 
-/// Cosines between normals at samples and at what is nearest to them.
+/// Cosines between the normals of samples and of the triangles nearest to them.
 struct Cosines {
     CompensatedSum with_sign, without_sign;
     std::size_t pairs = 0, without_normal = 0;
 
-    void add(const TriangleMesh& mesh, const Side& side, const TriangleMesh& other) {
-        for (std::size_t i = 0; i < side.samples.triangles.size(); ++i) {
-            const Vec3 here = area_vector(mesh, side.samples.triangles[i]);
-            const Vec3 there = area_vector(other, side.nearest.triangles[i]);
+    void add(const TriangleMesh& mesh, const Direction& direction, const TriangleMesh& other) {
+        for (std::size_t i = 0; i < direction.samples.triangles.size(); ++i) {
+            const Vec3 here = area_vector(mesh, direction.samples.triangles[i]);
+            const Vec3 there = area_vector(other, direction.nearest.triangles[i]);
             const double lengths = here.norm() * there.norm();
             if (!(lengths > 0)) {
                 ++without_normal;
@@ -84,8 +70,8 @@ private:
     }
 };
 
-void compare_normals(Measurement& result, const TriangleMesh& mesh, const Side& to, const TriangleMesh& truth,
-                     const Side& from) {
+void compare_normals(Measurement& result, const TriangleMesh& mesh, const Direction& to, const TriangleMesh& truth,
+                     const Direction& from) {
     Cosines cosines;
     cosines.add(mesh, to, truth);
     cosines.add(truth, from, mesh);
@@ -95,7 +81,7 @@ void compare_normals(Measurement& result, const TriangleMesh& mesh, const Side& 
     result.normal_consistency_unsigned = cosines.without_sign.value() / static_cast<double>(cosines.pairs);
 }
 
-NearShares shares_at(double threshold, const Side& to, const Side& from) {
+NearShares shares_at(double threshold, const Direction& to, const Direction& from) {
     NearShares shares{threshold, share_within(to.nearest.distances, threshold),
                       share_within(from.nearest.distances, threshold), 0.0};
     const double sum = *shares.precision + shares.recall;
@@ -113,7 +99,7 @@ void measure_mesh_alone(Measurement& result, const TriangleMesh& mesh, const Tri
     context.progress(0.8);
 }
 
-/// Warns of, or refuses, what sizes and places say of the two frames.
+/// Refuses or warns if sizes and positions show that unit or frame differ.
 void compare_extents(const TriangleMesh& mesh, const BoundingBox& truth, bool truth_may_be_part,
                      const MeasureParams& params, Context& context) {
     try {
@@ -122,8 +108,68 @@ void compare_extents(const TriangleMesh& mesh, const BoundingBox& truth, bool tr
             context.warn(warning);
     } catch (const Error& error) {
         if (!params.same_frame) throw;
-        context.warn(fmt::format("{}; measured all the same, as same-frame asks", error.sentence()));
+        context.warn(fmt::format("{}; measured anyway because of same-frame: true", error.sentence()));
     }
+}
+
+/// `direction`: "", "-to-truth" …
+void add_distances(Metrics& metrics, const DistanceNumbers& numbers, std::string_view direction) {
+    const auto add = [&](std::string_view name, double value) {
+        metrics.set(fmt::format("{}{}", name, direction), value, Unit::length);
+    };
+    add("mean", numbers.mean);
+    if (numbers.mean_spread) add("mean-spread", *numbers.mean_spread);
+    add("rms", numbers.rms);
+    add("p50", numbers.p50);
+    add("p90", numbers.p90);
+    add("p95", numbers.p95);
+    add("p99", numbers.p99);
+    add("max", numbers.max);
+}
+
+void add_shares(Metrics& metrics, const NearShares& shares, std::string_view suffix) {
+    const auto add = [&](std::string_view name, double value) {
+        metrics.set(fmt::format("{}{}", name, suffix), value, Unit::ratio);
+    };
+    metrics.set(fmt::format("threshold{}", suffix), shares.threshold, Unit::length);
+    if (shares.f_score) add("f-score", *shares.f_score);
+    if (shares.precision) add("precision", *shares.precision);
+    add("recall", shares.recall);
+}
+
+void add_topology(Metrics& metrics, const MeshTopology& topology, std::string_view prefix) {
+    const auto add = [&](std::string_view name, auto value, Unit unit = Unit::count) {
+        metrics.set(fmt::format("{}{}", prefix, name), static_cast<double>(value), unit);
+    };
+    add("vertices", topology.vertices);
+    add("unused-vertices", topology.unused_vertices);
+    add("triangles", topology.triangles);
+    add("components", topology.components);
+    if (topology.genus) add("genus", *topology.genus);
+    add("euler", topology.euler);
+    add("closed", topology.closed, Unit::boolean);
+    add("boundary-loops", topology.boundary_loops);
+    add("boundary-edges", topology.boundary_edges);
+    add("nonmanifold-edges", topology.nonmanifold_edges);
+    add("nonmanifold-vertices", topology.nonmanifold_vertices);
+    add("misoriented-edges", topology.misoriented_edges);
+}
+
+/// `prefix`: "" or "truth-".
+void add_mesh(Metrics& metrics, const MeshNumbers& numbers, std::string_view prefix) {
+    const auto add = [&](std::string_view name, double value, Unit unit) {
+        metrics.set(fmt::format("{}{}", prefix, name), value, unit);
+    };
+    add("area", numbers.area, Unit::area);
+    if (numbers.volume) add("volume", *numbers.volume, Unit::volume);
+    add_topology(metrics, numbers.topology, prefix);
+    add("collinear-triangles", static_cast<double>(numbers.collinear_triangles), Unit::count);
+    add("min-angle", numbers.least_angle, Unit::angle);
+    add("min-angle-p5", numbers.angle_p5, Unit::angle);
+    add("min-angle-p50", numbers.angle_p50, Unit::angle);
+    add("aspect-ratio-p50", numbers.aspect_p50, Unit::number);
+    add("aspect-ratio-p95", numbers.aspect_p95, Unit::number);
+    add("aspect-ratio-max", numbers.largest_aspect, Unit::number);
 }
 
 }  // namespace
@@ -134,39 +180,43 @@ Measurement measure(const TriangleMesh& mesh, const TriangleMesh& given_truth, c
     require_surface(mesh, "mesh");
     require_surface(given_truth, "truth");
     if (params.borders == MeasureParams::Borders::exclude)
-        throw Error("borders are excluded for points as truth, and the truth is a mesh of {}",
+        throw Error("borders: exclude needs points as truth; the truth is a mesh of {}",
                     counted(given_truth.triangles.size(), "triangle", "triangles"))
-            .hint("say borders: include, or give the scan as truth");
+            .hint("set borders: include, or give the scan as truth");
     const std::vector<double> thresholds = thresholds_for(mesh, params);
     TriangleMesh truth = given_truth;
     truth.positions = in_frame_of(mesh.frame, given_truth.frame, given_truth.positions);
     truth.frame = mesh.frame;
-    require_squares(surface_box(truth), "truth");
     compare_extents(mesh, surface_box(truth), false, params, context);
 
     const double rounding = rounding_within(surface_box(mesh), surface_box(truth));
     const TriangleTree mesh_tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
     const TriangleTree truth_tree(truth.positions.span(), truth.triangles.span(), context.threads());
     context.progress(0.1);
-    const Side to = measured_side(mesh, truth_tree, params, 0, rounding, context);
+    const Direction to = measured_direction(mesh, truth_tree, params, 0, rounding, context);
     context.progress(0.3);
-    const Side from = measured_side(truth, mesh_tree, params, 1, rounding, context);
+    const Direction from = measured_direction(truth, mesh_tree, params, 1, rounding, context);
     context.progress(0.5);
 
     Measurement result;
     result.to_truth = to.numbers;
     result.from_truth = from.numbers;
     result.both = numbers_of_both(to.numbers, to.nearest.distances, from.numbers, from.nearest.distances);
-    result.hausdorff = result.both.max;
     result.chamfer = (to.numbers.mean + from.numbers.mean) / 2;
     for (const double threshold : thresholds) result.near.push_back(shares_at(threshold, to, from));
     compare_normals(result, mesh, to, truth, from);
     result.truth = mesh_numbers(truth, context.threads());
     measure_mesh_alone(result, mesh, mesh_tree, params, context);
-    if (params.certify)
-        result.certified = certified_hausdorff({mesh.positions.span(), mesh.triangles.span(), mesh_tree},
-                                               {truth.positions.span(), truth.triangles.span(), truth_tree},
-                                               {params.gap.value(), params.most_cuts}, context);
+    const CertifiedSurface of_mesh{mesh.positions.span(), mesh.triangles.span(), mesh_tree,
+                                   to.vertices,           to.samples.triangles,  to.nearest.distances};
+    const CertifiedSurface of_truth{truth.positions.span(), truth.triangles.span(), truth_tree,
+                                    from.vertices,          from.samples.triangles, from.nearest.distances};
+    result.hausdorff = largest_distance(of_mesh, of_truth, params.gap.value(), context);
+    if (params.certify) {
+        const CertifyLimits limits{params.gap.value(), params.most_cuts};
+        result.certified = certified_hausdorff(of_mesh, of_truth, *result.hausdorff, limits, context);
+        result.hausdorff = result.certified->found;
+    }
     context.progress(1);
     return result;
 }
@@ -177,11 +227,10 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
     const std::vector<double> thresholds = thresholds_for(mesh, params);
     if (truth.size() == 0)
         throw Error("the truth has no points; there is nothing to measure the mesh against")
-            .hint("`scanmill info` tells what a file holds");
+            .hint("`scanmill info` shows what a file contains");
     require_finite(truth.positions.span(), "points of the truth");
     if (params.certify)
-        throw Error("the Hausdorff distance of surfaces is certified, and the truth is {}",
-                    counted(truth.size(), "point", "points"))
+        throw Error("certify needs a mesh as truth; the truth is {}", counted(truth.size(), "point", "points"))
             .hint("leave certify out, or give a mesh as truth");
     const Buffer<Vec3> points = in_frame_of(mesh.frame, truth.frame, truth.positions);
     const BoundingBox box = bounding_box(points.span());
@@ -195,7 +244,8 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
     if (params.borders == MeasureParams::Borders::exclude)
         result.beyond_borders = leave_out_borders(from, points.span(), mesh, rounding);
     context.progress(0.3);
-    const Side to = measured_side(mesh, tree_of_points(points.span(), context.threads()), params, 0, rounding, context);
+    const Direction to =
+        measured_direction(mesh, tree_of_points(points.span(), context.threads()), params, 0, rounding, context);
     context.progress(0.5);
 
     result.to_points = to.numbers;
@@ -207,6 +257,38 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
     measure_mesh_alone(result, mesh, mesh_tree, params, context);
     context.progress(1);
     return result;
+}
+
+Metrics metrics_of(const Measurement& measured) {
+    Metrics metrics;
+    add_distances(metrics, measured.both, "");
+    if (measured.to_truth) add_distances(metrics, *measured.to_truth, "-to-truth");
+    if (measured.to_points) add_distances(metrics, *measured.to_points, "-to-points");
+    add_distances(metrics, measured.from_truth, "-from-truth");
+    if (measured.beyond_borders)
+        metrics.set("beyond-borders", static_cast<double>(*measured.beyond_borders), Unit::count);
+    if (measured.hausdorff) metrics.set("hausdorff", *measured.hausdorff, Unit::length);
+    if (measured.chamfer) metrics.set("chamfer", *measured.chamfer, Unit::length);
+    for (std::size_t i = 0; i < measured.near.size(); ++i)
+        add_shares(metrics, measured.near[i], i == 0 ? "" : fmt::format("@{}", i + 1));
+    if (measured.normal_consistency) {
+        metrics.set("normal-consistency", *measured.normal_consistency, Unit::number);
+        metrics.set("normal-consistency-unsigned", *measured.normal_consistency_unsigned, Unit::number);
+        metrics.set("without-normal", static_cast<double>(measured.without_normal), Unit::count);
+    }
+    if (measured.certified) {
+        metrics.set("hausdorff-lower", measured.certified->lower, Unit::length);
+        metrics.set("hausdorff-upper", measured.certified->upper, Unit::length);
+        metrics.set("certified", measured.certified->reached, Unit::boolean);
+        metrics.set("cuts", static_cast<double>(measured.certified->cuts), Unit::count);
+    }
+    metrics.unit = measured.unit;
+    metrics.set("diagonal", measured.diagonal, Unit::length);
+    add_mesh(metrics, measured.mesh, "");
+    if (measured.self_intersections)
+        metrics.set("self-intersections", static_cast<double>(*measured.self_intersections), Unit::count);
+    if (measured.truth) add_mesh(metrics, *measured.truth, "truth-");
+    return metrics;
 }
 
 }  // namespace scanmill

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How far a mesh is from the truth, and how good a mesh it is by itself.
+/// The distance between a mesh and its truth, and the quality of the mesh by itself.
 ///
-/// Distances are from points of one surface to the nearest point of the other's triangles, both ways: *to the truth*
-/// sees what the mesh has too much, *from the truth* what it lacks. They are taken at points spread evenly over the
-/// area; largest distances also at every vertex. When the truth is a cloud, it has no area: its points are the samples
-/// of that side, and distances from the mesh to its points exist only under a name of their own.
+/// Distances are from points of one surface to the nearest point of the other's triangles, in both directions: *to the
+/// truth* shows surplus surface of the mesh, *from the truth* shows missing surface. They are computed at points spread
+/// evenly over the area; largest distances also at every vertex. If the truth is a cloud, it has no area: its points
+/// are the samples of that direction, and distances from the mesh to its points have names of their own.
 
 #include <optional>
 #include <vector>
@@ -14,6 +14,7 @@
 #include "measure/distance_numbers.hpp"
 #include "measure/mesh_numbers.hpp"
 #include "scanmill/data/mesh.hpp"
+#include "scanmill/data/metrics.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
@@ -28,78 +29,97 @@ struct MeasureParams {
     u32 samples = 100'000;
     /// Distances that count as near for precision and recall; each above 0. Relative ones refer to the mesh.
     std::vector<Length> thresholds = std::vector(1, Length::percent_of_diagonal(0.5));
-    /// Whether pairs of triangles that intersect are counted; takes about as long as everything else.
+    /// Whether pairs of intersecting triangles are counted; takes about as long as everything else.
     bool self_intersections = true;
-    /// Whether unit and frame are known to be equal, whatever sizes and places say: they only warn then.
+    /// Unit and frame are equal for certain: sizes and positions that suggest otherwise only cause a warning.
     bool same_frame = false;
-    /// Whether the Hausdorff distance is bounded from both sides; needs a mesh as truth.
+    /// Whether bounds of the Hausdorff distance are computed and reported; needs a mesh as truth.
     bool certify = false;
     /// The bounds are refined until upper - lower is at most this share of upper; in (0, 1).
     Ratio gap = Ratio::percent(1);
-    /// Whether points of a cloud count whose nearest point on the mesh lies on a border of it: on an edge in one
-    /// triangle, or a vertex of such an edge. How far they are says where the mesh ends, not how well it fits.
+    /// Whether points of a cloud count whose nearest point on the mesh is on a boundary edge (an edge of only one
+    /// triangle) or on a vertex of one. Their distance shows where the mesh ends, not how well it fits.
     /// Excluding needs points as truth.
     Borders borders = Borders::include;
-    /// Pieces of triangles cut before the refinement ends with the bounds that it has.
+    /// Parts of triangles cut before the refinement ends with the bounds reached.
     u64 most_cuts = 10'000'000;
 };
 
-/// How near is near enough: shares of samples, in [0, 1].
+/// Shares of samples within a threshold, in [0, 1].
 struct NearShares {
     double threshold = 0;
-    /// Of the mesh within the threshold of the truth; absent when the truth is a cloud.
+    /// Of the mesh within the threshold of the truth; absent if the truth is a cloud.
     std::optional<double> precision;
     /// Of the truth within the threshold of the mesh.
     double recall = 0;
-    /// Harmonic mean of the two, 0 when both are 0; absent with precision.
+    /// Harmonic mean of the two, 0 if both are 0; absent with precision.
     std::optional<double> f_score;
 };
 
 struct Measurement {
-    /// From the mesh to the truth's triangles; absent when the truth is a cloud.
+    /// From the mesh to the truth's triangles; absent if the truth is a cloud.
     std::optional<DistanceNumbers> to_truth;
-    /// From the mesh to the nearest point of a cloud: no distance between surfaces, it cannot fall below the cloud's
-    /// spacing. Absent when the truth is a mesh.
+    /// From the mesh to the nearest point of a cloud: not a distance between surfaces, because it cannot fall below the
+    /// cloud's spacing. Absent if the truth is a mesh.
     std::optional<DistanceNumbers> to_points;
     /// From the truth, its area or its points, to the mesh's triangles.
     DistanceNumbers from_truth;
-    /// Points of a cloud left out of from_truth and all that follows from it; absent unless they were to be.
+    /// Points of a cloud left out of from_truth and all that follows from it; absent unless borders are excluded.
     std::optional<std::size_t> beyond_borders;
-    /// Both sides with equal weight; for a cloud, from_truth again.
+    /// Both directions with equal weight; for a cloud, equal to from_truth.
     DistanceNumbers both;
-    /// Larger of the two sides' max; absent for a cloud. Not above the true Hausdorff distance.
+    /// The largest distance found at a sample, at a vertex, or by largest_distance(); absent for a cloud. Not above the
+    /// true Hausdorff distance, except for rounding, and not below certified->lower.
     std::optional<double> hausdorff;
-    /// Half the sum of the two sides' means; absent for a cloud.
+    /// Half the sum of the two directions' means; absent for a cloud.
     std::optional<double> chamfer;
     std::vector<NearShares> near;
-    /// Mean cosine between the normal of the triangle under a sample and that of the nearest one on the other side,
-    /// over both sides; -1 for a mesh inside out. Absent for a cloud, or where no pair has two normals.
+    /// Mean cosine between the normal of a sample's triangle and that of the nearest one on the other surface, over
+    /// both directions; -1 for a mesh inside out. Absent for a cloud, or if no pair has two normals.
     std::optional<double> normal_consistency;
-    /// The same of absolute values: does not see orientation.
+    /// The same of absolute values: does not depend on orientation.
     std::optional<double> normal_consistency_unsigned;
-    /// Samples whose nearest triangle is degenerate and has no normal; they are left out of the two numbers above.
+    /// Samples whose nearest triangle is degenerate and has no normal; left out of the two numbers above.
     std::size_t without_normal = 0;
-    LengthUnit unit = LengthUnit::unknown;  ///< the mesh's, which all lengths here are in
+    LengthUnit unit = LengthUnit::unknown;  ///< the mesh's, of all lengths here
     double diagonal = 0;  ///< of the mesh's bounding box
     MeshNumbers mesh;
     std::optional<MeshNumbers> truth;
-    /// Pairs of the mesh's triangles, see self_intersections.hpp; absent when not asked for.
+    /// Pairs of the mesh's triangles, see count_self_intersections(); absent unless requested.
     std::optional<std::size_t> self_intersections;
     std::optional<CertifiedHausdorff> certified;
 };
 
 /// Measures `mesh` against `truth`.
 ///
-/// Frames: both units declared and different: the truth is converted. One unknown: taken as equal. Both frames named
-/// and different, or sizes and places that say that unit or frame differ (see comparable.hpp): Error, no number.
+/// Frames: if both units are declared and differ, the truth is converted. An unknown unit is taken as equal. Frames
+/// with different names, or sizes and positions that show that unit or frame differ (see measurable.hpp), are an Error.
 /// Origins may differ. All lengths are in the mesh's unit.
 /// Pre: finite coordinates; at least one triangle of area above 0 on every mesh; a cloud has a point. Else Error.
 /// Vertices in no triangle are not part of a surface. Degenerate triangles are segments or points of it.
-/// Distances not above 2^-46 of the largest coordinate are 0: samples are no more exact. A mesh is at 0 of itself.
+/// Distances of at most 2^-46 of the largest coordinate are 0, the rounding of samples. A mesh has distance 0 to
+/// itself.
 /// Ties: of equally near triangles the smallest row gives the normal.
-/// Deterministic for a seed: any number of threads gives the same bytes. Cost: O((samples + F) log F).
-/// Source: Aspert, Santa-Cruz, Ebrahimi 2002 (MESH) for the two sides; Knapitsch et al. 2017 for precision and recall.
+/// Deterministic for a seed; bytes do not depend on the number of threads. Cost: O((samples + F) log F).
+/// Source: Aspert, Santa-Cruz, Ebrahimi 2002 (MESH) for the two directions; Knapitsch et al. 2017 for precision and
+/// recall.
 Measurement measure(const TriangleMesh& mesh, const TriangleMesh& truth, const MeasureParams& params, Context& context);
 Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const MeasureParams& params, Context& context);
+
+/// A measurement under the metric names of workflows, gates and reports. A number that is absent from the measurement
+/// has no metric.
+///
+///   mean, mean-spread, rms, p50, p90, p95, p99, max     over both directions (cloud as truth: from the truth)
+///   the same with -to-truth, -from-truth, -to-points    one direction
+///   beyond-borders                                      if borders are excluded
+///   hausdorff, chamfer
+///   threshold, f-score, precision, recall               at the first threshold
+///   the same with @2, @3, …                             at the others, in their order
+///   normal-consistency, normal-consistency-unsigned, without-normal
+///   hausdorff-lower, hausdorff-upper, certified, cuts
+///   diagonal                                            of the mesh's bounding box
+///   triangles, area, volume, components, genus, boundary-loops, …, self-intersections      the mesh
+///   the same with truth- in front, but no self-intersections                              the truth, if a mesh
+Metrics metrics_of(const Measurement& measured);
 
 }  // namespace scanmill

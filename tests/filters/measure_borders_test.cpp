@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// measure against a cloud of points, of which those beyond the mesh's borders are left out.
+/// measure against a cloud of points, with those beyond the borders of the mesh left out.
 #include <gmock/gmock.h>
 
 #include "filters/measure_cases.hpp"
-#include "measure/measured_metrics.hpp"
 #include "scanmill/base/error.hpp"
 
 namespace scanmill::test {
@@ -32,15 +31,15 @@ TEST(MeasureBorders, PointsBesideAndAboveABorder_AreLeftOutAndCounted) {
     EXPECT_EQ(metrics_of(result).find("beyond-borders")->value, 4);
 }
 
-TEST(MeasureBorders, Included_CountAsBefore) {
+TEST(MeasureBorders, Included_CountLikeAllOthers) {
     const Measurement result = measured(rectangle(2, 2), cloud_of({{1, 1, 0.5}, {3, 1, 0}}), few_samples());
     EXPECT_FALSE(result.beyond_borders);
     EXPECT_DOUBLE_EQ(result.from_truth.max, 1);
     EXPECT_EQ(metrics_of(result).find("beyond-borders"), nullptr);
 }
 
-/// The first triangle of equally near ones has the border in a vertex only.
-TEST(MeasureBorders, VertexOfTheBorder_CountsForTrianglesWithoutASideOfIt) {
+/// Of equally near triangles the first has only a vertex on the border.
+TEST(MeasureBorders, VertexOfTheBorder_CountsForTrianglesWithoutABoundaryEdge) {
     const TriangleMesh half = soup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 1, 0}, {-1, 0, 0}, {0, 2, 0}},
                                    {{0, 2, 3}, {0, 1, 2}, {0, 3, 4}, {0, 4, 5}, {3, 2, 6}});
     const Measurement result = measured(half, cloud_of({{0, 0, 0.2}, {0.5, 0.75, 0.1}}), without_borders());
@@ -48,8 +47,8 @@ TEST(MeasureBorders, VertexOfTheBorder_CountsForTrianglesWithoutASideOfIt) {
     EXPECT_DOUBLE_EQ(result.from_truth.max, 0.1);
 }
 
-TEST(MeasureBorders, EdgeOfThreeTriangles_IsNoBorder) {
-    // Three fins in front of their common edge; the point is behind it.
+TEST(MeasureBorders, EdgeOfThreeTriangles_IsNotABorder) {
+    // Three triangles in front of their common edge; the point is behind it.
     const TriangleMesh fins =
         soup({{0, 0, 0}, {0, 2, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
     const Measurement result = measured(fins, cloud_of({{-0.125, 1, -0.125}, {-1, -1, 0}}), without_borders());
@@ -68,7 +67,7 @@ TEST(MeasureBorders, ClosedMesh_HasNone) {
     EXPECT_EQ(without.from_truth.mean, with.from_truth.mean);
 }
 
-/// A point over a triangle of an inscribed mesh is at most as far as the triangle's plane is from touching the sphere.
+/// A point above a triangle of an inscribed mesh is at most as far away as the triangle's plane is inside the sphere.
 TEST(MeasureBorders, HalfASphere_IsMeasuredByItsOwnHalf) {
     TriangleMesh half = geodesic_sphere(1, 12);
     Array<Triangle> upper;
@@ -91,7 +90,7 @@ TEST(MeasureBorders, HalfASphere_IsMeasuredByItsOwnHalf) {
 TEST(MeasureBorders, NothingLeft_IsRefused) {
     try {
         measured(rectangle(1, 1), cloud_of({{2, 0.5, 0}, {1, 1, 0}}), without_borders());
-        FAIL() << "measured by no point";
+        FAIL() << "measured without a point";
     } catch (const Error& error) {
         EXPECT_THAT(error.sentence(), HasSubstr("all 2 points of the truth are nearest to a border of the mesh"));
     }

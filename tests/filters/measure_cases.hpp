@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How the tests call measure, and what they make of shapes.
+/// Calls of measure and operations on shapes, for the tests of measure.
 
 #include <Eigen/Geometry>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "measure/measure.hpp"
@@ -19,7 +21,7 @@ Measurement measured(const TriangleMesh& mesh, const Truth& truth, const Measure
     return measure(mesh, truth, params, context);
 }
 
-/// Few samples: where a test is about vertices, topology or refusals.
+/// Few samples, for tests about vertices, topology or refusals.
 inline MeasureParams few_samples() {
     MeasureParams params;
     params.samples = 2000;
@@ -63,7 +65,7 @@ inline TriangleMesh inside_out(const TriangleMesh& mesh) {
     return result;
 }
 
-/// Both, with no vertex in common.
+/// Both meshes, without common vertices.
 inline TriangleMesh both(const TriangleMesh& one, const TriangleMesh& other) {
     Array<Vec3> positions(one.positions.begin(), one.positions.end());
     positions.insert(positions.end(), other.positions.begin(), other.positions.end());
@@ -81,6 +83,25 @@ inline TriangleMesh soup(Array<Vec3> positions, Array<Triangle> triangles) {
     mesh.positions = std::move(positions);
     mesh.triangles = std::move(triangles);
     return mesh;
+}
+
+/// Decimated by vertex clustering: of the vertices in one cube of this size the first replaces the others; triangles
+/// that lose a corner are left out.
+inline TriangleMesh clustered(const TriangleMesh& mesh, double size) {
+    std::map<std::tuple<double, double, double>, u32> first;
+    const auto representative = [&](u32 vertex) {
+        const Vec3 cell = (mesh.positions[vertex] / size).array().floor();
+        return first.try_emplace({cell.x(), cell.y(), cell.z()}, vertex).first->second;
+    };
+    Array<Triangle> triangles;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Triangle triangle{representative(a), representative(b), representative(c)};
+        if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
+            triangles.push_back(triangle);
+    }
+    TriangleMesh result = mesh;
+    result.triangles = std::move(triangles);
+    return result;
 }
 
 /// [0, width] × [0, depth] at this height, two triangles, facing up.

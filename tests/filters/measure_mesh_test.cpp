@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What measure says of one mesh: size, topology, shape, self-intersections.
+/// The numbers of one mesh: size, topology, shape, self-intersections.
 #include <gmock/gmock.h>
 
 #include <numbers>
 
 #include "filters/measure_cases.hpp"
-#include "measure/self_intersections.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -19,8 +18,7 @@ std::size_t intersections(const TriangleMesh& mesh, unsigned threads = 2) {
     return count_self_intersections(mesh, TriangleTree(mesh.positions.span(), mesh.triangles.span(), 1), context);
 }
 
-/// A frame of square section: [0, 3]² × [0, 1] with tunnels of 1 × 1 through it; genus = tunnels. Made of the outsides
-/// of unit cells.
+/// A block of height 1 with tunnels of 1 × 1 through it; genus = tunnels. Made of the outer faces of unit cubes.
 TriangleMesh block_with_tunnels(u32 tunnels) {
     const u32 width = 2 * tunnels + 1;
     const auto is_solid = [&](int x, int y) {
@@ -57,7 +55,7 @@ TEST(MeasureMesh, AreaAndVolume_AreClosedForms) {
     EXPECT_DOUBLE_EQ(block.area, 14 * 4);
     EXPECT_DOUBLE_EQ(*block.volume, 3 * 8);
     EXPECT_DOUBLE_EQ(*mesh_numbers(inside_out(l_block(2)), 1).volume, -3 * 8);
-    // Far away the volume is no difference of large numbers.
+    // Far from 0 the volume is not a difference of large numbers.
     EXPECT_NEAR(*mesh_numbers(shifted(cube(), {1 << 20, 1 << 20, 1 << 20}), 1).volume, 1, 1e-12);
     EXPECT_FALSE(mesh_numbers(without_triangles(cube(), {3}), 1).volume);
     EXPECT_DOUBLE_EQ(mesh_numbers(without_triangles(cube(), {3}), 1).area, 5.5);
@@ -115,7 +113,7 @@ TEST(SelfIntersections, GoodMeshes_HaveNone) {
         EXPECT_EQ(intersections(mesh), 0u);
 }
 
-TEST(SelfIntersections, Soups_AreJudgedAsTheMeshesThatTheyDraw) {
+TEST(SelfIntersections, Soup_HasThePairsOfTheMeshThatItDraws) {
     const TriangleMesh mesh = geodesic_sphere(1, 4);
     Array<Vec3> positions;
     Array<Triangle> triangles;
@@ -150,8 +148,8 @@ TEST(SelfIntersections, Touching_Counts) {
     EXPECT_EQ(with({0.5, 0.5, 0}, {1, 0.5, 0}, {0.5, 1, 0}), 1u);  // inside the face, in its plane
 }
 
-TEST(SelfIntersections, CommonVertices_AreJudgedByTheRest) {
-    // From one corner: beside, through the opposite edge, folded flat.
+TEST(SelfIntersections, CommonVertices_DoNotCountButOtherCommonPointsDo) {
+    // At one common corner: beside each other, crossing the opposite edge, flat on each other.
     const auto from_corner = [](const Vec3& b, const Vec3& c) {
         return intersections(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, b, c}, {{0, 1, 2}, {0, 3, 4}}));
     };
@@ -159,7 +157,7 @@ TEST(SelfIntersections, CommonVertices_AreJudgedByTheRest) {
     EXPECT_EQ(from_corner({1, 1, 1}, {1, 1, -1}), 1u);
     EXPECT_EQ(from_corner({5, 5, 1}, {5, 5, -1}), 1u);
     EXPECT_EQ(from_corner({1, 2, 0}, {2, 1, 0}), 1u);
-    // Over one edge: open, closed like a book at an angle, folded flat, and the same triangle again.
+    // At one common edge: in a plane, folded at an angle, folded flat, and the same triangle again.
     const auto over_edge = [](const Vec3& d) {
         return intersections(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, d}, {{0, 1, 2}, {1, 0, 3}}));
     };
@@ -169,7 +167,7 @@ TEST(SelfIntersections, CommonVertices_AreJudgedByTheRest) {
     EXPECT_EQ(intersections(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {2, 1, 0}})), 1u);
 }
 
-TEST(SelfIntersections, CollinearTriangles_ArePassedOver) {
+TEST(SelfIntersections, CollinearTriangles_AreSkipped) {
     EXPECT_EQ(intersections(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 0}, {1, 1, 1}},
                                  {{0, 1, 2}, {3, 4, 5}, {0, 0, 1}})),
               0u);

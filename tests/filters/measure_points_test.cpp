@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "filters/measure_cases.hpp"
-#include "measure/measured_metrics.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -24,7 +23,7 @@ TEST(MeasureAgainstPoints, Points_AreTheSamples) {
     EXPECT_EQ(result.near.at(0).recall, 0.5);
 }
 
-TEST(MeasureAgainstPoints, TheOtherSide_GoesByAnotherName) {
+TEST(MeasureAgainstPoints, TheOtherDirection_HasAnotherName) {
     const Measurement result = measured(rectangle(1, 1), vertices_of(rectangle(1, 1)));
     EXPECT_FALSE(result.to_truth);
     EXPECT_FALSE(result.hausdorff);
@@ -56,7 +55,7 @@ TEST(MeasureAgainstPoints, OnePoint_IsMeasured) {
     EXPECT_TRUE(result.to_points->mean_spread);
 }
 
-TEST(MeasureAgainstPoints, FewPointsOnALargePart_AreNoOtherUnit) {
+TEST(MeasureAgainstPoints, FewPointsOnALargePart_AreNotAnotherUnit) {
     const Measurement result = measured(scaled(cube(), 100), cloud_of({{50, 50, 99}, {50, 51, 99}}), few_samples());
     EXPECT_DOUBLE_EQ(result.from_truth.max, 1);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Everything that measure refuses, and what it does not refuse although it is odd.
+/// All refusals of measure, and unusual input that it accepts.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -32,7 +32,7 @@ TriangleMesh in_unit(TriangleMesh mesh, LengthUnit unit) {
     return mesh;
 }
 
-/// No multiple of its own: sides of 2, 3, 5.
+/// Edges of 2, 3 and 5: turned, it does not look like a scaled one.
 TriangleMesh brick(double scale = 1) {
     return with_positions(cube(), [&](const Vec3& p) -> Vec3 { return scale * p.cwiseProduct(Vec3(2, 3, 5)); });
 }
@@ -46,7 +46,7 @@ TEST(MeasureRefusals, NoTriangles_AreRefused) {
     EXPECT_EQ(refusal(cube(), PointCloud{}), "the truth has no points; there is nothing to measure the mesh against");
 }
 
-TEST(MeasureRefusals, NotFinite_IsRefusedWithItsSide) {
+TEST(MeasureRefusals, NotFinite_IsRefusedNamingTheSurface) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const TriangleMesh broken =
         with_positions(cube(), [&](const Vec3& p) -> Vec3 { return p == Vec3(1, 1, 1) ? Vec3(1, nan, 1) : p; });
@@ -58,14 +58,8 @@ TEST(MeasureRefusals, NotFinite_IsRefusedWithItsSide) {
 TEST(MeasureRefusals, NoArea_IsRefused) {
     const TriangleMesh line = soup({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}});
     EXPECT_EQ(refusal(line, line), "the only triangle of the mesh has no area; there is no surface to measure");
-    EXPECT_THAT(refusal(soup({{1, 1, 1}}, {{0, 0, 0}}), cube()), HasSubstr("the mesh is 0 in size"));
-}
-
-TEST(MeasureRefusals, SizesWithoutSquares_AreRefused) {
-    EXPECT_THAT(refusal(soup({{-1.5e308, 0, 0}, {1.5e308, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}), cube()),
-                HasSubstr("from -1.5e+308 to 1.5e+308 lie farther apart"));
-    EXPECT_THAT(refusal(scaled(cube(), 1e80), cube()), HasSubstr("between 1e-60 and 1e60"));
-    EXPECT_THAT(refusal(cube(), scaled(cube(), 1e-80)), HasSubstr("the truth is 1.73e-80 in size"));
+    EXPECT_THAT(refusal(soup({{1, 1, 1}}, {{0, 0, 0}}), cube()),
+                HasSubstr("the only triangle of the mesh has no area"));
 }
 
 TEST(MeasureRefusals, IndexOutOfRange_IsRefused) {
@@ -76,7 +70,7 @@ TEST(MeasureRefusals, IndexOutOfRange_IsRefused) {
 TEST(MeasureRefusals, FewSamples_AreRefused) {
     MeasureParams params;
     params.samples = 31;
-    EXPECT_EQ(refusal(cube(), cube(), params), "samples is 31; at least 32 are needed for a spread of the mean");
+    EXPECT_EQ(refusal(cube(), cube(), params), "samples is 31; the standard error of the mean needs at least 32");
 }
 
 TEST(MeasureRefusals, ThresholdNotAboveZero_IsRefused) {
@@ -88,7 +82,7 @@ TEST(MeasureRefusals, ThresholdNotAboveZero_IsRefused) {
     }
 }
 
-TEST(MeasureRefusals, GapThatIsNoShare_IsRefused) {
+TEST(MeasureRefusals, GapOfZeroOrAll_IsRefused) {
     EXPECT_THAT(refusal(cube(), cube(), certified(0)), HasSubstr("above 0 % and below 100 %"));
     EXPECT_THAT(refusal(cube(), cube(), certified(100)), HasSubstr("above 0 % and below 100 %"));
 }
@@ -107,7 +101,7 @@ TEST(MeasureFrames, DifferentNames_AreRefused) {
 }
 
 TEST(MeasureFrames, DeclaredUnits_AreConverted) {
-    // 25.4 mm are 1 inch, with all numbers in the mesh's unit.
+    // 25.4 mm are 1 inch; all numbers are in the mesh's unit.
     const TriangleMesh inches = in_unit(brick(), LengthUnit::inch);
     const TriangleMesh millimetres = in_unit(shifted(brick(25.4), {2.54, 0, 0}), LengthUnit::millimetre);
     EXPECT_NEAR(*measured(inches, millimetres).hausdorff, 0.1, 1e-12);
@@ -131,12 +125,12 @@ TEST(MeasureFrames, DifferentOrigins_ArePartOfThePositions) {
 
 TEST(MeasureFrames, AnotherUnit_IsNoticedBySize) {
     EXPECT_EQ(refusal(brick(), brick(25.4)),
-              "the mesh is 2 x 3 x 5 u, the truth 50.8 x 76.2 x 127 u: 25.4 times as large along every side, as if the "
-              "truth were in mm and the mesh in in");
+              "the mesh is 2 x 3 x 5 u, the truth 50.8 x 76.2 x 127 u: 25.4 times as large in every direction, as if "
+              "the truth were in mm and the mesh in in");
     EXPECT_THAT(refusal(brick(), brick(0.001)), HasSubstr("as if the mesh were in mm and the truth in m"));
     EXPECT_THAT(refusal(brick(10.2), brick()), HasSubstr("as if the mesh were in mm and the truth in cm"));
     EXPECT_THAT(refusal(brick(2.54), brick()), HasSubstr("as if the mesh were in cm and the truth in in"));
-    // Lying on another side, and against points.
+    // Turned, and against points.
     EXPECT_THAT(refusal(turned(brick(1000), std::numbers::pi / 2, Vec3::UnitX()), brick()), HasSubstr("in mm and"));
     EXPECT_THAT(refusal(brick(), vertices_of(brick(100))), HasSubstr("as if the truth were in cm and the mesh in m"));
 }
@@ -144,7 +138,7 @@ TEST(MeasureFrames, AnotherUnit_IsNoticedBySize) {
 TEST(MeasureFrames, AnotherSize_IsMeasuredWithAWarning) {
     EXPECT_THAT(warnings_of(brick(), brick(1.9)), IsEmpty());
     EXPECT_THAT(warnings_of(brick(), brick(5)), ElementsAre(HasSubstr("the diagonals differ by a factor of 5;")));
-    // Ten times as long along one side alone: an object in part, no unit.
+    // Ten times as long in one direction alone: a part of an object, not another unit.
     const TriangleMesh bar =
         with_positions(cube(), [](const Vec3& p) -> Vec3 { return p.cwiseProduct(Vec3(1, 1, 10)); });
     EXPECT_THAT(warnings_of(cube(), bar), ElementsAre(HasSubstr("compared as they are")));
@@ -158,15 +152,15 @@ TEST(MeasureFrames, KnownToBeTheSame_AreMeasuredWithAWarning) {
     Context context;
     const Measurement tenth = measure(brick(), brick(10), params, context);
     EXPECT_GT(*tenth.hausdorff, 1);
-    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("measured all the same, as same-frame asks")));
+    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("measured anyway because of same-frame: true")));
 }
 
-TEST(MeasureFrames, AnotherPlace_IsRefused) {
+TEST(MeasureFrames, AnotherPosition_IsRefused) {
     EXPECT_EQ(
         refusal(shifted(cube(), {0, 7, 0}), cube()),
-        "the mesh lies from (0, 7, 0) to (1, 8, 1), the truth from (0, 0, 0) to (1, 1, 1): 6 u apart, so they are "
+        "the mesh extends from (0, 7, 0) to (1, 8, 1), the truth from (0, 0, 0) to (1, 1, 1): 6 u apart, so they are "
         "not in one frame");
-    // A small gap, as between two sheets, is what is to be measured.
+    // A small gap, as between two sheets, is measured.
     EXPECT_NEAR(*measured(rectangle(1, 1), rectangle(1, 1, 0.1), few_samples()).hausdorff, 0.1, 1e-15);
     EXPECT_THAT(refusal(rectangle(1, 1), rectangle(1, 1, 0.2)), HasSubstr("not in one frame"));
 }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The samples of measure, and what it says of many distances.
+/// Samples on surfaces, and the statistics of distances.
 #include <gmock/gmock.h>
 
 #include <vector>
 
 #include "filters/measure_cases.hpp"
-#include "measure/compensated_sum.hpp"
-#include "measure/surface_samples.hpp"
+#include "measure/sampled_distances.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -77,11 +76,11 @@ TEST(DistanceNumbers, Quantiles_AreByNearestRank) {
 }
 
 TEST(DistanceNumbers, MeanSpread_IsThatOf32Batches) {
-    // 64 values: batch i holds i and i + 32 twice the same, so batch means are 0 … 31: variance of these over 32.
+    // 64 values: batch i contains the value i twice, so the batch means are 0 … 31: their variance over 32.
     std::vector<double> values;
     for (int i = 0; i < 64; ++i) values.push_back(i % 32);
     EXPECT_NEAR(*numbers_of(values, {}).mean_spread, std::sqrt((32.0 * 32 - 1) / 12 * 32 / (32.0 * 31)), 1e-12);
-    // 33 values: one batch holds two.
+    // 33 values: one batch contains two.
     values.assign(33, 1.0);
     EXPECT_EQ(numbers_of(values, {}).mean_spread, 0);
 }

@@ -9,13 +9,12 @@
 #include <limits>
 #include <numbers>
 
-#include "measure/measured_metrics.hpp"
 #include "support/point_sets.hpp"
 
 namespace scanmill::test {
 namespace {
 
-TEST(Measure, ThinTriangles_AreAtZeroOfThemselves) {
+TEST(Measure, ThinTriangles_HaveDistanceZeroToThemselves) {
     for (double height = 0.3; height > 1e-9; height /= 3) {
         const Vec3 a(0.1, 0.2, 0.3), b(2.1, 2.2, 1.3), up = 3 * height * Vec3(1, -1, 0).normalized();
         const TriangleMesh strip = soup({a, b, a + 0.3 * (b - a) + up, b + up}, {{0, 1, 2}, {1, 3, 2}});
@@ -43,8 +42,8 @@ TEST(Measure, MeshAgainstItself_IsExactlyZero) {
     }
 }
 
-TEST(Measure, ParallelRectangles_AreEverywhereTheirDistanceApart) {
-    // 3 × 4 at height 0, 0.25 below another: all numbers are 0.25, either way.
+TEST(Measure, ParallelRectangles_HaveTheirDistanceEverywhere) {
+    // 3 × 4 at height 0, 0.25 below another: all numbers are 0.25 in both directions.
     const Measurement result = measured(rectangle(3, 4), rectangle(3, 4, 0.25));
     for (const DistanceNumbers& numbers : {*result.to_truth, result.from_truth, result.both}) {
         EXPECT_DOUBLE_EQ(numbers.mean, 0.25);
@@ -58,8 +57,8 @@ TEST(Measure, ParallelRectangles_AreEverywhereTheirDistanceApart) {
     EXPECT_DOUBLE_EQ(*result.chamfer, 0.25);
 }
 
-TEST(Measure, TheTwoSides_SeeWhatIsTooMuchAndWhatIsMissing) {
-    // The mesh covers a third of the truth: nothing too much, two thirds missing at 0 … 2 from it.
+TEST(Measure, TheTwoDirections_ShowSurplusAndMissingSurface) {
+    // The mesh covers a third of the truth: no surplus, two thirds missing at distances 0 … 2.
     const Measurement result = measured(rectangle(1, 1), rectangle(3, 1), [] {
         MeasureParams params;
         params.thresholds = {0.5, 2.0};
@@ -113,8 +112,8 @@ TEST(Measure, BoxTurnedAboutItsAxis_IsTheDistanceOfItsEdgeToTheFace) {
 }
 
 TEST(Measure, ConcentricIcosahedra_AreTheirVerticesApart) {
-    // Inner vertices lie below outer ones; a vertex of the larger is R - r from the smaller's vertex, which is nearest.
-    // The smaller's face is nearest to the larger's: (R - r) times the inradius of the unit icosahedron.
+    // A vertex of the larger is R - r from the nearest point of the smaller, the vertex below it. A face of the smaller
+    // is (R - r) times the inradius of the unit icosahedron from the face above it.
     const double inradius = std::sqrt((5 + 2 * std::sqrt(5.0)) / 15);
     const Measurement result = measured(icosahedron(1.5), icosahedron(1), certified());
     EXPECT_NEAR(result.to_truth->max, 0.5, 1e-12);
@@ -127,7 +126,7 @@ TEST(Measure, ConcentricIcosahedra_AreTheirVerticesApart) {
 TEST(Measure, ConcentricSpheres_AreTheDifferenceOfRadiiApart) {
     const double inner = 1, outer = 1.25;
     const Measurement result = measured(geodesic_sphere(outer, 20), geodesic_sphere(inner, 20), certified());
-    // Facets lie within the shell between the sphere and its sagitta: 1 - cos(largest half edge's angle).
+    // The triangles are within a sagitta of the sphere: 1 - cos(half of the largest edge's angle).
     const double sagitta = outer * (1 - std::cos(std::atan(2.0) / 20 * 0.8));
     EXPECT_NEAR(result.both.mean, outer - inner, sagitta);
     EXPECT_NEAR(*result.hausdorff, outer - inner, sagitta);
@@ -136,8 +135,58 @@ TEST(Measure, ConcentricSpheres_AreTheDifferenceOfRadiiApart) {
     EXPECT_LE(result.certified->upper - result.certified->lower, 0.01 * result.certified->upper + 1e-12);
 }
 
+/// A roof over the unit square, and the square together with the roof: from the square's centre it is 0.5 / √2 to the
+/// roof; all vertices of both surfaces have distance 0.
+std::pair<TriangleMesh, TriangleMesh> roof_and_house() {
+    const TriangleMesh roof = soup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0, 0.5}, {0.5, 1, 0.5}},
+                                   {{0, 4, 5}, {0, 5, 3}, {4, 1, 2}, {4, 2, 5}});
+    return {roof, both(rectangle(1, 1), roof)};
+}
+
+TEST(Measure, HausdorffBetweenSamples_IsFoundWithoutCertify) {
+    const auto& [roof, house] = roof_and_house();
+    MeasureParams params;
+    params.samples = fewest_samples;
+    params.gap = Ratio::percent(0.1);
+    const Measurement result = measured(roof, house, params);
+    const double truth = 0.5 / std::numbers::sqrt2;
+    EXPECT_LT(result.both.max, 0.99 * truth) << "no sample is near the centre";
+    EXPECT_GE(*result.hausdorff, 0.999 * truth);
+    EXPECT_LE(*result.hausdorff, truth * (1 + 1e-14));
+    EXPECT_FALSE(result.certified);
+}
+
+TEST(Measure, HausdorffWithFewCuts_IsNotBelowItsBoundsNorTheSamples) {
+    const TriangleMesh mesh = turned(torus(2, 0.5, 40, 20), 0.1, {1, 2, 3}), truth = torus(2, 0.5, 33, 21);
+    MeasureParams params = certified(1e-7);
+    for (const u64 cuts : {1u, 8u, 64u, 512u}) {
+        params.most_cuts = cuts;
+        const Measurement result = measured(mesh, truth, params);
+        EXPECT_FALSE(result.certified->reached);
+        EXPECT_GE(*result.hausdorff, result.both.max);
+        EXPECT_GE(*result.hausdorff, result.certified->lower);
+        EXPECT_LE(*result.hausdorff, result.certified->upper);
+    }
+}
+
+TEST(Measure, HausdorffOfDecimatedMeshes_AgreesWithTheCertifiedOne) {
+    for (const TriangleMesh& truth :
+         {geodesic_sphere(1, 30), torus(2, 0.5, 120, 60), l_block(3), turned(torus(1, 0.2, 90, 30), 0.3, {1, 2, 3})})
+        for (const double size : {0.1, 0.3}) {
+            const TriangleMesh mesh = clustered(truth, size);
+            MeasureParams params = few_samples();
+            const Measurement found = measured(mesh, truth, params);
+            const Measurement exact = measured(mesh, truth, certified());
+            EXPECT_GE(*exact.hausdorff, exact.certified->lower);
+            EXPECT_GE(*exact.hausdorff, exact.both.max);
+            EXPECT_LE(*exact.hausdorff, exact.certified->upper);
+            EXPECT_GE(*found.hausdorff, 0.98 * exact.certified->lower);
+            EXPECT_LE(*found.hausdorff, exact.certified->upper);
+        }
+}
+
 TEST(Measure, MeanSpread_CoversTheErrorOfTheMean) {
-    // The closed form of the mean is within 4 standard errors, for every one of 20 seeds.
+    // The mean in closed form is within 4 standard errors for each of 20 seeds.
     const double expected = 2.0 / 3;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         ContextOptions options;
@@ -150,7 +199,7 @@ TEST(Measure, MeanSpread_CoversTheErrorOfTheMean) {
 }
 
 TEST(Measure, Vertices_CountForTheMaximumAlone) {
-    // A needle of area 5e-13 sticks out by 0.4: no sample ever meets it, its tip does.
+    // A needle of area 5e-13 and height 0.4: it gets no sample, but its tip is a vertex.
     TriangleMesh spiked =
         both(rectangle(1, 1), soup({{0.5, 0.5, 0}, {0.5 + 1e-12, 0.5, 0}, {0.5, 0.5, 0.4}}, {{0, 1, 2}}));
     const Measurement result = measured(spiked, rectangle(1, 1));
@@ -159,7 +208,7 @@ TEST(Measure, Vertices_CountForTheMaximumAlone) {
     EXPECT_EQ(result.to_truth->p99, 0);
 }
 
-TEST(Measure, MeshInsideOut_IsSeenBySignedNormalsOnly) {
+TEST(Measure, MeshInsideOut_ChangesSignedNormalsOnly) {
     const TriangleMesh sphere = geodesic_sphere(1, 10);
     const Measurement result = measured(inside_out(sphere), sphere);
     EXPECT_NEAR(*result.normal_consistency, -1, 1e-12);
@@ -186,7 +235,7 @@ TEST(Measure, DegenerateTriangles_ArePartOfTheSurfaceWithoutNormals) {
     EXPECT_TRUE(std::isfinite(result.truth->largest_aspect));
 }
 
-TEST(Measure, UnusedVertices_AreNoPartOfTheSurface) {
+TEST(Measure, UnusedVertices_AreNotPartOfTheSurface) {
     TriangleMesh mesh = soup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0.9}}, {{0, 1, 2}, {0, 2, 3}});
     const Measurement result = measured(mesh, rectangle(1, 1), certified());
     EXPECT_EQ(*result.hausdorff, 0);

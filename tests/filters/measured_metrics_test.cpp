@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The names under which a measurement is told.
+/// The metric names of a measurement.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "filters/measure_cases.hpp"
-#include "measure/measured_metrics.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -82,7 +81,7 @@ TEST(MeasuredMetrics, VertexInNoTriangle_ChangesNoNumber) {
     }
 }
 
-TEST(MeasuredMetrics, UnitAndDiagonal_AreTheMeshs) {
+TEST(MeasuredMetrics, UnitAndDiagonal_AreThoseOfTheMesh) {
     TriangleMesh mesh = cube();
     mesh.frame.unit = LengthUnit::millimetre;
     const Metrics metrics = metrics_of(measured(mesh, cube(), few_samples()));

@@ -13,7 +13,6 @@
 #include "features/features.hpp"
 #include "filters/sculpt_cases.hpp"
 #include "measure/measure.hpp"
-#include "measure/measured_metrics.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 #include "support/temporary_folder.hpp"
 

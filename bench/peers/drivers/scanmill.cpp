@@ -9,7 +9,7 @@
 #include "alpha_solid/alpha_solid.hpp"
 #include "answer.hpp"
 #include "delaunay/delaunay.hpp"
-#include "measure/nearest_distances.hpp"
+#include "measure/sampled_distances.hpp"
 #include "region_grow/region_grow.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/fit/local_surface.hpp"

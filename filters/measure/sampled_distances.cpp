@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/sampled_distances.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "measure/distance_numbers.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/spatial/spatial_order.hpp"
+#include "scanmill/geometry/spatial/triangle_distance.hpp"
+
+namespace scanmill::measuring {
+
+namespace {
+
+/// Entry i: area of triangles 0 … i.
+Array<double> cumulated_areas(const TriangleMesh& mesh) {
+    Array<double> areas(mesh.triangles.size());
+    CompensatedSum sum;
+    for (std::size_t row = 0; row < areas.size(); ++row) {
+        const auto& [a, b, c] = mesh.triangles[row];
+        const Vec3& origin = mesh.positions[a];
+        sum.add((mesh.positions[b] - origin).cross(mesh.positions[c] - origin).norm() / 2);
+        areas[row] = sum.value();
+    }
+    return areas;
+}
+
+/// Uniform on the triangle: the square root compensates for its narrowing towards the first corner.
+Vec3 point_on(const TriangleMesh& mesh, u32 row, Random random) {
+    const auto& [a, b, c] = mesh.triangles[row];
+    const double away = std::sqrt(random.uniform()), across = random.uniform();
+    const Vec3& origin = mesh.positions[a];
+    return origin + away * (1 - across) * (mesh.positions[b] - origin) + away * across * (mesh.positions[c] - origin);
+}
+
+/// The boundary of a mesh.
+struct Borders {
+    Array<u8> has_edge;    ///< by number of the half-edge
+    Array<u8> has_vertex;  ///< by vertex
+
+    explicit Borders(const TriangleMesh& mesh)
+        : has_edge(3 * mesh.triangles.size(), u8(0)),
+          has_vertex(mesh.positions.size(), u8(0)) {
+        const sides::SidesOfVertices all = sides::sides_of_vertices(mesh);
+        for (std::size_t vertex = 0; vertex + 1 < all.begin.size(); ++vertex)
+            for (u32 i = all.begin[vertex]; i < all.begin[vertex + 1]; ++i) {
+                const u32 other = all.sides[i].other;
+                const bool is_like_previous = i > all.begin[vertex] && all.sides[i - 1].other == other;
+                const bool is_like_next = i + 1 < all.begin[vertex + 1] && all.sides[i + 1].other == other;
+                if (is_like_previous || is_like_next) continue;
+                has_edge[all.sides[i].number] = 1;
+                has_vertex[vertex] = has_vertex[other] = 1;
+            }
+    }
+};
+
+bool is_on_border(const Borders& borders, const TriangleMesh& mesh, const Vec3& point, u32 row, double rounding) {
+    const Triangle& triangle = mesh.triangles[row];
+    const auto corner = [&](u32 i) -> const Vec3& { return mesh.positions[triangle[i % 3]]; };
+    const Vec3 foot = nearest_on_triangle(point, corner(0), corner(1), corner(2));
+    const auto is_foot = [&](const Vec3& other) { return (other - foot).squaredNorm() <= rounding * rounding; };
+    for (u32 i = 0; i < 3; ++i) {
+        if (borders.has_vertex[triangle[i]] && is_foot(corner(i))) return true;
+        if (borders.has_edge[3 * row + i] && is_foot(nearest_on_segment(foot, corner(i), corner(i + 1)))) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+SurfaceSamples sample_surface(const TriangleMesh& mesh, std::size_t count, const Random& random, unsigned threads) {
+    const Array<double> areas = cumulated_areas(mesh);
+    assert(count > 0 && areas.back() > 0);
+    const double start = Random(random).uniform();
+    // The first triangle that reaches the whole area: no sample is on a triangle without area.
+    const auto last = std::ranges::lower_bound(areas, areas.back());
+    SurfaceSamples samples;
+    samples.positions.resize(count);
+    samples.triangles.resize(count);
+    for_each_chunk(threads, count, 1 << 12, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const double at = areas.back() * ((static_cast<double>(i) + start) / static_cast<double>(count));
+            const auto found = std::min(std::upper_bound(areas.begin(), last, at), last);
+            samples.triangles[i] = static_cast<u32>(found - areas.begin());
+            samples.positions[i] = point_on(mesh, samples.triangles[i], random.stream(i));
+        }
+    });
+    return samples;
+}
+
+NearestDistances nearest_distances(std::span<const Vec3> points, const TriangleTree& surface, double rounding,
+                                   Context& context) {
+    const Array<u32> order = spatial_order(points);
+    NearestDistances result;
+    result.distances.resize(points.size());
+    result.triangles.resize(points.size());
+    result.places.resize(points.size());
+    for_each_chunk(context.threads(), order.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+        context.check_cancelled();
+        u32 hint = NearestTriangle::none;
+        for (std::size_t i = begin; i < end; ++i) {
+            const NearestTriangle found = surface.nearest(points[order[i]], hint);
+            const double distance = std::sqrt(found.squared_distance);
+            result.distances[order[i]] = distance > rounding ? distance : 0;
+            result.triangles[order[i]] = found.triangle;
+            result.places[order[i]] = hint = found.place;
+        }
+    });
+    return result;
+}
+
+NearestDistances nearest_of_vertices(std::span<const Vec3> positions, std::span<const Triangle> triangles,
+                                     const TriangleTree& surface, double rounding, Context& context) {
+    Array<u8> is_used(positions.size(), u8(0));
+    for (const Triangle& triangle : triangles)
+        for (const u32 vertex : triangle) is_used[vertex] = 1;
+    Array<u32> vertices;
+    Array<Vec3> used;
+    for (u32 vertex = 0; vertex < positions.size(); ++vertex)
+        if (is_used[vertex]) {
+            vertices.push_back(vertex);
+            used.push_back(positions[vertex]);
+        }
+    NearestDistances found = nearest_distances(used, surface, rounding, context);
+    if (used.size() == positions.size()) return found;
+    NearestDistances result{Array<double>(positions.size(), 0.0), Array<u32>(positions.size(), NearestTriangle::none),
+                            Array<u32>(positions.size(), NearestTriangle::none)};
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        result.distances[vertices[i]] = found.distances[i];
+        result.triangles[vertices[i]] = found.triangles[i];
+        result.places[vertices[i]] = found.places[i];
+    }
+    return result;
+}
+
+std::size_t leave_out_borders(NearestDistances& nearest, std::span<const Vec3> points, const TriangleMesh& mesh,
+                              double rounding) {
+    const Borders borders(mesh);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (is_on_border(borders, mesh, points[i], nearest.triangles[i], rounding)) continue;
+        nearest.distances[kept] = nearest.distances[i];
+        nearest.triangles[kept] = nearest.triangles[i];
+        nearest.places[kept] = nearest.places[i];
+        ++kept;
+    }
+    if (kept == 0)
+        throw Error("{} nearest to a border of the mesh; no point is left to measure",
+                    points.size() == 1 ? "the only point of the truth is"
+                                       : fmt::format("all {} points of the truth are", points.size()))
+            .hint("set borders: include");
+    nearest.distances.resize(kept);
+    nearest.triangles.resize(kept);
+    nearest.places.resize(kept);
+    return points.size() - kept;
+}
+
+}  // namespace scanmill::measuring
