@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/plugin/module.hpp"
 #include "scanmill/workflow/document.hpp"
 
 namespace scanmill::runner {
@@ -17,6 +18,18 @@ FilterLibrary open_library() {
     for (const std::string& folder : ignored)
         tell("warning: SCANMILL_PLUGIN_PATH: '{}' is passed over; only absolute folders are searched\n", folder);
     return library;
+}
+
+std::string workflow_file(const std::string& file_or_name) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    if (fs::exists(file_or_name, ignored) || file_or_name.find_first_of("/.") != std::string::npos) return file_or_name;
+    const fs::path library = core_library_file().parent_path();
+    for (const fs::path& prefix : {library.parent_path(), library.parent_path().parent_path()}) {
+        const fs::path shipped = prefix / "share/scanmill/workflows" / (file_or_name + ".yaml");
+        if (fs::exists(shipped, ignored)) return shipped.string();
+    }
+    return file_or_name;
 }
 
 CheckedWorkflow check_workflow(const std::string& file, const FilterLibrary& library, const Settings& settings) {

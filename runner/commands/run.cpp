@@ -43,10 +43,10 @@ int run_workflow(const Options& options) {
     const std::unique_ptr<Cache> cache = open_cache(options.execute.cache, warn);
     const std::unique_ptr<Session> session = open_session(options.execute, cache.get());
     FilterLibrary library = open_library();
-    const std::string file = workflow_file(options.workflow);
-    const std::string text = read_workflow_file(file);
-    if (is_batch(text)) throw Error("'{}' is a batch, not a workflow", file).hint("scanmill batch " + file);
-    const CheckedWorkflow checked = check_workflow(file, text, library, parse_settings(options.settings));
+    const std::string workflow = workflow_file(options.workflow);
+    const std::string text = read_workflow_file(workflow);
+    if (is_batch(text)) throw Error("'{}' is a batch, not a workflow", workflow).hint("scanmill batch " + workflow);
+    const CheckedWorkflow checked = check_workflow(workflow, text, library, parse_settings(options.settings));
     print(checked.diagnostics);
     if (checked.diagnostics.has_errors()) {
         if (options.execute.json) print_files_json({to_json(checked.diagnostics)});
@@ -66,7 +66,7 @@ int run_workflow(const Options& options) {
     request.until = options.until;
     request.save = options.save;
     SessionTask task{workflow_name(checked.plan),
-                     file,
+                     workflow,
                      make_graph(checked.plan, library, request,
                                 [&](const std::filesystem::path& file) {
                                     return cache ? cache->file_hash(file) : content_hash(file);

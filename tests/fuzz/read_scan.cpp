@@ -3,6 +3,7 @@
 
 #include "fuzz/targets.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/formats/files.hpp"
 #include "scanmill/formats/registry.hpp"
 
 namespace scanmill::test {

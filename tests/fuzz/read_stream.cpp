@@ -5,6 +5,7 @@
 
 #include "fuzz/targets.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/formats/files.hpp"
 #include "scanmill/formats/open_point_stream.hpp"
 #include "support/same_points.hpp"
 #include "support/temporary_folder.hpp"
