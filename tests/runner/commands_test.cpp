@@ -223,7 +223,10 @@ TEST(Command, Convert_ScalesColumnsThatAreLengths) {
     const TemporaryFolder folder;
     folder.write(
         "a.ply",
-        "ply\nformat ascii 1.0\ncomment unit cm\nelement vertex 2\nproperty double x\nproperty double y\n"
+        "ply\nformat ascii 1.0\ncomment unit cm\ncomment length-exponent 1 bin-size\n"
+        "comment length-exponent 1 local-bin-size\ncomment length-exponent 1 fit-error\ncomment length-exponent -1 "
+        "curvature-1\n"
+        "comment length-exponent -1 curvature-2\nelement vertex 2\nproperty double x\nproperty double y\n"
         "property double z\nproperty double bin-size\nproperty double local-bin-size\nproperty float fit-error\n"
         "property double curvature-1\nproperty double curvature-2\nproperty double weight\nend_header\n"
         "0 0 0 2 3 0.5 4 -5 7\n1 0 0 2 3 0.5 4 -5 7\n");
@@ -237,7 +240,8 @@ TEST(Command, Convert_ScalesColumnsThatAreLengths) {
     EXPECT_DOUBLE_EQ(first("fit-error"), 5);
     EXPECT_DOUBLE_EQ(first("curvature-1"), 0.4);
     EXPECT_DOUBLE_EQ(first("curvature-2"), -0.5);
-    EXPECT_EQ(first("weight"), 7) << "nobody knows in what it is";
+    EXPECT_EQ(first("weight"), 7) << "the file declares no exponent";
+    EXPECT_EQ(points->columns.find("curvature-1")->length_exponent(), -1) << "kept in the written file";
 }
 
 }  // namespace

@@ -215,7 +215,7 @@ TEST_F(MeasureCommand, TruthIsNeverGuessed) {
 
 TEST_F(MeasureCommand, JsonIsNoScan) {
     folder_.write("numbers.json", "{}");
-    EXPECT_THAT(scanmill({"info", "numbers.json"}).err, HasSubstr("a JSON file holds no points and no mesh"));
+    EXPECT_THAT(scanmill({"info", "numbers.json"}).err, HasSubstr("is JSON without a member that names its kind"));
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ T required_name(const std::optional<T>& named, std::string_view what, const std:
 Kind kind_from(const std::string& name) { return required_name(kind_named(name), "kind", name); }
 
 PortSpec port_from(const Json& json) {
-    PortSpec port{json.at("name"), kind_from(json.at("kind")), json.at("help"), json.value("list", false),
+    PortSpec port{field(json, "name"), kind_from(field(json, "kind")), field(json, "help"), json.value("list", false),
                   json.value("optional", false)};
     for (const auto& also : json.value("also", Json::array())) port.also.push_back(kind_from(also));
     port.like = json.value("like", "");
@@ -72,15 +72,15 @@ PortSpec port_from(const Json& json) {
 
 std::optional<Bound> bound_from(const Json& json, const char* key) {
     if (!json.contains(key)) return std::nullopt;
-    return Bound{json[key].at("value"), json[key].at("inclusive")};
+    return Bound{field(json[key], "value"), field(json[key], "inclusive")};
 }
 
 ParameterSpec parameter_from(const Json& json) {
     ParameterSpec parameter;
-    const std::string type = json.at("type");
-    parameter.name = json.at("name");
+    const std::string type = field(json, "type");
+    parameter.name = field(json, "name");
     parameter.type = required_name(parameter_type_named(type), "parameter type", type);
-    parameter.help = json.at("help");
+    parameter.help = field(json, "help");
     parameter.list = json.value("list", false);
     if (json.contains("size")) parameter.size = whole_number<std::size_t>(json, "size");
     parameter.required = json.value("required", false);
@@ -103,8 +103,8 @@ ParameterSpec parameter_from(const Json& json) {
 }
 
 MetricSpec metric_from(const Json& json) {
-    const std::string unit = json.at("unit");
-    return {json.at("name"), required_name(unit_named(unit), "unit", unit), json.at("help"),
+    const std::string unit = field(json, "unit");
+    return {field(json, "name"), required_name(unit_named(unit), "unit", unit), field(json, "help"),
             json.value("headline", false), json.value("numbered", false)};
 }
 
@@ -132,20 +132,20 @@ Manifest parse_manifest(std::string_view text) try {
     const Json json = Json::parse(text);
     require_manifest_version(json, "scanmill-manifest", manifest_version);
     Manifest manifest;
-    manifest.abi = json.at("abi");
+    manifest.abi = field(json, "abi");
     FilterSpec& spec = manifest.spec;
-    spec.name = json.at("name");
+    spec.name = field(json, "name");
     spec.version = whole_number<int>(json, "version");
-    spec.summary = json.at("summary");
-    spec.source = json.at("source");
-    spec.ties = json.at("ties");
-    spec.not_finite = json.at("not-finite");
-    for (const Json& port : json.at("inputs")) spec.inputs.push_back(port_from(port));
-    for (const Json& port : json.at("outputs")) spec.outputs.push_back(port_from(port));
-    for (const Json& parameter : json.at("parameters")) spec.parameters.push_back(parameter_from(parameter));
-    for (const Json& metric : json.at("metrics")) spec.metrics.push_back(metric_from(metric));
+    spec.summary = field(json, "summary");
+    spec.source = field(json, "source");
+    spec.ties = field(json, "ties");
+    spec.not_finite = field(json, "not-finite");
+    for (const Json& port : field(json, "inputs")) spec.inputs.push_back(port_from(port));
+    for (const Json& port : field(json, "outputs")) spec.outputs.push_back(port_from(port));
+    for (const Json& parameter : field(json, "parameters")) spec.parameters.push_back(parameter_from(parameter));
+    for (const Json& metric : field(json, "metrics")) spec.metrics.push_back(metric_from(metric));
     if (json.contains("streams"))
-        spec.streams = StreamSpec{json["streams"].at("given").get<std::vector<std::string>>()};
+        spec.streams = StreamSpec{field(json["streams"], "given").get<std::vector<std::string>>()};
     return manifest;
 } catch (const Json::parse_error&) {
     throw Error("is no manifest: invalid JSON");

@@ -12,10 +12,17 @@ namespace scanmill {
 
 using Json = nlohmann::ordered_json;
 
+/// The member; throws Error naming one that is missing.
+inline const Json& field(const Json& json, const char* key) {
+    const auto found = json.is_object() ? json.find(key) : json.end();
+    if (!json.is_object() || found == json.end()) throw Error("is no manifest: '{}' is missing", key);
+    return *found;
+}
+
 /// The library would cut 1e300 and 1.5 to what fits.
 template <class Whole>
 Whole whole_number(const Json& json, const char* key) {
-    const Json& number = json.at(key);
+    const Json& number = field(json, key);
     const bool fits = number.is_number_unsigned()  ? std::in_range<Whole>(number.get<std::uint64_t>())
                       : number.is_number_integer() ? std::in_range<Whole>(number.get<std::int64_t>())
                                                    : false;

@@ -31,12 +31,12 @@ FormatManifest parse_format_manifest(std::string_view text) try {
     const Json json = Json::parse(text);
     require_manifest_version(json, "scanmill-format", manifest_version);
     FormatManifest manifest;
-    manifest.abi = json.at("abi");
+    manifest.abi = field(json, "abi");
     FormatSpec& spec = manifest.spec;
-    spec.name = json.at("name");
-    spec.extensions = json.at("extensions").get<std::vector<std::string>>();
-    spec.begins = json.at("begins").get<std::vector<std::string>>();
-    for (const std::string name : json.at("writes")) {
+    spec.name = field(json, "name");
+    spec.extensions = field(json, "extensions").get<std::vector<std::string>>();
+    spec.begins = field(json, "begins").get<std::vector<std::string>>();
+    for (const std::string name : field(json, "writes")) {
         const std::optional<Kind> kind = kind_named(name);
         if (!kind) throw Error("'{}' is no kind", name);
         spec.writes.push_back(*kind);

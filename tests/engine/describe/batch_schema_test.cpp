@@ -100,9 +100,9 @@ std::vector<Mistake> mistakes(const std::string& head) {
         {head + "limits: {retries: 11}\n", "limits retries: Expected number less than or equal to 10",
          "11 is out of range"},
         {head + "limits: {retries: 1.5}\n", "limits retries: Value type not permitted", "'1.5' is not a whole number"},
-        {head + "measure: {samples: 1}\n", "Object contains a property" + known_only + "'measure'",
+        {head + "measure: {samples: 1}\n", ": Object contains a property" + known_only + "'measure'",
          "nothing acts on `measure`"},
-        {head + "gate: {genus: exact}\n", "Object contains a property" + known_only + "'gate'",
+        {head + "gate: {genus: exact}\n", ": Object contains a property" + known_only + "'gate'",
          "nothing acts on `gate`"},
     };
 }

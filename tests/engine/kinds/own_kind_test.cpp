@@ -58,9 +58,9 @@ TEST_F(OwnKind, Workflow_TakesItAsInputAndWiresIt) {
     spec.name = "count-markers";
     spec.summary = "Counts markers.";
     spec.source = "None";
-    spec.ties = "None.";
-    spec.inputs = {{"markers", kind_of<Markers>(), "Markers."}};
-    spec.outputs = {{"metrics", kind_of<Metrics>(), "Their number."}};
+    spec.ties = "No ties occur.";
+    spec.inputs = {{"markers", kind_of<Markers>(), "Markers to count."}};
+    spec.outputs = {{"metrics", kind_of<Metrics>(), "How many there are."}};
     DeclaredFilters filters;
     filters.add(spec);
     Diagnostics diagnostics("w");
@@ -78,7 +78,7 @@ TEST_F(OwnKind, OutputThatFollowsItsInput_HasTheKindOfWhatIsWired) {
     spec.name = "move";
     spec.summary = "Moves a value.";
     spec.source = "None";
-    spec.ties = "None.";
+    spec.ties = "No ties occur.";
     spec.not_finite = "Carried along.";
     spec.inputs = {{"value", kind_of<PointCloud>(), "What is moved.", false, false, {kind_of<Markers>()}}};
     spec.outputs = {{"value", kind_of<PointCloud>(), "The moved value."}};
@@ -87,6 +87,7 @@ TEST_F(OwnKind, OutputThatFollowsItsInput_HasTheKindOfWhatIsWired) {
     filters.add(spec);
     Diagnostics diagnostics("w");
     const FilterLibrary library = filters.library();
+    ASSERT_THAT(library.unusable(), IsEmpty()) << library.unusable().front().reason;
     EXPECT_EQ(*library.find("move"), spec) << "through its manifest";
     const Plan plan = make_plan(parse_workflow("scanmill: 1\ninputs: {scan: points, marks: markers}\nsteps:\n"
                                                "  - move:\n    in: {value: marks}\n  - move:\n    in: {value: scan}\n"

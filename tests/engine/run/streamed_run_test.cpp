@@ -36,7 +36,7 @@ TEST_F(StreamedRun, RefusesWhatReadingWholeRefuses) {
     expect_the_same(ply, "bin-size: 0.1 u, min-points: 1000");
     expect_the_same(ply, "bin-size: 0.1 u, rule: adaptive");
     expect_the_same(scan("one.xyz", "1 2 3\n"), "bin-size: 1 %diag");
-    EXPECT_THAT(run_thin("bin-size: 1e-9 u", ply).cells[0].failure.text, HasSubstr("bins"));
+    EXPECT_THAT(run_thin("bin-size: 1e-9 u", ply).cells[0].failure.text, HasSubstr("voxels"));
     expect_the_same(scan("same.xyz", "1 2 3\n1 2 3\n"), "bin-size: 1 %diag");
     EXPECT_THAT(run_thin("bin-size: 1 %diag", scan("one.xyz", "1 2 3\n")).cells[0].failure.text,
                 HasSubstr("the diagonal is 0"));
