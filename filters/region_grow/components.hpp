@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The connected pieces of a grown surface, and which side of each is its outside.
+/// The connected components of the grown surface, and their orientation.
 
 #include "region_grow/surface.hpp"
 
 namespace scanmill::growing {
 
-struct Pieces {
-    /// Per place the number of its piece, nobody for unused ones.
-    Array<u32> of_place;
+struct Components {
+    /// Per point the number of its component, invalid_index for unused ones.
+    Array<u32> of_point;
     std::size_t count = 0;
 };
 
-Pieces find_pieces(const Surface& surface);
+Components find_components(const Surface& surface);
 
-/// Turns over what faces inwards: a closed piece by the sign of its volume; open pieces all of one group alike, by that
-/// of the volume between them and their centre, or where that is next to nothing (below a hundredth of area^(3/2)) so
-/// that the largest component of their summed normal is positive. Turns the triangles alone.
-void face_outwards(Surface& surface, const Pieces& pieces, std::span<const u32> groups);
+/// Reverses triangles of components that face inwards: of a closed component by the sign of its volume; of open
+/// components, together for all of a group, by the sign of the volume between them and their centroid, or, where that
+/// is below a hundredth of area^(3/2), so that the largest component of their summed normals is positive. `groups` is
+/// that of grow_all_components(). Changes the list of triangles only. Cost: linear.
+void orient_outwards(Surface& surface, const Components& components, std::span<const u32> groups);
 
-/// Turns the triangles of every piece where at least three quarters of the given normals at its corners point away from
-/// them. Of given ones that are zero nothing follows. Cost: linear.
-void face_as_given(Surface& surface, const Pieces& pieces, const Array<Vec3>& given);
+/// Reverses the triangles of every component where at least three quarters of the given normals at its corners oppose
+/// them. Zero normals do not count. Changes the list of triangles only. Cost: linear.
+void orient_like_normals(Surface& surface, const Components& components, const Array<Vec3>& given);
 
 }  // namespace scanmill::growing

@@ -16,7 +16,7 @@ bool comes_before(const Vec3& a, const Vec3& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
-/// spatial_order() leaves points of one cell of the curve in the order of their rows; here they get one by place.
+/// spatial_order() orders points of one cell of the curve by row; this orders them by position.
 void order_within_cells(std::span<const Vec3> positions, const BoundingBox& box, Array<u32>& order) {
     constexpr double steps = (1 << 21) - 1;
     const double extent = (box.high - box.low).maxCoeff();
@@ -45,46 +45,46 @@ constexpr std::size_t most_neighbours = 16;
 
 }  // namespace
 
-Samples distinct_samples(std::span<const Vec3> positions) {
-    Samples samples;
+DistinctPoints distinct_points_of(std::span<const Vec3> positions) {
+    DistinctPoints points;
     Array<u32> order = spatial_order(positions);
     order_within_cells(positions, bounding_box(positions), order);
 
-    samples.positions.reserve(order.size());
-    samples.rows.reserve(order.size());
+    points.positions.reserve(order.size());
+    points.rows.reserve(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
         if (i > 0 && positions[order[i]] == positions[order[i - 1]]) {
-            samples.repeats.push_back({static_cast<u32>(samples.rows.size() - 1), order[i]});
+            points.repeats.push_back({static_cast<u32>(points.rows.size() - 1), order[i]});
             continue;
         }
-        samples.positions.push_back(positions[order[i]]);
-        samples.rows.push_back(order[i]);
+        points.positions.push_back(positions[order[i]]);
+        points.rows.push_back(order[i]);
     }
-    return samples;
+    return points;
 }
 
-Neighbourhoods::Neighbourhoods(const Samples& samples, unsigned threads)
-    : tree_(samples.positions, threads),
-      count_(std::min(most_neighbours, samples.size() - 1)),
-      sample_of_place_(samples.size()),
-      nearest_(samples.size() * count_),
-      squared_reach_(samples.size()) {
-    const auto places = tree_.place_of_row();
-    for (u32 sample = 0; sample < places.size(); ++sample) sample_of_place_[places[sample]] = sample;
-    const bool all = count_ + 1 == samples.size();
+Neighbourhoods::Neighbourhoods(const DistinctPoints& points, unsigned threads)
+    : tree_(points.positions, threads),
+      count_(std::min(most_neighbours, points.size() - 1)),
+      point_of_tree_index_(points.size()),
+      nearest_(points.size() * count_),
+      squared_reach_(points.size()) {
+    const auto tree_indices = tree_.place_of_row();
+    for (u32 point = 0; point < tree_indices.size(); ++point) point_of_tree_index_[tree_indices[point]] = point;
+    const bool all = count_ + 1 == points.size();
     tree_.for_each_nearest(count_, threads, [&](const NeighbourBatch& batch) {
         for (std::size_t i = 0; i < batch.places.size(); ++i) {
-            const u32 sample = sample_of_place_[batch.places[i]];
-            u32* nearest = nearest_.data() + sample * count_;
-            for (const Neighbour& neighbour : batch.of(i)) *nearest++ = sample_of_place_[neighbour.place];
-            squared_reach_[sample] = all ? std::numeric_limits<double>::infinity() : batch.of(i).back().squared;
+            const u32 point = point_of_tree_index_[batch.places[i]];
+            u32* nearest = nearest_.data() + point * count_;
+            for (const Neighbour& neighbour : batch.of(i)) *nearest++ = point_of_tree_index_[neighbour.place];
+            squared_reach_[point] = all ? std::numeric_limits<double>::infinity() : batch.of(i).back().squared;
         }
     });
 }
 
-void Neighbourhoods::within(u32 place, double squared, NeighbourBuffer& buffer, std::vector<u32>& found) const {
-    for (const Neighbour& neighbour : tree_.within(tree_.place_of_row()[place], squared, buffer))
-        found.push_back(sample_of_place_[neighbour.place]);
+void Neighbourhoods::within(u32 point, double squared, NeighbourBuffer& buffer, std::vector<u32>& found) const {
+    for (const Neighbour& neighbour : tree_.within(tree_.place_of_row()[point], squared, buffer))
+        found.push_back(point_of_tree_index_[neighbour.place]);
 }
 
 }  // namespace scanmill::growing

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The places that a surface grows over: each once, numbered so that neighbours in space are neighbours in memory.
+/// The points that a surface grows over: each position once, numbered so that neighbours in space are neighbours in
+/// memory, and their nearest neighbours.
 
 #include <span>
 #include <vector>
@@ -11,15 +12,15 @@
 
 namespace scanmill::growing {
 
-struct Samples {
-    /// Distinct, along the Morton curve through their box, equal codes by x, y, z: the order depends on the places
-    /// alone, so whatever is decided by number is decided by place.
+struct DistinctPoints {
+    /// Along the Morton curve through their box, equal codes by x, y, z. The order depends on the positions alone, so
+    /// a decision by point number is a decision by position.
     Array<Vec3> positions;
-    /// Per place the lowest row of the cloud that lies there.
+    /// Per point the lowest row of the cloud at that position.
     Array<u32> rows;
-    /// All further rows, by place and row.
+    /// All further rows, by point and row.
     struct Repeat {
-        u32 place, row;
+        u32 point, row;
     };
     std::vector<Repeat> repeats;
 
@@ -27,28 +28,26 @@ struct Samples {
 };
 
 /// Pre: finite positions, fewer than 2^32. Cost: O(n log n) at most, 61 bytes per point, 8 more per repeat.
-Samples distinct_samples(std::span<const Vec3> positions);
+DistinctPoints distinct_points_of(std::span<const Vec3> positions);
 
-// Who is near whom: every place's nearest others, found once, and a search for the few edges that need to look
-// farther.
-
+/// The nearest neighbours of every point, found once, and a radius search for the few edges that look farther.
 class Neighbourhoods {
 public:
-    /// Pre: at least two samples. Cost: O(n log n) time, about 160 bytes per place.
-    Neighbourhoods(const Samples& samples, unsigned threads);
+    /// Pre: at least two points. Cost: O(n log n) time, about 160 bytes per point.
+    Neighbourhoods(const DistinctPoints& points, unsigned threads);
 
-    /// The nearest other places, ascending by distance, equally far ones by place: 16, or all there are.
-    std::span<const u32> of(u32 place) const { return {nearest_.data() + std::size_t(place) * count_, count_}; }
-    /// Squared distance within which of() holds all places.
-    double squared_reach(u32 place) const { return squared_reach_[place]; }
-    /// Appends the other places at a squared distance below `squared`, in that same order.
-    void within(u32 place, double squared, NeighbourBuffer& buffer, std::vector<u32>& found) const;
+    /// The nearest other points, ascending by distance, equally distant ones by position: 16, or all there are.
+    std::span<const u32> of(u32 point) const { return {nearest_.data() + std::size_t(point) * count_, count_}; }
+    /// Squared distance within which of() holds all points.
+    double squared_reach(u32 point) const { return squared_reach_[point]; }
+    /// Appends the other points at a squared distance below `squared`, in the order of of().
+    void within(u32 point, double squared, NeighbourBuffer& buffer, std::vector<u32>& found) const;
 
 private:
     PointTree tree_;
     std::size_t count_;
-    /// Per place of the tree the sample there.
-    Array<u32> sample_of_place_;
+    /// The tree has its own numbers of the points.
+    Array<u32> point_of_tree_index_;
     Array<u32> nearest_;
     Array<double> squared_reach_;
 };

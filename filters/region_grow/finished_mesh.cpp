@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 
@@ -13,14 +14,15 @@ namespace scanmill::growing {
 
 namespace {
 
-/// The third corner of the triangle beyond the edge. Triangles may have been turned over since they were stored.
+/// The third corner of the triangle beyond the edge. Triangles may have been reversed since they were added to the
+/// fans.
 u32 opposite(const Surface& surface, u32 from, u32 to, u32 third) {
     const u32 left = surface.fans.left_of(from, to), right = surface.fans.right_of(from, to);
     return left == third ? right : left;
 }
 
-/// By places. Each edge is asked from its triangle whose third corner is the lower.
-std::vector<Edge> bent_edges(const Surface& surface, Angle sharp_angle) {
+/// By point numbers. Each edge is considered from its triangle with the lower third corner.
+std::vector<Edge> sharp_edges(const Surface& surface, Angle sharp_angle) {
     const double limit = sharp_angle.in_radians() + angle_tie;
     const double surely_below = std::cos(limit) + 1e-6;
     std::vector<Edge> edges;
@@ -28,21 +30,22 @@ std::vector<Edge> bent_edges(const Surface& surface, Angle sharp_angle) {
         for (std::size_t i = 0; i < 3; ++i) {
             const u32 from = triangle[i], to = triangle[(i + 1) % 3], third = triangle[(i + 2) % 3];
             const u32 other = opposite(surface, from, to, third);
-            if (other == nobody || other < third) continue;
+            if (other == invalid_index || other < third) continue;
             const Vec3 one = surface.facet_normal(from, to, third), two = surface.facet_normal(to, from, other);
             if (one.dot(two) < surely_below && angle_between(one, two) > limit) edges.push_back(make_edge(from, to));
         }
     return edges;
 }
 
-using Place = std::array<double, 3>;
+using Coordinates = std::array<double, 3>;
 
-Place place_of(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+/// The same for both directions.
+std::pair<Coordinates, Coordinates> segment(const Vec3& a, const Vec3& b) {
+    const auto coordinates = [](const Vec3& p) { return Coordinates{p.x(), p.y(), p.z()}; };
+    return std::minmax({coordinates(a), coordinates(b)});
+}
 
-/// Whichever way it is passed.
-std::pair<Place, Place> segment(const Vec3& a, const Vec3& b) { return std::minmax({place_of(a), place_of(b)}); }
-
-/// Of the wanted vertices the summed normals of their triangles.
+/// Adds the normals of their triangles to the entries of these vertices.
 void add_normals(const TriangleMesh& mesh, std::map<u32, Vec3>& normals) {
     std::vector<bool> wanted(mesh.positions.size(), false);
     for (const auto& [vertex, normal] : normals) wanted[vertex] = true;
@@ -59,35 +62,35 @@ void add_normals(const TriangleMesh& mesh, std::map<u32, Vec3>& normals) {
 
 std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits,
                                         const Context& context) {
-    std::size_t looks = 0;
+    std::size_t tests = 0;
     std::vector<PatchEdge> edges;
     for (const Triangle& triangle : surface.triangles)
         for (std::size_t i = 0; i < 3; ++i) {
             const u32 from = triangle[i], to = triangle[(i + 1) % 3];
-            if (surface.states[from] != PlaceState::front || surface.states[to] != PlaceState::front ||
-                surface.fans.right_of(from, to) != nobody)
+            if (surface.states[from] != PointState::front || surface.states[to] != PointState::front ||
+                surface.fans.right_of(from, to) != invalid_index)
                 continue;
-            if (looks++ % 64 == 0) context.check_cancelled();
+            if (tests++ % 64 == 0) context.check_cancelled();
             const u32 beyond = chooser.beyond_sharp_edge(from, to, limits);
-            if (beyond != nobody) edges.push_back({from, to, beyond});
+            if (beyond != invalid_index) edges.push_back({from, to, beyond});
         }
     return edges;
 }
 
 FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const PatchEdge> patch_edges,
                          Angle sharp_angle) {
-    const auto& rows = surface.samples.rows;
+    const auto& rows = surface.points.rows;
     FinishedMesh finished;
     Array<u32> vertex_of_row(cloud.size());
-    std::ranges::fill(vertex_of_row, nobody);
-    for (u32 place = 0; place < rows.size(); ++place)
-        if (!surface.fans.empty(place)) vertex_of_row[rows[place]] = 0;
+    std::ranges::fill(vertex_of_row, invalid_index);
+    for (u32 point = 0; point < rows.size(); ++point)
+        if (!surface.fans.empty(point)) vertex_of_row[rows[point]] = 0;
     for (u32 row = 0; row < cloud.size(); ++row) {
-        if (vertex_of_row[row] == nobody) continue;
+        if (vertex_of_row[row] == invalid_index) continue;
         vertex_of_row[row] = static_cast<u32>(finished.rows.size());
         finished.rows.push_back(row);
     }
-    const auto vertex = [&](u32 place) { return vertex_of_row[rows[place]]; };
+    const auto vertex = [&](u32 point) { return vertex_of_row[rows[point]]; };
 
     TriangleMesh& mesh = finished.mesh;
     mesh.frame = cloud.frame;
@@ -101,21 +104,21 @@ FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::s
     }
     mesh.triangles = std::move(triangles);
     Array<Edge> sharp;
-    for (const auto& [a, b] : bent_edges(surface, sharp_angle)) sharp.push_back(make_edge(vertex(a), vertex(b)));
+    for (const auto& [a, b] : sharp_edges(surface, sharp_angle)) sharp.push_back(make_edge(vertex(a), vertex(b)));
     for (const PatchEdge& edge : patch_edges) sharp.push_back(make_edge(vertex(edge.from), vertex(edge.to)));
     std::ranges::sort(sharp);
     mesh.sharp_edges = std::move(sharp);
     return finished;
 }
 
-void tell_far_sides(FeatureGraph& features, const FinishedMesh& finished, const Samples& samples,
-                    std::span<const PatchEdge> patch_edges) {
+void set_normals_beyond(FeatureGraph& features, const FinishedMesh& finished, const DistinctPoints& points,
+                        std::span<const PatchEdge> patch_edges) {
     if (patch_edges.empty()) return;
-    const auto vertex = [&](u32 place) {
-        return static_cast<u32>(std::ranges::lower_bound(finished.rows, samples.rows[place]) - finished.rows.begin());
+    const auto vertex = [&](u32 point) {
+        return static_cast<u32>(std::ranges::lower_bound(finished.rows, points.rows[point]) - finished.rows.begin());
     };
     std::map<u32, Vec3> normals;
-    std::map<std::pair<Place, Place>, u32> beyond;
+    std::map<std::pair<Coordinates, Coordinates>, u32> beyond;
     const auto& p = finished.mesh.positions;
     for (const PatchEdge& edge : patch_edges) {
         beyond[segment(p[vertex(edge.from)], p[vertex(edge.to)])] = vertex(edge.beyond);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Border edges that are no end of the points but a sharp edge: beyond them the surface goes on in another patch.
+/// The mesh that the filter returns: vertices in input order, sharp edges, and the normals beyond edges of patches.
 
 #include "region_grow/suitable_point.hpp"
 #include "scanmill/data/features.hpp"
@@ -10,19 +10,18 @@
 
 namespace scanmill::growing {
 
+/// A boundary edge at which the surface continues in another patch.
 struct PatchEdge {
     u32 from, to;
-    /// The place of the other patch that the edge would have taken first.
+    /// The point of the other patch that the edge would have chosen first.
     u32 beyond;
 };
 
-/// Border edges for which a place on the front, no neighbour of theirs, keeps to all limits but the one of the angle to
-/// the triangle there: where nothing else ended the patch. In the order of the triangles, facing as they were grown.
-/// Cost: linear in the border.
+/// Boundary edges for which a boundary point, not a neighbour of theirs, satisfies all limits but `normal_cosine` to
+/// the edge's triangle: nothing else ended the patch. In the order of the triangles, with their orientation. Cost:
+/// linear in the boundary.
 std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits,
                                         const Context& context);
-
-// From places to the mesh that leaves the filter.
 
 struct FinishedMesh {
     TriangleMesh mesh;
@@ -30,16 +29,14 @@ struct FinishedMesh {
     Array<u32> rows;
 };
 
-/// The used points in input order with all their columns, triangles as they were formed, lowest vertex first; sharp
-/// edges: those that bend by more than `sharp_angle`, and the patches' edges. Cost: linear.
+/// The used points in input order with all their columns. Triangles in the order of their creation, lowest vertex
+/// first. Sharp edges: edges with a dihedral deviation above `sharp_angle`, and patch edges. Cost: linear.
 FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const PatchEdge> patch_edges,
                          Angle sharp_angle);
 
-// The normals beyond sharp edges where two patches end side by side: a feature line of one tells the other's as well.
-
-/// Sets the right normal of every boundary segment that is a patch edge: that of the other patch, the mean over its
-/// triangles at the place beyond. Pre: `features` of `finished`. Cost: linear, and a search per segment.
-void tell_far_sides(FeatureGraph& features, const FinishedMesh& finished, const Samples& samples,
-                    std::span<const PatchEdge> patch_edges);
+/// Sets the right normal of every boundary segment that is a patch edge to the normal of the other patch: the mean over
+/// its triangles at the point beyond. Pre: `features` of `finished`. Cost: linear, and a search per segment.
+void set_normals_beyond(FeatureGraph& features, const FinishedMesh& finished, const DistinctPoints& points,
+                        std::span<const PatchEdge> patch_edges);
 
 }  // namespace scanmill::growing

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The growth itself: triangles are added at the front's edges until none can be.
+/// The growth: triangles are added at boundary edges until no edge can be continued.
 ///
-/// Edges wait in lines: those that are plain to continue go first, then those where the surface bends or points were
-/// turned down, then those whose neighbour lists were too short. What cannot be continued is parked and retried under
-/// relaxed limits. Adding a triangle cancels opposite directed edges; the thesis's loops, split and merged, are what is
-/// left of the directed edges.
+/// Edges wait in queues: first those that are certain, then those where the surface has a large dihedral deviation or
+/// candidates were rejected, then those whose neighbour lists were too short. Edges without a suitable point are parked
+/// and retried under relaxed limits. A triangle cancels opposite half-edges; the thesis's loops, split and merged, are
+/// the half-edges that remain.
 
+#include <array>
 #include <deque>
 #include <optional>
 
@@ -20,51 +21,51 @@ public:
     /// `limits`: the given ones, then the relaxed ones in order.
     Growth(Surface& surface, Score score, std::vector<Limits> limits, Context& context);
 
-    /// Forms the seed triangle at the place and grows from it to the end; false when there is none.
-    bool start(u32 place);
+    /// Forms the seed triangle at the point and grows from it to the end. False when there is no seed triangle.
+    bool start(u32 point);
 
 private:
-    struct DirectedEdge {
+    struct HalfEdge {
         u32 from, to;
     };
-    /// An edge that found no point under limits_[0] … limits_[tried - 1]. Growth elsewhere only takes points away from
-    /// it, so the same limits need no second look.
+    /// An edge without a suitable point under limits_[0] … limits_[tried - 1]. Growth elsewhere only removes
+    /// candidates, so these limits need not be tried again.
     struct ParkedEdge {
-        DirectedEdge edge;
+        HalfEdge edge;
         std::size_t tried;
     };
 
-    bool form_seed(u32 place);
-    bool is_covered(u32 place, const Vec3& normal) const;
+    bool form_seed(u32 point);
+    /// Whether the point lies over a triangle of the surface that faces along the normal.
+    bool is_covered(u32 point, const Vec3& normal) const;
     void add(const Triangle& triangle, Pass pass);
+    /// Empties the queues.
     void grow(const Limits& limits);
-    /// What the edge would take; now and then asks whether to go on at all.
-    SuitablePoint look(DirectedEdge edge, const Limits& limits, bool far, bool in_space);
-    /// Looks at one edge; adds a triangle when it may be added in this line.
-    void continue_at(DirectedEdge edge, std::size_t line, const Limits& limits);
-    /// Tries the parked edges, and those parked meanwhile, up to limits_[round].
+    /// The edge's suitable point. Checks for cancellation now and then.
+    SuitablePoint choose(HalfEdge edge, const Limits& limits, bool wide, bool in_space);
+    /// Continues one edge: adds a triangle, moves the edge to a later queue, or parks it.
+    void extend(HalfEdge edge, std::size_t queue, const Limits& limits);
+    /// Retries the parked edges, also those parked meanwhile, with limits up to limits_[round].
     void retry(std::size_t round);
 
-    static constexpr std::size_t lines = 3;
+    static constexpr std::size_t queue_count = 3;
     Surface& surface_;
     PointChooser chooser_;
     std::vector<Limits> limits_;
     Context& context_;
-    std::array<std::deque<DirectedEdge>, lines> waiting_;
+    std::array<std::deque<HalfEdge>, queue_count> queues_;
     std::vector<ParkedEdge> parked_;
-    std::size_t next_report_ = 0, looks_ = 0;
+    std::size_t next_report_ = 0, choices_ = 0;
 };
 
-// Where pieces of the surface begin, and which way each begins to face.
-
-/// Grows one piece after the other until no unused place starts one: first from `start`, or else from the flattest
-/// place (least roughness, then lowest number), then from the unused ones in that same order. False when `start` starts
-/// nothing.
+/// Grows component after component until no unused point starts one: first from `start`, or by default from the point
+/// with the least surface variation (of equal ones the lowest number), then from the unused points in that order. False
+/// when nothing can start at `start`.
 ///
-/// Before a further piece is begun, the unused places near the surface are turned to face as it does, and those near
-/// them likewise: normals are carried over edges as over a mirror (n' is turned like n less twice its part along the
-/// way from one to the other), so that they go right round corners. `groups` tells per place which pieces' facing
-/// depends on each other in this way.
-bool grow_all_pieces(Surface& surface, Growth& growth, std::optional<u32> start, Array<u32>& groups);
+/// Before each further component, unused points near the surface, and those near them, take over its orientation. A
+/// normal is propagated along an edge by reflection: n' has the sign of n minus twice its component along the edge,
+/// which is right around corners. `groups` returns per point a number that is equal for points whose orientations
+/// depend on each other in this way, or invalid_index.
+bool grow_all_components(Surface& surface, Growth& growth, std::optional<u32> start, Array<u32>& groups);
 
 }  // namespace scanmill::growing

@@ -1,26 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "region_grow/region_grow.hpp"
 
-#include <Eigen/Geometry>
-
 #include <fmt/format.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include "scanmill/base/error.hpp"
-#include "scanmill/base/text.hpp"
-#include "scanmill/geometry/mesh/feature_lines.hpp"
 
+#include "region_grow/boundaries.hpp"
 #include "region_grow/components.hpp"
 #include "region_grow/finished_mesh.hpp"
 #include "region_grow/growth.hpp"
 #include "region_grow/holes.hpp"
-#include "region_grow/normals.hpp"
 #include "region_grow/search_radii.hpp"
-#include "region_grow/surface.hpp"
-#include "region_grow/thin_parts.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill {
 
@@ -29,14 +27,15 @@ namespace {
 using namespace growing;
 
 constexpr const char* few_points_hint =
-    "look at the file with `scanmill info`; thin less coarsely if the scan was thinned";
+    "check the file with `scanmill info`; use smaller voxels if the scan was thinned";
 
 void require_in_range(const RegionGrowParams& params, std::size_t points) {
-    const double least = params.min_angle.in_degrees(), bend = params.max_normal_angle.in_degrees();
+    const double least = params.min_angle.in_degrees(), most = params.max_normal_angle.in_degrees();
     if (!(least >= 0 && least < 60))
-        throw Error("min-angle is {} degrees; it must be at least 0 and below 60, what no triangle exceeds", least);
-    if (!(bend > 0 && bend <= 180))
-        throw Error("max-normal-angle is {} degrees; it must be above 0 and at most 180", bend);
+        throw Error("min-angle is {} degrees; it must be at least 0 and below 60, the angle of an equilateral triangle",
+                    least);
+    if (!(most > 0 && most <= 180))
+        throw Error("max-normal-angle is {} degrees; it must be above 0 and at most 180", most);
     if (params.search_radius) {
         const double radius = params.search_radius->value();
         if (!(radius > 0 && std::isfinite(radius))) throw Error("search-radius is {}; it must be above 0", radius);
@@ -46,40 +45,97 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
         throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points);
 }
 
-void require_area(const Samples& samples, std::size_t points) {
-    if (points == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(few_points_hint);
-    if (samples.size() < 3)
-        throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", samples.size(), points)
+/// Throws Error unless three points are not collinear. `rows`: of the cloud.
+void require_area(const DistinctPoints& points, std::size_t rows) {
+    if (rows == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(few_points_hint);
+    if (points.size() < 3)
+        throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", points.size(), rows)
             .hint(few_points_hint);
-    // The place farthest from the first, and the one farthest from the line through both.
-    const auto& p = samples.positions;
+    // The point farthest from the first, and the one farthest from the line through both.
+    const auto& p = points.positions;
     const auto farthest = [&](const auto& distance) { return *std::ranges::max_element(p, {}, distance); };
     const Vec3 end = farthest([&](const Vec3& x) { return (x - p[0]).squaredNorm(); });
     const Vec3 along = (end - p[0]).normalized();
     const auto off_line = [&](const Vec3& x) { return (x - p[0]).cross(along).norm(); };
     const double off = off_line(farthest(off_line));
     if (off <= 1e-9 * (end - p[0]).norm())
-        throw Error("all {} distinct points lie on one line, to within {:.2g} u; a surface needs some off it",
-                    samples.size(), off)
+        throw Error("all {} distinct points lie on one line, to within {:.2g} u; a surface needs points off that line",
+                    points.size(), off)
             .hint("scan more than a single profile, or check that the columns x, y and z are read as such");
 }
 
-void refuse_start(u32 row) {
-    throw Error("no triangle can start at row {}: no two other points near it make one within the limits", row)
-        .hint("start at another point, on a flat and evenly sampled part, or leave start to `auto`");
+[[noreturn]] void refuse_start(u32 row) {
+    throw Error("no seed triangle at row {}: no two other points near it satisfy the limits", row)
+        .hint("start at another point, on a flat and evenly sampled part, or leave start at `auto`");
 }
 
-void refuse_all(const Surface& surface, const RegionGrowParams& params, LengthUnit unit, unsigned threads) {
-    const Samples& samples = surface.samples;
+/// For a cloud without any seed triangle. Names voxels that would make one sheet of several layers.
+[[noreturn]] void refuse_all(const Surface& surface, const RegionGrowParams& params, LengthUnit unit,
+                             unsigned threads) {
     const std::string radius = params.search_radius ? fmt::format("search-radius {} u", params.search_radius->value())
                                                     : std::string("the automatic search-radius");
-    throw Error("no three of the {} distinct points make a triangle with angles of at least {} and {}", samples.size(),
-                params.min_angle.text(), radius)
-        .hint(fmt::format("enlarge search-radius, or lessen min-angle; points in layers, thin with bins of {:.3g} {}",
-                          2 * bins_as_dense(surface, threads), symbol(unit)));
+    throw Error("no seed triangle among the {} distinct points: none has angles of at least {} within {}",
+                surface.points.size(), params.min_angle.text(), radius)
+        .hint(fmt::format(
+            "enlarge search-radius, or lessen min-angle; if the points lie in layers, thin with voxels of {:.3g} {}",
+            2 * equivalent_voxel_size(surface, threads), symbol(unit)));
 }
 
-void count_all(const RegionGrowResult& result, Context& context) {
+/// The given limits, and the relaxed ones under which parked edges are retried.
+std::vector<Limits> limits_of(const RegionGrowParams& params) {
+    struct Round {
+        double angle_factor, normal_angle_factor, point_angle, sharp_point_angle, radius_factor;
+    };
+    // The limits to the points' own normals keep sheets apart and boundaries open.
+    constexpr std::array<Round, 4> rounds{{{1, 1, 60, 85, 1},
+                                           {2.0 / 3, 7.0 / 6, 75, 110, 1.1},
+                                           {1.0 / 3, 4.0 / 3, 80, 180, 1.15},
+                                           {1.0 / 30, 4.0 / 3, 80, 180, 1.15}}};
+    constexpr double degree = 3.14159265358979323846 / 180;
+    std::vector<Limits> limits;
+    const auto normal_cosine = [&](const Round& round) {
+        const double angle = params.max_normal_angle.in_radians() * round.normal_angle_factor;
+        return std::cos(std::min(180 * degree, angle)) - 1e-9;
+    };
+    for (const Round& round : rounds) {
+        limits.push_back({std::sin(params.min_angle.in_radians() * round.angle_factor) * (1 - 1e-12),
+                          normal_cosine(round), normal_cosine(rounds.back()), std::cos(round.point_angle * degree),
+                          std::cos(round.sharp_point_angle * degree), round.radius_factor,
+                          static_cast<Pass>(limits.size())});
+    }
+    return limits;
+}
+
+/// Largest dihedral deviation where narrow holes are closed, in radians. From 90 degrees of max-normal-angle on, no
+/// patch ends at a sharp edge, and tips of any angle are closed; below, surfaces end where the last round of growth
+/// ends them.
+double largest_dihedral(const RegionGrowParams& params) {
+    const double angle = params.max_normal_angle.in_radians();
+    constexpr double right_angle = std::numbers::pi / 2;
+    return angle >= right_angle * (1 - 1e-12) ? 2 * right_angle : angle * 4 / 3;
+}
+
+SearchRadii search_radii(const PointCloud& cloud, const DistinctPoints& points, const Neighbourhoods& neighbourhoods,
+                         const PointNormals& normals, const RegionGrowParams& params, Context& context) {
+    const Array<double> given = params.search_radius ? Array<double>() : given_voxel_sizes(cloud, points, context);
+    SearchRadii found =
+        automatic_radii(points, neighbourhoods, normals.directions, normals.variation, given, context.threads());
+    if (params.search_radius) {
+        std::ranges::fill(found.radii, params.search_radius->value());
+        return found;
+    }
+    warn_of_contradiction(given, found, cloud.frame.unit, context);
+    context.metric("known-bins", static_cast<double>(found.known));
+    return found;
+}
+
+std::optional<u32> point_of(const DistinctPoints& points, const PointCloud& cloud, std::optional<u32> row) {
+    if (!row) return std::nullopt;
+    return static_cast<u32>(std::ranges::find(points.positions, cloud.positions[*row]) - points.positions.begin());
+}
+
+/// Metrics as plugin.cpp declares them, except `known-bins`.
+void report_metrics(const RegionGrowResult& result, Context& context) {
     const auto count = [&](std::string_view name, std::size_t value) {
         context.metric(name, static_cast<double>(value));
     };
@@ -102,91 +158,32 @@ void count_all(const RegionGrowResult& result, Context& context) {
 }
 
 void warn_of_unused(const RegionGrowResult& result, const Surface& surface, Context& context) {
-    const std::size_t places = surface.samples.size(), unused = result.unused_points;
-    if (200 * unused > places)
+    const std::size_t points = surface.points.size(), unused = result.unused_points;
+    if (200 * unused > points)
         context.warn(fmt::format(
-            "{} of {} distinct points are in no triangle; thin the scan, or remove its noise first", unused, places));
+            "{} of {} distinct points are in no triangle; thin the scan, or remove its noise first", unused, points));
+}
+
+void warn_of_seams(const Surface& surface, Context& context) {
+    if (!surface.oriented) return;
+    if (const std::size_t points = points_at_seams(surface); points > 2)
+        context.warn(
+            fmt::format("the surface ends at {} points where the normals of the column 'normal' reverse from one point "
+                        "to the next, "
+                        "as normals oriented towards a camera do; drop the column if the surface continues there",
+                        points));
 }
 
 void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, Context& context) {
     if (thin.loops == 0) return;
     const std::string_view unit = symbol(result.mesh.frame.unit);
     context.warn(fmt::format(
-        "{} of {} boundary loops {} where two sides, or layers, are nearer to each other than {} bins, the "
-        "nearest {:.3g} "
-        "{} with bins of {:.3g} {}: the surface may go on there; thin less where the object is thin, more "
-        "where the scan "
-        "is noisy",
-        thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_bins, thin.least, unit, thin.bin, unit));
-}
-
-void warn_of_seams(const Surface& surface, Context& context) {
-    if (!surface.oriented) return;
-    if (const std::size_t places = places_at_seams(surface); places > 2)
-        context.warn(fmt::format(
-            "the surface ends at {} points where normals of the column 'normal' turn to the opposite from one point to "
-            "the next, as those do that were turned towards a camera; drop the column if it goes on there",
-            places));
-}
-
-void report(const RegionGrowResult& result, const FeatureCounts& lines, const Surface& surface, const ThinParts& thin,
-            Context& context) {
-    count_all(result, context);
-    warn_of_unused(result, surface, context);
-    for (std::string& sentence : doubts(lines)) context.warn(std::move(sentence));
-    warn_of_seams(surface, context);
-    warn_of_thin_parts(result, thin, context);
-}
-
-/// The given limits and those that parked edges are retried under.
-std::vector<Limits> limits_of(const RegionGrowParams& params) {
-    struct Round {
-        double angle, bend, point, rough, reach;
-    };
-    // Angles shrink and bends grow by these factors. The limits to the points' own normals keep sheets apart and
-    // ends open.
-    constexpr std::array<Round, 4> rounds{{{1, 1, 60, 85, 1},
-                                           {2.0 / 3, 7.0 / 6, 75, 110, 1.1},
-                                           {1.0 / 3, 4.0 / 3, 80, 180, 1.15},
-                                           {1.0 / 30, 4.0 / 3, 80, 180, 1.15}}};
-    constexpr double degree = 3.14159265358979323846 / 180;
-    std::vector<Limits> limits;
-    const auto bend_cosine = [&](const Round& round) {
-        return std::cos(std::min(180 * degree, params.max_normal_angle.in_radians() * round.bend)) - 1e-9;
-    };
-    for (const Round& round : rounds) {
-        limits.push_back({std::sin(params.min_angle.in_radians() * round.angle) * (1 - 1e-12), bend_cosine(round),
-                          bend_cosine(rounds.back()), std::cos(round.point * degree), std::cos(round.rough * degree),
-                          round.reach, static_cast<Pass>(limits.size())});
-    }
-    return limits;
-}
-
-/// Of what closes narrow holes, in radians. From 90 degrees on no patch is meant to end at a sharp edge, and a tip is
-/// closed whatever its angle; below, surfaces end at what growth would not bend over in its last round.
-double largest_bend(const RegionGrowParams& params) {
-    const double angle = params.max_normal_angle.in_radians();
-    constexpr double right_angle = std::numbers::pi / 2;
-    return angle >= right_angle * (1 - 1e-12) ? 2 * right_angle : angle * 4 / 3;
-}
-
-SearchRadii search_radii(const PointCloud& cloud, const Samples& samples, const Neighbourhoods& neighbourhoods,
-                         const PointNormals& normals, const RegionGrowParams& params, Context& context) {
-    const Array<double> thinned = params.search_radius ? Array<double>() : thinned_bins(cloud, samples, context);
-    SearchRadii found =
-        automatic_radii(samples, neighbourhoods, normals.directions, normals.roughness, thinned, context.threads());
-    if (params.search_radius) {
-        std::ranges::fill(found.radii, params.search_radius->value());
-        return found;
-    }
-    tell_contradiction(thinned, found, cloud.frame.unit, context);
-    context.metric("known-bins", static_cast<double>(found.known));
-    return found;
-}
-
-std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std::optional<u32> row) {
-    if (!row) return std::nullopt;
-    return static_cast<u32>(std::ranges::find(samples.positions, cloud.positions[*row]) - samples.positions.begin());
+        "{} of {} boundary loops {} where two sides or layers are less than {} voxels apart, the nearest {:.3g} {} "
+        "with "
+        "voxels of {:.3g} {}: the surface may continue there; use smaller voxels where the object is thin, larger ones "
+        "where the scan is noisy",
+        thin.loops, result.loops, by_count(thin.loops, "lies", "lie"), thin_in_voxels, thin.least, unit, thin.voxel,
+        unit));
 }
 
 }  // namespace
@@ -194,18 +191,18 @@ std::optional<u32> place_of(const Samples& samples, const PointCloud& cloud, std
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context) {
     require_finite(cloud.positions.span());
     require_in_range(params, cloud.size());
-    const Samples samples = distinct_samples(cloud.positions.span());
-    require_area(samples, cloud.size());
+    const DistinctPoints points = distinct_points_of(cloud.positions.span());
+    require_area(points, cloud.size());
     context.progress(0.05);
     context.check_cancelled();
-    const Neighbourhoods neighbourhoods(samples, context.threads());
+    const Neighbourhoods neighbourhoods(points, context.threads());
     context.check_cancelled();
     context.progress(0.3);
-    PointNormals normals = principal_normals(samples, neighbourhoods, context.threads());
-    const GivenNormals given = take_given_normals(cloud, samples, neighbourhoods, normals, context);
+    PointNormals normals = principal_normals(points, neighbourhoods, context.threads());
+    const GivenNormals given = take_given_normals(cloud, points, neighbourhoods, normals, context);
     const bool oriented = given.signs_count;
-    SearchRadii radii = search_radii(cloud, samples, neighbourhoods, normals, params, context);
-    Surface surface(samples, neighbourhoods, std::move(normals), std::move(radii.radii), std::move(radii.by_density),
+    SearchRadii radii = search_radii(cloud, points, neighbourhoods, normals, params, context);
+    Surface surface(points, neighbourhoods, std::move(normals), std::move(radii.radii), std::move(radii.by_density),
                     oriented);
     context.progress(0.4);
 
@@ -213,50 +210,56 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     const Score score = params.score == RegionGrowParams::Score::midpoint ? Score::midpoint : Score::circumradius;
     Growth growth(surface, score, limits, context);
     Array<u32> groups;
-    if (!grow_all_pieces(surface, growth, place_of(samples, cloud, params.start), groups)) refuse_start(*params.start);
+    if (!grow_all_components(surface, growth, point_of(points, cloud, params.start), groups))
+        refuse_start(*params.start);
     if (surface.triangles.empty()) refuse_all(surface, params, cloud.frame.unit, context.threads());
     context.progress(0.9);
 
     RegionGrowResult result;
     if (params.close_holes >= 3) {
         result.closed_holes = close_small_holes(surface, params.close_holes, context);
-        result.removed_triangles = remove_pinches(surface);
-        // What was removed may have left a small hole; at single fans closing makes no new pinch.
+        result.removed_triangles = remove_extra_fans(surface);
+        // The removal may have left small holes. With single fans, closing them cannot make new extra fans.
         const NarrowHoles narrow = close_narrow_holes(
-            surface, {largest_circle * limits.back().reach, params.close_holes, largest_bend(params)}, context);
+            surface, {largest_empty_circle * limits.back().radius_factor, params.close_holes, largest_dihedral(params)},
+            context);
         result.closed_holes += narrow.closed;
         result.removed_triangles += narrow.replaced;
     } else
-        result.removed_triangles = remove_pinches(surface);
+        result.removed_triangles = remove_extra_fans(surface);
     PointChooser chooser(surface, score);
     const std::vector<PatchEdge> patch_edges = find_patch_edges(surface, chooser, limits.front(), context);
     context.check_cancelled();
-    const Pieces pieces = find_pieces(surface);
-    if (!oriented) face_outwards(surface, pieces, groups);
-    if (!given.doubtful.empty()) face_as_given(surface, pieces, given.doubtful);
+    const Components components = find_components(surface);
+    if (!oriented) orient_outwards(surface, components, groups);
+    if (!given.doubtful.empty()) orient_like_normals(surface, components, given.doubtful);
 
     FinishedMesh finished = finish_mesh(cloud, surface, patch_edges, params.sharp_angle);
     FeatureParams feature_params;
     feature_params.sharp_angle = params.sharp_angle;
     FeatureLines lines = find_features(finished.mesh, feature_params, context.threads());
-    tell_far_sides(lines.graph, finished, samples, patch_edges);
+    set_normals_beyond(lines.graph, finished, points, patch_edges);
     result.mesh = std::move(finished.mesh);
     result.rows = std::move(finished.rows);
     result.passes = std::move(surface.passes);
     result.features = std::move(lines.graph);
     result.loops = lines.counts.holes + lines.counts.boundaries;
     result.holes = lines.counts.holes;
-    const ThinParts thin = params.search_radius ? ThinParts() : find_thin_parts(surface, pieces, context);
+    const ThinParts thin = params.search_radius ? ThinParts() : find_thin_parts(surface, components, context);
     result.thin_loops = thin.loops;
     result.creases = lines.counts.creases;
     result.corners = lines.counts.corners;
     result.ambiguous_loops = lines.counts.ambiguous;
     result.triangles_without_area = lines.counts.without_area;
     result.patch_edges = patch_edges.size();
-    result.components = pieces.count;
-    result.duplicates = samples.repeats.size();
-    result.unused_points = samples.size() - result.rows.size();
-    report(result, lines.counts, surface, thin, context);
+    result.components = components.count;
+    result.duplicates = points.repeats.size();
+    result.unused_points = points.size() - result.rows.size();
+    report_metrics(result, context);
+    warn_of_unused(result, surface, context);
+    for (std::string& sentence : doubts(lines.counts)) context.warn(std::move(sentence));
+    warn_of_seams(surface, context);
+    warn_of_thin_parts(result, thin, context);
     context.progress(1);
     return result;
 }

@@ -1,55 +1,57 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How far a triangle may reach, where nobody said it: from the bins that the places were thinned with, or from how
-/// dense they are.
+/// The default search radius of every point, from the voxels that the points were thinned with, or from their density.
+///
+/// Thinning keeps one point per voxel of edge B, and a surface meets about 1.5 voxels per B², so the 12th neighbour of
+/// a point is about 1.6 B away: its distance gives an estimate of B. At the boundary of the surface, where half of the
+/// neighbours are missing, the estimate is 1.4 times too large, so it is limited to 1.15 times the median of the
+/// neighbours' estimates.
+///
+/// The column `bin-size` gives B itself. It is used where the density agrees, up to 1.15 times the median of the
+/// neighbours' sizes: scans thinned with different voxels may overlap, and the finer one decides what is a hole. Voxels
+/// are aligned with the axes, so a surface of normal n meets |n_x| + |n_y| + |n_z| of them per B², 1 to √3. With that,
+/// the median of the neighbours' estimates is 0.95 to 1.15 of B where the scan was dense (at boundaries and corners,
+/// too), down to 0.6 where the scan was noisy or overlaps another one, and less where more thinned scans were merged.
+/// From 0.55 to 1.15 the column is used. Where points are sparser, the scan itself was, or points were lost; where they
+/// are denser, the column does not describe them.
+///
+/// At tips and edges the points of adjacent voxels lie on two sides, and empty circles are larger than on a face. There
+/// B is not less than the estimate from the density.
 
-#include "region_grow/distinct_points.hpp"
 #include "region_grow/surface.hpp"
-#include "scanmill/data/points.hpp"
-#include "scanmill/filter/context.hpp"
 
 namespace scanmill::growing {
 
+/// Ratio of the search radius to the voxel size: 2 √3, the largest distance between points in adjacent voxels.
+inline constexpr double radius_in_voxels = 3.4641016151377544;
+
 struct SearchRadii {
-    /// Per place 2 √3 B.
+    /// Per point 2 √3 B.
     Array<double> radii;
-    /// Per place what the density alone makes of it.
+    /// Per point what the density alone gives.
     Array<double> by_density;
-    /// Places whose B follows from the thinning.
+    /// Number of points whose B is from the column.
     std::size_t known = 0;
-    /// Per place the B that the density tells where points lie too dense for the bin that they were said to be from;
-    /// 0 elsewhere. Empty where nothing was said.
+    /// Per point the B that the density gives where the points are too dense for the column; 0 elsewhere. Empty without
+    /// a column.
     Array<double> too_dense;
 };
 
-/// Thinning keeps one point in every cube of edge B, and a surface meets about 1.5 cubes per B², so its 12th neighbour
-/// is at about 1.6 B: the distance tells B. At the surface's rim, where half of the neighbours are missing, it would
-/// be 1.4 times too large; so it counts at most 1.15 times the median of the neighbours'. This is B where nothing else
-/// is known.
-///
-/// `thinned`: per place the bin that it was kept from, finite, 0 where nobody knows; or empty. This is B, up to 1.15
-/// times the median of the neighbours' (scans thinned with different bins may lie over each other, and the finer one
-/// tells what is a hole), where the density agrees. Cubes stand along the axes then, and a surface of normal n meets
-/// |n_x| + |n_y| + |n_z| of them per B²: 1 along them, √3 at most. The median of what that makes of the neighbours'
-/// densities is 0.95 to 1.15 of the bin where the scan was dense (at rims and corners, too), down to 0.6 of it where
-/// the scan was noisy or lies there twice, less where more thinned scans were merged. From 0.55 to 1.15 they agree.
-/// Where points are sparser the scan itself was, or some were lost; where they are denser the bins are not theirs. At
-/// rough places, tips and edges, points of bins that touch lie round a corner and the empty circles are larger than on
-/// a face; there B is no less than the density tells. Cost: linear.
-SearchRadii automatic_radii(const Samples& samples, const Neighbourhoods& neighbourhoods, std::span<const Vec3> normals,
-                            std::span<const float> roughness, std::span<const double> thinned, unsigned threads);
+/// `given_sizes`: per point the size in the column, finite, 0 where unknown; or empty. Cost: linear.
+SearchRadii automatic_radii(const DistinctPoints& points, const Neighbourhoods& neighbourhoods,
+                            std::span<const Vec3> normals, std::span<const float> variation,
+                            std::span<const double> given_sizes, unsigned threads);
 
-/// The bin size whose thinning would leave points as dense as they are at the middle place.
-double bins_as_dense(const Surface& surface, unsigned threads);
+/// The voxel size whose thinning would leave points with the present median density.
+double equivalent_voxel_size(const Surface& surface, unsigned threads);
 
-// What a thinning says of its bins, in the column `bin-size` that voxel-thin makes.
+/// Per point the size in the column `bin-size`, of several rows the smallest; 0 where none is finite and above 0. Empty
+/// without the column and, with a warning, when it is not one number per row.
+Array<double> given_voxel_sizes(const PointCloud& cloud, const DistinctPoints& points, Context& context);
 
-/// Per place the size in the column, of several rows the least; 0 where none is finite and above 0. Empty without the
-/// column, and, told, when it is not one number per row.
-Array<double> thinned_bins(const PointCloud& cloud, const Samples& samples, Context& context);
-
-/// Tells when at more than half of the places points lie too dense for the bins, as `found` says: then the column is
-/// about other points, or in another unit.
-void tell_contradiction(std::span<const double> thinned, const SearchRadii& found, LengthUnit unit, Context& context);
+/// Warns when more than half of the points are too dense for the column: it describes other points, or has another
+/// unit.
+void warn_of_contradiction(std::span<const double> given_sizes, const SearchRadii& found, LengthUnit unit,
+                           Context& context);
 
 }  // namespace scanmill::growing

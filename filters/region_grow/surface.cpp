@@ -24,19 +24,18 @@ double power_of_two_above_extent(std::span<const Vec3> positions) {
     return std::ldexp(1.0, exponent);
 }
 
-using Fan = std::vector<Fans::Pair>;
+using Fan = std::vector<Fans::LinkEdge>;
 
 u32 lowest(const Fan& fan) {
-    u32 least = nobody;
+    u32 least = invalid_index;
     for (const auto& [first, last] : fan) least = std::min({least, first, last});
     return least;
 }
 
-/// The vertex's triangles fan by fan.
 std::vector<Fan> fans_at(const Surface& surface, u32 vertex) {
     Fan left;
-    surface.fans.any(vertex, [&](const Fans::Pair& pair) {
-        left.push_back(pair);
+    surface.fans.any(vertex, [&](const Fans::LinkEdge& edge) {
+        left.push_back(edge);
         return false;
     });
     std::vector<Fan> fans;
@@ -60,28 +59,28 @@ std::vector<Fan> fans_at(const Surface& surface, u32 vertex) {
 
 }  // namespace
 
-Surface::Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radii,
-                 Array<double> usual_radii, bool are_oriented)
-    : samples(from),
+Surface::Surface(const DistinctPoints& from, const Neighbourhoods& near, PointNormals point_normals,
+                 Array<double> search_radii, Array<double> density_radii, bool signs_count)
+    : points(from),
       neighbourhoods(near),
       positions(from.positions),
-      normals(std::move(facing.directions)),
-      roughness(std::move(facing.roughness)),
+      normals(std::move(point_normals.directions)),
+      variation(std::move(point_normals.variation)),
       search_radius(std::move(search_radii)),
-      usual_radius(std::move(usual_radii)),
-      oriented(are_oriented),
+      density_radius(std::move(density_radii)),
+      oriented(signs_count),
       axis_length(power_of_two_above_extent(from.positions)),
       fans(from.size()),
       states(from.size()) {
-    std::ranges::fill(states, PlaceState::unused);
+    std::ranges::fill(states, PointState::unused);
     triangles.reserve(2 * from.size());
     passes.reserve(2 * from.size());
 }
 
-u32 Surface::next_on_border(u32 vertex) const {
-    u32 next = nobody;
-    fans.any(vertex, [&](const Fans::Pair& pair) {
-        return fans.right_of(vertex, pair.first) == nobody && (next = pair.first, true);
+u32 Surface::next_on_boundary(u32 vertex) const {
+    u32 next = invalid_index;
+    fans.any(vertex, [&](const Fans::LinkEdge& edge) {
+        return fans.right_of(vertex, edge.first) == invalid_index && (next = edge.first, true);
     });
     return next;
 }
@@ -92,47 +91,48 @@ Vec3 Surface::facet_normal(u32 a, u32 b, u32 c) const {
 
 void Surface::add(const Triangle& triangle, Pass pass) {
     const auto& [a, b, c] = triangle;
-    assert(fans.left_of(a, b) == nobody && fans.left_of(b, c) == nobody && fans.left_of(c, a) == nobody);
+    assert(fans.left_of(a, b) == invalid_index && fans.left_of(b, c) == invalid_index &&
+           fans.left_of(c, a) == invalid_index);
     const Vec3 normal = facet_normal(a, b, c);
     fans.add(triangle);
     triangles.push_back(triangle);
     passes.push_back(pass);
     for (u32 corner : triangle) {
-        if (states[corner] == PlaceState::unused && !oriented && normals[corner].dot(normal) < 0)
+        if (states[corner] == PointState::unused && !oriented && normals[corner].dot(normal) < 0)
             normals[corner] = -normals[corner];
-        states[corner] = fans.closed(corner) ? PlaceState::interior : PlaceState::front;
+        states[corner] = fans.closed(corner) ? PointState::interior : PointState::front;
     }
 }
 
-void Surface::drop(std::vector<Triangle> taken_off) {
-    if (taken_off.empty()) return;
-    for (Triangle& triangle : taken_off) triangle = lowest_first(triangle);
-    std::ranges::sort(taken_off);
-    std::vector<bool> gone(taken_off.size(), false);
+void Surface::drop(std::vector<Triangle> removed) {
+    if (removed.empty()) return;
+    for (Triangle& triangle : removed) triangle = lowest_first(triangle);
+    std::ranges::sort(removed);
+    std::vector<bool> gone(removed.size(), false);
     std::size_t kept = 0;
     for (std::size_t row = 0; row < triangles.size(); ++row) {
         const Triangle triangle = lowest_first(triangles[row]);
-        auto at = static_cast<std::size_t>(std::ranges::lower_bound(taken_off, triangle) - taken_off.begin());
-        while (at < taken_off.size() && taken_off[at] == triangle && gone[at]) ++at;
-        if (at < taken_off.size() && taken_off[at] == triangle) {
+        auto at = static_cast<std::size_t>(std::ranges::lower_bound(removed, triangle) - removed.begin());
+        while (at < removed.size() && removed[at] == triangle && gone[at]) ++at;
+        if (at < removed.size() && removed[at] == triangle) {
             gone[at] = true;
             continue;
         }
         triangles[kept] = triangles[row];
         passes[kept++] = passes[row];
     }
-    assert(kept + taken_off.size() == triangles.size());
+    assert(kept + removed.size() == triangles.size());
     triangles.resize(kept);
     passes.resize(kept);
 }
 
-std::size_t remove_pinches(Surface& surface) {
-    std::vector<u32> suspects;
+std::size_t remove_extra_fans(Surface& surface) {
+    std::vector<u32> candidates;
     for (u32 vertex = 0; vertex < surface.states.size(); ++vertex)
-        if (surface.states[vertex] == PlaceState::front) suspects.push_back(vertex);
+        if (surface.states[vertex] == PointState::front) candidates.push_back(vertex);
     std::vector<Triangle> removed;
-    for (std::size_t i = 0; i < suspects.size(); ++i) {  // grows on the way
-        const u32 vertex = suspects[i];
+    for (std::size_t i = 0; i < candidates.size(); ++i) {  // grows in the loop
+        const u32 vertex = candidates[i];
         std::vector<Fan> fans = fans_at(surface, vertex);
         if (fans.size() < 2) continue;
         const auto stays = std::ranges::max_element(fans, [](const Fan& a, const Fan& b) {
@@ -145,10 +145,10 @@ std::size_t remove_pinches(Surface& surface) {
                 surface.fans.remove(triangle);
                 removed.push_back(triangle);
                 for (u32 corner : triangle) {
-                    surface.states[corner] = surface.fans.empty(corner)    ? PlaceState::unused
-                                             : surface.fans.closed(corner) ? PlaceState::interior
-                                                                           : PlaceState::front;
-                    suspects.push_back(corner);
+                    surface.states[corner] = surface.fans.empty(corner)    ? PointState::unused
+                                             : surface.fans.closed(corner) ? PointState::interior
+                                                                           : PointState::front;
+                    candidates.push_back(corner);
                 }
             }
         }

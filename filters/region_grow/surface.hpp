@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The triangles round every vertex, in a cache line each.
-///
-/// Triangle (v, a, b), counter-clockwise, is stored at v as the pair a → b: an edge of v's link. The directed edge v →
-/// x has a triangle on its left when a pair begins with x, x → v when a pair ends with it. So all there is to know of
-/// an edge stands at either of its ends.
+/// The growing surface: its triangles, the triangles around every vertex, and the state and normal of every point.
 
 #include <array>
 #include <vector>
@@ -16,53 +12,58 @@
 
 namespace scanmill::growing {
 
-inline constexpr u32 nobody = ~u32(0);
+inline constexpr u32 invalid_index = ~u32(0);
 
+/// The triangles around every vertex, in one cache line per vertex.
+///
+/// Triangle (v, a, b), counter-clockwise, is stored at v as the edge a → b of v's link. The half-edge v → x belongs to
+/// a triangle when a link edge begins with x, the half-edge x → v when a link edge ends with x. So both ends of an edge
+/// know both of its triangles.
 class Fans {
 public:
-    struct Pair {
+    struct LinkEdge {
         u32 first, last;
     };
 
     explicit Fans(std::size_t vertices) : blocks_(vertices) {
-        for (Block& block : blocks_) block = {{}, 0, nobody};
+        for (Block& block : blocks_) block = {{}, 0, invalid_index};
     }
 
-    /// Calls action(Pair) for every triangle at the vertex until it returns true; whether it did.
+    /// Calls action(LinkEdge) for every triangle at the vertex until it returns true. Returns whether it did.
     template <class Action>
     bool any(u32 vertex, Action&& action) const {
-        for (u32 index = vertex; index != nobody; index = blocks_[index].next)
+        for (u32 index = vertex; index != invalid_index; index = blocks_[index].next)
             for (u32 i = 0; i < blocks_[index].count; ++i)
-                if (action(blocks_[index].pairs[i])) return true;
+                if (action(blocks_[index].link[i])) return true;
         return false;
     }
     bool empty(u32 vertex) const { return blocks_[vertex].count == 0; }
 
-    /// The third corner of the triangle left of from → to; nobody without one.
+    /// The third corner of the triangle of half-edge from → to; invalid_index if there is none.
     u32 left_of(u32 from, u32 to) const {
-        u32 third = nobody;
-        any(from, [&](const Pair& pair) { return pair.first == to && (third = pair.last, true); });
+        u32 third = invalid_index;
+        any(from, [&](const LinkEdge& edge) { return edge.first == to && (third = edge.last, true); });
         return third;
     }
-    /// Left of to → from, asked at `from`.
+    /// The third corner of the triangle of the opposite half-edge to → from, looked up at `from`.
     u32 right_of(u32 from, u32 to) const {
-        u32 third = nobody;
-        any(from, [&](const Pair& pair) { return pair.last == to && (third = pair.first, true); });
+        u32 third = invalid_index;
+        any(from, [&](const LinkEdge& edge) { return edge.last == to && (third = edge.first, true); });
         return third;
     }
-    /// Whether the triangles go all the way round, once. Pre: not empty.
+    /// Whether the triangles form one closed fan. Pre: not empty.
     bool closed(u32 vertex) const {
-        const u32 begin = blocks_[vertex].pairs[0].first;
+        const u32 begin = blocks_[vertex].link[0].first;
         u32 steps = 0, end = begin;
         do {
             end = left_of(vertex, end);
             ++steps;
-        } while (end != begin && end != nobody);
+        } while (end != begin && end != invalid_index);
         return end == begin && steps == count(vertex);
     }
     u32 count(u32 vertex) const {
         u32 sum = 0;
-        for (u32 index = vertex; index != nobody; index = blocks_[index].next) sum += blocks_[index].count;
+        for (u32 index = vertex; index != invalid_index; index = blocks_[index].next) sum += blocks_[index].count;
         return sum;
     }
     void add(const Triangle& triangle) {
@@ -76,98 +77,94 @@ public:
 private:
     static constexpr u32 capacity = 7;
     struct Block {
-        std::array<Pair, capacity> pairs;
+        std::array<LinkEdge, capacity> link;
         u32 count;
         u32 next;
     };
 
-    void add(u32 vertex, Pair pair) {
+    void add(u32 vertex, LinkEdge edge) {
         u32 index = vertex;
         while (blocks_[index].count == capacity) {
-            if (blocks_[index].next == nobody) {
-                blocks_.push_back({{}, 0, nobody});
+            if (blocks_[index].next == invalid_index) {
+                blocks_.push_back({{}, 0, invalid_index});
                 blocks_[index].next = static_cast<u32>(blocks_.size() - 1);
             }
             index = blocks_[index].next;
         }
-        blocks_[index].pairs[blocks_[index].count++] = pair;
+        blocks_[index].link[blocks_[index].count++] = edge;
     }
 
-    void remove(u32 vertex, Pair pair) {
+    void remove(u32 vertex, LinkEdge edge) {
         u32 last = vertex;
-        while (blocks_[last].next != nobody && blocks_[blocks_[last].next].count > 0) last = blocks_[last].next;
-        const Pair moved = blocks_[last].pairs[--blocks_[last].count];
-        if (moved.first == pair.first) return;
+        while (blocks_[last].next != invalid_index && blocks_[blocks_[last].next].count > 0) last = blocks_[last].next;
+        const LinkEdge moved = blocks_[last].link[--blocks_[last].count];
+        if (moved.first == edge.first) return;
         for (u32 index = vertex;; index = blocks_[index].next)
             for (u32 i = 0; i < blocks_[index].count; ++i)
-                if (blocks_[index].pairs[i].first == pair.first) {
-                    blocks_[index].pairs[i] = moved;
+                if (blocks_[index].link[i].first == edge.first) {
+                    blocks_[index].link[i] = moved;
                     return;
                 }
     }
 
-    /// One per vertex, then those that vertices of more triangles go on in.
+    /// One block per vertex, then further blocks of vertices with more triangles.
     Array<Block> blocks_;
 };
 
-// The surface while it grows: its triangles, what every place is to it, and which way it faces there.
+/// In no triangle, on the boundary of the surface, or with a closed fan of triangles.
+enum class PointState : u8 { unused, front, interior };
 
-enum class PlaceState : u8 { unused, front, interior };
-
-/// Which limits a triangle was formed under: 0 the given ones, 1 to 3 relaxed ones, 4 none (it closed a
-/// small hole).
+/// The limits under which a triangle was formed: 0 the given ones, 1 to 3 relaxed ones, 4 none (it closed a hole).
 using Pass = u8;
+inline constexpr Pass closing_pass = 4;
 
-/// Of 150 degrees: a triangle that bends back by more lies on its neighbour.
-inline constexpr double least_bend_cosine = -0.8660254037844387;
+/// Cosine of a dihedral deviation (angle between normals) of 150 degrees. Beyond it a triangle lies on its neighbour.
+inline constexpr double fold_cosine = -0.8660254037844387;
 
 struct Surface {
-    Surface(const Samples& from, const Neighbourhoods& near, PointNormals facing, Array<double> search_radius,
-            Array<double> usual_radius, bool oriented);
+    Surface(const DistinctPoints& from, const Neighbourhoods& near, PointNormals point_normals,
+            Array<double> search_radii, Array<double> density_radii, bool signs_count);
 
-    const Samples& samples;
+    const DistinctPoints& points;
     const Neighbourhoods& neighbourhoods;
     const Array<Vec3>& positions;
-    /// Of places on the surface they point to its upside; of others so when `oriented`.
+    /// At points of the surface they are on the side of its triangles' normals, at others only when `oriented`.
     Array<Vec3> normals;
-    Array<float> roughness;
-    /// Per place.
+    /// Surface variation, see PointNormals.
+    Array<float> variation;
+    /// Per point.
     Array<double> search_radius;
-    /// What it would be by the density alone: triangles that are small beside it are as the points lie there.
-    Array<double> usual_radius;
+    /// The search radius that follows from the density alone. Triangles that are small compared with it are as small as
+    /// the points' spacing requires.
+    Array<double> density_radius;
     /// Normals came with the cloud: a triangle must agree with their sign.
     bool oriented;
-    /// The power of two above the longest side of the box. Exact predicates take the point that lies this far along a
-    /// unit normal: a shorter one would lose digits in the sum of point and normal.
+    /// The power of two above the longest side of the points' box. Exact predicates use a point this far along a unit
+    /// normal; a shorter distance would lose digits of the normal in the sum.
     double axis_length;
 
     Fans fans;
-    Array<PlaceState> states;
+    Array<PointState> states;
     Array<Triangle> triangles;
     Array<Pass> passes;
 
-    bool is_used(u32 place) const { return states[place] != PlaceState::unused; }
-    /// By given normals: they are of two sides of something.
+    bool is_used(u32 point) const { return states[point] != PointState::unused; }
+    /// Whether given normals put the points on two sides of something thin.
     bool face_apart(u32 a, u32 b) const { return oriented && normals[a].dot(normals[b]) <= 0; }
-    /// Whether from → to bounds the surface: a triangle on its left and none on its right.
-    bool is_border(u32 from, u32 to) const {
-        return fans.left_of(from, to) != nobody && fans.right_of(from, to) == nobody;
-    }
-    /// Where the border goes on from the vertex, surface on its left. Pre: it is on the border, with one fan.
-    u32 next_on_border(u32 vertex) const;
-    /// The unit normal of the triangle left of a → b whose third corner is c.
+    /// The next vertex along the boundary, with the surface on the left. Pre: a boundary vertex with one fan.
+    u32 next_on_boundary(u32 vertex) const;
+    /// The unit normal of triangle a b c.
     Vec3 facet_normal(u32 a, u32 b, u32 c) const;
 
-    /// Adds a → b → c. Pre: none of its three directed edges has a triangle.
+    /// Adds a → b → c. Pre: none of its three half-edges has a triangle.
     void add(const Triangle& triangle, Pass pass);
-    /// Forgets triangles that the fans have no more, one for each. Of equal ones the oldest goes.
-    void drop(std::vector<Triangle> taken_off);
+    /// Removes triangles that were already removed from the fans from the list. Of equal ones the oldest is removed.
+    void drop(std::vector<Triangle> removed);
 };
 
-// Vertices where the border passes more than once: several fans of triangles that meet in nothing but the vertex.
-
-/// Removes triangles until the triangles of every vertex form one fan, open or closed: of several the one of most
-/// triangles stays, of equal ones that of the lowest vertex. How many were removed. Cost: linear.
-std::size_t remove_pinches(Surface& surface);
+/// Removes triangles until those of every vertex form one fan, open or closed. Of several fans the one with most
+/// triangles stays, of equal ones the one with the lowest vertex. Returns the number of removed triangles. Cost:
+/// linear.
+std::size_t remove_extra_fans(Surface& surface);
 
 }  // namespace scanmill::growing

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How the tests call region-grow, and a slow second opinion on what it says of its mesh.
+/// Helpers to call region-grow, and slow checks of its results.
 
 #include <gtest/gtest.h>
 
@@ -49,14 +49,14 @@ inline PointCloud grid(u32 m, u32 n) {
     return cloud_from(std::move(points));
 }
 
-/// Walks round every vertex triangle by triangle: every edge in one triangle, or in two that pass it in opposite
-/// directions; the triangles of a vertex one fan, open or closed; every vertex used, no place twice.
+/// Walks around every vertex triangle by triangle. Every edge is in one triangle, or in two with opposite half-edges;
+/// the triangles of a vertex form one fan, open or closed; every vertex is used; no position occurs twice.
 inline void expect_manifold(const TriangleMesh& mesh) {
-    std::map<std::pair<u32, u32>, std::size_t> sides;
+    std::map<std::pair<u32, u32>, std::size_t> half_edges;
     std::vector<std::map<u32, u32>> links(mesh.positions.size());
     for (const auto& [a, b, c] : mesh.triangles)
         for (const auto& [from, to, third] : {std::array{a, b, c}, std::array{b, c, a}, std::array{c, a, b}}) {
-            ++sides[{from, to}];
+            ++half_edges[{from, to}];
             ASSERT_TRUE(links[from].emplace(to, third).second) << "edge " << from << " -> " << to << " twice";
         }
     for (u32 vertex = 0; vertex < links.size(); ++vertex) {
@@ -74,20 +74,20 @@ inline void expect_manifold(const TriangleMesh& mesh) {
         }
         ASSERT_EQ(steps, link.size()) << "vertex " << vertex << " has several fans";
     }
-    std::set<std::array<double, 3>> places;
-    for (const Vec3& p : mesh.positions) ASSERT_TRUE(places.insert({p.x(), p.y(), p.z()}).second);
+    std::set<std::array<double, 3>> positions;
+    for (const Vec3& p : mesh.positions) ASSERT_TRUE(positions.insert({p.x(), p.y(), p.z()}).second);
 }
 
-/// F = 2 V − 2 χ − b for triangles, and what the result says of itself.
+/// F = 2 V − 2 χ − b, and the counts in the result.
 inline void expect_consistent(const RegionGrowResult& result) {
     expect_manifold(result.mesh);
-    const MeshTopology facts = topology(result.mesh);
-    EXPECT_EQ(static_cast<long>(facts.triangles),
-              2 * static_cast<long>(facts.vertices) - 2 * facts.euler - static_cast<long>(facts.boundary_edges));
-    EXPECT_EQ(facts.components, result.components);
-    EXPECT_EQ(facts.boundary_loops, result.loops);
-    EXPECT_EQ(result.passes.size(), facts.triangles);
-    EXPECT_EQ(result.rows.size(), facts.vertices);
+    const MeshTopology actual = topology(result.mesh);
+    EXPECT_EQ(static_cast<long>(actual.triangles),
+              2 * static_cast<long>(actual.vertices) - 2 * actual.euler - static_cast<long>(actual.boundary_edges));
+    EXPECT_EQ(actual.components, result.components);
+    EXPECT_EQ(actual.boundary_loops, result.loops);
+    EXPECT_EQ(result.passes.size(), actual.triangles);
+    EXPECT_EQ(result.rows.size(), actual.vertices);
 }
 
 inline Vec3 normal_of(const TriangleMesh& mesh, const Triangle& t) {
@@ -105,10 +105,10 @@ inline double smallest_angle(const TriangleMesh& mesh, const Triangle& t) {
     return least;
 }
 
-/// Pairs of triangles in the plane z = 0 whose insides meet, each pair tried.
+/// Pairs of triangles in the plane z = 0 whose interiors overlap, by testing all pairs.
 inline std::size_t overlapping_pairs(const TriangleMesh& mesh) {
     const auto corner = [&](const Triangle& t, std::size_t i) { return mesh.positions[t[i % 3]]; };
-    // Apart when an edge of one has the other wholly on its outer side.
+    // They are apart if an edge of one has the other one on its outer side.
     const auto parts = [&](const Triangle& t, const Triangle& other) {
         const double turn = normal_of(mesh, t).z() > 0 ? 1 : -1;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -127,8 +127,8 @@ inline std::size_t overlapping_pairs(const TriangleMesh& mesh) {
     return pairs;
 }
 
-/// The triangles by their corners' places, as sets: equal for equal meshes of other numbering.
-inline std::set<std::array<std::array<double, 3>, 3>> by_place(const TriangleMesh& mesh) {
+/// The triangles as sets of positions: equal for equal meshes with different numbering.
+inline std::set<std::array<std::array<double, 3>, 3>> by_position(const TriangleMesh& mesh) {
     std::set<std::array<std::array<double, 3>, 3>> triangles;
     for (const Triangle& t : mesh.triangles) {
         std::array<std::array<double, 3>, 3> corners;

@@ -18,14 +18,14 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-/// As sorted corners; lengths as in the positions given.
-std::vector<Triangle> filling(const Patch& patch, const std::vector<u32>& loop, double circle, double bend) {
+/// The triangulation of a hole, as sorted corners. `angle`: largest dihedral deviation in degrees.
+std::vector<Triangle> triangles_of(const Patch& patch, const std::vector<u32>& loop, double radius, double angle) {
     std::vector<u32> corners;
-    for (u32 x : loop) corners.push_back(patch.place(x));
+    for (u32 x : loop) corners.push_back(patch.point(x));
     NearTriangles near;
     std::vector<Triangle> triangles;
     for (Triangle t :
-         cheapest_filling(patch.surface(), near, corners, {circle, std::cos(bend / 180 * std::numbers::pi)})) {
+         triangulate_hole(patch.surface(), near, corners, {radius, std::cos(angle / 180 * std::numbers::pi)})) {
         for (u32& corner : t) corner = patch.name_of(corner);
         EXPECT_LT(std::ranges::find(loop, t[0]), std::ranges::find(loop, t[1])) << "in the loop's direction";
         std::ranges::sort(t);
@@ -40,23 +40,23 @@ constexpr double any = std::numeric_limits<double>::infinity();
 /// one of √6.
 const std::vector<Vec3> lifted{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 1), Vec3(0, 2, 0)};
 
-TEST(RegionGrowFilling_FourCorners, TakesTheDiagonalOfLessArea) {
-    EXPECT_THAT(filling(Patch(lifted), {0, 1, 2, 3}, any, 150),
+TEST(RegionGrowHoleTriangulation_FourCorners, TakesTheDiagonalOfLessArea) {
+    EXPECT_THAT(triangles_of(Patch(lifted), {0, 1, 2, 3}, any, 150),
                 UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
 }
 
-TEST(RegionGrowFilling_Square, BreaksTheTieByTheFirstCorners) {
+TEST(RegionGrowHoleTriangulation_Square, BreaksTheTieByTheFirstCorners) {
     const std::vector<Vec3> square{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)};
-    EXPECT_THAT(filling(Patch(square), {0, 1, 2, 3}, any, 150),
+    EXPECT_THAT(triangles_of(Patch(square), {0, 1, 2, 3}, any, 150),
                 UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
-    EXPECT_THAT(filling(Patch(square), {1, 2, 3, 0}, any, 150),
+    EXPECT_THAT(triangles_of(Patch(square), {1, 2, 3, 0}, any, 150),
                 UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(RegionGrowFilling_Circles, LimitTheTrianglesNotTheirNumber) {
+TEST(RegionGrowHoleTriangulation_LargestRadius, LimitsTheTrianglesNotTheirNumber) {
     const std::vector<Vec3> square{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)};
-    EXPECT_THAT(filling(Patch(square), {0, 1, 2, 3}, 1.415, 150), testing::SizeIs(2));
-    EXPECT_THAT(filling(Patch(square), {0, 1, 2, 3}, 1.414, 150), IsEmpty());
+    EXPECT_THAT(triangles_of(Patch(square), {0, 1, 2, 3}, 1.415, 150), testing::SizeIs(2));
+    EXPECT_THAT(triangles_of(Patch(square), {0, 1, 2, 3}, 1.414, 150), IsEmpty());
     // A slit 1 wide and 40 long, and a round hole of radius 1.5: twelve corners each.
     std::vector<Vec3> slit, round;
     std::vector<u32> loop;
@@ -67,58 +67,60 @@ TEST(RegionGrowFilling_Circles, LimitTheTrianglesNotTheirNumber) {
         loop.push_back(i);
     }
     for (Vec3& p : slit) p.x() /= 8;
-    EXPECT_THAT(filling(Patch(slit), loop, 0.75, 150), testing::SizeIs(10));
-    EXPECT_THAT(filling(Patch(round), loop, 1.45, 150), IsEmpty());
-    EXPECT_THAT(filling(Patch(round), loop, 1.51, 150), testing::SizeIs(10));
+    EXPECT_THAT(triangles_of(Patch(slit), loop, 0.75, 150), testing::SizeIs(10));
+    EXPECT_THAT(triangles_of(Patch(round), loop, 1.45, 150), IsEmpty());
+    EXPECT_THAT(triangles_of(Patch(round), loop, 1.51, 150), testing::SizeIs(10));
 }
 
-TEST(RegionGrowFilling_ATriangleInTheWay, IsPassedOrNothingIsFilled) {
-    // One that stabs triangle 0 1 3 in (0.5, 0.5, 0) and neither 0 1 2 nor 0 2 3, and one that stabs them all.
+TEST(RegionGrowHoleTriangulation_AnObstacle, IsAvoidedOrNothingIsFound) {
+    // One that intersects triangle 0 1 3 in (0.5, 0.5, 0) but neither 0 1 2 nor 0 2 3, and one that intersects all.
     std::vector<Vec3> positions = lifted;
     for (const Vec3& p : {Vec3(0.5, 0.5, -3), Vec3(0.4, 0.6, -3), Vec3(0.5, 0.5, 0.1)}) positions.push_back(p);
     Patch under(positions);
     under.add(4, 5, 6);
-    EXPECT_THAT(filling(under, {0, 1, 2, 3}, any, 150), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+    EXPECT_THAT(triangles_of(under, {0, 1, 2, 3}, any, 150),
+                UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
     positions[6] = Vec3(0.5, 0.5, 3);
     Patch through(positions);
     through.add(4, 5, 6);
-    EXPECT_THAT(filling(through, {0, 1, 2, 3}, any, 150), IsEmpty());
+    EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any, 150), IsEmpty());
 }
 
-TEST(RegionGrowFilling_ATriangleInTheWay, IsSeenHoweverFarItsCornersAre) {
-    // Through the whole lid, ten times as far as any search radius.
+TEST(RegionGrowHoleTriangulation_AnObstacle, IsFoundHoweverFarItsCornersAre) {
+    // Through the whole lid, with corners ten search radii away.
     std::vector<Vec3> positions = lifted;
     for (const Vec3& p : {Vec3(0.5, 0.5, -40), Vec3(0.4, 0.6, -40), Vec3(0.5, 0.5, 40)}) positions.push_back(p);
     Patch through(positions);
-    EXPECT_THAT(filling(through, {0, 1, 2, 3}, any, 150), testing::SizeIs(2));
+    EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any, 150), testing::SizeIs(2));
     through.add(4, 5, 6);
-    EXPECT_THAT(filling(through, {0, 1, 2, 3}, any, 150), IsEmpty());
+    EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any, 150), IsEmpty());
 }
 
-TEST(RegionGrowFilling_EdgesThatAreThere, AreNotRepeated) {
+TEST(RegionGrowHoleTriangulation_ExistingEdges, AreNotRepeated) {
     std::vector<Vec3> positions = lifted;
     positions.push_back(Vec3(1, 1, -3));
     Patch patch(positions);
     patch.add(1, 3, 4);
-    EXPECT_THAT(filling(patch, {0, 1, 2, 3}, any, 150), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+    EXPECT_THAT(triangles_of(patch, {0, 1, 2, 3}, any, 150),
+                UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(RegionGrowFilling_Bends, OfATentsRoofDecide) {
-    // Beyond edge 0-1 the surface comes back over the hole, 15 degrees above it: a bend of 165 degrees.
+TEST(RegionGrowHoleTriangulation_DihedralDeviation, IsLimited) {
+    // Beyond edge 0-1 the surface folds back over the hole, 15 degrees above it: a deviation of 165 degrees.
     const double slope = std::tan(std::numbers::pi / 12);
     Patch patch({Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(1, 1, 0), Vec3(1, 1.5, 1.5 * slope)});
     patch.add(1, 0, 3);
-    EXPECT_THAT(filling(patch, {0, 1, 2}, any, 166), ElementsAre(Triangle{0, 1, 2}));
-    EXPECT_THAT(filling(patch, {0, 1, 2}, any, 164), IsEmpty());
+    EXPECT_THAT(triangles_of(patch, {0, 1, 2}, any, 166), ElementsAre(Triangle{0, 1, 2}));
+    EXPECT_THAT(triangles_of(patch, {0, 1, 2}, any, 164), IsEmpty());
 }
 
 constexpr double degree = std::numbers::pi / 180;
 
-/// A loop with a strip round it that falls off outwards by `fall` degrees: 0 lies in the loop's plane, 90 is a wall
-/// below it, and more a fold back under it. With flaps: at so many edges the strip's triangle is three round a point
-/// that is folded into the hole.
-Patch strip_round(const std::vector<Vec3>& loop, const std::vector<Vec3>& outwards, double fall,
-                  std::size_t flaps = 0) {
+/// A loop with a strip around it that slopes down outwards by `fall` degrees: 0 is the loop's plane, 90 a wall below
+/// it, and more a fold back under it. At `flaps` edges the strip's triangle is replaced by three around a point inside
+/// the hole.
+Patch strip_around(const std::vector<Vec3>& loop, const std::vector<Vec3>& outwards, double fall,
+                   std::size_t flaps = 0) {
     const u32 count = static_cast<u32>(loop.size());
     std::vector<Vec3> positions = loop;
     for (u32 i = 0; i < count; ++i)
@@ -141,7 +143,7 @@ Patch strip_round(const std::vector<Vec3>& loop, const std::vector<Vec3>& outwar
         } else
             patch.add(next, i, count + i);
         patch.add(count + i, count + next, next);
-        // The strip's other side is none of these tests' holes.
+        // The outer boundary of the strip must stay open.
         patch.set_search_radius(count + i, 1e-6);
     }
     return patch;
@@ -154,10 +156,10 @@ Patch ring(u32 corners, double radius, double fall, std::size_t flaps = 0) {
         outwards.push_back(Vec3(std::cos(angle), std::sin(angle), 0));
         loop.push_back(radius * outwards.back());
     }
-    return strip_round(loop, outwards, fall, flaps);
+    return strip_around(loop, outwards, fall, flaps);
 }
 
-/// 1 wide and so long, a corner at every unit.
+/// 1 wide and `length` long, a corner at every unit.
 Patch slit(u32 length, double fall) {
     std::vector<Vec3> loop, outwards;
     for (u32 x = 0; x <= length; ++x) {
@@ -171,16 +173,16 @@ Patch slit(u32 length, double fall) {
     for (const std::size_t corner : {std::size_t(0), loop.size() - 1}) outwards[corner].x() = -0.5;
     for (const std::size_t corner : {std::size_t(length), std::size_t(length) + 1}) outwards[corner].x() = 0.5;
     for (Vec3& out : outwards) out.normalize();
-    return strip_round(loop, outwards, fall);
+    return strip_around(loop, outwards, fall);
 }
 
-/// `circle`: the largest, as in the positions given.
-NarrowHoles closed(Patch patch, double circle, double bend = 180, std::size_t most_edges = 4) {
+/// `angle`: largest dihedral deviation in degrees.
+NarrowHoles closed(Patch patch, double largest_radius, double angle = 180, std::size_t most_edges = 4) {
     ContextOptions options;
-    return close_narrow_holes(patch.surface(), {circle / 4, most_edges, bend * degree}, Context(options));
+    return close_narrow_holes(patch.surface(), {largest_radius / 4, most_edges, angle * degree}, Context(options));
 }
 
-TEST(RegionGrowNarrow_RoundHoles, AreClosedWhereTheirCircleIsNone) {
+TEST(RegionGrowNarrow_RoundHoles, AreClosedBelowTheLargestRadius) {
     EXPECT_EQ(closed(ring(16, 1, 0), 1.001).closed, 1u);
     EXPECT_EQ(closed(ring(16, 1, 0), 0.99).closed, 0u);
     EXPECT_EQ(closed(ring(16, 1, 0), 0.99, 180, 15).closed, 0u);
@@ -197,7 +199,7 @@ TEST(RegionGrowNarrow_LoopsThatTheSurfaceFacesAwayFrom, StayOpen) {
     for (const double fall : {123.0, 150.0}) EXPECT_EQ(closed(ring(16, 1, fall), 1.1).closed, 0u) << fall;
 }
 
-TEST(RegionGrowNarrow_LongLoops, StayOpenFromSteeperSidesThanShortOnes) {
+TEST(RegionGrowNarrow_LongLoops, StayOpenWithSidesBetween78And120Degrees) {
     // The corners lie up to 15.008 from the middle.
     for (const double fall : {0.0, 60.0, 75.0}) EXPECT_EQ(closed(slit(30, fall), 1).closed, 1u) << fall;
     for (const double fall : {81.0, 90.0, 110.0}) EXPECT_EQ(closed(slit(30, fall), 1).closed, 0u) << fall;
@@ -205,27 +207,27 @@ TEST(RegionGrowNarrow_LongLoops, StayOpenFromSteeperSidesThanShortOnes) {
     EXPECT_EQ(closed(slit(30, 90), 15.00 / 2).closed, 0u);
 }
 
-TEST(RegionGrowNarrow_Bends, EndTheSurfaceWhereTheyShould) {
-    // A lid bends by the fall of the strip; strips opposite to each other differ by twice as much.
+TEST(RegionGrowNarrow_DihedralDeviation, EndsTheSurfaceAboveItsLimit) {
+    // A lid deviates from the strip by its fall, opposite parts of the strip from each other by twice as much.
     EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 103).closed, 1u);
-    EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 97).closed, 0u) << "the rims differ";
+    EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 97).closed, 0u) << "opposite parts of the strip differ too much";
     EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 97, 16).closed, 1u) << "of any size";
     EXPECT_EQ(closed(ring(16, 1, 85), 1.1, 171).closed, 1u);
     EXPECT_EQ(closed(ring(16, 1, 88), 1.1, 171).closed, 0u);
     EXPECT_EQ(closed(ring(16, 1, 88), 1.1, 172).closed, 1u) << "a tip";
 }
 
-TEST(RegionGrowNarrow_ATriangleThatIsInTheWay, GivesWayAtLoopsOfAtMost30Corners) {
+TEST(RegionGrowNarrow_OneObstacle, IsReplacedAtLoopsOfAtMost30Corners) {
     const NarrowHoles at_30 = closed(ring(30, 3, 0, 1), 3.1);
     EXPECT_EQ(at_30.closed, 1u);
     EXPECT_EQ(at_30.replaced, 1u);
     const NarrowHoles at_31 = closed(ring(31, 3, 0, 1), 3.1);
     EXPECT_EQ(at_31.closed, 0u);
     EXPECT_EQ(at_31.replaced, 0u);
-    EXPECT_EQ(closed(ring(30, 3, 0, 1), 2.5).replaced, 0u) << "a hole all the same";
+    EXPECT_EQ(closed(ring(30, 3, 0, 1), 2.5).replaced, 0u) << "a hole in any case";
 }
 
-TEST(RegionGrowNarrow_TwoTrianglesInTheWay, GiveWayAtLoopsOfAtMost12Corners) {
+TEST(RegionGrowNarrow_TwoObstacles, AreReplacedAtLoopsOfAtMost12Corners) {
     const NarrowHoles at_12 = closed(ring(12, 1, 0, 2), 1.1);
     EXPECT_EQ(at_12.closed, 1u);
     EXPECT_EQ(at_12.replaced, 2u);
@@ -239,35 +241,35 @@ TEST(RegionGrowNarrow_Closing, CanBeCancelledAtEveryLoop) {
     EXPECT_THROW(close_narrow_holes(patch.surface(), {0.3, 4, 3}, Context(options)), Cancelled);
 }
 
-/// Two planes of step 1 that meet in a crease of so many degrees, which fades out to both of its ends.
-PointCloud fading_crease(double bend) {
+/// Two planes of step 1 that meet in a crease of `angle` degrees, which fades out towards both of its ends.
+PointCloud fading_crease(double angle) {
     std::vector<Vec3> points;
     for (int across = -10; across <= 10; ++across)
         for (int y = -20; y <= 20; ++y) {
-            const double half = bend / 2 * degree * std::cos(std::numbers::pi * y / 40);
+            const double half = angle / 2 * degree * std::cos(std::numbers::pi * y / 40);
             points.push_back(Vec3(across * std::cos(half), y, -std::abs(across) * std::sin(half)));
         }
     return cloud_from(std::move(points));
 }
 
 TEST(RegionGrow_CreasesThatFadeOut, ArePatchEdgesWhateverIsClosed) {
-    for (const double bend : {70.0, 90.0, 100.0, 110.0, 120.0, 130.0}) {
-        SCOPED_TRACE(bend);
+    for (const double angle : {70.0, 90.0, 100.0, 110.0, 120.0, 130.0}) {
+        SCOPED_TRACE(angle);
         RegionGrowParams params = with_max_normal_angle(60);
         params.search_radius = Length(2 * std::numbers::sqrt3);
-        const RegionGrowResult result = grown(fading_crease(bend), params);
+        const RegionGrowResult result = grown(fading_crease(angle), params);
         expect_consistent(result);
         params.close_holes = 0;
-        const RegionGrowResult open = grown(fading_crease(bend), params);
-        EXPECT_EQ(result.loops, bend > 80 ? 2u : 1u);
-        EXPECT_EQ(result.patch_edges > 0, bend > 80);
+        const RegionGrowResult open = grown(fading_crease(angle), params);
+        EXPECT_EQ(result.loops, angle > 80 ? 2u : 1u);
+        EXPECT_EQ(result.patch_edges > 0, angle > 80);
         EXPECT_EQ(result.patch_edges, open.patch_edges);
         EXPECT_EQ(result.mesh.triangles.size(), open.mesh.triangles.size());
     }
 }
 
 TEST(RegionGrow_OpenPocket, StaysOpenThoughNarrow) {
-    // Of 30 x 2.5 x 10: across its mouth fits no circle as large as a hole's.
+    // 30 x 2.5 x 10: no circle as large as a hole fits into its opening.
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         Random random(seed);
         std::vector<Vec3> points;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What holds for any points: manifoldness, limits, order, threads, scale, duplicates.
+/// Laws for any points: manifoldness, limits, order, threads, scale, duplicates.
 #include <gmock/gmock.h>
 
 #include "filters/region_grow_cases.hpp"
@@ -11,9 +11,9 @@ namespace {
 
 using namespace test;
 
-PointCloud thinned(const PointCloud& cloud, double bin) {
+PointCloud thinned(const PointCloud& cloud, double voxel) {
     VoxelThinParams params;
-    params.bin_size = Length(bin);
+    params.bin_size = Length(voxel);
     Context context;
     return voxel_thin(cloud, params, context).points;
 }
@@ -37,7 +37,7 @@ struct Hole {
     double x, y, radius;
 };
 
-void expect_holes(const RegionGrowResult& result, const std::vector<Hole>& holes, double bin) {
+void expect_holes(const RegionGrowResult& result, const std::vector<Hole>& holes, double voxel) {
     expect_consistent(result);
     EXPECT_EQ(result.loops, holes.size() + 1);
     EXPECT_EQ(result.holes, holes.size());
@@ -50,12 +50,12 @@ void expect_holes(const RegionGrowResult& result, const std::vector<Hole>& holes
         middle /= line.end - line.begin;
         for (std::size_t h = 0; h < holes.size(); ++h) {
             const Vec3 centre(holes[h].x, holes[h].y, 0);
-            if ((middle - centre).norm() > bin) continue;
+            if ((middle - centre).norm() > voxel) continue;
             found[h] = true;
             double radius = 0;
             for (u32 i = line.begin; i < line.end; ++i)
                 radius += (result.features.positions[result.features.vertices[i]] - centre).norm();
-            EXPECT_NEAR(radius / (line.end - line.begin), holes[h].radius, bin);
+            EXPECT_NEAR(radius / (line.end - line.begin), holes[h].radius, voxel);
         }
     }
     EXPECT_THAT(found, testing::Each(true));
@@ -67,10 +67,10 @@ TEST(RegionGrow_PlateWithFiveRoundHoles, HasSixLoops) {
         return std::ranges::none_of(holes,
                                     [&](const Hole& h) { return std::hypot(p.x() - h.x, p.y() - h.y) < h.radius; });
     });
-    for (double bin : {1.0, 2.0}) expect_holes(grown(thinned(dense, bin)), holes, bin);
+    for (double voxel : {1.0, 2.0}) expect_holes(grown(thinned(dense, voxel)), holes, voxel);
 }
 
-TEST(RegionGrow_TopOfTheThesissBlock, HasItsFiveHolesAtBinsOf3) {
+TEST(RegionGrow_TopOfTheThesissBlock, HasItsFiveHolesWithVoxelsOf3) {
     const std::vector<Hole> holes{{44, 47.5, 21}, {11, 12, 5}, {77, 12, 5}, {11, 83, 5}, {77, 83, 5}};
     const PointCloud dense = plate(88, 95, 0.8, [&](const Vec3& p) {
         return std::ranges::none_of(holes,
@@ -116,7 +116,7 @@ TEST(RegionGrow_FirstPass, KeepsTheLimits) {
             EXPECT_GE(smallest_angle(result.mesh, result.mesh.triangles[row]), params.min_angle.in_radians() - 1e-9);
         }
         EXPECT_GT(10 * kept, 7 * result.passes.size());
-        // No edge bends by more than the last relaxed limit, unless a small hole was closed there.
+        // No dihedral deviation exceeds the last relaxed limit, unless a small hole was closed there.
         std::map<Edge, std::vector<std::size_t>> at_edge;
         for (std::size_t row = 0; row < result.passes.size(); ++row)
             for (std::size_t i = 0; i < 3; ++i) {
@@ -139,7 +139,7 @@ TEST(RegionGrow_FirstPass, KeepsTheLimits) {
     }
 }
 
-/// Its bins are not told: they would not grow when it is moved.
+/// Without `bin-size`, which would not be scaled with the positions.
 PointCloud torus_scan() {
     PointCloud scan = thinned(poisson_torus(0.02, 0.4, 200, 3, 30000), 0.05);
     scan.columns = {};
@@ -148,31 +148,32 @@ PointCloud torus_scan() {
 
 TEST(RegionGrow_OrderOfThePoints, ChangesNothingButNumbers) {
     const PointCloud cloud = joined(torus_scan(), moved(grid(8, 8), 0.05, Vec3(3, 0, 0)));
-    const auto triangles = by_place(grown(cloud).mesh);
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) EXPECT_EQ(by_place(grown(shuffled(cloud, seed)).mesh), triangles);
+    const auto triangles = by_position(grown(cloud).mesh);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed)
+        EXPECT_EQ(by_position(grown(shuffled(cloud, seed)).mesh), triangles);
 }
 
-TEST(RegionGrow_OrderOfRowsInOnePlace, ChangesNothingThatTheirColumnsSay) {
-    // Every place three times, with bins of its own and normals that tilt either way, some of them unknown.
+TEST(RegionGrow_OrderOfRowsAtOnePosition, ChangesNothing) {
+    // Every position three times, each with its own bin-size and tilted normal, some of them unknown.
     const PointCloud one = thinned(fibonacci_sphere(20000, 0.01), 0.1);
     PointCloud cloud = joined(joined(one, one), one);
     Random random(3);
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    Array<double> bins, normals;
+    Array<double> sizes, normals;
     for (std::size_t row = 0; row < cloud.size(); ++row) {
-        bins.push_back(random.uniform(0, 3) < 1 ? nan : random.uniform(0.06, 0.2));
+        sizes.push_back(random.uniform(0, 3) < 1 ? nan : random.uniform(0.06, 0.2));
         const Vec3 tilt(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         const Vec3 normal = random.uniform(0, 3) < 1 ? Vec3::Zero() : Vec3(cloud.positions[row] + 0.9 * tilt);
         normals.insert(normals.end(), normal.begin(), normal.end());
     }
-    const Column bin_column("bin-size", 1, Buffer<double>(std::move(bins)));
+    const Column size_column("bin-size", 1, Buffer<double>(std::move(sizes)));
     const Column normal_column("normal", 3, Buffer<double>(std::move(normals)));
-    for (const Column& column : {bin_column, normal_column}) {
+    for (const Column& column : {size_column, normal_column}) {
         cloud.columns = {};
         cloud.columns.add(column);
-        const auto triangles = by_place(grown(cloud).mesh);
+        const auto triangles = by_position(grown(cloud).mesh);
         for (std::uint64_t seed = 1; seed <= 2; ++seed)
-            EXPECT_TRUE(by_place(grown(shuffled(cloud, seed)).mesh) == triangles) << column.name() << ", " << seed;
+            EXPECT_TRUE(by_position(grown(shuffled(cloud, seed)).mesh) == triangles) << column.name() << ", " << seed;
     }
 }
 
@@ -198,7 +199,7 @@ TEST(RegionGrow_Duplicates, AreCountedAndChangeNothing) {
     const RegionGrowResult twice = grown(joined(cloud, cloud));
     EXPECT_EQ(twice.duplicates, cloud.size());
     EXPECT_EQ(twice.mesh.positions.size() + twice.unused_points, cloud.size());
-    EXPECT_EQ(by_place(twice.mesh), by_place(grown(cloud).mesh));
+    EXPECT_EQ(by_position(twice.mesh), by_position(grown(cloud).mesh));
 }
 
 TEST(RegionGrow_DensityThatVariesAHundredfold, LeavesNoHole) {
@@ -221,7 +222,7 @@ TEST(RegionGrow_DensityThatVariesAHundredfold, LeavesNoHole) {
     EXPECT_EQ(overlapping_pairs(result.mesh), 0u);
 }
 
-TEST(RegionGrow_NoiseOfHalfABin, StillIsAManifold) {
+TEST(RegionGrow_NoiseOfHalfAVoxel, IsStillAManifold) {
     Random random(4);
     std::vector<Vec3> points;
     for (const Vec3& p : fibonacci_sphere(20000).positions) points.push_back(p * (1 + 0.05 * random.normal()));
@@ -245,15 +246,15 @@ TEST_P(RegionGrowOfAnything, IsAManifoldAndCountsEveryPoint) {
             params.max_normal_angle = Angle::degrees(60 + 30 * static_cast<double>(seed % 5));
             const RegionGrowResult result = grown(cloud, params);
             expect_consistent(result);
-            // Counted again: every row is a vertex, repeats an earlier row, or is the first of a place without one.
-            std::set<std::array<double, 3>> places, used;
-            for (const Vec3& p : cloud.positions) places.insert({p.x(), p.y(), p.z()});
+            // Every row is a vertex, repeats an earlier row, or is the first at a position without a vertex.
+            std::set<std::array<double, 3>> positions, used;
+            for (const Vec3& p : cloud.positions) positions.insert({p.x(), p.y(), p.z()});
             for (const u32 row : result.rows) {
                 const Vec3& p = cloud.positions[row];
                 used.insert({p.x(), p.y(), p.z()});
             }
-            EXPECT_EQ(result.duplicates, cloud.size() - places.size());
-            EXPECT_EQ(result.unused_points, places.size() - used.size());
+            EXPECT_EQ(result.duplicates, cloud.size() - positions.size());
+            EXPECT_EQ(result.unused_points, positions.size() - used.size());
         }
     }
 }

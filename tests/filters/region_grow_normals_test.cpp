@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Normals that came with the points: those that lie in the surface, and those whose signs are mixed or few.
+/// Given normals: those that lie in the surface, those with mixed signs, and missing ones.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(RegionGrow_NormalsInTheSurface, AreRefusedAsSuch) {
     EXPECT_THAT(growth_refusal(sphere), HasSubstr("as if they lay in the surface"));
 }
 
-TEST(RegionGrow_NormalsInTheSurface, UpToSixtyDegreesAreNone) {
+TEST(RegionGrow_NormalsInTheSurface, UpToSixtyDegreesAreAccepted) {
     for (const double degrees : {0.0, 45.0, 59.0, 61.0, 90.0}) {
         const double angle = degrees * std::numbers::pi / 180;
         const PointCloud tilted =
@@ -54,7 +54,7 @@ TEST(RegionGrow_NormalsInTheSurface, UpToSixtyDegreesAreNone) {
     }
 }
 
-TEST(RegionGrow_NormalsInTheSurface, ThreeQuartersAreRefusedAQuarterIsWarnedOf) {
+TEST(RegionGrow_NormalsInTheSurface, MoreThanThreeQuartersAreRefusedAboveAQuarterWarns) {
     const auto lying_below = [](double x) {
         return with_normals(grid(20, 20), [x](const Vec3& p) { return p.x() < x ? Vec3(0, 1, 0) : Vec3(0, 0, 1); });
     };
@@ -65,12 +65,13 @@ TEST(RegionGrow_NormalsInTheSurface, ThreeQuartersAreRefusedAQuarterIsWarnedOf) 
     } catch (const Error&) {
     }
     ASSERT_FALSE(context.warnings().empty());
-    EXPECT_THAT(context.warnings()[0], AllOf(HasSubstr("200 of 400 normals"), HasSubstr("taken from the neighbours")));
+    EXPECT_THAT(context.warnings()[0],
+                AllOf(HasSubstr("200 of 400 normals"), HasSubstr("computed from the neighbours")));
     EXPECT_THAT(warnings_of(lying_below(4.5)), testing::Not(testing::Contains(HasSubstr("60 deg"))));
 }
 
-TEST(RegionGrow_NormalsInTheSurface, OfScanLinesFarApartTheirOwnAreNone) {
-    // Turned about the lines, along which alone neighbours lie: their principal normal may be any direction across.
+TEST(RegionGrow_NormalsInTheSurface, OfDistantScanLinesAreAccepted) {
+    // All neighbours lie on one line, so the principal normal is an arbitrary direction across it.
     for (int degrees = 0; degrees < 180; degrees += 10) {
         const double angle = degrees * std::numbers::pi / 180;
         const Vec3 along(0, std::cos(angle), std::sin(angle)), normal(0, -std::sin(angle), std::cos(angle));
@@ -81,11 +82,11 @@ TEST(RegionGrow_NormalsInTheSurface, OfScanLinesFarApartTheirOwnAreNone) {
     }
 }
 
-TEST(RegionGrow_NormalsInTheSurface, TrueOnesOfACoarseSphereAreNone) {
+TEST(RegionGrow_NormalsInTheSurface, OfACoarseSphereAreAccepted) {
     EXPECT_THAT(warnings_of(with_normals(fibonacci_sphere(60), [](const Vec3& p) { return p; })), IsEmpty());
 }
 
-/// Directions by rows turned over with this chance; the column `normal` is the sphere's own elsewhere.
+/// A sphere with its normals, of which this share is reversed.
 PointCloud sphere_with_flips(u32 points, double share, double outwards = 1) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> chance(0, 1);
@@ -106,20 +107,20 @@ TEST(RegionGrow_NormalsOfMixedSign, KeepTheirDirectionsOnly) {
         EXPECT_EQ(result.mesh.triangles.size(), 2 * 3000 - 4) << share;
         EXPECT_EQ(result.unused_points, 0u) << share;
         EXPECT_THAT(context.warnings(),
-                    testing::ElementsAre(AllOf(HasSubstr("of 3000 normals of the column 'normal' point the other way"),
-                                               HasSubstr("their signs only tell"))));
+                    testing::ElementsAre(AllOf(HasSubstr("of 3000 normals of the column 'normal' are opposed"),
+                                               HasSubstr("their signs only decide"))));
     }
 }
 
-TEST(RegionGrow_NormalsOfMixedSign, TellWhichWayMostOfAPieceFaces) {
-    // A cavity's wall faces inwards, which nothing but its normals tells.
+TEST(RegionGrow_NormalsOfMixedSign, DecideTheOrientationOfAComponent) {
+    // The wall of a cavity faces inwards; only its normals show that.
     EXPECT_EQ(share_facing_outwards(grown(sphere_with_flips(3000, 0.1, -1)).mesh), 0);
     EXPECT_EQ(share_facing_outwards(grown(sphere_with_flips(3000, 0.1, 1)).mesh), 1);
     EXPECT_EQ(share_facing_outwards(grown(sphere_with_flips(3000, 0.5, -1)).mesh), 1) << "as without normals";
 }
 
-TEST(RegionGrow_NormalsOfMixedSign, AreNotThoseOfASheetsTwoSides) {
-    // Nearly every nearest neighbour is on the other side: behind, as a sheet has it, or in front, as a slit.
+TEST(RegionGrow_NormalsOfMixedSign, AreNotThoseOfTheTwoSidesOfASheet) {
+    // Nearly every nearest neighbour is on the other side: behind in a sheet, in front in a slit.
     for (const double outwards : {1.0, -1.0}) {
         PointCloud sides = grid(20, 20);
         std::vector<Vec3> both(sides.positions.begin(), sides.positions.end());
@@ -147,7 +148,7 @@ TEST(RegionGrow_NormalsOfMixedSign, AreNotThoseOfRidgesAndGrooves) {
     std::size_t row = 0;
     const PointCloud teeth = with_normals(
         cloud_from(points), [&](const Vec3&) { return Vec3(slopes[row++] * std::cos(half), 0, std::sin(half)); });
-    EXPECT_THAT(warnings_of(teeth), testing::Not(testing::Contains(HasSubstr("point the other way"))));
+    EXPECT_THAT(warnings_of(teeth), testing::Not(testing::Contains(HasSubstr("are opposed"))));
 }
 
 TEST(RegionGrowOpposedNormals, AreMixedAboveOneInAHundredAndNotOnOneSide) {
@@ -176,8 +177,8 @@ TEST(RegionGrowOpposedNormals, LieBehindInFrontAndBeside) {
     EXPECT_EQ(opposed.count, 3u);
 }
 
-TEST(RegionGrow_MissingNormals, TakeTheSignOfThoseNearThemHoweverFar) {
-    // A quarter of the sphere has none: most of these have none among their neighbours either.
+TEST(RegionGrow_MissingNormals, TakeTheSignOfTheNearestGivenOnesHoweverFar) {
+    // A quarter of the sphere has none, and most of these points have no neighbour with one.
     const PointCloud cap = with_normals(fibonacci_sphere(5000),
                                         [](const Vec3& p) -> Vec3 { return p.z() > 0.5 ? Vec3(0, 0, 0) : Vec3(-p); });
     Context context;
@@ -187,7 +188,7 @@ TEST(RegionGrow_MissingNormals, TakeTheSignOfThoseNearThemHoweverFar) {
     EXPECT_THAT(context.warnings(), testing::ElementsAre(HasSubstr("1250 of 5000 normals are zero or not finite")));
 }
 
-TEST(RegionGrow_MissingNormals, MoreThanHalfLeaveSignsThatOnlyTellTheSide) {
+TEST(RegionGrow_MissingNormals, MoreThanHalfLeaveSignsThatOnlyDecideTheOrientation) {
     std::size_t row = 0;
     const PointCloud few = with_normals(
         fibonacci_sphere(5000), [&](const Vec3& p) -> Vec3 { return row++ % 250 == 0 ? Vec3(-p) : Vec3(0, 0, 0); });
@@ -196,10 +197,10 @@ TEST(RegionGrow_MissingNormals, MoreThanHalfLeaveSignsThatOnlyTellTheSide) {
     EXPECT_EQ(result.mesh.triangles.size(), 2 * 5000 - 4);
     EXPECT_EQ(share_facing_outwards(result.mesh), 0);
     EXPECT_THAT(context.warnings(), testing::ElementsAre(AllOf(HasSubstr("4980 of 5000 normals are zero"),
-                                                               HasSubstr("only tell which way"))));
+                                                               HasSubstr("only decide which way"))));
 }
 
-TEST(RegionGrow_NormalsTurnedTowardsACamera, EndTheSurfaceWithAWarning) {
+TEST(RegionGrow_NormalsOrientedTowardsACamera, EndTheSurfaceWithAWarning) {
     const PointCloud seam = with_normals(fibonacci_sphere(20000),
                                          [](const Vec3& p) -> Vec3 { return p.dot(Vec3(1, 2, 3)) > 0 ? p : Vec3(-p); });
     EXPECT_GT(grown(seam).components, 1u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points close to each other: anisotropic sampling keeps them all, overlaid scans are merged and thinned first.
+/// Points close to each other: anisotropic sampling uses them all; overlaid scans are merged and thinned first.
 #include <gmock/gmock.h>
 
 #include "filters/region_grow_cases.hpp"
@@ -48,7 +48,7 @@ TEST(RegionGrow_AnisotropicGrid, UsesEveryPoint) {
     }
 }
 
-constexpr double bins_in_spacings = 1.5;
+constexpr double voxels_in_spacings = 1.5;
 
 TEST(RegionGrow_SphereAndItsShiftedCopy, MergedAndThinnedAreOneSheet) {
     const PointCloud sphere = fibonacci_sphere(5000);
@@ -56,7 +56,7 @@ TEST(RegionGrow_SphereAndItsShiftedCopy, MergedAndThinnedAreOneSheet) {
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0.6, 0.8, 0), Vec3(0.48, 0.6, 0.64), Vec3(0, 0, 1)}) {
         const PointCloud both = merged(sphere, moved(sphere, 1, 0.2 * spacing * way));
         Context context;
-        const RegionGrowResult result = region_grow(thinned(both, bins_in_spacings * spacing), {}, context);
+        const RegionGrowResult result = region_grow(thinned(both, voxels_in_spacings * spacing), {}, context);
         expect_consistent(result);
         EXPECT_TRUE(topology(result.mesh).closed) << way.transpose();
         EXPECT_EQ(result.components, 1u);
@@ -72,7 +72,7 @@ TEST(RegionGrow_PlaneAndItsRaisedCopy, MergedAndThinnedAreOneSheet) {
     for (const double angle : {0.0, 0.3, 0.7, 1.2}) {
         const PointCloud both =
             merged(rotated(grid(30, 30), angle), rotated(moved(grid(30, 30), 1, {0, 0, 0.2}), angle));
-        const RegionGrowResult result = grown(thinned(both, bins_in_spacings));
+        const RegionGrowResult result = grown(thinned(both, voxels_in_spacings));
         expect_consistent(result);
         EXPECT_EQ(result.components, 1u) << angle;
         EXPECT_EQ(result.loops, 1u) << angle;
@@ -87,19 +87,19 @@ TEST(RegionGrow_SphereHalfOfWhichIsThereTwice, MergedAndThinnedIsClosed) {
     std::vector<Vec3> half;
     for (const Vec3& p : sphere.positions)
         if (p.x() > 0) half.push_back(p + 0.2 * spacing * Vec3(0.48, 0.6, 0.64));
-    const RegionGrowResult result = grown(thinned(merged(sphere, cloud_from(half)), bins_in_spacings * spacing));
+    const RegionGrowResult result = grown(thinned(merged(sphere, cloud_from(half)), voxels_in_spacings * spacing));
     expect_consistent(result);
     EXPECT_TRUE(topology(result.mesh).closed);
     EXPECT_EQ(result.components, 1u);
 }
 
-TEST(RegionGrow_SheetsLessThanHalfASpacingApart, AreRefusedWithBinsThatMakeOneOfThem) {
+TEST(RegionGrow_SheetsLessThanHalfASpacingApart, AreRefusedWithVoxelsThatMakeOneOfThem) {
     // Each point has its copy next to it: no triangle is flat enough.
     for (const double height : {0.001, 0.2, 0.4, 0.5}) {
         const PointCloud sheets = two_sheets(height);
         const std::string text = growth_refusal(sheets);
-        ASSERT_THAT(text, HasSubstr("thin with bins of ")) << height;
-        const double bin_size = std::stod(text.substr(text.find("bins of ") + 8));
+        ASSERT_THAT(text, HasSubstr("thin with voxels of ")) << height;
+        const double bin_size = std::stod(text.substr(text.find("voxels of ") + 10));
         const RegionGrowResult result = grown(thinned(sheets, bin_size));
         expect_consistent(result);
         EXPECT_EQ(result.components, 1u) << height;
@@ -108,7 +108,7 @@ TEST(RegionGrow_SheetsLessThanHalfASpacingApart, AreRefusedWithBinsThatMakeOneOf
     }
 }
 
-TEST(RegionGrow_BothSidesOfSheetMetal, AreToldApartByTheirNormals) {
+TEST(RegionGrow_BothSidesOfSheetMetal, AreDistinguishedByTheirNormals) {
     for (const double thickness : {0.1, 0.3}) {
         PointCloud metal = two_sheets(thickness);
         Array<double> numbers;
@@ -121,7 +121,7 @@ TEST(RegionGrow_BothSidesOfSheetMetal, AreToldApartByTheirNormals) {
         expect_consistent(result);
         EXPECT_EQ(result.unused_points, 0u);
         EXPECT_THAT(context.warnings(), IsEmpty());
-        // Each side whole, and seen from there.
+        // Each side is whole and faces outwards.
         std::size_t above = 0, below = 0;
         for (const Triangle& t : result.mesh.triangles) {
             const double z = normal_of(result.mesh, t).normalized().z();

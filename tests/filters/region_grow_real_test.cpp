@@ -12,12 +12,12 @@ namespace {
 
 using namespace test;
 
-PointCloud positions_of(const std::filesystem::path& path, double bin = 0) {
+PointCloud positions_of(const std::filesystem::path& path, double voxel = 0) {
     PointCloud cloud;
     cloud.positions = read_points(path)->positions;
-    if (bin == 0) return cloud;
+    if (voxel == 0) return cloud;
     VoxelThinParams params;
-    params.bin_size = Length(bin);
+    params.bin_size = Length(voxel);
     Context context;
     return voxel_thin(cloud, params, context).points;
 }
@@ -29,7 +29,7 @@ std::size_t self_intersections(const TriangleMesh& mesh) {
     return measure(mesh, mesh, params, context).self_intersections.value();
 }
 
-/// A model whose vertices are dense enough for a surface through all of them, and how that must be.
+/// A model whose vertices are dense enough for a surface through all of them, and its topology.
 struct Model {
     const char* file;
     long genus;
@@ -58,21 +58,21 @@ INSTANTIATE_TEST_SUITE_P(Models, RegionGrowOfAModel,
                                          Model{"meshes/refined_elephant.off", 3, 0}, Model{"meshes/holes.off", 0, 7},
                                          Model{"meshes/armadillo.off", 0, 0}, Model{"meshes/three_peaks.off", 0, 1}));
 
-/// Bins as percent of the diagonal.
+/// Voxel sizes in percent of the diagonal.
 struct ThinnedModel {
     const char* file;
-    double bin;
+    double voxel;
     long genus;
 };
 
-void PrintTo(const ThinnedModel& model, std::ostream* stream) { *stream << model.file << " at " << model.bin; }
+void PrintTo(const ThinnedModel& model, std::ostream* stream) { *stream << model.file << " at " << model.voxel; }
 
 class RegionGrowOfAThinnedModel : public testing::TestWithParam<ThinnedModel> {};
 
 TEST_P(RegionGrowOfAThinnedModel, IsClosedAndHasTheModelsGenus) {
     SCANMILL_REAL_SCAN(path, fetched_data, GetParam().file);
     const double diagonal = bounding_box(positions_of(path).positions.span()).diagonal();
-    const PointCloud cloud = positions_of(path, GetParam().bin / 100 * diagonal);
+    const PointCloud cloud = positions_of(path, GetParam().voxel / 100 * diagonal);
     const RegionGrowResult result = grown(cloud, {}, 2);
     expect_consistent(result);
     EXPECT_TRUE(topology(result.mesh).closed);
@@ -88,21 +88,21 @@ INSTANTIATE_TEST_SUITE_P(
                     ThinnedModel{"meshes/fandisk_large.off", 1, 0}, ThinnedModel{"meshes/fandisk_large.off", 1.5, 0},
                     ThinnedModel{"meshes/refined_elephant.off", 1.2, 3}, ThinnedModel{"points_3/kitten.xyz", 2, 1}));
 
-/// Bins as percent of the diagonal; some parts are nearer than three of them.
+/// Voxel sizes in percent of the diagonal; some parts are thinner than three of them.
 struct ThinModel {
     const char* file;
-    double bin;
+    double voxel;
     std::size_t loops;
 };
 
-void PrintTo(const ThinModel& model, std::ostream* stream) { *stream << model.file << " at " << model.bin; }
+void PrintTo(const ThinModel& model, std::ostream* stream) { *stream << model.file << " at " << model.voxel; }
 
 class RegionGrowOfAThinModel : public testing::TestWithParam<ThinModel> {};
 
 TEST_P(RegionGrowOfAThinModel, HasTheModelsLoopsAndOthersOnlyAtThinParts) {
     SCANMILL_REAL_SCAN(path, fetched_data, GetParam().file);
     const double diagonal = bounding_box(positions_of(path).positions.span()).diagonal();
-    const PointCloud cloud = positions_of(path, GetParam().bin / 100 * diagonal);
+    const PointCloud cloud = positions_of(path, GetParam().voxel / 100 * diagonal);
     const RegionGrowResult result = grown(cloud, {}, 2);
     EXPECT_GT(result.thin_loops, 0u);
     EXPECT_EQ(result.loops, result.thin_loops + GetParam().loops);
@@ -118,8 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 struct Scan {
     const char* file;
-    double bin;
-    /// At most so many loops; the scan's own holes among them.
+    double voxel;
+    /// At most, including the scan's own holes.
     std::size_t loops;
 };
 
@@ -129,7 +129,7 @@ class RegionGrowOfAThinnedScan : public testing::TestWithParam<Scan> {};
 
 TEST_P(RegionGrowOfAThinnedScan, UsesNearlyEveryPoint) {
     SCANMILL_REAL_SCAN(path, fetched_data, GetParam().file);
-    const PointCloud cloud = positions_of(path, GetParam().bin);
+    const PointCloud cloud = positions_of(path, GetParam().voxel);
     const RegionGrowResult result = grown(cloud, {}, 2);
     expect_consistent(result);
     EXPECT_LE(1000 * result.unused_points, 5 * cloud.size());

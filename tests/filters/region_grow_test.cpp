@@ -30,11 +30,11 @@ TEST(RegionGrow_UnevenQuadrilateral, TakesTheDiagonalWithEmptyCircles) {
     }
 }
 
-TEST(RegionGrow_Square, BreaksTheTieByPlace) {
+TEST(RegionGrow_Square, BreaksTheTieByPosition) {
     const PointCloud square = grid(2, 2);
-    const auto first = by_place(grown(square).mesh);
+    const auto first = by_position(grown(square).mesh);
     EXPECT_EQ(first.size(), 2u);
-    for (std::uint64_t seed = 1; seed < 9; ++seed) EXPECT_EQ(by_place(grown(shuffled(square, seed)).mesh), first);
+    for (std::uint64_t seed = 1; seed < 9; ++seed) EXPECT_EQ(by_position(grown(shuffled(square, seed)).mesh), first);
 }
 
 TEST(RegionGrow_FourCornersOfATetrahedron, CloseIntoOne) {
@@ -91,8 +91,8 @@ TEST(RegionGrow_OpenCylinder, HasTwoLoops) {
     EXPECT_EQ(result.mesh.triangles.size(), 2 * 60u * 19);
 }
 
-TEST(RegionGrow_OpenCylinder, SaysThatItsLoopsAreOnlyGuessed) {
-    // Two equal rims: neither by its area nor by its length is one the outer boundary of the other.
+TEST(RegionGrow_OpenCylinder, WarnsThatItsLoopsAreAmbiguous) {
+    // Two equal loops: neither area nor length decides which one is the outer boundary.
     ContextOptions options;
     Context context(options);
     const RegionGrowResult result = region_grow(cylinder(60, 20), {}, context);
@@ -124,7 +124,7 @@ PointCloud edge_of_90_degrees(u32 steps) {
     return cloud_from(std::move(points));
 }
 
-TEST(RegionGrow_TwoPlanesAt90Degrees, BelowIsTwoPatchesAndASharpEdge) {
+TEST(RegionGrow_TwoPlanesAt90Degrees, SmallerLimit_GivesTwoPatchesAndASharpEdge) {
     const RegionGrowResult result = grown(edge_of_90_degrees(12), with_max_normal_angle(60));
     expect_manifold(result.mesh);
     EXPECT_EQ(result.components, 2u);
@@ -140,28 +140,28 @@ TEST(RegionGrow_TwoPlanesAt90Degrees, BelowIsTwoPatchesAndASharpEdge) {
     }
     EXPECT_GT(sum.x(), 100);
     EXPECT_GT(sum.z(), 100);
-    // A line along the edge knows the normals of both patches: all far sides are across.
-    std::size_t far_sides = 0;
+    // A line along the edge has the normals of both patches.
+    std::size_t beyond = 0;
     const FeatureGraph& lines = result.features;
     for (std::size_t i = 0; i < lines.vertices.size(); ++i) {
         EXPECT_NEAR(lines.left_normals[i].norm(), 1, 1e-9);
         if (lines.right_normals[i].isZero()) continue;
-        ++far_sides;
+        ++beyond;
         EXPECT_NEAR(lines.right_normals[i].norm(), 1, 1e-9);
         EXPECT_NEAR(lines.left_normals[i].dot(lines.right_normals[i]), 0, 1e-9);
         EXPECT_GE(lines.right_normals[i].minCoeff(), -1e-9);
     }
-    EXPECT_EQ(far_sides, result.patch_edges);
-    // Those of the patch that ends next to the edge tell that the surface goes on.
+    EXPECT_EQ(beyond, result.patch_edges);
+    // The boundary edges of the patch that ends next to the edge are sharp.
     EXPECT_GE(result.mesh.sharp_edges.size(), 12u);
 }
 
-TEST(RegionGrow_TwoPlanesAt90Degrees, AboveIsOnePatchWithACrease) {
+TEST(RegionGrow_TwoPlanesAt90Degrees, LargerLimit_GivesOnePatchWithACrease) {
     const RegionGrowResult result = grown(edge_of_90_degrees(12), with_max_normal_angle(100));
     expect_consistent(result);
     EXPECT_EQ(result.components, 1u);
     EXPECT_EQ(topology(result.mesh).euler, 1);
-    // Every triangle of the two rectangles; the limit also allows a cap at either end of the edge, bent by 90 degrees.
+    // All triangles of the two rectangles; the limit also allows a cap at either end of the edge, at 90 degrees.
     EXPECT_GE(result.mesh.triangles.size(), 2 * 24u * 12);
     EXPECT_LE(result.mesh.triangles.size(), 2 * 24u * 12 + 2);
     std::size_t along_edge = 0;
@@ -194,7 +194,7 @@ TEST(RegionGrow_Midpoint, FillsGridAndSphere) {
     EXPECT_LE(sphere.unused_points, 10u);
 }
 
-TEST(RegionGrow_Start, DecidesWhereThePieceBegins) {
+TEST(RegionGrow_Start, DecidesWhereTheComponentBegins) {
     RegionGrowParams params;
     params.start = 37;
     const RegionGrowResult result = grown(grid(10, 10), params);
@@ -219,7 +219,7 @@ TEST(RegionGrow_Columns, StayWithTheirPoints) {
     EXPECT_EQ(result.rows[0], 0u);
 }
 
-/// A floor of step 1 and, along its side x = 0, a wall of so many rows.
+/// A floor of step 1 and, along its side x = 0, a wall of `wall_rows` rows.
 PointCloud sheet_with_wall(u32 floor_rows, u32 along, u32 wall_rows) {
     std::vector<Vec3> points;
     for (u32 y = 0; y < along; ++y) {
@@ -229,7 +229,7 @@ PointCloud sheet_with_wall(u32 floor_rows, u32 along, u32 wall_rows) {
     return cloud_from(std::move(points));
 }
 
-TEST(RegionGrow_OpenSheets, ThatBendHaveNoPatchEdge) {
+TEST(RegionGrow_OpenSheets, WithACreaseHaveNoPatchEdge) {
     for (const PointCloud& sheet :
          {sheet_with_wall(15, 20, 15), sheet_with_wall(30, 30, 1), sheet_with_wall(30, 30, 2)})
         for (const double angle : {0.0, 0.7}) {
@@ -241,8 +241,8 @@ TEST(RegionGrow_OpenSheets, ThatBendHaveNoPatchEdge) {
         }
 }
 
-TEST(RegionGrow_TwoSheets, AreNotBridgedThreeBinsApart) {
-    // A grid of step 1 is as dense as what bins of 1.25 leave.
+TEST(RegionGrow_TwoSheets, AreNotBridgedThreeVoxelsApart) {
+    // A grid of step 1 is as dense as voxels of 1.25 leave points.
     std::vector<Vec3> points;
     for (const Vec3& p : grid(20, 20).positions) {
         points.push_back(p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Where a surface has no plane: tips, edges and folds narrower than the bins that their points were thinned with.
+/// Where a surface is not flat: tips, edges and folds narrower than the voxels that their points were thinned with.
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -14,11 +14,11 @@ namespace {
 
 using namespace test;
 
-constexpr double bin = 0.2;
+constexpr double voxel = 0.2;
 
 PointCloud thinned(std::vector<Vec3> points) {
     VoxelThinParams params;
-    params.bin_size = Length(bin);
+    params.bin_size = Length(voxel);
     Context context;
     return voxel_thin(cloud_from(std::move(points)), params, context).points;
 }
@@ -37,7 +37,7 @@ std::size_t self_intersections(const TriangleMesh& mesh) {
     return measure(mesh, mesh, params, context).self_intersections.value();
 }
 
-/// One piece with one boundary, like a disc, that nowhere passes through itself.
+/// One component with one boundary, as a disc has, without self-intersections.
 void expect_disc(const RegionGrowResult& result) {
     expect_consistent(result);
     EXPECT_EQ(result.components, 1u);
@@ -57,7 +57,7 @@ PointCloud cone(double half_angle, std::uint64_t seed) {
     }));
 }
 
-TEST(RegionGrowTips_Cones, AreClosedAtTheTipAndOpenAtTheRim) {
+TEST(RegionGrowTips_Cones, AreClosedAtTheTipAndOpenAtTheBase) {
     for (const double half_angle : {12, 18, 25, 35})
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             SCOPED_TRACE(testing::Message() << half_angle << " degrees, seed " << seed);
@@ -65,7 +65,7 @@ TEST(RegionGrowTips_Cones, AreClosedAtTheTipAndOpenAtTheRim) {
         }
 }
 
-/// Two planes at such an angle, 6 wide and 10 long, rounded where they meet.
+/// Two planes at an angle of `opening`, 6 wide and 10 long, rounded where they meet.
 PointCloud edge(double opening, double radius, std::uint64_t seed) {
     const double half = degrees(opening / 2), arc = std::numbers::pi - 2 * half, side = 6;
     return thinned(sampled(50000, seed, [&](Random& random) {
@@ -83,7 +83,7 @@ TEST(RegionGrowTips_EdgesOf60Degrees, AreClosedSharpOrRounded) {
             SCOPED_TRACE(testing::Message() << "radius " << radius << ", seed " << seed);
             expect_disc(grown(edge(60, radius, seed)));
         }
-    // A quarter of a bin is the hardest: points of either plane lie inside the rounding.
+    // A quarter of a voxel is the hardest: points of either plane lie inside the rounding.
     std::size_t holes = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) holes += grown(edge(60, 0.05, seed)).loops - 1;
     EXPECT_LE(holes, 1u);
@@ -123,7 +123,7 @@ TEST(RegionGrowTips_RidgesThatSag, AreClosed) {
     }
 }
 
-TEST(RegionGrowTips_WhatIsTooNarrowForItsBins, DoesNotPassThroughItself) {
+TEST(RegionGrowTips_TooNarrowForTheVoxels, DoesNotIntersectItself) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         SCOPED_TRACE(seed);
         for (const PointCloud& cloud :
@@ -135,8 +135,8 @@ TEST(RegionGrowTips_WhatIsTooNarrowForItsBins, DoesNotPassThroughItself) {
     }
 }
 
-TEST(RegionGrowTips_SheetsThatCross, DoNotPassThroughEachOther) {
-    // z = ± 0.3 x; where they meet no rule of a plane can tell which way either goes on.
+TEST(RegionGrowTips_SheetsThatCross, DoNotIntersect) {
+    // z = ± 0.3 x; no rule in a tangent plane can decide how either continues where they meet.
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         const RegionGrowResult result = grown(cloud_from(sampled(6000, seed, [](Random& random) {
             const double x = random.uniform(-3, 3), y = random.uniform(-3, 3);
@@ -147,12 +147,12 @@ TEST(RegionGrowTips_SheetsThatCross, DoNotPassThroughEachOther) {
     }
 }
 
-TEST(RegionGrowTips_PointsOfNoSurface, DoNotMakeOneThatPassesThroughItself) {
+TEST(RegionGrowTips_PointsOfNoSurface, GiveNoSelfIntersection) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed)
         EXPECT_EQ(self_intersections(grown(random_cube(2000, seed)).mesh), 0u) << seed;
 }
 
-/// An open box: grids of step 1 at y = 0 and y = width, joined at the sides that are asked for.
+/// An open box: grids of step 1 at y = 0 and y = width, joined by a floor and, if asked for, by ends.
 PointCloud box(u32 length, u32 width, u32 height, bool ends) {
     std::vector<Vec3> points;
     for (u32 x = 0; x <= length; ++x)
@@ -164,7 +164,7 @@ PointCloud box(u32 length, u32 width, u32 height, bool ends) {
 }
 
 TEST(RegionGrowTips_ThinWallsAndChannels, StayOpen) {
-    // A grid of step 1 is as dense as what bins of 1.25 leave: 4 apart is a little more than 3 bins.
+    // A grid of step 1 is as dense as voxels of 1.25 leave points: 4 apart is a little more than 3 voxels.
     for (const u32 width : {3u, 4u, 6u})
         for (const bool ends : {true, false}) {
             const RegionGrowResult result = grown(box(30, width, 8, ends));
@@ -175,8 +175,8 @@ TEST(RegionGrowTips_ThinWallsAndChannels, StayOpen) {
         }
 }
 
-TEST(RegionGrowTips_NarrowScraps, AreNotClosedIntoSomethingSolid) {
-    // Two rows on either side of an edge: the way back across is short, but it is no hole.
+TEST(RegionGrowTips_NarrowStrips, AreNotClosedIntoASolid) {
+    // Two rows on either side of an edge: the gap behind is narrow, but not a hole.
     for (const double angle : {20.0, 60.0, 90.0}) {
         std::vector<Vec3> points;
         for (u32 y = 0; y < 12; ++y)
@@ -190,7 +190,7 @@ TEST(RegionGrowTips_NarrowScraps, AreNotClosedIntoSomethingSolid) {
     }
 }
 
-TEST(RegionGrowTips_CloseHolesOfNought, LeavesEveryLoopOpen) {
+TEST(RegionGrowTips_CloseHolesOf0, LeavesEveryLoopOpen) {
     RegionGrowParams params;
     params.close_holes = 0;
     std::size_t loops = 0;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "region_grow/overlaps.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace scanmill::growing {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+}  // namespace
+
+int exact_side_of(const Surface& surface, u32 a, u32 b, u32 c, const Vec3& axis) {
+    const auto& p = surface.positions;
+    const Vec3 above = p[a] + surface.axis_length * axis;
+    const auto point = [](const Vec3& x) { return Kernel::Point_3(x.x(), x.y(), x.z()); };
+    return static_cast<int>(CGAL::orientation(point(p[a]), point(p[b]), point(p[c]), point(above)));
+}
+
+bool sector_is_free(const Surface& surface, u32 vertex, u32 first, u32 last, const Vec3& axis) {
+    const auto side = [&](u32 a, u32 b) { return side_of(surface, vertex, a, b, axis); };
+    if (side(first, last) <= 0) return false;
+    const auto is_between = [&](u32 begin, u32 x, u32 end) {
+        return x != begin && x != end && side(begin, x) >= 0 && side(x, end) >= 0;
+    };
+    return !surface.fans.any(vertex, [&](const Fans::LinkEdge& edge) {
+        return edge.first == first || edge.last == last || is_between(edge.first, first, edge.last) ||
+               is_between(edge.first, last, edge.last) || is_between(first, edge.first, last) ||
+               is_between(first, edge.last, last);
+    });
+}
+
+bool contains(const Surface& surface, const Triangle& triangle, const Vec3& normal, u32 point) {
+    for (std::size_t i = 0; i < 3; ++i)
+        if (side_of(surface, triangle[i], triangle[(i + 1) % 3], point, normal) < 0) return false;
+    return true;
+}
+
+bool boundary_crosses(const Surface& surface, u32 vertex, u32 a, u32 d, u32 b, const Vec3& normal, double height) {
+    const auto& p = surface.positions;
+    const auto separates = [&](u32 from, u32 to, u32 x, u32 y) {
+        const int first = side_of(surface, from, to, x, normal), second = side_of(surface, from, to, y, normal);
+        return first * second <= 0 && (first != 0 || second != 0);
+    };
+    return surface.fans.any(vertex, [&](const Fans::LinkEdge& edge) {
+        const u32 end = edge.first;
+        if (end == a || end == d || end == b || surface.fans.right_of(vertex, end) != invalid_index) return false;
+        const double x = normal.dot(p[vertex] - p[d]), y = normal.dot(p[end] - p[d]);
+        if (std::min(std::abs(x), std::abs(y)) > height && x * y > 0) return false;
+        const auto cross = [&](u32 from, u32 to) {
+            return separates(from, to, vertex, end) && separates(vertex, end, from, to);
+        };
+        return cross(a, d) || cross(d, b);
+    });
+}
+
+}  // namespace scanmill::growing
