@@ -30,8 +30,9 @@ SCANMILL_FILTER() {
                 "How the voxel size follows from the sizes that the points allow.")
         .param("quantile", &P::quantile, "The share of the points whose smaller sizes are ignored.", at_least(0),
                at_most(1))
-        .param("neighbours", &P::neighbours, "Number of nearest other points that determine the curvature at a point.",
-               at_least(6), at_most(1000))
+        .param("neighbours", &P::neighbours,
+               "Number of nearest points that determine the curvature at a point, itself not counted.", at_least(6),
+               at_most(1000))
         .choice("origin", &P::origin,
                 {{"nearest", LocalSurfaceParams::Origin::nearest, "The point itself."},
                  {"centroid", LocalSurfaceParams::Origin::centroid,
