@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "scanmill/base/parallel.hpp"
+#include "scanmill/filter/parallel.hpp"
 
 namespace scanmill::growing {
 

@@ -18,7 +18,7 @@ inline constexpr u32 invalid_index = ~u32(0);
 ///
 /// Triangle (v, a, b), counter-clockwise, is stored at v as the edge a → b of v's link. The half-edge v → x belongs to
 /// a triangle when a link edge begins with x, the half-edge x → v when a link edge ends with x. So both ends of an edge
-/// know both of its triangles.
+/// refer to both of its triangles.
 class Fans {
 public:
     struct LinkEdge {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <tuple>
 
-#include "scanmill/base/error.hpp"
+#include "scanmill/filter/error.hpp"
 
 namespace scanmill::voxel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/plugin/plugin.hpp"
+#include "scanmill/filter/plugin.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 using namespace scanmill;
@@ -31,8 +31,8 @@ SCANMILL_FILTER() {
         .param("quantile", &P::quantile, "The share of the points whose smaller sizes are ignored.", at_least(0),
                at_most(1))
         .param("neighbours", &P::neighbours,
-               "Number of nearest points, without the point itself, that determine the curvature at a point.",
-               at_least(6), at_most(1000))
+               "Number of nearest points that determine the curvature at a point, itself not counted.", at_least(6),
+               at_most(1000))
         .choice("origin", &P::origin,
                 {{"nearest", LocalSurfaceParams::Origin::nearest, "The point itself."},
                  {"centroid", LocalSurfaceParams::Origin::centroid,

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "scanmill/base/error.hpp"
-#include "scanmill/base/parallel.hpp"
-#include "scanmill/base/text.hpp"
-#include "scanmill/data/bounds.hpp"
+#include "scanmill/filter/counted.hpp"
+#include "scanmill/filter/error.hpp"
+#include "scanmill/filter/parallel.hpp"
+#include "scanmill/geometry/finite_bounds.hpp"
 #include "voxel_thin/local_sizes.hpp"
 #include "voxel_thin/octree.hpp"
 #include "voxel_thin/voxel_grid.hpp"

@@ -131,7 +131,7 @@ TEST(VoxelThinOfAStream, OfManyShortRows_TakesTheMemoryOfFewChunks) {
         EXPECT_EQ(kept, 100u);
         if (!peak) GTEST_SKIP() << "the system does not report peak memory";
 #ifndef __SANITIZE_THREAD__  // which needs memory of its own for every access
-        EXPECT_LT(*peak, 80 << 20) << threads << " threads";  // 76 as the header says, and the stack of a thread
+        EXPECT_LT(*peak, 80 << 20) << threads << " threads";  // 76 as in the header, and the stack of a thread
 #endif
     }
 }
