@@ -149,10 +149,10 @@ bool Gains::uncovers_thin_facet(u32 cell, unsigned open) const {
         const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];
         const Tetrahedron& corners = tets_.cells[cell];
         const Vec3 a = tets_.positions[corners[i]], b = tets_.positions[corners[j]], c = tets_.positions[corners[k]];
-        std::array<double, 3> sides{(b - a).norm(), (c - b).norm(), (a - c).norm()};
-        std::ranges::sort(sides);
-        // The smallest angle is between the two longest sides.
-        if (normal(cell, facet).norm() < sine_of_thin * sides[1] * sides[2]) return true;
+        std::array<double, 3> edges{(b - a).norm(), (c - b).norm(), (a - c).norm()};
+        std::ranges::sort(edges);
+        // The smallest angle is between the two longest edges.
+        if (normal(cell, facet).norm() < sine_of_thin * edges[1] * edges[2]) return true;
     }
     return false;
 }
@@ -167,10 +167,10 @@ double Gains::squared_radius(u32 cell, int facet) const {
     const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];
     const Tetrahedron& corners = tets_.cells[cell];
     const Vec3 a = tets_.positions[corners[i]], b = tets_.positions[corners[j]], c = tets_.positions[corners[k]];
-    std::array<double, 3> sides{(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()};
-    std::ranges::sort(sides);
+    std::array<double, 3> edges{(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()};
+    std::ranges::sort(edges);
     const double squared_area = 4 * normal(cell, facet).squaredNorm();
-    return squared_area > 0 ? sides[0] * sides[1] * sides[2] / squared_area : std::numeric_limits<double>::infinity();
+    return squared_area > 0 ? edges[0] * edges[1] * edges[2] / squared_area : std::numeric_limits<double>::infinity();
 }
 
 double Gains::volume(u32 cell) const {

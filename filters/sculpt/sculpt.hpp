@@ -33,7 +33,7 @@ struct SculptParams {
     /// A smoothing step must decrease the bending by more than this; for `length`, by this times the length of the edge
     /// that it removes. A chain must decrease it by more than the sum for its steps.
     Angle min_gain = Angle::radians(1e-9);
-    /// Whether an exposing step is judged together with the best smoothing step that it makes possible.
+    /// Whether the gain of an exposing step includes the best smoothing step that it makes possible.
     bool lookahead = true;
 };
 
