@@ -20,7 +20,7 @@ void warn_of_short_creases(const FeatureCounts& counts, const FeatureParams& par
 FeatureLines features(const TriangleMesh& mesh, const FeatureParams& params, Context& context) {
     if (mesh.triangles.empty())
         throw Error("the mesh has no triangles; features need at least one")
-            .hint("`scanmill info` tells what a file holds");
+            .hint("`scanmill info` shows what a file contains");
     context.check_cancelled();
     FeatureLines lines = find_features(mesh, params, context.threads());
     for (std::string& sentence : doubts(lines.counts)) context.warn(std::move(sentence));

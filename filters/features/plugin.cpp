@@ -7,28 +7,28 @@ using namespace scanmill;
 SCANMILL_FILTER() {
     using P = FeatureParams;
     return Declare<P>("features", 1)
-        .summary("Finds where a mesh ends, where it bends sharply, and the corners where such lines meet or turn.")
+        .summary("Finds the boundaries and sharp edges of a mesh, and the corners where such lines meet or turn.")
         .source("Wang 2006, chapter 4, for loops, holes and sharp edges")
         .ties(
-            "An angle equal to a limit, within 1e-9 rad, is not above it; of equally long loops the one that begins at "
-            "the lower place (x, then y, then z) is the outer boundary.")
-        .not_finite("Refused at a vertex of a triangle, with the first of them.")
-        .in<TriangleMesh>("mesh",
-                          "At most two triangles at an edge, oriented alike; its own sharp edges are creases, too.")
+            "An angle within 1e-9 rad of a limit is not above it; of equally long loops the one that begins at the "
+            "lower position (x, then y, then z) is the outer boundary.")
+        .not_finite("Refused at a vertex of a triangle; the first is named.")
+        .in<TriangleMesh>(
+            "mesh", "At most two triangles at an edge, oriented consistently; its own sharp edges are creases, too.")
         .out<FeatureGraph>("features", "Polylines with the unit normals on both sides, and corners.")
-        .param("sharp-angle", &P::sharp_angle, "Edges whose triangles' normals differ by more are sharp.", at_least(0),
+        .param("sharp-angle", &P::sharp_angle, "Edges whose triangles' normals differ by more than this are sharp.",
+               at_least(0), at_most(180))
+        .param("corner-angle", &P::corner_angle, "A line has a corner where it turns by more than this.", at_least(0),
                at_most(180))
-        .param("corner-angle", &P::corner_angle, "A line that turns by more has a corner there.", at_least(0),
-               at_most(180))
-        .param("min-length", &P::min_length, "Creases that are shorter, from corner to corner, are left out.",
+        .param("min-length", &P::min_length, "Creases shorter than this, from corner to corner, are left out.",
                at_least(0))
         .metric("creases", Unit::count, "Lines of sharp edges, from corner to corner or closed.", headline)
-        .metric("holes", Unit::count, "Boundary loops round a hole in the mesh.", headline)
-        .metric("boundaries", Unit::count, "Boundary loops round a piece of the mesh.", headline)
-        .metric("corners", Unit::count, "Places where lines meet, end or turn.", headline)
-        .metric("ambiguous", Unit::count, "Loops told apart by their length, as their area does not tell.")
+        .metric("holes", Unit::count, "Boundary loops around a hole in the mesh.", headline)
+        .metric("boundaries", Unit::count, "Boundary loops around a component of the mesh.", headline)
+        .metric("corners", Unit::count, "Points where lines meet, end or turn.", headline)
+        .metric("ambiguous", Unit::count, "Loops classified by their length because their area does not decide.")
         .metric("dropped", Unit::count, "Creases left out because they are shorter than min-length.")
-        .metric("without-area", Unit::count, "Triangles without area, counted to a neighbour's plane.")
+        .metric("without-area", Unit::count, "Triangles without area; they take the normal of a neighbour.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("features", features(inputs.get<TriangleMesh>("mesh"), params, context).graph);
         });

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "scanmill/geometry/disjoint_sets.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
 
 namespace scanmill::growing {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "scanmill/data/points.hpp"
-#include "scanmill/geometry/spatial_order.hpp"
+#include "scanmill/geometry/spatial/spatial_order.hpp"
 
 namespace scanmill::growing {
 

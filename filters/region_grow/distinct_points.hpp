@@ -8,7 +8,7 @@
 
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/frame.hpp"
-#include "scanmill/geometry/point_tree.hpp"
+#include "scanmill/geometry/spatial/point_tree.hpp"
 
 namespace scanmill::growing {
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "scanmill/geometry/facet_normals.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
 
 namespace scanmill::growing {
 

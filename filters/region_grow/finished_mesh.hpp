@@ -5,8 +5,8 @@
 #include "region_grow/suitable_point.hpp"
 #include "scanmill/data/features.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/quantity.hpp"
 
 namespace scanmill::growing {
 

@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
-#include "scanmill/geometry/scatter.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/fit/covariance.hpp"
 
 namespace scanmill::growing {
 

@@ -14,12 +14,11 @@
 #include "region_grow/growth.hpp"
 #include "region_grow/holes.hpp"
 #include "region_grow/search_radii.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/geometry/feature_doubts.hpp"
-#include "scanmill/geometry/feature_lines.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill {
 
@@ -258,7 +257,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.unused_points = points.size() - result.rows.size();
     report_metrics(result, context);
     warn_of_unused(result, surface, context);
-    warn_of_doubts(lines.counts, context);
+    for (std::string& sentence : doubts(lines.counts)) context.warn(std::move(sentence));
     warn_of_seams(surface, context);
     warn_of_thin_parts(result, thin, context);
     context.progress(1);

@@ -33,8 +33,8 @@
 #include "scanmill/data/features.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/quantity.hpp"
 
 namespace scanmill {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill::growing {
 

@@ -32,7 +32,7 @@ bool CarvedSolid::exposes(u32 cell, unsigned open) const {
 
 bool CarvedSolid::flips(u32 cell, unsigned open, Without without) const {
     if (std::popcount(open) != 2) return false;
-    // The new edge joins the corners opposite to the open facets; it is inside when only solid cells are round it.
+    // The new edge joins the corners opposite to the open facets; it is inside if all cells at it are solid.
     const auto [c, d] = both_corners(~open & 15u);
     EdgeWalk walk(tets_, cell, c, d);
     do {

@@ -2,12 +2,12 @@
 #pragma once
 /// A solid of cells that loses one cell at a time while its boundary stays a closed 2-manifold (Boissonnat 1984).
 ///
-/// A cell with one facet on the boundary may go when the opposite corner is not on the boundary: a triangle becomes
-/// three. A cell with two such facets may go when the edge opposite to their common edge is not on the boundary: the
-/// common edge is flipped into it. Cells with three would leave a point outside, cells with four are a solid of their
-/// own, and any other removal makes the boundary touch itself.
+/// A cell with one facet on the boundary may be removed if the opposite corner is not on the boundary: one triangle
+/// becomes three. A cell with two such facets may be removed if the edge opposite to their common edge is not on the
+/// boundary: the common edge is flipped. Removing a cell with three such facets would leave a point outside, a cell
+/// with four is a solid of its own, and after any other removal the boundary would touch itself.
 ///
-/// Questions take cells `without` that are looked on as removed already.
+/// Queries take cells `without` that count as removed already.
 
 #include <span>
 #include <vector>
@@ -20,11 +20,11 @@ namespace scanmill::sculpting {
 inline constexpr u32 none = TetMesh::outside_hull;
 using Without = std::span<const u32>;
 
-/// Going round an edge of a cell from facet to facet.
+/// Turns about an edge of a cell, from facet to facet.
 class EdgeWalk {
 public:
-    /// From `cell`, first across the facet opposite to its corner `across`; the edge is that of the two corners which
-    /// are neither `across` nor `kept`.
+    /// Starts at `cell` and first crosses the facet opposite to its corner `across`; the edge joins the two corners
+    /// that are neither `across` nor `kept`.
     EdgeWalk(const TetMesh& tets, u32 cell, int across, int kept)
         : tets_(tets),
           cell_(cell),
@@ -33,7 +33,7 @@ public:
           others_(tets.cells[cell][across] ^ kept_ ^ sum(cell)) {}
 
     u32 cell() const { return cell_; }
-    /// The corner opposite to the facet that comes next.
+    /// The corner opposite to the next facet.
     int across() const { return across_; }
     u32 next() const { return tets_.neighbours[cell_][across_]; }
     /// Pre: next() is a cell.
@@ -41,7 +41,7 @@ public:
         cell_ = next();
         const Tetrahedron& corners = tets_.cells[cell_];
         across_ = corners[0] == kept_ ? 0 : corners[1] == kept_ ? 1 : corners[2] == kept_ ? 2 : 3;
-        // The fourth corner is what the exclusive or of the other three leaves of that of all.
+        // The exclusive or of three corners and of all four differ by the fourth corner.
         kept_ = sum(cell_) ^ others_ ^ kept_;
     }
 
@@ -54,21 +54,21 @@ private:
     const TetMesh& tets_;
     u32 cell_;
     int across_;
-    /// The vertex of the next facet beside the edge; the exclusive or of the edge's two vertices.
+    /// The vertex of the next facet that is not on the edge; the exclusive or of the edge's two vertices.
     u32 kept_, others_;
 };
 
 class CarvedSolid {
 public:
-    /// `boundary` are the triangles that bound the cells labelled 1.
+    /// `boundary`: the triangles that bound the cells labelled 1.
     CarvedSolid(const TetMesh& tets, Array<u8> labels, std::span<const Triangle> boundary);
 
     const TetMesh& tets() const { return tets_; }
     const Array<u8>& labels() const { return labels_; }
     bool has(u32 cell, Without without = {}) const {
         if (cell == none || labels_[cell] != 1) return false;
-        for (u32 gone : without)
-            if (cell == gone) return false;
+        for (u32 removed : without)
+            if (cell == removed) return false;
         return true;
     }
     bool is_on_boundary(u32 vertex) const { return on_boundary_[vertex] == 1; }
@@ -80,15 +80,15 @@ public:
         return mask;
     }
 
-    /// Whether the cell may be removed and a point comes to the surface. Pre: `open` are its open facets.
+    /// Whether the cell may be removed and brings a point to the boundary. Pre: `open` are its open facets.
     bool exposes(u32 cell, unsigned open) const;
-    /// Whether the cell may be removed and an edge is flipped. Pre: `open` are its open facets.
+    /// Whether the cell may be removed and flips an edge. Pre: `open` are its open facets.
     bool flips(u32 cell, unsigned open, Without without = {}) const;
 
-    /// Pre: it exposes or flips.
+    /// Pre: the cell exposes or flips.
     void remove(u32 cell);
-    /// Takes a cell away or puts it back, for a question: points on the boundary stay what they were.
-    void pretend(u32 cell, bool is_there) { labels_[cell] = is_there; }
+    /// Removes a cell or puts it back during a query: is_on_boundary() does not change.
+    void set_temporarily(u32 cell, bool is_inside) { labels_[cell] = is_inside; }
 
     Array<u8> take_labels() { return std::move(labels_); }
 
@@ -97,7 +97,7 @@ private:
     Array<u8> labels_, on_boundary_;
 };
 
-/// The corners of the cells' facets, edges and so on by their numbers in the cell.
+/// An edge of a cell, by the numbers of corners within the cell.
 struct CellEdge {
     int a, b;  ///< its ends
     int c, d;  ///< the other corners
@@ -105,7 +105,7 @@ struct CellEdge {
 inline constexpr std::array<CellEdge, 6> cell_edges{
     {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}}};
 
-/// The only corner that the mask names, and the two that it names.
+/// The single corner in the mask, and the two corners in it.
 int only_corner(unsigned mask);
 std::array<int, 2> both_corners(unsigned mask);
 

@@ -5,22 +5,22 @@
 
 namespace scanmill::sculpting {
 
-Chain Chains::longer(const Chain& chain, u32 cell, unsigned open) const {
+Chain Chains::extended(const Chain& chain, u32 cell, unsigned open) const {
     Chain result = chain;
     result.cells_[result.length_] = cell;
     result.open_[result.length_++] = open;
-    result.is_rough_ |= judge_.is_rough(cell, open);
+    result.may_smooth_ |= criteria_.may_smooth(cell, open);
     return result;
 }
 
-bool Chains::count(Chain& chain) const {
-    for (; chain.counted_ < chain.length_; ++chain.counted_) {
-        const u32 cell = chain.cells_[chain.counted_];
-        const unsigned open = chain.open_[chain.counted_];
-        const Without earlier = chain.cells().first(chain.counted_);
-        if (!judge_.may_flip(cell, open, earlier)) return false;
-        chain.gain_ += judge_.gains().of(cell, open, earlier);
-        chain.least_ += judge_.least_gain(cell, open);
+bool Chains::evaluate(Chain& chain) const {
+    for (; chain.evaluated_ < chain.length_; ++chain.evaluated_) {
+        const u32 cell = chain.cells_[chain.evaluated_];
+        const unsigned open = chain.open_[chain.evaluated_];
+        const Without earlier = chain.cells().first(chain.evaluated_);
+        if (!criteria_.may_flip(cell, open, earlier)) return false;
+        chain.gain_ += criteria_.gains().of(cell, open, earlier);
+        chain.least_ += criteria_.least_gain(cell, open);
     }
     return true;
 }
@@ -32,30 +32,30 @@ bool Chains::is_better(const Chain& chain, const Chain& best) const {
         chain.cells(), best.cells(), [&](u32 a, u32 b) { return a != b && is_lower_cell(solid_.tets(), a, b); });
 }
 
-void Chains::extend(Chain& best, const Chain& chain) const {
-    // On smooth ground, where nearly all of a boundary is, nothing is counted.
-    Chain counted = chain;
-    if (counted.is_rough_ && !count(counted)) return;
-    if (counted.is_rough_ && counted.length_ > 1 && is_better(counted, best)) best = counted;
-    if (counted.length_ == longest_chain) return;
-    for (u32 cell : counted.cells())
+void Chains::search_from(const Chain& chain, Chain& best) const {
+    // Most of a boundary is smooth: nothing is evaluated there.
+    Chain checked = chain;
+    if (checked.may_smooth_ && !evaluate(checked)) return;
+    if (checked.may_smooth_ && checked.length_ > 1 && is_better(checked, best)) best = checked;
+    if (checked.length_ == longest_chain) return;
+    for (u32 cell : checked.cells())
         for (u32 across : solid_.tets().neighbours[cell]) {
-            if (!solid_.has(across, counted.cells())) continue;
-            const unsigned open = solid_.open_facets(across, counted.cells());
-            if (std::popcount(open) == 2) extend(best, longer(counted, across, open));
+            if (!solid_.has(across, checked.cells())) continue;
+            const unsigned open = solid_.open_facets(across, checked.cells());
+            if (std::popcount(open) == 2) search_from(extended(checked, across, open), best);
         }
 }
 
 Chain Chains::best_from(u32 cell, unsigned open) const {
     Chain best;
-    if (std::popcount(open) == 2) extend(best, longer({}, cell, open));
+    if (std::popcount(open) == 2) search_from(extended({}, cell, open), best);
     return best;
 }
 
 void Chains::find_first_cells(u32 changed) {
-    // The first cell of a chain has two open facets now. A later one gets its second, or both, by the chain: now it has
-    // one, or none and lies beside two earlier ones. So from any cell of a chain to the first it is two steps at most,
-    // through cells with fewer than two open facets.
+    // The first cell of a chain has two open facets now. A later cell gets one or both of its two during the chain: now
+    // it has one, or none and two earlier cells as neighbours. So the first cell is at most two steps from any other
+    // cell of the chain, through cells with fewer than two open facets.
     const auto open_facets = [&](u32 cell) { return solid_.has(cell) ? std::popcount(solid_.open_facets(cell)) : 4; };
     const auto consider = [&](u32 cell) {
         const int open = open_facets(cell);
@@ -68,7 +68,7 @@ void Chains::find_first_cells(u32 changed) {
             for (u32 two : solid_.tets().neighbours[one]) consider(two);
 }
 
-void Chains::look_again() {
+void Chains::recheck_changed() {
     first_cells_.clear();
     std::ranges::sort(changed_);
     changed_.erase(std::ranges::unique(changed_).begin(), changed_.end());
@@ -83,7 +83,7 @@ void Chains::look_again() {
 }
 
 Chain Chains::next() {
-    look_again();
+    recheck_changed();
     const auto is_there = [&](const WaitingStep& step) { return solid_.has(step.cell); };
     WaitingStep first;
     while (waiting_.pop(first, is_there)) {

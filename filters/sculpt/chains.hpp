@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Chains: flips that gain only together. A web over a crease goes when all its cells go, and the first of them may
-/// cost more bending than it takes away.
+/// Chains: flips that gain only together. A web of cells over a crease disappears only if all its cells are removed,
+/// and removing the first of them may increase the bending.
 
 #include <array>
 #include <vector>
 
-#include "sculpt/judge.hpp"
+#include "sculpt/criteria.hpp"
 #include "sculpt/step_queue.hpp"
 
 namespace scanmill::sculpting {
 
 inline constexpr std::size_t longest_chain = 3;
 
-/// Two flips or more, every one but the first at a facet that an earlier one bares.
+/// Two flips or more, each but the first at a facet that an earlier one uncovers.
 class Chain {
 public:
-    /// In the order of removal. There is no chain when there are none.
+    /// In the order of removal; empty if there is no chain.
     std::span<const u32> cells() const { return {cells_.data(), length_}; }
     /// Of all flips together.
     double gain() const { return gain_; }
@@ -24,46 +24,49 @@ public:
 private:
     friend class Chains;
     std::array<u32, longest_chain> cells_;
-    /// The facets of each that are open when it goes.
+    /// The facets of each that are open when it is removed.
     std::array<unsigned, longest_chain> open_;
     std::size_t length_ = 0;
-    /// How many of the flips are known to be possible and counted in what follows.
-    std::size_t counted_ = 0;
+    /// How many of the flips have been checked; `gain_` and `least_` are sums over these.
+    std::size_t evaluated_ = 0;
     double gain_ = 0;
-    /// The least that the flips must gain.
+    /// The least gain required.
     double least_ = 0;
-    /// Flips are allowed at one of the cells.
-    bool is_rough_ = false;
+    /// Smoothing is allowed at one of the cells.
+    bool may_smooth_ = false;
 };
 
-/// The chains that are worth taking: none makes a thin triangle or digs, at one flip at least smoothing is allowed (see
-/// Judge), and together they gain more than as many smoothing steps must.
+/// The chains that are worth taking: all their flips are allowed, smoothing is allowed at one cell at least (see
+/// StepCriteria), and together they gain more than as many smoothing steps must.
 class Chains {
 public:
-    Chains(const CarvedSolid& solid, const Judge& judge) : solid_(solid), judge_(judge), waiting_(solid.tets()) {}
+    Chains(const CarvedSolid& solid, const StepCriteria& criteria)
+        : solid_(solid),
+          criteria_(criteria),
+          waiting_(solid.tets()) {}
 
-    /// The best that begins with the cell; of equal ones that whose cells are lower. None unless they are two. Pre:
-    /// `open` are its open facets.
+    /// The best chain that begins with the cell; of equal ones that with the lower cells. None unless the cell has two
+    /// open facets. Pre: `open` are its open facets.
     Chain best_from(u32 cell, unsigned open) const;
 
     void append(const std::vector<WaitingStep>& first_cells) { waiting_.append(first_cells); }
-    /// A gain at the cell is another now, or smoothing is allowed there.
-    void look_again_at(u32 cell) { changed_.push_back(cell); }
-    /// The best of all; one of no cells when there is none.
+    /// To be called if a gain at the cell has changed, or smoothing is now allowed there.
+    void recheck(u32 cell) { changed_.push_back(cell); }
+    /// The best chain of all; empty if there is none.
     Chain next();
 
 private:
-    Chain longer(const Chain& chain, u32 cell, unsigned open) const;
-    /// Sums up the flips; false when one of them is not possible.
-    bool count(Chain& chain) const;
+    Chain extended(const Chain& chain, u32 cell, unsigned open) const;
+    /// Adds the gains of the flips; false if one of them is not allowed.
+    bool evaluate(Chain& chain) const;
     bool is_better(const Chain& chain, const Chain& best) const;
-    void extend(Chain& best, const Chain& chain) const;
-    /// Those of the chains that the cell can be part of.
+    void search_from(const Chain& chain, Chain& best) const;
+    /// Of the chains that may contain the changed cell.
     void find_first_cells(u32 changed);
-    void look_again();
+    void recheck_changed();
 
     const CarvedSolid& solid_;
-    const Judge& judge_;
+    const StepCriteria& criteria_;
     StepQueue waiting_;
     std::vector<u32> changed_, first_cells_;
 };

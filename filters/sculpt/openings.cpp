@@ -13,7 +13,10 @@ int corner_of(const Tetrahedron& cell, u32 vertex) {
 
 }  // namespace
 
-Openings::Openings(CarvedSolid& solid, const Judge& judge) : solid_(solid), tets_(solid.tets()), judge_(judge) {}
+Openings::Openings(CarvedSolid& solid, const StepCriteria& criteria)
+    : solid_(solid),
+      tets_(solid.tets()),
+      criteria_(criteria) {}
 
 void Openings::find_anchors() {
     if (!anchor_.empty()) return;
@@ -21,7 +24,7 @@ void Openings::find_anchors() {
     std::ranges::fill(anchor_, none);
     visited_.resize(tets_.cells.size());
     std::ranges::fill(visited_, 0);
-    // All cells round a vertex inside are solid, and stay so as long as it is inside.
+    // All cells at an interior vertex are solid, as long as it is interior.
     for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
         if (solid_.has(cell))
             for (u32 vertex : tets_.cells[cell]) anchor_[vertex] = cell;
@@ -45,11 +48,11 @@ const std::vector<u32>& Openings::star(u32 vertex) {
 
 void Openings::consider_after(Opening& best, u32 first, u32 second, u32 below, double gain_of_first) {
     const unsigned open = solid_.open_facets(second);
-    if (!solid_.flips(second, open) || judge_.digs(second, open)) return;
-    double gain = gain_of_first + judge_.gains().of(second, open);
-    solid_.pretend(second, false);
-    gain += judge_.exposing(below, solid_.open_facets(below));
-    solid_.pretend(second, true);
+    if (!solid_.flips(second, open) || criteria_.uncovers_too_large(second, open)) return;
+    double gain = gain_of_first + criteria_.gains().of(second, open);
+    solid_.set_temporarily(second, false);
+    gain += criteria_.exposing(below, solid_.open_facets(below));
+    solid_.set_temporarily(second, true);
 
     const auto is_lower = [&](u32 a, u32 b) { return b != none && (a == none || is_lower_cell(tets_, a, b)); };
     const bool is_better =
@@ -66,11 +69,11 @@ void Openings::consider(Opening& best, u32 vertex, u32 below) {
     for (u32 beside : tets_.neighbours[over]) {
         if (beside == below || !solid_.has(beside)) continue;
         const unsigned open_beside = solid_.open_facets(beside);
-        if (!solid_.flips(beside, open_beside) || judge_.digs(beside, open_beside)) continue;
-        const double gain = judge_.gains().of(beside, open_beside);
-        solid_.pretend(beside, false);
+        if (!solid_.flips(beside, open_beside) || criteria_.uncovers_too_large(beside, open_beside)) continue;
+        const double gain = criteria_.gains().of(beside, open_beside);
+        solid_.set_temporarily(beside, false);
         consider_after(best, beside, over, below, gain);
-        solid_.pretend(beside, true);
+        solid_.set_temporarily(beside, true);
     }
 }
 

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Getting at points that lie deeper: one or two flips, whatever they cost, after which an exposing step is possible.
+/// Openings: one or two flips, whatever they cost, after which an exposing step brings a deeper point to the boundary.
 
 #include <vector>
 
-#include "sculpt/judge.hpp"
+#include "sculpt/criteria.hpp"
 
 namespace scanmill::sculpting {
 
 struct Opening {
     /// Of the flips and the exposing step together.
     double gain = 0;
-    /// Cells to remove in this order; `first` may be none, and there is no opening when `second` is.
+    /// Cells to remove in this order. `first` may be none; if `second` is none, there is no opening.
     u32 first = none, second = none;
 };
 
 class Openings {
 public:
-    /// The solid is changed while a question is answered, and then is what it was.
-    Openings(CarvedSolid& solid, const Judge& judge);
+    /// Queries change the solid temporarily.
+    Openings(CarvedSolid& solid, const StepCriteria& criteria);
 
-    /// The next opening. Points inside are taken in rounds: each is looked at once, and those that can be reached are
-    /// served by falling gain. Returns none after a round that reached nobody. Pre: no exposing step is left.
+    /// The next opening. Interior points are processed in rounds: in each round, those that can be reached are ordered
+    /// by falling gain. Returns none after a round in which no point could be reached. Pre: no exposing step is left.
     Opening next();
 
     enum class Reason { blocked, deep };
-    /// Why a point inside was not reached.
+    /// Why an interior point was not reached.
     Reason reason(u32 vertex);
     /// Vertices of the solid that are not on its boundary, ascending.
     Array<u32> interior_points();
@@ -38,7 +38,7 @@ private:
 
     void find_anchors();
     void start_round();
-    /// The cells round a vertex inside the solid.
+    /// The cells at an interior vertex.
     const std::vector<u32>& star(u32 vertex);
     Opening best_for(u32 vertex);
     void consider(Opening& best, u32 vertex, u32 below);
@@ -47,11 +47,11 @@ private:
 
     CarvedSolid& solid_;
     const TetMesh& tets_;
-    const Judge& judge_;
+    const StepCriteria& criteria_;
     std::vector<Candidate> round_;
     std::size_t next_in_round_ = 0;
     bool reached_ = true;
-    /// Per vertex a cell of the solid at it; per cell when it was last visited. Empty until they are needed.
+    /// Per vertex a cell of the solid at it; per cell the time of the last visit. Empty until they are needed.
     Array<u32> anchor_, visited_;
     u32 visit_ = 0;
     std::vector<u32> star_;

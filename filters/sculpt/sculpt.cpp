@@ -7,8 +7,6 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/points.hpp"
-#include "scanmill/geometry/size_limits.hpp"
 #include "sculpt/sculptor.hpp"
 
 namespace scanmill {
@@ -17,14 +15,14 @@ namespace {
 
 using namespace sculpting;
 
-/// Removing more than this share of the cells is no local improvement any more.
-constexpr double much = 0.5;
+/// Removing more than this share of the cells is not a local improvement.
+constexpr double most_removed = 0.5;
 
 void require_usable(const TetMesh& tets, const SculptParams& params) {
     if (tets.cells.empty()) throw Error("needs a tetrahedralisation with cells; this one has none");
     if (tets.neighbours.size() != tets.cells.size())
         throw Error("needs the neighbours of all {} cells; there are {}", tets.cells.size(), tets.neighbours.size())
-            .hint("'delaunay' makes them");
+            .hint("'delaunay' computes them");
     if (tets.inside.empty())
         throw Error("needs cells labelled inside or outside; none of the {} is labelled", tets.cells.size())
             .hint("put 'alpha-solid' between 'delaunay' and 'sculpt'");
@@ -33,7 +31,6 @@ void require_usable(const TetMesh& tets, const SculptParams& params) {
     const double gain = params.min_gain.in_radians();
     if (!(gain >= 0 && std::isfinite(gain)))
         throw Error("min-gain must be an angle of at least 0; it is {}", params.min_gain.text());
-    require_squares(bounding_box(tets.positions.span()).diagonal(), "needs a scan");
 }
 
 void require_manifold(const BoundaryDefects& defects, std::size_t triangles) {
@@ -83,7 +80,7 @@ void count_steps(SculptResult& result, const Gains& gains) {
 }
 
 /// "(1, 2, 3), (4, 5, 6) …" in world coordinates, the lowest indices first.
-std::string places_of_first(const TetMesh& tets, const Array<u32>& vertices) {
+std::string positions_of_first(const TetMesh& tets, const Array<u32>& vertices) {
     constexpr std::size_t most = 3;
     std::string text;
     for (std::size_t i = 0; i < std::min(most, vertices.size()); ++i) {
@@ -97,20 +94,20 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
     const TetMesh& tets = result.tets;
     if (!result.blocked_points.empty())
         context.warn(fmt::format(
-            "{} of {} points {} inside the solid, because removing any cell over them would make its boundary touch "
-            "itself or leave a point outside: at {}; the sampling is too sparse or too noisy there",
+            "{} of {} points {} inside the solid, because without any of the cells over them its boundary would touch "
+            "itself or a point would be outside: at {}; the sampling is too sparse or too noisy there",
             result.blocked_points.size(), tets.positions.size(),
-            by_count(result.blocked_points.size(), "stays", "stay"), places_of_first(tets, result.blocked_points)));
+            by_count(result.blocked_points.size(), "stays", "stay"), positions_of_first(tets, result.blocked_points)));
     if (!result.deep_points.empty())
         context.warn(fmt::format(
             "{} of {} points {} inside the solid, more than two cells below its boundary: at {}; a smaller alpha "
             "may reach {}",
             result.deep_points.size(), tets.positions.size(), by_count(result.deep_points.size(), "stays", "stay"),
-            places_of_first(tets, result.deep_points), by_count(result.deep_points.size(), "it", "them")));
-    if (static_cast<double>(result.removals.size()) > much * static_cast<double>(cells_before))
+            positions_of_first(tets, result.deep_points), by_count(result.deep_points.size(), "it", "them")));
+    if (static_cast<double>(result.removals.size()) > most_removed * static_cast<double>(cells_before))
         context.warn(fmt::format(
             "{} of {} cells had to be removed: the points fill the solid rather than sample its surface, or the "
-            "solid is far too large for them; look at the result before using it",
+            "solid is far too large for them; check the result before using it",
             result.removals.size(), cells_before));
 }
 
@@ -166,7 +163,7 @@ SculptResult sculpt(const TetMesh& tets, const SculptParams& params, Context& co
     run_all(sculptor, context);
     if (sculptor.interior_points() > 0) sort_by_reason(result, sculptor.openings());
     result.removals = sculptor.take_removals();
-    count_steps(result, sculptor.judge().gains());
+    count_steps(result, sculptor.criteria().gains());
 
     labels = solid.take_labels();
     triangles = boundary_triangles(tets, labels, threads);

@@ -11,14 +11,14 @@ namespace scanmill::sculpting {
 Sculptor::Sculptor(CarvedSolid& solid, const SculptParams& params, std::size_t interior_points, unsigned threads)
     : solid_(solid),
       tets_(solid.tets()),
-      judge_(solid, params, threads),
-      chains_(solid, judge_),
-      openings_(solid, judge_),
+      criteria_(solid, params, threads),
+      chains_(solid, criteria_),
+      openings_(solid, criteria_),
       interior_points_(interior_points),
       smoothing_(tets_),
       exposing_(tets_),
-      looked_at_(tets_.cells.size()) {
-    std::ranges::fill(looked_at_, 0);
+      evaluated_(tets_.cells.size()) {
+    std::ranges::fill(evaluated_, 0);
     find_candidates(threads);
 }
 
@@ -36,7 +36,7 @@ void Sculptor::find_candidates(unsigned threads) {
             if (open == 0) continue;
             if (solid_.exposes(cell, open))
                 found[begin / chunk].exposing.push_back(exposing_step(cell, open));
-            else if (const std::optional<double> gain = judge_.smoothing(cell, open))
+            else if (const std::optional<double> gain = criteria_.smoothing(cell, open))
                 found[begin / chunk].smoothing.push_back({*gain, 0, cell, now_});
             else if (const Chain chain = chains_.best_from(cell, open); !chain.cells().empty())
                 found[begin / chunk].chains.push_back({chain.gain(), 0, cell, now_});
@@ -54,8 +54,8 @@ void Sculptor::find_candidates(unsigned threads) {
 }
 
 WaitingStep Sculptor::exposing_step(u32 cell, unsigned open) const {
-    return {judge_.exposing(cell, open), judge_.gains().squared_radius(cell, only_corner(open)), cell, now_,
-            judge_.digs(cell, open)};
+    return {criteria_.exposing(cell, open), criteria_.gains().squared_radius(cell, only_corner(open)), cell, now_,
+            criteria_.uncovers_too_large(cell, open)};
 }
 
 bool Sculptor::step() {
@@ -64,7 +64,7 @@ bool Sculptor::step() {
 }
 
 bool Sculptor::smooth() {
-    // Another step may have brought the edge to the surface without changing a gain.
+    // Another step may have brought the edge to the boundary without changing a gain.
     const auto still_flips = [&](const WaitingStep& step) {
         return is_current(step) && solid_.flips(step.cell, solid_.open_facets(step.cell));
     };
@@ -84,14 +84,14 @@ bool Sculptor::smooth_by_chain() {
 }
 
 bool Sculptor::expose() {
-    // Another step may have brought the point to the surface.
+    // Another step may have brought the point to the boundary.
     const auto still_exposes = [&](const WaitingStep& step) {
         return is_current(step) && solid_.exposes(step.cell, solid_.open_facets(step.cell));
     };
     WaitingStep best;
     while (exposing_.pop(best, still_exposes)) {
-        // The smoothing step that look-ahead counted on may have become impossible.
-        const double gain = judge_.exposing(best.cell, solid_.open_facets(best.cell));
+        // The smoothing step of the look-ahead may have become impossible.
+        const double gain = criteria_.exposing(best.cell, solid_.open_facets(best.cell));
         if (gain < best.gain) {
             best.gain = gain;
             exposing_.push(best);
@@ -112,61 +112,61 @@ bool Sculptor::open() {
 }
 
 void Sculptor::remove(u32 cell, SculptStep step) {
-    removals_.push_back({cell, step, judge_.gains().of(cell, solid_.open_facets(cell))});
+    removals_.push_back({cell, step, criteria_.gains().of(cell, solid_.open_facets(cell))});
     solid_.remove(cell);
     ++now_;
     if (step == SculptStep::exposing) {
         --interior_points_;
         allow_smoothing_near(cell);
     }
-    refresh_round(cell);
+    refresh_near(cell);
 }
 
 void Sculptor::refresh(u32 cell) {
-    if (looked_at_[cell] == now_) return;
-    looked_at_[cell] = now_;
+    if (evaluated_[cell] == now_) return;
+    evaluated_[cell] = now_;
     const unsigned open = solid_.open_facets(cell);
     if (open == 0) return;
     if (solid_.exposes(cell, open))
         exposing_.push(exposing_step(cell, open));
-    else if (const std::optional<double> gain = judge_.smoothing(cell, open))
+    else if (const std::optional<double> gain = criteria_.smoothing(cell, open))
         smoothing_.push({*gain, 0, cell, now_});
 }
 
-void Sculptor::refresh_round(u32 removed) {
-    round_.clear();
+void Sculptor::refresh_near(u32 removed) {
+    changed_.clear();
     for (u32 across : tets_.neighbours[removed])
-        if (solid_.has(across)) round_.push_back(across);
-    // Gains depend on the boundary triangles at the cell's edges. Of the cells round an edge only the first and the
-    // last have such a triangle, and see another one now at its other end.
+        if (solid_.has(across)) changed_.push_back(across);
+    // Gains depend on the boundary triangles at the cell's edges. Of the cells at an edge only the first and the last
+    // have such a triangle; the triangle on the other side of the edge is now a different one.
     for (const CellEdge& edge : cell_edges)
         for (const auto& [across, kept] : {std::pair(edge.c, edge.d), std::pair(edge.d, edge.c)}) {
             EdgeWalk walk(tets_, removed, across, kept);
             while (solid_.has(walk.next())) walk.step();
-            if (walk.cell() != removed) round_.push_back(walk.cell());
+            if (walk.cell() != removed) changed_.push_back(walk.cell());
         }
-    for (u32 cell : round_) {
+    for (u32 cell : changed_) {
         refresh(cell);
-        chains_.look_again_at(cell);
+        chains_.recheck(cell);
     }
-    // With look-ahead an exposing step's gain depends on those of its neighbours.
-    for (u32 cell : round_)
+    // With look-ahead the gain of an exposing step depends on those of its neighbours.
+    for (u32 cell : changed_)
         for (u32 across : tets_.neighbours[cell])
             if (solid_.has(across) && solid_.exposes(across, solid_.open_facets(across))) refresh(across);
 }
 
-void Sculptor::set_near(u32 cell) {
-    if (!judge_.set_near(cell)) return;
+void Sculptor::allow_smoothing(u32 cell) {
+    if (!criteria_.mark_near_exposed(cell)) return;
     refresh(cell);
-    chains_.look_again_at(cell);
+    chains_.recheck(cell);
 }
 
 void Sculptor::allow_smoothing_near(u32 removed) {
     for (u32 first : tets_.neighbours[removed]) {
         if (!solid_.has(first)) continue;
-        set_near(first);
+        allow_smoothing(first);
         for (u32 second : tets_.neighbours[first])
-            if (solid_.has(second)) set_near(second);
+            if (solid_.has(second)) allow_smoothing(second);
     }
 }
 

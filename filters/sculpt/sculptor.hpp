@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The order of the steps: which cell of the solid goes next.
+/// The order of the steps: which cell of the solid is removed next.
 
 #include "sculpt/chains.hpp"
 #include "sculpt/openings.hpp"
 
 namespace scanmill::sculpting {
 
-/// Greedy: a smoothing step as soon as there is one, the best first; else the best chain of flips; else the best
-/// exposing step; else an opening; until none of these is left.
+/// Greedy: the best smoothing step if there is one, else the best chain of flips, else the best exposing step, else an
+/// opening; until none of these is left.
 class Sculptor {
 public:
     /// `interior_points`: vertices of the solid that are not on its boundary.
     Sculptor(CarvedSolid& solid, const SculptParams& params, std::size_t interior_points, unsigned threads);
 
-    /// Removes one cell, or those of a chain or an opening; false when nothing is left to do.
+    /// Removes one cell, or those of a chain or an opening; false if no step is left.
     bool step();
 
     const Array<SculptRemoval>& removals() const { return removals_; }
     Array<SculptRemoval> take_removals() { return std::move(removals_); }
     std::size_t interior_points() const { return interior_points_; }
-    const Judge& judge() const { return judge_; }
+    const StepCriteria& criteria() const { return criteria_; }
     Openings& openings() { return openings_; }
 
 private:
@@ -32,27 +32,27 @@ private:
     bool open();
     void remove(u32 cell, SculptStep step);
     bool is_current(const WaitingStep& step) const {
-        return solid_.has(step.cell) && looked_at_[step.cell] == step.time;
+        return solid_.has(step.cell) && evaluated_[step.cell] == step.time;
     }
-    /// Looks again at a cell unless that was done since the last removal.
+    /// Evaluates the cell again, unless that was done since the last removal.
     void refresh(u32 cell);
-    /// At everything whose judgement a removal can change.
-    void refresh_round(u32 removed);
-    void set_near(u32 cell);
+    /// Evaluates all cells again whose gain the removal may have changed.
+    void refresh_near(u32 removed);
+    void allow_smoothing(u32 cell);
     void allow_smoothing_near(u32 removed);
 
     CarvedSolid& solid_;
     const TetMesh& tets_;
-    Judge judge_;
+    StepCriteria criteria_;
     Chains chains_;
     Openings openings_;
     std::size_t interior_points_;
     StepQueue smoothing_, exposing_;
     Array<SculptRemoval> removals_;
-    /// Per cell the number of removals when it was last looked at.
-    Array<u32> looked_at_;
+    /// Per cell the number of removals when it was last evaluated.
+    Array<u32> evaluated_;
     u32 now_ = 0;
-    std::vector<u32> round_;
+    std::vector<u32> changed_;
 };
 
 }  // namespace scanmill::sculpting

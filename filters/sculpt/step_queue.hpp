@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Steps waiting to be taken, the best first. Entries are never changed: a newer one of the same cell makes the older
-/// ones stale, and those are skipped when they come up.
+/// Steps that wait to be taken, the best first. Entries are never changed: a newer entry of a cell makes the older ones
+/// stale, and stale entries are skipped.
 
 #include <algorithm>
 #include <vector>
 
-#include "sculpt/bending.hpp"
+#include "sculpt/criteria.hpp"
 
 namespace scanmill::sculpting {
 
@@ -15,10 +15,10 @@ struct WaitingStep {
     /// Of equal gains the larger comes first: squared circumradius for exposing steps, else 0.
     double radius = 0;
     u32 cell = none;
-    /// When the cell was looked at.
+    /// When the cell was evaluated.
     u32 time = 0;
-    /// See Judge::digs(): such steps come last.
-    bool digs = false;
+    /// Of StepCriteria::uncovers_too_large(): such steps come last.
+    bool is_too_large = false;
 };
 
 class StepQueue {
@@ -29,12 +29,12 @@ public:
         heap_.push_back(step);
         std::ranges::push_heap(heap_, Later{*tets_});
     }
-    /// Adds many at once. Linear.
+    /// Adds many at once. Cost: linear.
     void append(const std::vector<WaitingStep>& steps) {
         heap_.insert(heap_.end(), steps.begin(), steps.end());
         std::ranges::make_heap(heap_, Later{*tets_});
     }
-    /// The best for which is_current(step); drops the others on the way. False when there is none.
+    /// Removes the best step with is_current(step), and all better ones. False if there is none.
     template <class IsCurrent>
     bool pop(WaitingStep& step, const IsCurrent& is_current) {
         while (!heap_.empty()) {
@@ -50,7 +50,7 @@ private:
     struct Later {
         const TetMesh& tets;
         bool operator()(const WaitingStep& a, const WaitingStep& b) const {
-            if (a.digs != b.digs) return a.digs;
+            if (a.is_too_large != b.is_too_large) return a.is_too_large;
             if (a.gain != b.gain) return a.gain < b.gain;
             if (a.radius != b.radius) return a.radius < b.radius;
             return a.cell != b.cell && is_lower_cell(tets, b.cell, a.cell);

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill::voxel {
 

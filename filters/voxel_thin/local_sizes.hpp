@@ -7,7 +7,7 @@
 /// long. That is Wang's M1 + 2 M2 + M3 (equation 3.2) in the principal directions, where M2 is 0 and the sum is
 /// smallest.
 
-#include "scanmill/geometry/local_surface.hpp"
+#include "scanmill/geometry/fit/local_surface.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill::voxel {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <tuple>
 
-#include "scanmill/filter/error.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill::voxel {
 

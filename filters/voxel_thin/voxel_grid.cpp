@@ -8,8 +8,8 @@
 #include <limits>
 #include <numeric>
 
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
 
 namespace scanmill::voxel {
 

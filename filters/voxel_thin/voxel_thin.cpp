@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "scanmill/filter/counted.hpp"
-#include "scanmill/filter/error.hpp"
-#include "scanmill/filter/parallel.hpp"
-#include "scanmill/geometry/finite_bounds.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/bounds.hpp"
 #include "voxel_thin/local_sizes.hpp"
 #include "voxel_thin/octree.hpp"
 #include "voxel_thin/voxel_grid.hpp"
@@ -120,7 +120,7 @@ void add_bin_sizes(PointCloud& thinned, std::span<const double> edges, double gr
         context.warn(fmt::format("{} of {} {} thinned with larger voxels before; {} `bin-size` stays", older,
                                  counted(sizes.size(), "kept point", "kept points"), by_count(older, "was", "were"),
                                  by_count(older, "its", "their")));
-    add_columns(thinned, {Column("bin-size", 1, Buffer<double>(std::move(sizes)))}, context);
+    add_columns(thinned, {Column("bin-size", 1, Buffer<double>(std::move(sizes))).with_length_exponent(1)}, context);
 }
 
 /// Adds `curvature-1`, `curvature-2`, `fit-error`, `local-bin-size` (float64) and `stands-for` (uint32). Columns of
@@ -140,10 +140,10 @@ void add_surface_columns(PointCloud& thinned, const LocalSizes& local, std::span
         size[i] = local.sizes[point];
     }
     add_columns(thinned,
-                {Column("curvature-1", 1, Buffer<double>(std::move(first))),
-                 Column("curvature-2", 1, Buffer<double>(std::move(second))),
-                 Column("fit-error", 1, Buffer<double>(std::move(error))),
-                 Column("local-bin-size", 1, Buffer<double>(std::move(size))),
+                {Column("curvature-1", 1, Buffer<double>(std::move(first))).with_length_exponent(-1),
+                 Column("curvature-2", 1, Buffer<double>(std::move(second))).with_length_exponent(-1),
+                 Column("fit-error", 1, Buffer<double>(std::move(error))).with_length_exponent(1),
+                 Column("local-bin-size", 1, Buffer<double>(std::move(size))).with_length_exponent(1),
                  Column("stands-for", 1, Buffer<u32>(Array<u32>(members.begin(), members.end())))},
                 context);
 }

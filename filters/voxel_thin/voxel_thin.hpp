@@ -32,11 +32,11 @@
 
 #include <optional>
 
+#include "scanmill/data/point_stream.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/quantity.hpp"
-#include "scanmill/formats/point_stream.hpp"
-#include "scanmill/geometry/local_surface.hpp"
+#include "scanmill/geometry/fit/local_surface.hpp"
 
 namespace scanmill {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Meshes whose feature lines are known, and what tests ask of a feature graph.
+/// Meshes with known feature lines, and properties of a feature graph.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -36,7 +36,7 @@ inline TriangleMesh mesh_of(const std::vector<Vec3>& positions, const std::vecto
     return mesh;
 }
 
-/// Vertices at one place become one.
+/// Vertices at one position become one.
 class MeshBuilder {
 public:
     u32 vertex(const Vec3& p) {
@@ -64,8 +64,7 @@ inline Vec3 on_circle(double radius, u32 i, u32 sides, double z = 0) {
     return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-/// Radii `low` at z = 0 and `high` at z = height; the side is open, or has the caps that are asked for. A radius of 0
-/// is an apex.
+/// Radii `low` at z = 0 and `high` at z = height; open, or with caps. A radius of 0 is an apex.
 inline TriangleMesh frustum(double low, double high, double height, u32 sides, bool caps) {
     MeshBuilder builder;
     for (u32 i = 0; i < sides; ++i) {
@@ -85,25 +84,25 @@ inline TriangleMesh frustum(double low, double high, double height, u32 sides, b
 inline constexpr double hole_radius = 5;
 inline const std::vector<Vec3> hole_centres{{10, 10, 0}, {50, 10, 0}, {90, 10, 0}, {30, 50, 0}, {70, 50, 0}};
 
-/// [0, 100] × [0, 60] at z = 0 with five round holes of 32 sides; 20 × 20 cells, holes in the middle of theirs.
+/// [0, 100] × [0, 60] at z = 0 with five round holes of 32 sides; 20 × 20 cells, holes in the middle of their cells.
 inline TriangleMesh plate_with_holes() {
     MeshBuilder builder;
     for (int cell = 0; cell < 15; ++cell) {
         const Vec3 centre(20 * (cell % 5) + 10, 20 * (cell / 5) + 10, 0);
         const bool hole = std::ranges::find(hole_centres, centre) != hole_centres.end();
-        const auto rim = [&](u32 i) {  // counter-clockwise round the square, from (10, -10) on
+        const auto outline = [&](u32 i) {  // counter-clockwise around the square, from (10, -10) on
             const u32 side = i / 8 % 4;
             const double s = -10 + 2.5 * (i % 8);
-            const Vec3 places[4] = {{10, s, 0}, {-s, 10, 0}, {-10, -s, 0}, {s, -10, 0}};
-            return Vec3(centre + places[side]);
+            const Vec3 positions[4] = {{10, s, 0}, {-s, 10, 0}, {-10, -s, 0}, {s, -10, 0}};
+            return Vec3(centre + positions[side]);
         };
         for (u32 i = 0; i < 32; ++i) {
             // Angles begin at -45 degrees, as the square does.
             const auto inner = [&](u32 k) { return Vec3(centre + on_circle(hole_radius, k % 32 + 28, 32)); };
             if (hole)
-                builder.quad(inner(i), rim(i), rim(i + 1), inner(i + 1));
+                builder.quad(inner(i), outline(i), outline(i + 1), inner(i + 1));
             else
-                builder.triangle(centre, rim(i), rim(i + 1));
+                builder.triangle(centre, outline(i), outline(i + 1));
         }
     }
     return builder.mesh();
@@ -120,15 +119,15 @@ inline TriangleMesh grid(int m, int n) {
 
 /// Two unit squares that meet in the edge from (0, 0, 0) to (0, 1, 0), normals `degrees` apart.
 inline TriangleMesh hinge(double degrees) {
-    const double bend = degrees * std::numbers::pi / 180;
-    const Vec3 out(std::cos(bend), 0, -std::sin(bend));
+    const double angle = degrees * std::numbers::pi / 180;
+    const Vec3 out(std::cos(angle), 0, -std::sin(angle));
     MeshBuilder builder;
     builder.quad(Vec3(-1, 0, 0), Vec3(0, 0, 0), Vec3(0, 1, 0), Vec3(-1, 1, 0));
     builder.quad(Vec3(0, 0, 0), out, out + Vec3(0, 1, 0), Vec3(0, 1, 0));
     return builder.mesh();
 }
 
-/// The same surface: vertices and triangles in another order, every triangle begun at some corner.
+/// The same surface with vertices and triangles in another order, every triangle starting at a random corner.
 inline TriangleMesh permuted(const TriangleMesh& mesh, unsigned seed) {
     std::mt19937 source(seed);
     std::vector<u32> new_number(mesh.positions.size());
@@ -150,11 +149,11 @@ inline TriangleMesh permuted(const TriangleMesh& mesh, unsigned seed) {
     return result;
 }
 
-/// The vertices of a polyline, as places.
-inline std::vector<Vec3> places_of(const FeatureGraph& graph, const FeaturePolyline& polyline) {
-    std::vector<Vec3> places;
-    for (u32 row = polyline.begin; row < polyline.end; ++row) places.push_back(graph.positions[graph.vertices[row]]);
-    return places;
+/// The positions of a polyline's vertices.
+inline std::vector<Vec3> positions_of(const FeatureGraph& graph, const FeaturePolyline& polyline) {
+    std::vector<Vec3> positions;
+    for (u32 row = polyline.begin; row < polyline.end; ++row) positions.push_back(graph.positions[graph.vertices[row]]);
+    return positions;
 }
 
 inline std::vector<FeaturePolyline> polylines_of(const FeatureGraph& graph, FeatureType type) {
@@ -165,9 +164,9 @@ inline std::vector<FeaturePolyline> polylines_of(const FeatureGraph& graph, Feat
 }
 
 inline double length_of(const FeatureGraph& graph, const FeaturePolyline& polyline) {
-    const std::vector<Vec3> places = places_of(graph, polyline);
-    double length = polyline.closed ? (places.front() - places.back()).norm() : 0;
-    for (std::size_t i = 1; i < places.size(); ++i) length += (places[i] - places[i - 1]).norm();
+    const std::vector<Vec3> positions = positions_of(graph, polyline);
+    double length = polyline.closed ? (positions.front() - positions.back()).norm() : 0;
+    for (std::size_t i = 1; i < positions.size(); ++i) length += (positions[i] - positions[i - 1]).norm();
     return length;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sharp edges of the mesh, short creases, triangles without area, and what is told.
+// Sharp edges of the mesh, short creases, triangles without area, warnings and metrics.
 
 #include <gmock/gmock.h>
 
@@ -14,7 +14,7 @@ using testing::IsEmpty;
 
 TEST(FeaturesWithSharpEdgesOfTheMesh, HaveThemAsCreases) {
     TriangleMesh flat = grid(2, 1);
-    // The edge between the two squares, and one of the border, which is a line anyhow.
+    // The edge between the two squares, and one of the boundary, which is a line in any case.
     std::vector<Edge> own;
     for (const Triangle& t : flat.triangles)
         for (int i = 0; i < 3; ++i) {
@@ -29,26 +29,26 @@ TEST(FeaturesWithSharpEdgesOfTheMesh, HaveThemAsCreases) {
     flat.sharp_edges = Array<Edge>(own.begin(), own.end());
     const FeatureLines lines = features_of(flat);
     EXPECT_EQ(lines.counts.creases, 1u);
-    EXPECT_EQ(lines.counts.corners, 6u) << "the crease ends on the border";
-    EXPECT_THAT(places_of(lines.graph, lines.graph.polylines[1]), ElementsAre(Vec3(1, 0, 0), Vec3(1, 1, 0)));
+    EXPECT_EQ(lines.counts.corners, 6u) << "the crease ends on the boundary";
+    EXPECT_THAT(positions_of(lines.graph, lines.graph.polylines[1]), ElementsAre(Vec3(1, 0, 0), Vec3(1, 1, 0)));
     EXPECT_EQ(lines.graph.left_normals[lines.graph.polylines[1].begin], Vec3::UnitZ());
     EXPECT_EQ(lines.graph.right_normals[lines.graph.polylines[1].begin], Vec3::UnitZ());
 }
 
-TEST(FeaturesWithALeastLength, AreChainedAnewWithoutTheShortOnes) {
-    // A box of 4 × 1 × 1: its eight edges of length 1 go, the four long ones stay and no longer meet anything.
+TEST(FeaturesWithALeastLength, AreChainedAgainWithoutTheShortOnes) {
+    // A box of 4 × 1 × 1: its eight edges of length 1 are left out; the four long ones stay and meet no other line.
     TriangleMesh box = cube();
     std::vector<Vec3> positions(box.positions.begin(), box.positions.end());
     for (Vec3& p : positions) p.x() *= 4;
     box.positions = Array<Vec3>(positions.begin(), positions.end());
     FeatureParams params;
     params.min_length = 1;
-    EXPECT_EQ(features_of(box, params).counts.creases, 12u) << "as long as the limit is not shorter";
+    EXPECT_EQ(features_of(box, params).counts.creases, 12u) << "a crease as long as the limit is not shorter";
     params.min_length = 1.5;
     const FeatureLines lines = features_of(box, params);
     EXPECT_EQ(lines.counts.dropped, 8u);
     EXPECT_EQ(lines.counts.creases, 4u);
-    EXPECT_EQ(lines.counts.corners, 8u) << "where a crease ends";
+    EXPECT_EQ(lines.counts.corners, 8u) << "at the ends of creases";
     params.min_length = 5;
     const FeatureLines none = features_of(box, params);
     EXPECT_EQ(none.counts.dropped, 12u);
@@ -56,19 +56,19 @@ TEST(FeaturesWithALeastLength, AreChainedAnewWithoutTheShortOnes) {
     EXPECT_TRUE(none.graph.positions.empty());
 }
 
-TEST(FeaturesWithALeastLength, JoinWhatAShortSpurHadCutInTwo) {
-    // A strip bent along y = 0 … 3 at x = 0, its own sharp edge a spur of length 1 that meets the crease in the middle.
-    TriangleMesh bent = hinge(60);
+TEST(FeaturesWithALeastLength, JoinCreasesThatAShortOneHadDivided) {
+    // A strip folded along x = 0, y = 0 … 3; its own sharp edge of length 1 meets the crease in the middle.
+    TriangleMesh folded = hinge(60);
     MeshBuilder builder;
-    for (const Triangle& t : bent.triangles) {
+    for (const Triangle& t : folded.triangles) {
         std::array<Vec3, 3> p;
-        for (std::size_t i = 0; i < 3; ++i) p[i] = bent.positions[t[i]];
+        for (std::size_t i = 0; i < 3; ++i) p[i] = folded.positions[t[i]];
         for (const double y : {0.0, 1.0, 2.0, 3.0})
             builder.triangle(p[0] + Vec3(0, y, 0), p[1] + Vec3(0, y, 0), p[2] + Vec3(0, y, 0));
     }
     TriangleMesh strip = builder.mesh();
-    const auto vertex_at = [&](const Vec3& place) {
-        return static_cast<u32>(std::ranges::find(strip.positions, place) - strip.positions.begin());
+    const auto vertex_at = [&](const Vec3& position) {
+        return static_cast<u32>(std::ranges::find(strip.positions, position) - strip.positions.begin());
     };
     strip.sharp_edges = {make_edge(vertex_at(Vec3(-1, 2, 0)), vertex_at(Vec3(0, 2, 0)))};
     EXPECT_EQ(features_of(strip).counts.creases, 3u);
@@ -80,8 +80,8 @@ TEST(FeaturesWithALeastLength, JoinWhatAShortSpurHadCutInTwo) {
     EXPECT_EQ(length_of(lines.graph, polylines_of(lines.graph, FeatureType::crease)[0]), 4);
 }
 
-TEST(FeaturesOfAFlatSquareWithNeedles, AreItsBorder) {
-    // The middle of a side as a vertex of a triangle without area, between the two halves.
+TEST(FeaturesOfAFlatSquareWithNeedles, AreItsBoundary) {
+    // The middle of the diagonal is a vertex of a triangle without area, between the two halves.
     const TriangleMesh mesh =
         mesh_of({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 2, 4}, {0, 4, 3}, {4, 2, 3}});
     const FeatureLines lines = features_of(mesh);
@@ -91,19 +91,19 @@ TEST(FeaturesOfAFlatSquareWithNeedles, AreItsBorder) {
     EXPECT_EQ(lines.counts.corners, 4u);
 }
 
-TEST(FeaturesOfAHingeWithANeedle, FollowTheShortSides) {
+TEST(FeaturesOfAHingeWithANeedle, FollowItsShortEdges) {
     // As above, with one half folded up along the diagonal: the crease goes through the middle.
     const TriangleMesh mesh =
         mesh_of({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 0, 3}, {1, 1, 0}}, {{0, 1, 2}, {0, 2, 4}, {0, 4, 3}, {4, 2, 3}});
     const FeatureLines lines = features_of(mesh);
     EXPECT_EQ(lines.counts.without_area, 1u);
     ASSERT_EQ(lines.counts.creases, 1u);
-    EXPECT_THAT(places_of(lines.graph, polylines_of(lines.graph, FeatureType::crease)[0]),
+    EXPECT_THAT(positions_of(lines.graph, polylines_of(lines.graph, FeatureType::crease)[0]),
                 ElementsAre(Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(2, 2, 0)));
 }
 
-TEST(FeaturesOfAHingeWithNeedlesAmongNeedles, FollowTheShortSides) {
-    // Six vertices on the bend, filled with four triangles without area; the middle one has no other neighbours.
+TEST(FeaturesOfAHingeWithNeedlesAmongNeedles, FollowTheirShortEdges) {
+    // Six vertices on the crease, between them four triangles without area; the middle one has only such neighbours.
     std::vector<Vec3> positions;
     for (int i = 0; i < 6; ++i) positions.emplace_back(i, 0, 0);
     positions.emplace_back(2.5, 2, 0);
@@ -113,11 +113,11 @@ TEST(FeaturesOfAHingeWithNeedlesAmongNeedles, FollowTheShortSides) {
     const FeatureLines lines = features_of(mesh_of(positions, triangles));
     EXPECT_EQ(lines.counts.without_area, 4u);
     ASSERT_EQ(lines.counts.creases, 1u);
-    EXPECT_THAT(places_of(lines.graph, polylines_of(lines.graph, FeatureType::crease)[0]),
+    EXPECT_THAT(positions_of(lines.graph, polylines_of(lines.graph, FeatureType::crease)[0]),
                 ElementsAre(Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(4, 0, 0), Vec3(5, 0, 0)));
 }
 
-TEST(FeaturesOfAMeshWithDoubledVertices, PassOverTrianglesThatNameAVertexTwice) {
+TEST(FeaturesOfAMeshWithDoubledVertices, SkipTrianglesThatNameAVertexTwice) {
     TriangleMesh mesh = cube();
     std::vector<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
     triangles.insert(triangles.begin() + 3, {5, 5, 1});
@@ -128,7 +128,7 @@ TEST(FeaturesOfAMeshWithDoubledVertices, PassOverTrianglesThatNameAVertexTwice) 
     EXPECT_EQ(lines.counts.corners, 8u);
 }
 
-TEST(Features, TellTheirCountsAndTheirDoubts) {
+TEST(Features, ReportCountsAndWarnings) {
     std::vector<std::string> warnings;
     ContextOptions options;
     options.on_warning = [&](std::string_view text) { warnings.emplace_back(text); };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Feature lines counted once more in another way: edges in a map, angles by their cosines, no chaining.
+/// Feature lines counted in another way: edges in a map, angles by their cosines, no chaining.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ struct IndependentCount {
     std::size_t loops = 0, corners = 0, creases = 0;
 };
 
-/// Pre: every vertex a single fan, no triangle without area, no angle within rounding of a limit.
+/// Pre: every vertex has one fan, no triangle is without area, no angle is within rounding of a limit.
 inline IndependentCount independent_count(const TriangleMesh& mesh, double sharp_degrees, double corner_degrees) {
     const auto cosine = [](double degrees) { return std::cos(degrees * std::numbers::pi / 180); };
     IndependentCount count;
@@ -35,7 +35,7 @@ inline IndependentCount independent_count(const TriangleMesh& mesh, double sharp
         return Vec3((mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]).normalized());
     };
     std::map<u32, std::vector<u32>> neighbours;
-    DisjointSets borders(mesh.positions.size()), rings(mesh.positions.size());
+    DisjointSets boundaries(mesh.positions.size()), rings(mesh.positions.size());
     for (const auto& [edge, triangles] : triangles_at_edges(mesh)) {
         if (triangles.size() == 1)
             count.boundary.insert(edge);
@@ -46,27 +46,29 @@ inline IndependentCount independent_count(const TriangleMesh& mesh, double sharp
         neighbours[edge[0]].push_back(edge[1]);
         neighbours[edge[1]].push_back(edge[0]);
     }
-    for (const auto& [a, b] : count.boundary) borders.unite(a, b);
+    for (const auto& [a, b] : count.boundary) boundaries.unite(a, b);
     for (const auto& [a, b] : count.sharp) rings.unite(a, b);
 
-    std::set<u32> on_border, corner, ringed, pieces_with_corners;
+    std::set<u32> on_border, corner, ringed, components_with_corners;
     for (const auto& [a, b] : count.boundary) on_border.insert({a, b});
     for (const auto& [a, b] : count.sharp) ringed.insert({a, b});
     for (const auto& [vertex, others] : neighbours) {
-        const auto way = [&](u32 other) { return Vec3((mesh.positions[other] - mesh.positions[vertex]).normalized()); };
-        if (others.size() != 2 || -way(others[0]).dot(way(others[1])) < cosine(corner_degrees) - 1e-9)
+        const auto direction = [&](u32 other) {
+            return Vec3((mesh.positions[other] - mesh.positions[vertex]).normalized());
+        };
+        if (others.size() != 2 || -direction(others[0]).dot(direction(others[1])) < cosine(corner_degrees) - 1e-9)
             corner.insert(vertex);
     }
     count.corners = corner.size();
-    for (const u32 vertex : on_border) count.loops += borders.find(vertex) == vertex;
-    // Every open crease has two ends, each at a corner; the rest are rings, one for each piece without a corner.
+    for (const u32 vertex : on_border) count.loops += boundaries.find(vertex) == vertex;
+    // Every open crease has two ends, each at a corner; the others are rings, one for each component without a corner.
     std::size_t ends = 0;
     for (const auto& [a, b] : count.sharp) ends += corner.contains(a) + corner.contains(b);
     for (const u32 vertex : corner)
-        if (ringed.contains(vertex)) pieces_with_corners.insert(rings.find(vertex));
+        if (ringed.contains(vertex)) components_with_corners.insert(rings.find(vertex));
     count.creases = ends / 2;
     for (const u32 vertex : ringed)
-        count.creases += rings.find(vertex) == vertex && !pieces_with_corners.contains(vertex);
+        count.creases += rings.find(vertex) == vertex && !components_with_corners.contains(vertex);
     return count;
 }
 
@@ -83,13 +85,13 @@ inline void expect_counted(const TriangleMesh& mesh, double sharp_degrees, doubl
     EXPECT_EQ(boundary, count.boundary.size());
     EXPECT_EQ(lines.counts.creases, count.creases);
     EXPECT_EQ(lines.counts.corners, count.corners);
-    EXPECT_GE(lines.counts.holes + lines.counts.boundaries, count.loops) << "loops that touch in a vertex are two";
+    EXPECT_GE(lines.counts.holes + lines.counts.boundaries, count.loops) << "loops that touch at a vertex are two";
 }
 
-/// Vertices by place; lines by type, first and second vertex; an open one from its lower end.
+/// Vertices by position; lines by type, first and second vertex; an open line begins at its lower end.
 inline void expect_order(const FeatureGraph& graph) {
-    const auto place = [](const Vec3& p) { return std::tuple(p.x(), p.y(), p.z()); };
-    EXPECT_TRUE(std::ranges::is_sorted(graph.positions, {}, place));
+    const auto position = [](const Vec3& p) { return std::tuple(p.x(), p.y(), p.z()); };
+    EXPECT_TRUE(std::ranges::is_sorted(graph.positions, {}, position));
     EXPECT_TRUE(std::ranges::is_sorted(graph.corners));
     EXPECT_TRUE(std::ranges::is_sorted(graph.polylines, {}, [&](const FeaturePolyline& line) {
         return std::tuple(line.type, graph.vertices[line.begin], graph.vertices[line.begin + 1]);
@@ -102,7 +104,7 @@ inline void expect_order(const FeatureGraph& graph) {
     }
 }
 
-/// Also that no polyline passes a corner on its way, but boundaries.
+/// Also that only boundaries pass through corners.
 inline void expect_normals(const FeatureLines& lines) {
     const FeatureGraph& graph = lines.graph;
     ASSERT_EQ(graph.left_normals.size(), graph.vertices.size());
@@ -116,19 +118,19 @@ inline void expect_normals(const FeatureLines& lines) {
                 EXPECT_EQ(right, Vec3::Zero());
                 continue;
             }
-            const Vec3 way =
+            const Vec3 direction =
                 (graph.positions[graph.vertices[last ? line.begin : row + 1]] - graph.positions[graph.vertices[row]])
                     .normalized();
             EXPECT_NEAR(left.norm(), 1, 1e-12);
-            EXPECT_NEAR(left.dot(way), 0, 1e-6);
+            EXPECT_NEAR(left.dot(direction), 0, 1e-6);
             if (line.type == FeatureType::crease) {
                 EXPECT_NEAR(right.norm(), 1, 1e-12);
-                EXPECT_NEAR(right.dot(way), 0, 1e-6);
+                EXPECT_NEAR(right.dot(direction), 0, 1e-6);
             } else {
                 EXPECT_EQ(right, Vec3::Zero());
             }
-            const bool on_its_way = row > line.begin && line.type == FeatureType::crease;
-            EXPECT_FALSE(on_its_way && std::ranges::binary_search(graph.corners, graph.vertices[row]));
+            const bool is_inner = row > line.begin && line.type == FeatureType::crease;
+            EXPECT_FALSE(is_inner && std::ranges::binary_search(graph.corners, graph.vertices[row]));
         }
 }
 

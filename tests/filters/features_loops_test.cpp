@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boundary loops: which go round a surface and which round a hole in it.
+// Boundary loops: outer boundaries and holes.
 
 #include <gmock/gmock.h>
 
@@ -11,7 +11,7 @@ namespace {
 using namespace test;
 using testing::IsEmpty;
 
-TEST(FeaturesOfAPlate, AreItsBorderAndFiveHolesOfTheirRadius) {
+TEST(FeaturesOfAPlate, AreItsBoundaryAndFiveHolesOfTheirRadius) {
     const FeatureLines lines = features_of(plate_with_holes());
     EXPECT_EQ(lines.counts.boundaries, 1u);
     EXPECT_EQ(lines.counts.holes, 5u);
@@ -21,23 +21,23 @@ TEST(FeaturesOfAPlate, AreItsBorderAndFiveHolesOfTheirRadius) {
     std::vector<Vec3> centres;
     for (const FeaturePolyline& hole : polylines_of(lines.graph, FeatureType::hole)) {
         EXPECT_TRUE(hole.closed);
-        const std::vector<Vec3> places = places_of(lines.graph, hole);
-        EXPECT_EQ(places.size(), 32u);
+        const std::vector<Vec3> positions = positions_of(lines.graph, hole);
+        EXPECT_EQ(positions.size(), 32u);
         Vec3 centre = Vec3::Zero();
-        for (const Vec3& place : places) centre += place / 32;
-        for (const Vec3& place : places) EXPECT_NEAR((place - centre).norm(), hole_radius, 1e-12);
+        for (const Vec3& position : positions) centre += position / 32;
+        for (const Vec3& position : positions) EXPECT_NEAR((position - centre).norm(), hole_radius, 1e-12);
         centres.push_back(centre.array().round());
-        EXPECT_EQ(places[0].x(), std::ranges::min(places, {}, [](const Vec3& p) { return p.x(); }).x())
-            << "begins at its lowest place";
+        EXPECT_EQ(positions[0].x(), std::ranges::min(positions, {}, [](const Vec3& p) { return p.x(); }).x())
+            << "begins at its lowest position";
     }
     EXPECT_THAT(centres, testing::UnorderedElementsAreArray(hole_centres));
-    const FeaturePolyline& border = lines.graph.polylines[0];
-    EXPECT_EQ(border.type, FeatureType::outer_boundary);
-    EXPECT_DOUBLE_EQ(length_of(lines.graph, border), 320);
-    EXPECT_EQ(lines.graph.positions[lines.graph.vertices[border.begin]], Vec3(0, 0, 0));
+    const FeaturePolyline& boundary = lines.graph.polylines[0];
+    EXPECT_EQ(boundary.type, FeatureType::outer_boundary);
+    EXPECT_DOUBLE_EQ(length_of(lines.graph, boundary), 320);
+    EXPECT_EQ(lines.graph.positions[lines.graph.vertices[boundary.begin]], Vec3(0, 0, 0));
 }
 
-TEST(FeaturesOfAGrid, AreOneLoopOfItsBorder) {
+TEST(FeaturesOfAGrid, AreOneLoop) {
     const FeatureLines lines = features_of(grid(7, 4));
     ASSERT_EQ(lines.graph.polylines.size(), 1u);
     EXPECT_EQ(lines.graph.polylines[0].type, FeatureType::outer_boundary);
@@ -45,25 +45,25 @@ TEST(FeaturesOfAGrid, AreOneLoopOfItsBorder) {
     EXPECT_EQ(lines.counts.corners, 4u);
 }
 
-TEST(FeaturesOfATube, AreTwoLoops_OfWhichTheLengthDecides) {
+TEST(FeaturesOfATube, AreTwoLoops_ClassifiedByTheirLength) {
     const FeatureLines even = features_of(frustum(1, 1, 3, 40, false));
     EXPECT_EQ(even.counts.ambiguous, 2u);
     EXPECT_EQ(even.counts.boundaries, 1u);
     EXPECT_EQ(even.counts.holes, 1u);
     EXPECT_EQ(even.counts.creases, 0u);
-    EXPECT_EQ(places_of(even.graph, even.graph.polylines[0])[0].z(), 0) << "of equal loops the lower one is outer";
+    EXPECT_EQ(positions_of(even.graph, even.graph.polylines[0])[0].z(), 0) << "of equal loops the lower one is outer";
 
     const FeatureLines wider_above = features_of(frustum(1, 1.01, 3, 40, false));
     EXPECT_EQ(wider_above.counts.ambiguous, 2u);
-    EXPECT_EQ(places_of(wider_above.graph, wider_above.graph.polylines[0])[0].z(), 3);
+    EXPECT_EQ(positions_of(wider_above.graph, wider_above.graph.polylines[0])[0].z(), 3);
 }
 
-TEST(FeaturesOfAFunnel, AreToldApartByTheirArea) {
+TEST(FeaturesOfAFunnel, AreClassifiedByTheirArea) {
     const FeatureLines lines = features_of(frustum(3, 1, 1, 40, false));
     EXPECT_EQ(lines.counts.ambiguous, 0u);
     ASSERT_EQ(lines.graph.polylines.size(), 2u);
     EXPECT_EQ(lines.graph.polylines[0].type, FeatureType::outer_boundary);
-    EXPECT_EQ(places_of(lines.graph, lines.graph.polylines[0])[0].z(), 0);
+    EXPECT_EQ(positions_of(lines.graph, lines.graph.polylines[0])[0].z(), 0);
     EXPECT_EQ(lines.graph.polylines[1].type, FeatureType::hole);
 }
 
@@ -82,12 +82,12 @@ TEST(FeaturesOfASphere, AreNone) {
 }
 
 TEST(FeaturesOfAPiercedSphere, AreItsHole) {
-    // Five of the triangles round a corner of the icosahedron, all but one.
+    // Without the triangles around the pole.
     TriangleMesh sphere = geodesic_sphere(1, 8);
-    std::vector<Triangle> left;
+    std::vector<Triangle> kept;
     for (const Triangle& t : sphere.triangles)
-        if (sphere.positions[t[0]].z() < 0.9) left.push_back(t);
-    sphere.triangles = Array<Triangle>(left.begin(), left.end());
+        if (sphere.positions[t[0]].z() < 0.9) kept.push_back(t);
+    sphere.triangles = Array<Triangle>(kept.begin(), kept.end());
     const FeatureLines lines = features_of(sphere);
     EXPECT_EQ(lines.counts.holes, 1u);
     EXPECT_EQ(lines.counts.boundaries, 0u);
@@ -104,7 +104,7 @@ TEST(FeaturesOfADroplet, ThatIsFlat_AreALoopThatBeginsAtItsCorner) {
     params.corner_angle = Angle::degrees(60);
     const FeatureLines lines = features_of(builder.mesh(), params);
     ASSERT_EQ(lines.graph.polylines.size(), 1u);
-    EXPECT_THAT(places_of(lines.graph, lines.graph.polylines[0]), testing::ElementsAreArray(round));
+    EXPECT_THAT(positions_of(lines.graph, lines.graph.polylines[0]), testing::ElementsAreArray(round));
     ASSERT_EQ(lines.graph.corners.size(), 1u);
     EXPECT_EQ(lines.graph.positions[lines.graph.corners[0]], Vec3(2, 0, 0));
 }

@@ -15,10 +15,10 @@ using testing::HasSubstr;
 TEST(FeaturesRefuse, NoTriangles) { EXPECT_THAT(features_refusal(TriangleMesh{}), HasSubstr("has no triangles")); }
 
 TEST(FeaturesRefuse, ThreeTrianglesAtAnEdge_AndNameIt) {
-    const TriangleMesh fin =
+    const TriangleMesh three =
         mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
-    EXPECT_THAT(features_refusal(fin), AllOf(HasSubstr("between vertex 0 (0, 0, 0) and vertex 1 (1, 0, 0)"),
-                                             HasSubstr("in 3 triangles, 0, 1 and 2"), HasSubstr("with more: 1")));
+    EXPECT_THAT(features_refusal(three), AllOf(HasSubstr("between vertex 0 (0, 0, 0) and vertex 1 (1, 0, 0)"),
+                                               HasSubstr("in 3 triangles, 0, 1 and 2"), HasSubstr("with more: 1")));
 }
 
 TEST(FeaturesRefuse, NeighboursOrientedDifferently_AndNameThem) {
@@ -62,17 +62,6 @@ TEST(FeaturesRefuse, AVertexThatIsNotFinite_OnlyWhereATriangleUsesIt) {
     positions[mesh.triangles[0][0]].z() = std::numeric_limits<double>::infinity();
     mesh.positions = Array<Vec3>(positions.begin(), positions.end());
     EXPECT_THAT(features_refusal(mesh), HasSubstr("of triangle 0 is not finite"));
-}
-
-TEST(FeaturesRefuse, SizesWhoseSquaresAreNoNumbers) {
-    for (const double size : {1e-120, 1e120})
-        EXPECT_THAT(features_refusal(cube(size)), HasSubstr("squares of lengths"));
-    EXPECT_THAT(features_refusal(cube(1e120)), HasSubstr("needs a mesh between 1e-100 and 1e100 u in size"));
-    TriangleMesh wide = cube();
-    wide.positions = {Vec3(-1.5e308, 0, 0), Vec3(1.5e308, 0, 0), Vec3(0, 1, 0)};
-    wide.triangles = {{0, 1, 2}};
-    EXPECT_THAT(features_refusal(wide), HasSubstr("it is beyond 1.8e+308 u"));
-    for (const double size : {1e-60, 1e60}) EXPECT_EQ(features_of(cube(size)).counts.creases, 12u);
 }
 
 TEST(FeaturesRefuse, SharpEdgesThatNoTriangleHas) {

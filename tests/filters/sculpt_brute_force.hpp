@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Solids to sculpt, and a slow second opinion on what may be taken off them.
+/// Solids to sculpt, and a slow independent check of which cells may be removed.
 
 #include <numbers>
 
@@ -35,12 +35,10 @@ inline std::vector<SculptCase> sculpt_cases() {
                       many())
                  .tets,
              {}},
-            {"a rough ball, in places smooth enough to be left alone",
-             solid_of(tets_of(fibonacci_sphere(400, 0.07))).tets,
-             {}}};
+            {"a ball with bumps, smooth in places", solid_of(tets_of(fibonacci_sphere(400, 0.07))).tets, {}}};
 }
 
-/// A solid that loses cells, and what sculpt asks of it, by looking at its whole boundary every time.
+/// A solid that loses cells, with the criteria of sculpt computed from its whole boundary every time.
 class Carving {
 public:
     Carving(const TetMesh& tets, SculptWeight weight)
@@ -65,26 +63,27 @@ public:
             if (!has(tets_.neighbours[cell][i])) open.push_back(i);
         return open;
     }
-    /// What is left is closed and has the genus that the solid had at first.
+    /// Without the cell the boundary is closed and has the genus of the original solid.
     bool is_admissible(u32 cell) {
         inside_[cell] = 0;
-        const MeshTopology facts = topology(mesh());
+        const MeshTopology found = topology(mesh());
         inside_[cell] = 1;
-        return facts.closed && facts.euler == euler_;
+        return found.closed && found.euler == euler_;
     }
-    /// Removing the cell bares a triangle with a larger circumradius than the solid had at first.
-    bool digs(u32 cell) const { return bares_larger(tets_, cell, open_facets(cell), largest_); }
-    bool bares_thin(u32 cell) const {
+    /// Removing the cell uncovers a triangle with a larger circumradius than the original solid has.
+    bool uncovers_too_large(u32 cell) const { return uncovers_larger(tets_, cell, open_facets(cell), largest_); }
+    bool uncovers_thin(u32 cell) const {
         const std::vector<int> open = open_facets(cell);
         for (int facet = 0; facet < 4; ++facet)
             if (std::ranges::find(open, facet) == open.end() && smallest_angle(cell, facet) < thin) return true;
         return false;
     }
     bool may_flip(u32 cell) {
-        return has(cell) && open_facets(cell).size() == 2 && !digs(cell) && !bares_thin(cell) && is_admissible(cell);
+        return has(cell) && open_facets(cell).size() == 2 && !uncovers_too_large(cell) && !uncovers_thin(cell) &&
+               is_admissible(cell);
     }
-    /// Within two cells of a point that was brought up, or at an edge that bends by more than 45°.
-    bool is_rough(u32 cell) const {
+    /// Within two cells of an exposed point, or at an edge with a bending above 45°.
+    bool may_smooth(u32 cell) const {
         const std::vector<int> open = open_facets(cell);
         return near_[cell] == 1 || unit_normal(cell, open[0]).dot(unit_normal(cell, open[1])) < std::cos(sharp);
     }
@@ -94,13 +93,13 @@ public:
         inside_[cell] = 0;
         if (exposes) mark_near(cell);
     }
-    /// For a question.
+    /// Undoes remove() after a query.
     void put_back(u32 cell) { inside_[cell] = 1; }
 
 private:
     static constexpr double thin = 0.1 * std::numbers::pi / 180 - 1e-9, sharp = std::numbers::pi / 4;
 
-    /// What lies within two facets of the cell, through solid cells.
+    /// All solid cells within two steps of the cell, through solid cells.
     void mark_near(u32 cell) {
         for (u32 first : tets_.neighbours[cell]) {
             if (!has(first)) continue;
@@ -110,9 +109,9 @@ private:
         }
     }
     std::array<Vec3, 3> corners(u32 cell, int facet) const {
-        std::array<Vec3, 3> places;
-        for (std::size_t i = 0; i < 3; ++i) places[i] = tets_.positions[tets_.cells[cell][outward_facet[facet][i]]];
-        return places;
+        std::array<Vec3, 3> positions;
+        for (std::size_t i = 0; i < 3; ++i) positions[i] = tets_.positions[tets_.cells[cell][outward_facet[facet][i]]];
+        return positions;
     }
     Vec3 unit_normal(u32 cell, int facet) const {
         const auto [a, b, c] = corners(cell, facet);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How the tests call sculpt, and a slow second opinion on everything it says of a boundary.
+/// Calls of sculpt for its tests, and independent computations of the properties of a boundary.
 
 #include <cmath>
 #include <map>
@@ -19,7 +19,7 @@ inline SculptResult sculpted(const TetMesh& labelled, const SculptParams& params
     return sculpt(labelled, params, context);
 }
 
-/// All cells of the points' tetrahedralisation, inside.
+/// All cells of the points' tetrahedralisation, labelled inside.
 inline TetMesh hull_of(const PointCloud& cloud) {
     TetMesh tets = tets_of(cloud);
     Array<u8> inside(tets.cells.size());
@@ -35,7 +35,8 @@ inline TriangleMesh mesh_of(const TetMesh& tets, std::span<const u8> labels) {
     return mesh;
 }
 
-/// The sum over the edges of the angle between their triangles' normals, each times the edge's length if asked.
+/// The sum over the edges of the angle between their triangles' normals; for SculptWeight::length each times the edge's
+/// length.
 inline double bending_of(const TriangleMesh& mesh, SculptWeight weight = SculptWeight::none) {
     std::map<Edge, std::vector<Vec3>> normals;
     for (const auto& [a, b, c] : mesh.triangles) {
@@ -65,8 +66,8 @@ inline double largest_circumradius(const TriangleMesh& mesh) {
     return largest;
 }
 
-/// Removing the cell, whose facets `open` are on the boundary, bares a triangle with a larger circumradius.
-inline bool bares_larger(const TetMesh& tets, u32 cell, const std::vector<int>& open, double largest) {
+/// Removing the cell, whose facets `open` are on the boundary, uncovers a triangle with a larger circumradius.
+inline bool uncovers_larger(const TetMesh& tets, u32 cell, const std::vector<int>& open, double largest) {
     for (int facet = 0; facet < 4; ++facet) {
         if (std::ranges::find(open, facet) != open.end()) continue;
         const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];

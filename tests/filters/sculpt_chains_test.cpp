@@ -15,9 +15,9 @@ using std::numbers::pi;
 
 constexpr double degree = pi / 180;
 
-/// Blocks 2 × 2 × 1 without a quarter, `apart` along x, their surfaces sampled every 0.5, with a web over the upper
-/// half of the concave edge: a prism whose top is flush with the block's, and whose lower end is bare. `mirrored` is a
-/// mirror image: it splits lattice points that lie on one sphere into other cells.
+/// Blocks 2 × 2 × 1 without a quarter, starting at `apart` along x, their surfaces sampled every 0.5, with a web of
+/// cells over the upper half of the concave edge: a prism whose top is in the plane of the block's top, and whose lower
+/// end is free. `mirrored`: a mirror image, whose cospherical lattice points are split into other cells.
 TetMesh half_webbed(const std::vector<double>& apart, bool mirrored = false) {
     const PointCloud block = l_block_surface(2, 2, 2);
     PointCloud cloud;
@@ -59,14 +59,14 @@ double inside_volume(const TetMesh& tets) {
     return volume;
 }
 
-TEST(SculptChains, WebThatGainsOnlyWithItsThirdCell_GoesWhole) {
+TEST(SculptChains, WebThatGainsOnlyWithItsThirdCell_IsRemovedWhole) {
     const TetMesh webbed = half_webbed_block();
     ASSERT_NEAR(inside_volume(webbed), 3 + 1.0 / 16, 1e-12);
     const SculptResult result = sculpted(webbed);
     ASSERT_EQ(result.removals.size(), 3u);
     EXPECT_EQ(result.smoothing, 3u);
     EXPECT_NEAR(inside_volume(result.tets), 3, 1e-12);
-    // The cell at the top leaves creases where all was flush, the last one a right angle for many.
+    // Removing the cell at the top makes creases in a plane, removing the last one replaces many angles by a right one.
     const double slant = std::acos(1 / std::sqrt(3.0));
     EXPECT_NEAR(result.removals[0].gain, -150 * degree, 1e-12);
     EXPECT_NEAR(result.removals[1].gain, 60 * degree - slant, 1e-12);
@@ -101,7 +101,7 @@ TEST(SculptChains, WeightedByLength_CountTheEdges) {
     EXPECT_NEAR(inside_volume(result.tets), 3, 1e-12);
     double gain = 0;
     for (const SculptRemoval& removal : result.removals) gain += removal.gain;
-    // Two edges of sqrt(1/2) and two of 1/2 at 90 degrees go, and two of 1/2 at 45; three of 1/2 at 90 come.
+    // Removed: two edges of sqrt(1/2) and two of 1/2 at 90 degrees, and two of 1/2 at 45. Added: three of 1/2 at 90.
     EXPECT_NEAR(gain, (2 * std::sqrt(0.5) * 90 + 2 * 0.5 * 45 + 2 * 0.5 * 90 - 3 * 0.5 * 90) * degree, 1e-12);
 }
 
@@ -118,33 +118,33 @@ TEST(SculptChains, OfTwoEqual_TheOneWithTheLowerCornersComesFirst) {
     }
 }
 
-/// The largest gain of flips from here on: of the chain so far, and of any by which it can go on.
-double best_gain(const TetMesh& tets, Carving& carving, std::vector<u32>& chain, bool rough, double at_start) {
-    double best = rough ? at_start - carving.bending() : -1e9;
+/// The largest gain of this chain and of all chains that begin with it.
+double best_gain(const TetMesh& tets, Carving& carving, std::vector<u32>& chain, bool smooths, double at_start) {
+    double best = smooths ? at_start - carving.bending() : -1e9;
     if (chain.size() == 3) return best;
     for (std::size_t i = 0; i < chain.size(); ++i)
         for (u32 cell : tets.neighbours[chain[i]]) {
             if (!carving.may_flip(cell)) continue;
-            const bool rough_too = carving.is_rough(cell);
+            const bool smooths_too = carving.may_smooth(cell);
             carving.remove(cell);
             chain.push_back(cell);
-            best = std::max(best, best_gain(tets, carving, chain, rough || rough_too, at_start));
+            best = std::max(best, best_gain(tets, carving, chain, smooths || smooths_too, at_start));
             chain.pop_back();
             carving.put_back(cell);
         }
     return best;
 }
 
-/// Of all flips and chains; far below 0 when there are none.
+/// Of all flips and chains; far below 0 if there are none.
 double best_gain_of_all(const TetMesh& tets, Carving& carving) {
     const double bending = carving.bending();
     double best = -1e9;
     for (u32 cell = 0; cell < tets.cells.size(); ++cell) {
         if (!carving.may_flip(cell)) continue;
         std::vector<u32> chain{cell};
-        const bool rough = carving.is_rough(cell);
+        const bool smooths = carving.may_smooth(cell);
         carving.remove(cell);
-        best = std::max(best, best_gain(tets, carving, chain, rough, bending));
+        best = std::max(best, best_gain(tets, carving, chain, smooths, bending));
         carving.put_back(cell);
     }
     return best;
@@ -152,7 +152,7 @@ double best_gain_of_all(const TetMesh& tets, Carving& carving) {
 
 class SculptChainLaws : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(SculptChainLaws, TheBestIsTakenAndNoneIsLeftThatGains) {
+TEST_P(SculptChainLaws, TheBestIsTaken_AndNoneThatGainsIsLeft) {
     const SculptCase given = sculpt_cases()[GetParam()];
     SCOPED_TRACE(given.name);
     const SculptResult result = sculpted(given.tets, given.params);
@@ -170,7 +170,7 @@ TEST_P(SculptChainLaws, TheBestIsTakenAndNoneIsLeftThatGains) {
     const double left = best_gain_of_all(given.tets, carving);
     EXPECT_LE(left, 1e-6);
     if (GetParam() < 3) {
-        EXPECT_GT(left, -1e9) << "flips are left that do not gain";
+        EXPECT_GT(left, -1e9) << "flips without gain are left";
     }
 }
 

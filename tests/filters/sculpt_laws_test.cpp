@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every sculpture must satisfy, asked of random solids after every single removal, by brute force.
+// Laws of every result, checked by brute force on random solids after every removal.
 
 #include <gtest/gtest.h>
 
@@ -24,29 +24,29 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
     const MeshTopology before = topology(mesh);
     ASSERT_TRUE(before.closed);
     double bending = carving.bending(), removed_volume = 0, gain_of_chain = 0;
-    bool chain_is_rough = false;
+    bool chain_may_smooth = false;
     std::size_t triangles = before.triangles, exposed = 0;
     for (const SculptRemoval& removal : result.removals) {
         ASSERT_TRUE(carving.has(removal.cell));
         const bool exposes = removal.step == SculptStep::exposing;
         ASSERT_EQ(carving.open_facets(removal.cell).size(), exposes ? 1u : 2u);
-        ASSERT_FALSE(!exposes && carving.digs(removal.cell)) << "flips dig no pits";
+        ASSERT_FALSE(!exposes && carving.uncovers_too_large(removal.cell)) << "flips uncover no larger triangles";
         if (removal.step == SculptStep::smoothing) {
-            ASSERT_FALSE(carving.bares_thin(removal.cell));
+            ASSERT_FALSE(carving.uncovers_thin(removal.cell));
             gain_of_chain += removal.gain;
-            chain_is_rough |= carving.is_rough(removal.cell);
+            chain_may_smooth |= carving.may_smooth(removal.cell);
         }
         carving.remove(removal.cell);
         exposed += exposes;
         triangles += exposes ? 2 : 0;
         removed_volume += volume_of(tets, removal.cell);
         mesh = carving.mesh();
-        const MeshTopology facts = topology(mesh);
-        ASSERT_TRUE(facts.closed);
-        ASSERT_EQ(facts.euler, before.euler);
-        ASSERT_EQ(facts.components, before.components);
-        ASSERT_EQ(facts.triangles, triangles);
-        ASSERT_EQ(facts.vertices, before.vertices + exposed);
+        const MeshTopology found = topology(mesh);
+        ASSERT_TRUE(found.closed);
+        ASSERT_EQ(found.euler, before.euler);
+        ASSERT_EQ(found.components, before.components);
+        ASSERT_EQ(found.triangles, triangles);
+        ASSERT_EQ(found.vertices, before.vertices + exposed);
         const double now = bending_of(mesh, weight);
         ASSERT_NEAR(bending - now, removal.gain, 1e-6);
         bending = now;
@@ -54,9 +54,9 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
             ASSERT_EQ(removal.step, SculptStep::smoothing);
         } else if (removal.step == SculptStep::smoothing) {
             ASSERT_GT(gain_of_chain, 0);
-            ASSERT_TRUE(chain_is_rough) << "what is smooth is left alone";
+            ASSERT_TRUE(chain_may_smooth) << "smoothing only where it is allowed";
             gain_of_chain = 0;
-            chain_is_rough = false;
+            chain_may_smooth = false;
         }
     }
     EXPECT_EQ(exposed, result.exposing);
@@ -69,7 +69,7 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
         result.mesh.positions.size() + result.blocked_points.size() + result.deep_points.size() + result.outside_points,
         tets.positions.size());
 
-    // No cell is left whose removal would bring a point to the surface, or smooth it where that is allowed.
+    // No cell is left whose removal exposes a point, or smooths the boundary where that is allowed.
     std::size_t tried = 0;
     for (u32 cell = 0; cell < tets.cells.size(); ++cell) {
         if (!carving.has(cell)) continue;
@@ -77,7 +77,7 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
         if (open == 1) {
             ASSERT_FALSE(carving.is_admissible(cell)) << "cell " << cell << " would expose a point";
         }
-        if (open != 2 || !carving.is_rough(cell) || !carving.may_flip(cell)) continue;
+        if (open != 2 || !carving.may_smooth(cell) || !carving.may_flip(cell)) continue;
         ++tried;
         carving.remove(cell);
         EXPECT_LE(bending - carving.bending(), 1e-6) << "cell " << cell;
@@ -90,7 +90,7 @@ TEST_P(SculptLaws, HoldAfterEveryRemovalAndAtTheEnd) {
 
 INSTANTIATE_TEST_SUITE_P(Solids, SculptLaws, testing::Range(std::size_t(0), std::size_t(9)));
 
-/// What removing `cell` gains, with the best admissible flip of a neighbour after it if asked. Brute force.
+/// The gain of removing `cell`; with look-ahead plus the best admissible flip of a neighbour after it. Brute force.
 double exposing_gain(const TetMesh& tets, Carving& carving, u32 cell, bool lookahead) {
     const double before = carving.bending();
     carving.remove(cell);
@@ -109,7 +109,7 @@ double exposing_gain(const TetMesh& tets, Carving& carving, u32 cell, bool looka
 TEST(Sculpt, FirstExposingStep_IsTheBestOfAllByItselfOrWithTheFlipAfterIt) {
     int differ = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-        // A ball, so that nothing is sharp and the first step exposes one of the points within.
+        // A ball: nothing is sharp, so the first step exposes one of the points inside.
         const PointCloud within = moved(random_cube(40, seed, 1.2), 1, Vec3(-.6, -.6, -.6));
         const TetMesh tets = hull_of(joined(fibonacci_sphere(150), within));
         std::array<u32, 2> first;
@@ -119,16 +119,16 @@ TEST(Sculpt, FirstExposingStep_IsTheBestOfAllByItselfOrWithTheFlipAfterIt) {
             first[lookahead] = result.removals[0].cell;
             Carving carving(tets, SculptWeight::none);
             const double chosen = exposing_gain(tets, carving, first[lookahead], lookahead);
-            const bool digs = carving.digs(first[lookahead]);
-            bool all_dig = true;
+            const bool too_large = carving.uncovers_too_large(first[lookahead]);
+            bool all_too_large = true;
             for (u32 cell = 0; cell < tets.cells.size(); ++cell) {
                 if (carving.open_facets(cell).size() != 1 || !carving.is_admissible(cell)) continue;
-                all_dig &= carving.digs(cell);
-                if (carving.digs(cell) == digs) {
+                all_too_large &= carving.uncovers_too_large(cell);
+                if (carving.uncovers_too_large(cell) == too_large) {
                     EXPECT_LE(exposing_gain(tets, carving, cell, lookahead), chosen + 1e-6);
                 }
             }
-            EXPECT_EQ(digs, all_dig) << "digging comes last";
+            EXPECT_EQ(too_large, all_too_large) << "steps to larger triangles come last";
         }
         differ += first[0] != first[1];
     }
@@ -170,7 +170,7 @@ TEST(Sculpt, OfShuffledPoints_IsTheSameSurface) {
         }
 }
 
-TEST(Sculpt, OfALargerScan_IsTheSameSculpture) {
+TEST(Sculpt, OfALargerScan_RemovesTheSameCells) {
     const PointCloud cloud = random_cube(300, 4);
     const SculptResult plain = sculpted(hull_of(cloud));
     for (double factor : {0.125, 64.0}) {
@@ -180,7 +180,7 @@ TEST(Sculpt, OfALargerScan_IsTheSameSculpture) {
     }
 }
 
-TEST(Sculpt, PointsNoSingleCellUncovers_AreReachedByOneFlipOrByTwo) {
+TEST(Sculpt, PointsThatNoSingleCellExposes_AreReachedByOneFlipOrByTwo) {
     int by_one = 0, by_two = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const SculptResult result = sculpted(hull_of(random_cube(2000, seed)));
@@ -196,15 +196,16 @@ TEST(Sculpt, PointsNoSingleCellUncovers_AreReachedByOneFlipOrByTwo) {
     EXPECT_GT(by_two, 0);
 }
 
-TEST(Sculpt, PointsThatStayInside_AreToldWithTheirPlaces) {
+TEST(Sculpt, PointsThatStayInside_AreReportedInAWarning) {
     ContextOptions options;
     Context context(options);
     const SculptResult result = sculpt(hull_of(random_cube(3000, 5)), {}, context);
     const std::size_t left = result.blocked_points.size() + result.deep_points.size();
     ASSERT_GT(left, 0u);
-    bool told = false;
-    for (const std::string& warning : context.warnings()) told |= warning.find("stay inside the solid") != warning.npos;
-    EXPECT_TRUE(told);
+    bool has_warning = false;
+    for (const std::string& warning : context.warnings())
+        has_warning |= warning.find("stay inside the solid") != warning.npos;
+    EXPECT_TRUE(has_warning);
     EXPECT_EQ(context.metrics().find("interior-points")->value, static_cast<double>(left));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The vertices of well-known closed models, as if they had been scanned, come back as surfaces of the models' genus.
-/// Skipped where the collections are absent.
+/// The vertices of well-known closed models, used as scans, give surfaces of the models' genus. Skipped if the models
+/// are absent.
 
 #include <gmock/gmock.h>
 
@@ -21,14 +21,14 @@ TEST_P(SculptOfModel, IsAClosedSurfaceOfItsGenusThatDoesNotIntersectItself) {
     if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().file;
     const AlphaSolidResult solid = solid_of(tets_of(*read_points(*path)));
     const SculptResult result = sculpted(solid.tets, {}, 2);
-    const MeshTopology facts = topology(result.mesh);
-    EXPECT_TRUE(facts.closed);
-    EXPECT_EQ(facts.components, 1u);
-    EXPECT_EQ(facts.genus, GetParam().genus);
+    const MeshTopology found = topology(result.mesh);
+    EXPECT_TRUE(found.closed);
+    EXPECT_EQ(found.components, 1u);
+    EXPECT_EQ(found.genus, GetParam().genus);
     const long left = static_cast<long>(result.blocked_points.size() + result.deep_points.size());
     const long points = static_cast<long>(result.tets.positions.size());
-    EXPECT_EQ(static_cast<long>(facts.triangles), 2 * (points - left) - 4 + 4 * GetParam().genus);
-    EXPECT_LE(20 * left, static_cast<long>(solid.interior_points.size())) << "nearly all come to the surface";
+    EXPECT_EQ(static_cast<long>(found.triangles), 2 * (points - left) - 4 + 4 * GetParam().genus);
+    EXPECT_LE(20 * left, static_cast<long>(solid.interior_points.size())) << "nearly all come to the boundary";
     EXPECT_FALSE(intersects_itself(result.mesh));
 }
 

@@ -25,14 +25,14 @@ TEST_P(SculptOfRealScan, IsAClosedSurfaceThroughItsPointsThatDoesNotIntersectIts
     const AlphaSolidResult solid = solid_of(tets_of(*read_points(path)));
     const SculptResult result = sculpted(solid.tets, {}, 2);
     const std::size_t left = result.blocked_points.size() + result.deep_points.size();
-    // Nearly all that vanished inside the alpha-solid come back.
+    // Nearly all points in the interior of the alpha-solid come to the boundary.
     EXPECT_LE(100 * left, solid.interior_points.size());
-    const MeshTopology facts = topology(result.mesh);
-    EXPECT_TRUE(facts.closed);
-    EXPECT_EQ(facts.components, 1u);
-    EXPECT_EQ(facts.genus, GetParam().genus);
-    EXPECT_EQ(facts.vertices, result.tets.positions.size() - left);
-    EXPECT_EQ(static_cast<long>(facts.triangles), 2 * static_cast<long>(facts.vertices) - 4 + 4 * GetParam().genus);
+    const MeshTopology found = topology(result.mesh);
+    EXPECT_TRUE(found.closed);
+    EXPECT_EQ(found.components, 1u);
+    EXPECT_EQ(found.genus, GetParam().genus);
+    EXPECT_EQ(found.vertices, result.tets.positions.size() - left);
+    EXPECT_EQ(static_cast<long>(found.triangles), 2 * static_cast<long>(found.vertices) - 4 + 4 * GetParam().genus);
     EXPECT_EQ(result.exposing, solid.interior_points.size() - left);
     MeasureParams params;
     params.samples = 1000;

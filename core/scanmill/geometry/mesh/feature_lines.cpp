@@ -14,7 +14,6 @@
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/feature_net.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
-#include "scanmill/geometry/size_limits.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill {
@@ -36,10 +35,9 @@ void require_measurable(const TriangleMesh& mesh) {
     for (u32 t = 0; t < mesh.triangles.size(); ++t)
         for (const u32 vertex : mesh.triangles[t])
             if (!mesh.positions[vertex].allFinite())
-                throw Error("vertex {} of triangle {} is not finite; features need the place of every vertex", vertex,
-                            t)
-                    .hint("take the triangles at such vertices off");
-    if (const double size = surface_box(mesh).diagonal(); size != 0) require_squares(size, "needs a mesh");
+                throw Error("vertex {} of triangle {} is not finite; features need the position of every vertex",
+                            vertex, t)
+                    .hint("remove the triangles at such vertices");
 }
 
 /// Marks both sides of the mesh's own sharp edges; those on the boundary are feature lines anyhow.

@@ -41,9 +41,9 @@ struct FeatureLines {
     FeatureCounts counts;
 };
 
-/// Pre: indices in range. Throws Error for a position of a triangle that is not finite, for a size that is not
-/// allowed by require_squares(), for an edge in three or more triangles or passed twice in the same direction (naming
-/// the first), for a sharp edge of the mesh that no triangle has, and for parameters out of range. Two fans that touch
+/// Pre: indices in range. Throws Error for a position of a triangle that is not finite, for an edge in three or more
+/// triangles or passed twice in the same direction (naming the first), for a sharp edge of the mesh that no triangle
+/// has, and for parameters out of range. Two fans that touch
 /// in a vertex are allowed: it is a corner, and a loop stays with its fan.
 ///
 /// Post: vertices of the graph are numbered by their place (x, then y, then z); only those of polylines are there.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sculpt/bending.hpp"
+#include "sculpt/criteria.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -19,11 +19,7 @@ namespace {
 constexpr double cosine_of_sharp = std::numbers::sqrt2 / 2;  // of 45°
 constexpr double sine_of_thin = 0.0017453283658983088;  // of 0.1°
 
-double power_of_two_scale(std::span<const Vec3> positions) {
-    return std::ldexp(1.0, -std::ilogb(bounding_box(positions).diagonal()));
-}
-
-std::array<int, 4> by_place(const TetMesh& tets, u32 cell) {
+std::array<int, 4> sorted_corners(const TetMesh& tets, u32 cell) {
     const Tetrahedron& corners = tets.cells[cell];
     std::array<int, 4> order{0, 1, 2, 3};
     const auto put_in_order = [&](int i, int j) {
@@ -38,9 +34,9 @@ std::array<int, 4> by_place(const TetMesh& tets, u32 cell) {
     return order;
 }
 
-/// Twice the area long; the same bits, but for the sign, in whatever order the corners come.
+/// Its length is twice the area; except for the sign, its bits do not depend on the order of the corners.
 Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-    // From the lowest corner; which one that is cannot be foreseen, so no branch asks for it.
+    // Computed from the lowest corner; it is chosen without a branch, which could not be predicted.
     const std::array<const Vec3*, 5> corners{&a, &b, &c, &a, &b};
     std::size_t low = is_lower(b, a) ? 1 : 0;
     low = is_lower(c, *corners[low]) ? 2 : low;
@@ -48,11 +44,28 @@ Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
     return (*corners[low + 1] - lowest).cross(*corners[low + 2] - lowest);
 }
 
+/// The largest squared circumradius of the boundary's triangles.
+double largest_squared_radius(const CarvedSolid& solid, const Gains& gains, unsigned threads) {
+    constexpr std::size_t chunk = 1 << 14;
+    const std::size_t cells = solid.tets().cells.size();
+    Array<double> largest((cells + chunk - 1) / chunk);
+    for_each_chunk(threads, cells, chunk, [&](std::size_t begin, std::size_t end) {
+        double most = 0;
+        for (u32 cell = static_cast<u32>(begin); cell < end; ++cell) {
+            if (!solid.has(cell)) continue;
+            const unsigned open = solid.open_facets(cell);
+            for (int facet = 0; facet < 4; ++facet)
+                if ((open >> facet & 1u) != 0) most = std::max(most, gains.squared_radius(cell, facet));
+        }
+        largest[begin / chunk] = most;
+    });
+    return *std::ranges::max_element(largest);
+}
+
 }  // namespace
 
 double total_bending(BoundaryLinks& links, std::span<const Vec3> positions, unsigned threads) {
     constexpr std::size_t chunk = 1 << 13;
-    const double scale = power_of_two_scale(positions);
     Array<double> sums((links.vertices() + chunk - 1) / chunk);
     for_each_chunk(threads, links.vertices(), chunk, [&](std::size_t begin, std::size_t end) {
         double sum = 0;
@@ -61,11 +74,11 @@ double total_bending(BoundaryLinks& links, std::span<const Vec3> positions, unsi
             const std::span<LinkEdge> link = links.of(vertex);
             std::ranges::sort(link, {}, &LinkEdge::from);
             const auto normal = [&](const LinkEdge& edge) {
-                return normal_of(scale * positions[vertex], scale * positions[edge.from], scale * positions[edge.to]);
+                return normal_of(positions[vertex], positions[edge.from], positions[edge.to]);
             };
             normals.resize(link.size());
             std::ranges::transform(link, normals.begin(), normal);
-            // Triangle (vertex, from, to) lies beyond the edge to `to` from the one whose `from` that is.
+            // Beyond the edge from `vertex` to `to` is the triangle whose `from` is that `to`.
             for (std::size_t i = 0; i < link.size(); ++i) {
                 if (link[i].to < vertex) continue;
                 const auto beyond = std::ranges::lower_bound(link, link[i].to, {}, &LinkEdge::from) - link.begin();
@@ -79,16 +92,10 @@ double total_bending(BoundaryLinks& links, std::span<const Vec3> positions, unsi
     return total;
 }
 
-Gains::Gains(const CarvedSolid& solid, SculptWeight weight)
-    : solid_(solid),
-      tets_(solid.tets()),
-      weight_(weight),
-      scale_(power_of_two_scale(tets_.positions.span())) {}
-
 Vec3 Gains::normal(u32 cell, int facet) const {
     const Tetrahedron& corners = tets_.cells[cell];
     const auto& [a, b, c] = outward_facet[static_cast<std::size_t>(facet)];
-    return normal_of(place(corners[a]), place(corners[b]), place(corners[c]));
+    return normal_of(tets_.positions[corners[a]], tets_.positions[corners[b]], tets_.positions[corners[c]]);
 }
 
 Vec3 Gains::outer_normal(u32 cell, int across, int kept, Without without) const {
@@ -98,7 +105,7 @@ Vec3 Gains::outer_normal(u32 cell, int across, int kept, Without without) const 
 }
 
 double Gains::of(u32 cell, unsigned open, Without without) const {
-    const std::array<int, 4> sorted = by_place(tets_, cell);
+    const std::array<int, 4> sorted = sorted_corners(tets_, cell);
     std::array<Vec3, 4> normals;
     for (int facet = 0; facet < 4; ++facet) normals[facet] = normal(cell, facet);
     const auto is_open = [&](int facet) { return (open >> facet & 1u) != 0; };
@@ -137,20 +144,20 @@ double Gains::weight_of_flip(u32 cell, unsigned open) const {
     return (tets_.positions[tets_.cells[cell][c]] - tets_.positions[tets_.cells[cell][d]]).norm();
 }
 
-bool Gains::bares_thin_facet(u32 cell, unsigned open) const {
+bool Gains::uncovers_thin_facet(u32 cell, unsigned open) const {
     for (int facet : both_corners(~open & 15u)) {
         const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];
         const Tetrahedron& corners = tets_.cells[cell];
-        const Vec3 a = place(corners[i]), b = place(corners[j]), c = place(corners[k]);
-        std::array<double, 3> sides{(b - a).norm(), (c - b).norm(), (a - c).norm()};
-        std::ranges::sort(sides);
-        // The smallest angle is between the two longest sides.
-        if (normal(cell, facet).norm() < sine_of_thin * sides[1] * sides[2]) return true;
+        const Vec3 a = tets_.positions[corners[i]], b = tets_.positions[corners[j]], c = tets_.positions[corners[k]];
+        std::array<double, 3> edges{(b - a).norm(), (c - b).norm(), (a - c).norm()};
+        std::ranges::sort(edges);
+        // The smallest angle is between the two longest edges.
+        if (normal(cell, facet).norm() < sine_of_thin * edges[1] * edges[2]) return true;
     }
     return false;
 }
 
-bool Gains::bares_larger_facet(u32 cell, unsigned open, double most) const {
+bool Gains::uncovers_larger_facet(u32 cell, unsigned open, double most) const {
     for (int facet = 0; facet < 4; ++facet)
         if ((open >> facet & 1u) == 0 && squared_radius(cell, facet) > most) return true;
     return false;
@@ -159,11 +166,11 @@ bool Gains::bares_larger_facet(u32 cell, unsigned open, double most) const {
 double Gains::squared_radius(u32 cell, int facet) const {
     const auto& [i, j, k] = outward_facet[static_cast<std::size_t>(facet)];
     const Tetrahedron& corners = tets_.cells[cell];
-    const Vec3 a = place(corners[i]), b = place(corners[j]), c = place(corners[k]);
-    std::array<double, 3> sides{(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()};
-    std::ranges::sort(sides);
+    const Vec3 a = tets_.positions[corners[i]], b = tets_.positions[corners[j]], c = tets_.positions[corners[k]];
+    std::array<double, 3> edges{(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()};
+    std::ranges::sort(edges);
     const double squared_area = 4 * normal(cell, facet).squaredNorm();
-    return squared_area > 0 ? sides[0] * sides[1] * sides[2] / squared_area : std::numeric_limits<double>::infinity();
+    return squared_area > 0 ? edges[0] * edges[1] * edges[2] / squared_area : std::numeric_limits<double>::infinity();
 }
 
 double Gains::volume(u32 cell) const {
@@ -174,12 +181,41 @@ double Gains::volume(u32 cell) const {
 }
 
 bool is_lower_cell(const TetMesh& tets, u32 a, u32 b) {
-    const std::array<int, 4> first = by_place(tets, a), second = by_place(tets, b);
+    const std::array<int, 4> first = sorted_corners(tets, a), second = sorted_corners(tets, b);
     for (std::size_t i = 0; i < 4; ++i) {
         const u32 u = tets.cells[a][first[i]], v = tets.cells[b][second[i]];
         if (u != v) return is_lower(tets.positions[u], tets.positions[v]);
     }
     return false;
+}
+
+StepCriteria::StepCriteria(const CarvedSolid& solid, const SculptParams& params, unsigned threads)
+    : solid_(solid),
+      gains_(solid, params.weight),
+      min_gain_(params.min_gain.in_radians()),
+      largest_(largest_squared_radius(solid, gains_, threads)),
+      lookahead_(params.lookahead),
+      is_near_exposed_(solid.tets().cells.size()) {
+    std::ranges::fill(is_near_exposed_, u8(0));
+}
+
+std::optional<double> StepCriteria::flip(u32 cell, unsigned open, Without without) const {
+    if (!solid_.flips(cell, open, without)) return std::nullopt;
+    const double gain = gains_.of(cell, open, without);
+    if (!(gain > least_gain(cell, open))) return std::nullopt;
+    if (gains_.uncovers_thin_facet(cell, open) || uncovers_too_large(cell, open)) return std::nullopt;
+    return gain;
+}
+
+double StepCriteria::exposing(u32 cell, unsigned open) const {
+    const double alone = gains_.of(cell, open);
+    if (!lookahead_) return alone;
+    const Without removed(&cell, 1);
+    double best = 0;
+    for (u32 across : solid_.tets().neighbours[cell])
+        if (solid_.has(across))
+            best = std::max(best, flip(across, solid_.open_facets(across, removed), removed).value_or(0));
+    return alone + best;
 }
 
 }  // namespace scanmill::sculpting
