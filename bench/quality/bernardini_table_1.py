@@ -46,9 +46,9 @@ def judged(report, cell):
     if missing:
         raise scanmill.Broken(f"the workflow has no step {' and no '.join(missing)}")
     tets, solid, sculpted = (steps[name]["metrics"] for name in FILTERS)
-    facts = scanmill.mesh(cell)["facts"]
+    facts = scanmill.mesh(cell)["properties"]
     return {
-        "points": int(steps["read"]["facts"]["points"]),
+        "points": int(steps["read"]["properties"]["points"]),
         "duplicates": int(tets["duplicates"]),
         "alpha": solid["alpha"],
         "tetrahedra": int(solid["cells"]),

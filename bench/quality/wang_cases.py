@@ -48,7 +48,7 @@ def judged(report, cell):
     if missing:
         raise scanmill.Broken(f"the workflow has no step {' and no '.join(missing)}")
     thin, grown, lines, mesh = (steps[name]["metrics"] for name in (*FILTERS, "measure"))
-    first = steps["read"]["facts"] if "read" in steps else steps["virtual-scan"]["metrics"]
+    first = steps["read"]["properties"] if "read" in steps else steps["virtual-scan"]["metrics"]
     return {
         "points": int(first["points"]),
         "bin_size": thin["bin-size"],

@@ -139,8 +139,8 @@ std::string wrong_alpha_text(const AlphaSolidResult& result, const AlphaSolidPar
     if (result.nonmanifold_vertices > 0)
         faults.push_back(
             fmt::format("its boundary has {} and {} with more than two triangles",
-                        counted(result.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices"),
-                        counted(result.nonmanifold_edges, "edge", "edges")));
+                        count_text(result.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices"),
+                        count_text(result.nonmanifold_edges, "edge", "edges")));
     if (params.components == AlphaComponents::single && result.components > 1)
         faults.push_back(fmt::format("it has {} components", result.components));
     const double alpha = result.alpha, least = result.nearest_valid->least;
@@ -220,7 +220,7 @@ std::string ambiguity_text(const AlphaSolidResult& result) {
 std::string missing_text(const AlphaSolidResult& result) {
     const std::size_t points = result.uncovered_points.size(), cells = result.cells_left_out;
     const std::string of_others =
-        counted(cells, "cell of other solids was", "cells of other solids were") + " left out";
+        count_text(cells, "cell of other solids was", "cells of other solids were") + " left out";
     if (points == 0) return cells == 0 ? "" : of_others;
     return fmt::format("{} of {} points {} not in or on the solid{}", points, result.tets.positions.size(),
                        by_count(points, "is", "are"), cells == 0 ? "" : "; " + of_others);

@@ -92,8 +92,8 @@ void require_spatial(std::span<const Vec3> positions, const Frame& frame, unsign
 void refuse_flat(std::span<const Vec3> positions, int dimension, double distance, const Frame& frame) {
     if (const std::size_t distinct = distinct_points(positions); distinct < 4)
         throw Error("needs at least 4 points that are not coplanar; the cloud has {} at {}",
-                    counted(positions.size(), "point", "points"),
-                    counted(distinct, "distinct position", "distinct positions"))
+                    count_text(positions.size(), "point", "points"),
+                    count_text(distinct, "distinct position", "distinct positions"))
             .hint(std::string(few_points));
     const std::string_view shape = dimension == 0 ? "one position" : dimension == 1 ? "one line" : "one plane";
     throw Error("needs at least 4 points that are not coplanar; the cloud has {}, all within {:.2g} {} of {}{}",

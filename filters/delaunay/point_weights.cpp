@@ -63,7 +63,7 @@ const Column& column_named(const PointCloud& cloud, const std::string& name) {
     if (const Column* column = cloud.columns.find(name)) {
         if (column->components() == 1) return *column;
         throw Error("weights need a column of one number per point; '{}' has {}{}", name,
-                    column->is_list() ? "lists" : counted(column->components(), "number", "numbers"),
+                    column->is_list() ? "lists" : count_text(column->components(), "number", "numbers"),
                     single_columns(cloud))
             .hint("`weights: spacing` needs no column");
     }
@@ -126,7 +126,7 @@ PointWeights point_weights(const PointCloud& cloud, const DelaunayParams& params
                                 : column_weights(cloud, *params.weights, params.factor);
     if (const std::size_t different = merge_duplicates(cloud.positions.span(), points); different > 0)
         context.warn(fmt::format("at {} points with different weights were merged; the largest weight counts",
-                                 counted(different, "position", "positions")));
+                                 count_text(different, "position", "positions")));
     return points;
 }
 

@@ -122,7 +122,7 @@ std::vector<double> thresholds_for(const TriangleMesh& mesh, const MeasureParams
 void require_surface(const TriangleMesh& mesh, std::string_view name) {
     if (mesh.triangles.empty())
         throw Error("the {} has no triangles ({}); there is no surface to measure", name,
-                    counted(mesh.positions.size(), "vertex", "vertices"))
+                    count_text(mesh.positions.size(), "vertex", "vertices"))
             .hint("make a surface of the points first; only the truth may be points");
     require_consistent(mesh);
     require_finite(mesh.positions.span(), fmt::format("vertices of the {}", name));

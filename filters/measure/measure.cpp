@@ -181,7 +181,7 @@ Measurement measure(const TriangleMesh& mesh, const TriangleMesh& given_truth, c
     require_surface(given_truth, "truth");
     if (params.borders == MeasureParams::Borders::exclude)
         throw Error("borders: exclude needs points as truth; the truth is a mesh of {}",
-                    counted(given_truth.triangles.size(), "triangle", "triangles"))
+                    count_text(given_truth.triangles.size(), "triangle", "triangles"))
             .hint("set borders: include, or give the scan as truth");
     const std::vector<double> thresholds = thresholds_for(mesh, params);
     TriangleMesh truth = given_truth;
@@ -230,7 +230,7 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
             .hint("`scanmill info` shows what a file contains");
     require_finite(truth.positions.span(), "points of the truth");
     if (params.certify)
-        throw Error("certify needs a mesh as truth; the truth is {}", counted(truth.size(), "point", "points"))
+        throw Error("certify needs a mesh as truth; the truth is {}", count_text(truth.size(), "point", "points"))
             .hint("leave certify out, or give a mesh as truth");
     const Buffer<Vec3> points = in_frame_of(mesh.frame, truth.frame, truth.positions);
     const BoundingBox box = bounding_box(points.span());

@@ -46,14 +46,14 @@ struct Borders {
     explicit Borders(const TriangleMesh& mesh)
         : has_edge(3 * mesh.triangles.size(), u8(0)),
           has_vertex(mesh.positions.size(), u8(0)) {
-        const sides::SidesOfVertices all = sides::sides_of_vertices(mesh);
+        const half_edges::ByVertex all = half_edges::by_smaller_vertex(mesh);
         for (std::size_t vertex = 0; vertex + 1 < all.begin.size(); ++vertex)
             for (u32 i = all.begin[vertex]; i < all.begin[vertex + 1]; ++i) {
-                const u32 other = all.sides[i].other;
-                const bool is_like_previous = i > all.begin[vertex] && all.sides[i - 1].other == other;
-                const bool is_like_next = i + 1 < all.begin[vertex + 1] && all.sides[i + 1].other == other;
+                const u32 other = all.half_edges[i].other;
+                const bool is_like_previous = i > all.begin[vertex] && all.half_edges[i - 1].other == other;
+                const bool is_like_next = i + 1 < all.begin[vertex + 1] && all.half_edges[i + 1].other == other;
                 if (is_like_previous || is_like_next) continue;
-                has_edge[all.sides[i].number] = 1;
+                has_edge[all.half_edges[i].number] = 1;
                 has_vertex[vertex] = has_vertex[other] = 1;
             }
     }

@@ -52,7 +52,7 @@ void require_sound(Inputs inputs, const MergeParams& params) {
         throw Error("the distance `within` is {} u; it must be 0 or more", within);
     if (!params.poses.empty() && params.poses.size() != inputs.size())
         throw Error("there {} {} for {}; every input needs one", by_count(params.poses.size(), "is", "are"),
-                    counted(params.poses.size(), "pose", "poses"), counted(inputs.size(), "input", "inputs"));
+                    count_text(params.poses.size(), "pose", "poses"), count_text(inputs.size(), "input", "inputs"));
 }
 
 /// The numbers of the column of all inputs, checked, end to end.

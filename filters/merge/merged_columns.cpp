@@ -152,7 +152,7 @@ ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> cl
     }
     if (with_source > 0)
         context.warn(fmt::format("{} of {} already {} a column 'source'; it was renamed 'source{}'", with_source,
-                                 counted(clouds.size(), "input", "inputs"), by_count(with_source, "has", "have"),
+                                 count_text(clouds.size(), "input", "inputs"), by_count(with_source, "has", "have"),
                                  older));
     ColumnTable result = Merger(std::move(tables), context).merged();
     result.add(source_column(clouds));

@@ -38,8 +38,8 @@ void require_manifold(const BoundaryDefects& defects, std::size_t triangles) {
     throw Error(
         "needs a solid whose boundary is a 2-manifold; of this one's {} triangles, {} more than two, and at {} "
         "(first {}) they do not form one closed fan",
-        triangles, counted(defects.edges, "edge has", "edges have"),
-        counted(defects.vertices.size(), "vertex", "vertices"), defects.vertices.front())
+        triangles, count_text(defects.edges, "edge has", "edges have"),
+        count_text(defects.vertices.size(), "vertex", "vertices"), defects.vertices.front())
         .hint("'alpha-solid: {alpha: auto}' gives a manifold boundary");
 }
 

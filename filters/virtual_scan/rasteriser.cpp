@@ -105,7 +105,7 @@ Scene scene_of(const TriangleMesh& mesh) {
     require_consistent(mesh);
     require_finite(mesh.positions.span(), "vertices");
     if (mesh.triangles.empty())
-        throw Error("the mesh has {} and no triangles to scan", counted(mesh.positions.size(), "vertex", "vertices"))
+        throw Error("the mesh has {} and no triangles to scan", count_text(mesh.positions.size(), "vertex", "vertices"))
             .hint("make a mesh of them first, or scan a shape: `shape: sphere`");
     Scene scene;
     scene.frame = mesh.frame;

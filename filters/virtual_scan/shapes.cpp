@@ -305,7 +305,7 @@ std::vector<double> dimensions_of(const Kind& kind, std::span<const Length> size
     if (size.empty()) return kind.defaults;
     if (size.size() != kind.dimensions.size())
         throw Error("a {} has {} ({}); size has {}", kind.name,
-                    counted(kind.dimensions.size(), "dimension", "dimensions"), fmt::join(kind.dimensions, ", "),
+                    count_text(kind.dimensions.size(), "dimension", "dimensions"), fmt::join(kind.dimensions, ", "),
                     size.size())
             .hint(fmt::format("write `size: [{} u]`, or omit size", fmt::join(kind.defaults, " u, ")));
     std::vector<double> dimensions;

@@ -83,8 +83,8 @@ std::vector<scan::View> views_over(const scan::Scene& scene, const std::vector<V
     const double total = rays_over(views, scene);
     if (!(total <= most_rays))
         throw Error("{} at a resolution of {:.6g} u {} {:.6g} rays; at most {} are possible",
-                    counted(views.size(), "view", "views"), resolution, by_count(views.size(), "takes", "take"), total,
-                    most_rays)
+                    count_text(views.size(), "view", "views"), resolution, by_count(views.size(), "takes", "take"),
+                    total, most_rays)
             .hint(resolution_that_fits(scene, directions));
     for (scan::View& view : views) view = scan::covering(view, scene.hull);
     rays = static_cast<std::size_t>(total);
@@ -180,8 +180,8 @@ VirtualScanResult virtual_scan(const TriangleMesh* mesh, const VirtualScanParams
         }
     }
     if (samples.positions.empty())
-        throw Error("none of {} in {} came back from the surface", counted(result.rays, "ray", "rays"),
-                    counted(views.size(), "view", "views"))
+        throw Error("none of {} in {} came back from the surface", count_text(result.rays, "ray", "rays"),
+                    count_text(views.size(), "view", "views"))
             .hint("use a finer resolution, more views, or a larger max-angle");
     result.outliers = static_cast<std::size_t>(
         std::floor(params.outliers.value() * static_cast<double>(samples.positions.size()) + 0.5));

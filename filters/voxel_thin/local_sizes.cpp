@@ -39,7 +39,7 @@ void require_valid(const BoundingBox& box, const VoxelThinParams& params) {
 void require_enough(std::size_t points, u32 neighbours) {
     if (points > neighbours) return;
     throw Error("the cloud has {}; curvature from {} neighbours needs at least {}",
-                counted(points, "distinct point", "distinct points"), neighbours, u64(neighbours) + 1)
+                count_text(points, "distinct point", "distinct points"), neighbours, u64(neighbours) + 1)
         .hint("give a bin-size, or fewer neighbours (at least 6)");
 }
 

@@ -75,7 +75,7 @@ void require_kept(const KeptRows& rows, std::size_t points, u32 min_points) {
     if (!rows.kept.empty()) return;
     throw Error("{} in {} with fewer than {} points each; no point would be kept",
                 points == 1 ? "the only point lies" : fmt::format("all {} points lie", points),
-                counted(rows.voxels, "voxel", "voxels"), min_points)
+                count_text(rows.voxels, "voxel", "voxels"), min_points)
         .hint("lower min-points, or enlarge the voxels");
 }
 
@@ -118,7 +118,7 @@ void add_bin_sizes(PointCloud& thinned, std::span<const double> edges, double gr
             }
     if (older > 0)
         context.warn(fmt::format("{} of {} {} thinned with larger voxels before; {} `bin-size` stays", older,
-                                 counted(sizes.size(), "kept point", "kept points"), by_count(older, "was", "were"),
+                                 count_text(sizes.size(), "kept point", "kept points"), by_count(older, "was", "were"),
                                  by_count(older, "its", "their")));
     add_columns(thinned, {Column("bin-size", 1, Buffer<double>(std::move(sizes))).with_length_exponent(1)}, context);
 }

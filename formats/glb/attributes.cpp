@@ -132,13 +132,13 @@ std::string why_left_out(const Column& column, const WriteOptions& options) {
     const Fitness found = visit_scalar(column.type(), [&]<class T>(T) { return fitness_of(column.values<T>()); });
     if (found.not_finite > 0)
         return fmt::format("{} NaN or infinite, which glTF does not allow",
-                           counted(found.not_finite, "of its numbers is", "of its numbers are"));
+                           count_text(found.not_finite, "of its numbers is", "of its numbers are"));
     if (found.too_large > 0)
         return fmt::format("{} beyond what its single precision can hold",
-                           counted(found.too_large, "of its numbers is", "of its numbers are"));
+                           count_text(found.too_large, "of its numbers is", "of its numbers are"));
     if (found.rounded > 0 && column.type() != ScalarType::float64)
         return fmt::format("{} a whole number beyond 2^24, which its single precision would change",
-                           counted(found.rounded, "of its numbers is", "of its numbers are"));
+                           count_text(found.rounded, "of its numbers is", "of its numbers are"));
     if (found.rounded > 0)
         warn(options.on_warning, "GLB rounded the column '{}' to single precision; PLY keeps it", column.name());
     return "";
@@ -181,7 +181,7 @@ std::vector<Attribute> attributes_of(const ColumnTable& columns, const WriteOpti
             attribute.name = names.add(column.name(), identifier(expected), expected);
             if (lost > 0)
                 warn(options.on_warning, "GLB contains the column 'normal' as '{}' and not as normals: {} no direction",
-                     attribute.name, counted(lost, "of them has", "of them have"));
+                     attribute.name, count_text(lost, "of them has", "of them have"));
             attributes.push_back(std::move(attribute));
         }
     }

@@ -194,7 +194,7 @@ GlbModel model_of(const Frame& frame, std::span<const Vec3> positions, const Col
     require_fits(bytes);
     require_finite(positions, kind == "mesh" ? "vertices" : "points");
     const Frame local{frame.unit, frame.origin - local_origin(frame, positions), ""};
-    tell_lost_precision(local, positions, true, "GLB", options);
+    warn_lost_precision(local, positions, true, "GLB", options);
     if (frame.unit == LengthUnit::unknown)
         warn(options.on_warning,
              "GLB is in metres and the unit is not known: 1 was written as 1 m; declare the unit, for example with "
@@ -224,14 +224,14 @@ void write_glb_mesh(const Value& value, OutputBuffer& out, const WriteOptions& o
     const TriangleMesh& whole = *value.get<TriangleMesh>();
     if (whole.triangles.empty())
         throw Error("nothing to write: the mesh has {} and no triangles, and GLB would be empty",
-                    counted(whole.positions.size(), "vertex", "vertices"))
+                    count_text(whole.positions.size(), "vertex", "vertices"))
             .hint("PLY and VTP hold vertices without triangles");
     const TriangleMesh mesh = with_used_vertices(whole, "GLB", options);
     GlbModel model =
         model_of(mesh.frame, mesh.positions.span(), mesh.vertex_columns, "mesh", mesh.triangles.size(), options);
     std::vector<std::string_view> reported;
     for (const Column& column : mesh.vertex_columns) reported.push_back(column.name());
-    tell_bare_triangles(mesh, "GLB", options, reported);
+    warn_bare_triangles(mesh, "GLB", options, reported);
     unsigned char* const rows =
         model.add_accessor(3 * mesh.triangles.size(), sizeof(u32), TINYGLTF_TYPE_SCALAR,
                            TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);

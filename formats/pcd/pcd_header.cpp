@@ -115,7 +115,7 @@ private:
         constexpr std::array<double, 7> identity{0, 0, 0, 1, 0, 0, 0};
         if (words_.size() != identity.size() + 1)
             throw Error("line {}: VIEWPOINT has {}; expected {}", line_,
-                        counted(words_.size() - 1, "number", "numbers"), identity.size());
+                        count_text(words_.size() - 1, "number", "numbers"), identity.size());
         for (std::size_t i = 0; i < identity.size(); ++i) {
             double number = 0;
             if (!parse_number(words_[i + 1], number))
@@ -154,8 +154,8 @@ private:
     void finish() {
         if (counts_.empty()) counts_.assign(fields_, 1);
         if (fields_ == 0 || sizes_.size() != fields_ || counts_.size() != fields_)
-            throw Error("its header names {} and gives {} and {}", counted(fields_, "field", "fields"),
-                        counted(sizes_.size(), "size", "sizes"), counted(counts_.size(), "count", "counts"));
+            throw Error("its header names {} and gives {} and {}", count_text(fields_, "field", "fields"),
+                        count_text(sizes_.size(), "size", "sizes"), count_text(counts_.size(), "count", "counts"));
         for (std::size_t field = 0; field < fields_; ++field) {
             if (sizes_[field] != 1 && sizes_[field] != 2 && sizes_[field] != 4 && sizes_[field] != 8)
                 throw Error("its header gives field {} the size {}; expected 1, 2, 4 or 8", field, sizes_[field]);
@@ -171,7 +171,7 @@ private:
         header_.points = header_.width * header_.height;
         require_countable(header_.points, "points");
         if (promised_ && *promised_ != header_.points)
-            throw Error("its header promises {}, and {} × {} of them", counted(*promised_, "point", "points"),
+            throw Error("its header promises {}, and {} × {} of them", count_text(*promised_, "point", "points"),
                         header_.width, header_.height);
         if (padded_ && header_.encoding == PcdHeader::Encoding::compressed)
             throw Error("its compressed points have padding (the field _), which PCL does not read correctly")
@@ -185,8 +185,9 @@ private:
         const u64 promised = header_.points * header_.row_bytes;
         const auto require = [&](bool fits) {
             if (!fits)
-                throw Error("its header promises {} of {}; {} it", counted(header_.points, "point", "points"),
-                            counted(header_.row_bytes, "byte", "bytes"), counted(left, "byte follows", "bytes follow"))
+                throw Error("its header promises {} of {}; {} it", count_text(header_.points, "point", "points"),
+                            count_text(header_.row_bytes, "byte", "bytes"),
+                            count_text(left, "byte follows", "bytes follow"))
                     .hint("the file is truncated or its header is wrong: fetch or export it again");
         };
         switch (header_.encoding) {
@@ -204,8 +205,9 @@ private:
                 header_.bytes_behind = without_padding(left - sizeof sizes - sizes[0]);
                 if (sizes[1] != promised || promised > best_ratio * sizes[0])
                     throw Error("its header promises {} of {}; the compressed block declares {} in {}",
-                                counted(header_.points, "point", "points"), counted(header_.row_bytes, "byte", "bytes"),
-                                counted(sizes[1], "byte", "bytes"), sizes[0])
+                                count_text(header_.points, "point", "points"),
+                                count_text(header_.row_bytes, "byte", "bytes"), count_text(sizes[1], "byte", "bytes"),
+                                sizes[0])
                         .hint("the file is damaged: fetch or export it again");
             }
         }

@@ -156,7 +156,7 @@ void read_rows(std::string_view bytes, const PcdHeader& header, PCLPointCloud2& 
     TextCursor text(bytes.substr(header.body), {.line = header.lines + 1});
     for (u64 row = 0; row < header.points; ++row) {
         if (!text.next_row())
-            throw Error("its header promises {}; {} {}", counted(header.points, "point", "points"), row,
+            throw Error("its header promises {}; {} {}", count_text(header.points, "point", "points"), row,
                         by_count(row, "follows", "follow"))
                 .hint("the file is truncated: fetch or export it again");
         u64 numbers = 0;
@@ -167,12 +167,12 @@ void read_rows(std::string_view bytes, const PcdHeader& header, PCLPointCloud2& 
         }
         numbers += text.count_tokens();
         if (numbers != header.row_numbers)
-            throw Error("line {}: found {}; a point has {}", text.line(), counted(numbers, "number", "numbers"),
+            throw Error("line {}: found {}; a point has {}", text.line(), count_text(numbers, "number", "numbers"),
                         header.row_numbers);
     }
     if (text.next_row())
         throw Error("line {}: more rows than the {} of the header", text.line(),
-                    counted(header.points, "point", "points"));
+                    count_text(header.points, "point", "points"));
 }
 
 /// PCL splits the lines of a malformed header differently, and its fields may then reach beyond the points.
@@ -185,7 +185,7 @@ void require_fields_inside(const PCLPointCloud2& cloud, const PcdHeader& header)
     }
     if (!fits)
         throw Error("its header names fields that do not add up to {} per point",
-                    counted(header.row_bytes, "byte", "bytes"))
+                    count_text(header.row_bytes, "byte", "bytes"))
             .hint("SIZE, TYPE and COUNT must have an entry for every field");
 }
 
@@ -208,8 +208,8 @@ PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) {
                                         static_cast<unsigned int>(header.body));
     }
     if (trouble < 0)
-        throw Error("PCL cannot decode {} from {} of {} data", counted(header.points, "point", "points"),
-                    counted(bytes.size() - header.body, "byte", "bytes"), name_of(header.encoding))
+        throw Error("PCL cannot decode {} from {} of {} data", count_text(header.points, "point", "points"),
+                    count_text(bytes.size() - header.body, "byte", "bytes"), name_of(header.encoding))
             .hint("the file is damaged: fetch or export it again");
     return cloud;
 }
@@ -223,7 +223,7 @@ LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
         warn(options.on_warning, "the grid of {} × {} points became a list in file order", header.width, header.height);
     if (header.bytes_behind > 0)
         warn(options.on_warning, "{} behind the last point and left out",
-             counted(header.bytes_behind, "byte was", "bytes were"));
+             count_text(header.bytes_behind, "byte was", "bytes were"));
     if (header.has_viewpoint)
         warn(options.on_warning, "the sensor's pose (VIEWPOINT {}) was left out; coordinates are as in the file",
              header.viewpoint);

@@ -90,7 +90,7 @@ void put_row(const Column& column, std::size_t row, OutputBuffer& out) {
 void write_pcd(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const PointCloud& cloud = *value.get<PointCloud>();
     const bool as_float = all_floats(cloud.frame, cloud.positions.span());
-    tell_lost_precision(cloud.frame, cloud.positions.span(), as_float, "PCD", options);
+    warn_lost_precision(cloud.frame, cloud.positions.span(), as_float, "PCD", options);
     const std::vector<WrittenColumn> columns = written_columns(cloud, options);
     const pcl::PCLPointCloud2 layout = described(cloud, columns, as_float);
     std::string header =

@@ -100,7 +100,7 @@ void warn_of_collapsed(const TriangleMesh& mesh, const std::vector<NMR::MODELMES
     warn(options.on_warning,
          "{} of {} collapsed: corners that differ are equal in 3MF's six decimals; a smaller unit "
          "keeps them apart",
-         counted(collapsed, "triangle", "triangles"), mesh.triangles.size());
+         count_text(collapsed, "triangle", "triangles"), mesh.triangles.size());
 }
 
 /// Throws Error, with numbers, unless the mesh is a closed, oriented manifold whose triangles face outwards, with
@@ -113,11 +113,11 @@ void require_solid(const TriangleMesh& mesh) {
         throw Error(
             "3MF holds closed, oriented manifolds only; the mesh has {} in {}, {} in three or more triangles, {} "
             "disagree, {} of several fans and {} a vertex twice",
-            counted(found.boundary_edges, "boundary edge", "boundary edges"),
-            counted(found.boundary_loops, "loop", "loops"), counted(found.nonmanifold_edges, "edge", "edges"),
-            counted(found.misoriented_edges, "edge whose two triangles", "edges whose two triangles"),
-            counted(found.nonmanifold_vertices, "vertex", "vertices"),
-            counted(found.degenerate_triangles, "triangle that names", "triangles that name"))
+            count_text(found.boundary_edges, "boundary edge", "boundary edges"),
+            count_text(found.boundary_loops, "loop", "loops"), count_text(found.nonmanifold_edges, "edge", "edges"),
+            count_text(found.misoriented_edges, "edge whose two triangles", "edges whose two triangles"),
+            count_text(found.nonmanifold_vertices, "vertex", "vertices"),
+            count_text(found.degenerate_triangles, "triangle that names", "triangles that name"))
             .hint("STL, GLB and VTP hold open meshes; alpha-solid makes closed ones from points");
     const double volume = six_volumes(mesh) / 6;
     if (volume == 0)
@@ -264,7 +264,7 @@ void add_object(const Handle& model, WrittenMesh& mesh, const std::string& name)
 void write_threemf(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const TriangleMesh mesh = with_used_vertices(*value.get<TriangleMesh>(), "3MF", options);
     require_solid(mesh);
-    tell_bare_triangles(mesh, "3MF", options);
+    warn_bare_triangles(mesh, "3MF", options);
     if (mesh.frame.unit == LengthUnit::unknown)
         warn(options.on_warning,
              "3MF needs a unit and none is known: 1 was written as 1 mm; declare the unit, for example with --unit mm");

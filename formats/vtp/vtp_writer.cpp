@@ -67,7 +67,7 @@ void warn_of_unused(const FeatureGraph& graph, const Array<u32>& used, const Wri
     const auto unused = static_cast<u64>(std::ranges::count(is_used, false));
     if (unused > 0)
         warn(options.on_warning, "VTP left out {} that no polyline and no corner names",
-             counted(unused, "vertex", "vertices"));
+             count_text(unused, "vertex", "vertices"));
 }
 
 template <class T>
@@ -82,7 +82,7 @@ vtkSmartPointer<vtkDataArray> view(const Array<T>& rows, std::string_view name) 
 
 void write_vtp_points(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const PointCloud& cloud = *value.get<PointCloud>();
-    tell_lost_precision(cloud.frame, cloud.positions.span(), false, format, options);
+    warn_lost_precision(cloud.frame, cloud.positions.span(), false, format, options);
     const auto data = vtkSmartPointer<vtkPolyData>::New();
     data->SetPoints(points_of(cloud.frame, cloud.positions.span()));
     data->SetVerts(single_points(0, cloud.size()));
@@ -93,7 +93,7 @@ void write_vtp_points(const Value& value, OutputBuffer& out, const WriteOptions&
 
 void write_vtp_mesh(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const TriangleMesh& mesh = *value.get<TriangleMesh>();
-    tell_lost_precision(mesh.frame, mesh.positions.span(), false, format, options);
+    warn_lost_precision(mesh.frame, mesh.positions.span(), false, format, options);
     const auto data = vtkSmartPointer<vtkPolyData>::New();
     data->SetPoints(points_of(mesh.frame, mesh.positions.span()));
     data->SetPolys(cells_of(vertices_of(mesh.triangles), 3, mesh.positions.size()));
@@ -109,7 +109,7 @@ void write_vtp_mesh(const Value& value, OutputBuffer& out, const WriteOptions& o
 
 void write_vtp_features(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const FeatureGraph& graph = *value.get<FeatureGraph>();
-    tell_lost_precision(graph.frame, graph.positions.span(), false, format, options);
+    warn_lost_precision(graph.frame, graph.positions.span(), false, format, options);
     const FeaturePoints points = points_of(graph);
     warn_of_unused(graph, points.vertex, options);
     Array<u8> type(graph.corners.size(), corner_type), closed(graph.corners.size(), u8(0));

@@ -27,7 +27,7 @@ std::string name_for_weights(const ColumnTable& columns) {
 
 void write_vtu(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const TetMesh& tets = *value.get<TetMesh>();
-    tell_lost_precision(tets.frame, tets.positions.span(), false, format, options);
+    warn_lost_precision(tets.frame, tets.positions.span(), false, format, options);
     const auto data = vtkSmartPointer<vtkUnstructuredGrid>::New();
     data->SetPoints(points_of(tets.frame, tets.positions.span()));
     const std::span vertices(reinterpret_cast<const u32*>(tets.cells.data()), 4 * tets.cells.size());

@@ -59,8 +59,8 @@ private:
         if (options_.plan)
             show(checked.plan);
         else
-            say("{}: ok, {}, {}\n", file, counted(checked.plan.steps.size(), "step", "steps"),
-                counted(checked.plan.variants.size(), "variant", "variants"));
+            say("{}: ok, {}, {}\n", file, count_text(checked.plan.steps.size(), "step", "steps"),
+                count_text(checked.plan.variants.size(), "variant", "variants"));
     }
 
     void check_one_batch(const std::string& file, const std::string& text) {
@@ -72,9 +72,9 @@ private:
         if (options_.plan)
             for (const BatchPart& part : checked.parts) show(*part.plan);
         else
-            say("{}: ok, {}, {}, {}, {}\n", file, counted(checked.batch.scans.size(), "scan", "scans"),
-                counted(checked.batch.workflows.size(), "workflow", "workflows"),
-                counted(checked.variants(), "variant", "variants"), counted(checked.cells(), "cell", "cells"));
+            say("{}: ok, {}, {}, {}, {}\n", file, count_text(checked.batch.scans.size(), "scan", "scans"),
+                count_text(checked.batch.workflows.size(), "workflow", "workflows"),
+                count_text(checked.variants(), "variant", "variants"), count_text(checked.cells(), "cell", "cells"));
     }
 
     /// Whether nothing is wrong.

@@ -22,19 +22,19 @@ struct Options {
 };
 
 template <class T>
-Value tell_dropped(Cleaned<T> cleaned, const std::function<void(std::string)>& warn) {
+Value warn_dropped(Cleaned<T> cleaned, const std::function<void(std::string)>& warn) {
     if (cleaned.points > 0)
-        warn(counted(cleaned.points, "point", "points") + " with a NaN or an infinity " +
+        warn(count_text(cleaned.points, "point", "points") + " with a NaN or an infinity " +
              (cleaned.points == 1 ? "was" : "were") + " left out" +
-             (cleaned.triangles > 0 ? ", and " + counted(cleaned.triangles, "triangle", "triangles") + " on " +
+             (cleaned.triangles > 0 ? ", and " + count_text(cleaned.triangles, "triangle", "triangles") + " on " +
                                           (cleaned.points == 1 ? "it" : "them")
                                     : ""));
     return std::make_shared<const T>(std::move(cleaned.result));
 }
 
 Value without_invalid(const Value& value, const std::function<void(std::string)>& warn) {
-    if (const auto* mesh = value.find<TriangleMesh>()) return tell_dropped(without_invalid_points(*mesh), warn);
-    return tell_dropped(without_invalid_points(*value.get<PointCloud>()), warn);
+    if (const auto* mesh = value.find<TriangleMesh>()) return warn_dropped(without_invalid_points(*mesh), warn);
+    return warn_dropped(without_invalid_points(*value.get<PointCloud>()), warn);
 }
 
 int convert(const Options& options) {

@@ -101,7 +101,7 @@ int execute(const SessionTask& task, bool streams_events, Session& session, Filt
             const ExecuteOptions& options) {
     const RunGraph& graph = task.graph;
     session.on_warning(warn);
-    std::vector<NodeForesight> predictions = session.predict(graph, library);
+    std::vector<NodePrediction> predictions = session.predict(graph, library);
     if (options.dry_run) {
         fmt::print("{}",
                    options.json ? graph_json(graph, predictions) + "\n" : printable(graph_text(graph, predictions)));

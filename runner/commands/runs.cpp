@@ -59,7 +59,7 @@ Json to_json(const RunDetails& run) {
             entry["outputs"].push_back({{"file", output.file},
                                         {"kind", output.kind},
                                         {"outcome", output.outcome},
-                                        {"facts", metrics_json(output.facts)}});
+                                        {"properties", metrics_json(output.properties)}});
         json["cells"].push_back(std::move(entry));
     }
     json["steps"] = Json::array();
@@ -83,7 +83,7 @@ Json to_json(const RunDetails& run) {
                    {"authored", to_json(step.authored)},
                    {"parameters", to_json(step.resolved)},
                    {"metrics", metrics_json(step.metrics)},
-                   {"facts", metrics_json(step.facts)}};
+                   {"properties", metrics_json(step.properties)}};
         add_failure(entry, step.failure);
         if (!step.log.empty()) entry["log"] = step.log;
         if (!step.warnings.empty()) entry["warnings"] = step.warnings;

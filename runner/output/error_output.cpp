@@ -38,7 +38,7 @@ void print(const Diagnostics& diagnostics) {
     for (const Diagnostic& diagnostic : diagnostics.sorted())
         tell("{}\n", printable_line(text(diagnostic, diagnostics.file())));
     if (diagnostics.has_errors())
-        tell("{} in '{}'\n", counted(diagnostics.errors(), "error", "errors"), printable_line(diagnostics.file()));
+        tell("{} in '{}'\n", count_text(diagnostics.errors(), "error", "errors"), printable_line(diagnostics.file()));
 }
 
 Json to_json(const Diagnostics& diagnostics) {

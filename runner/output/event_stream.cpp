@@ -88,7 +88,7 @@ void EventStream::output_written(const RunCell& cell, const OutputReport& report
     json["scan"] = graph_.scan_names[cell.scan];
     json["file"] = report.file.string();
     json["outcome"] = name_of(report.outcome);
-    json["facts"] = metrics_json(report.facts);
+    json["properties"] = metrics_json(report.properties);
     if (!report.warnings.empty()) json["warnings"] = report.warnings;
     say(json);
 }

@@ -41,9 +41,9 @@ std::string source_node(const ValueSource& source) {
 }  // namespace
 
 std::string plan_text(const Plan& plan) {
-    std::string text =
-        fmt::format("{}: {}, {}\n", plan.workflow.name.empty() ? plan.workflow.file : plan.workflow.name,
-                    counted(plan.steps.size(), "step", "steps"), counted(plan.variants.size(), "variant", "variants"));
+    std::string text = fmt::format("{}: {}, {}\n", plan.workflow.name.empty() ? plan.workflow.file : plan.workflow.name,
+                                   count_text(plan.steps.size(), "step", "steps"),
+                                   count_text(plan.variants.size(), "variant", "variants"));
     for (const WorkflowInput& input : plan.workflow.inputs)
         text += fmt::format("input {}: {}{}\n", input.name, name_of(input.kind), input.list ? " (a list)" : "");
     for (const PlannedVariant& variant : plan.variants) {

@@ -25,15 +25,16 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-std::size_t count_to_run(const std::vector<NodeForesight>& foresight) {
-    return static_cast<std::size_t>(std::ranges::count(foresight, true, &NodeForesight::will_run));
+std::size_t count_to_run(const std::vector<NodePrediction>& prediction) {
+    return static_cast<std::size_t>(std::ranges::count(prediction, true, &NodePrediction::will_run));
 }
 
 }  // namespace
 
-Progress::Progress(const RunGraph& graph, const std::vector<NodeForesight>& foresight, std::size_t workers, bool quiet)
+Progress::Progress(const RunGraph& graph, const std::vector<NodePrediction>& prediction, std::size_t workers,
+                   bool quiet)
     : graph_(graph),
-      board_(workers, graph.nodes.size(), count_to_run(foresight)),
+      board_(workers, graph.nodes.size(), count_to_run(prediction)),
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) != 0),
       begin_(std::chrono::steady_clock::now()) {}

@@ -14,7 +14,7 @@ namespace scanmill::runner {
 
 class Progress : public RunObserver {
 public:
-    Progress(const RunGraph& graph, const std::vector<NodeForesight>& foresight, std::size_t workers, bool quiet);
+    Progress(const RunGraph& graph, const std::vector<NodePrediction>& prediction, std::size_t workers, bool quiet);
 
     void node_started(const RunNode& node, std::size_t worker) override;
     void node_progress(const RunNode& node, double fraction) override;

@@ -105,7 +105,7 @@ std::vector<std::string> ProgressBoard::lines(double now, std::size_t width, std
     constexpr std::size_t bar_width = 20;
     const std::size_t filled = steps_ > 0 ? bar_width * std::min(ended_, steps_) / steps_ : bar_width;
     std::string total = fmt::format("[{}{}] {}/{}", std::string(filled, '#'), std::string(bar_width - filled, '.'),
-                                    std::min(ended_, steps_), counted(steps_, "step", "steps"));
+                                    std::min(ended_, steps_), count_text(steps_, "step", "steps"));
     if (failed_ > 0) total += fmt::format(", {} failed", failed_);
     total += ", " + clock_text(now);
     if (const std::optional<double> left = time_left(now)) total += fmt::format(", about {} left", clock_text(*left));

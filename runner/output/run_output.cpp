@@ -30,7 +30,7 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
         const PlannedStep* step = graph.step(node);
         if (!step) {
             if (!node.is_scan) continue;
-            for (const Metric& fact : done.facts.values) {  // a list's scans are counted together
+            for (const Metric& fact : done.properties.values) {  // a list's scans are counted together
                 const Metric* before = read.find(fact.name);
                 read.set(fact.name, fact.value + (before ? before->value : 0), fact.unit);
                 shown.set(fact.name, read.find(fact.name)->value, fact.unit);
@@ -44,7 +44,7 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
     for (const OutputReport& output : report.cells[cell].outputs)
         if (output.kind == kind_of<TriangleMesh>() && output.outcome == Outcome::done) {
             for (const std::string_view name : {"triangles", "closed", "genus"})
-                if (const Metric* fact = output.facts.find(name)) shown.set(name, fact->value, fact->unit);
+                if (const Metric* fact = output.properties.find(name)) shown.set(name, fact->value, fact->unit);
             break;
         }
     return shown;
@@ -68,7 +68,7 @@ Json to_json(const ParameterSet& parameters) {
 
 }  // namespace
 
-std::string graph_text(const RunGraph& graph, const std::vector<NodeForesight>& foresight) {
+std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& prediction) {
     std::string text;
     std::size_t cached = 0;
     const bool several_workflows = has_several_workflows(graph);
@@ -81,9 +81,9 @@ std::string graph_text(const RunGraph& graph, const std::vector<NodeForesight>& 
             text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1,
                                 input.from.empty() ? "" : "." + input.from);
         if (!node.unreadable.empty()) text += fmt::format("        {}\n", node.unreadable);
-        cached += !foresight[index].will_run;
-        text += foresight[index].will_run ? fmt::format("        will run because {}\n", foresight[index].why)
-                                          : "        cached\n";
+        cached += !prediction[index].will_run;
+        text += prediction[index].will_run ? fmt::format("        will run because {}\n", prediction[index].why)
+                                           : "        cached\n";
     }
     for (const RunCell& cell : graph.cells)
         for (const RunOutput& output : cell.outputs)
@@ -91,10 +91,10 @@ std::string graph_text(const RunGraph& graph, const std::vector<NodeForesight>& 
                                 several_workflows ? graph.workflow(cell) + ": " : "", graph.variant(cell).name,
                                 shown_path(output.file));
     return text + fmt::format("{} to compute, {} cached, {}\n", graph.nodes.size() - cached, cached,
-                              counted(graph.cells.size(), "cell", "cells"));
+                              count_text(graph.cells.size(), "cell", "cells"));
 }
 
-std::string graph_json(const RunGraph& graph, const std::vector<NodeForesight>& foresight) {
+std::string graph_json(const RunGraph& graph, const std::vector<NodePrediction>& prediction) {
     Json json{{"scanmill", 1}, {"nodes", Json::array()}, {"cells", Json::array()}};
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         const RunNode& node = graph.nodes[index];
@@ -106,8 +106,8 @@ std::string graph_json(const RunGraph& graph, const std::vector<NodeForesight>& 
         if (!node.unreadable.empty()) entry["unreadable"] = node.unreadable;
         for (const NodeInput& input : node.inputs)
             entry["in"].push_back({{"port", input.port}, {"node", input.node}, {"from", input.from}});
-        entry["cached"] = !foresight[index].will_run;
-        if (foresight[index].will_run) entry["why"] = foresight[index].why;
+        entry["cached"] = !prediction[index].will_run;
+        if (prediction[index].will_run) entry["why"] = prediction[index].why;
         json["nodes"].push_back(std::move(entry));
     }
     for (const RunCell& cell : graph.cells) {
@@ -183,7 +183,7 @@ std::string report_json(const RunGraph& graph, const RunReport& report) {
             entry["file"] = node.leaf.file.string();
         if (!done.resolved.values.empty()) entry["parameters"] = to_json(done.resolved);
         if (!done.metrics.values.empty()) entry["metrics"] = metrics_json(done.metrics);
-        if (!done.facts.values.empty()) entry["facts"] = metrics_json(done.facts);
+        if (!done.properties.values.empty()) entry["properties"] = metrics_json(done.properties);
         if (!done.warnings.empty()) entry["warnings"] = done.warnings;
         if (done.failure) add_failure(entry, done.failure);
         if (!done.effort.log.empty()) entry["log"] = done.effort.log;
@@ -203,7 +203,7 @@ std::string report_json(const RunGraph& graph, const RunReport& report) {
             Json file{{"file", output.file.string()},
                       {"outcome", name_of(output.outcome)},
                       {"kind", name_of(output.kind)},
-                      {"facts", metrics_json(output.facts)}};
+                      {"properties", metrics_json(output.properties)}};
             if (!output.warnings.empty()) file["warnings"] = output.warnings;
             entry["outputs"].push_back(std::move(file));
         }

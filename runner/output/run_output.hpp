@@ -9,10 +9,10 @@
 
 namespace scanmill::runner {
 
-std::string graph_text(const RunGraph& graph, const std::vector<NodeForesight>& foresight);
-std::string graph_json(const RunGraph& graph, const std::vector<NodeForesight>& foresight);
+std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& prediction);
+std::string graph_json(const RunGraph& graph, const std::vector<NodePrediction>& prediction);
 
-/// A row per cell: points read, the filters' headline metrics, the written mesh's facts, seconds, files.
+/// A row per cell: points read, the filters' headline metrics, the written mesh's properties, seconds, files.
 std::string report_text(const RunGraph& graph, const RunReport& report);
 std::string report_json(const RunGraph& graph, const RunReport& report);
 

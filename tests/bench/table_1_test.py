@@ -16,14 +16,14 @@ def step(name, seconds, **metrics):
 # 1,000 points of which one lies on another and 2 stay inside; 2 (999 - 2) - 4 + 4 = 1994 triangles on a genus of 1.
 REPORT = {
     "steps": [
-        {"seconds": 99.0, "facts": {"points": 1000.0}},
+        {"seconds": 99.0, "properties": {"points": 1000.0}},
         step("delaunay", 0.5, cells=6000.0, duplicates=1.0),
         step("alpha-solid", 0.25, **{"alpha": 0.5, "cells": 4000.0, "interior-points": 50.0, "uncovered-points": 0.0}),
         step("sculpt", 0.125, **{"removed": 400.0, "removed-exposing": 48.0, "interior-points": 2.0}),
     ],
     "cells": [{
         "scan": "femur.off", "outcome": "done", "steps": [0, 1, 2, 3],
-        "outputs": [{"file": "out/femur.stl", "kind": "mesh", "outcome": "done", "facts": {
+        "outputs": [{"file": "out/femur.stl", "kind": "mesh", "outcome": "done", "properties": {
             "closed": True, "components": 1.0, "genus": 1.0, "triangles": 1994.0}}],
     }],
 }

@@ -23,7 +23,7 @@ def step(name, seconds, **metrics):
 # A plate of 3 × 4 points: 12 = 2 · 12 − 2 · 1 − 10 triangles; one point is left over.
 REPORT = {
     "steps": [
-        {"seconds": 99.0, "facts": {"points": 130.0}},
+        {"seconds": 99.0, "properties": {"points": 130.0}},
         step("voxel-thin", 0.5, bin_size=2.0, kept=13.0),
         step("region-grow", 0.25, unused_points=1.0, holes=7.0),
         step("features", 0.125, holes=0.0, boundaries=1.0, creases=0.0),

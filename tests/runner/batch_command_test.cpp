@@ -73,9 +73,9 @@ TEST_F(Batch, ChangedParameter_RunsTheStepsBelowIt_AndSaysWhyBeforehand) {
     write_batch("scans/*.xyz");
     ASSERT_EQ(run_batch({"--keep", "always"}).exit_code, 0);
     write_workflow("5");
-    const std::string foreseen = run_batch({"--dry-run"}).out;
-    EXPECT_THAT(foreseen, AllOf(HasSubstr("will run because factor changed 3 → 5 since run 1"),
-                                HasSubstr("2 to compute, 4 cached")));
+    const std::string predicted = run_batch({"--dry-run"}).out;
+    EXPECT_THAT(predicted, AllOf(HasSubstr("will run because factor changed 3 → 5 since run 1"),
+                                 HasSubstr("2 to compute, 4 cached")));
     ASSERT_EQ(run_batch({"--keep", "always"}).exit_code, 0);
     const Json run = recorded(2);
     for (const Json& step : run["steps"]) {

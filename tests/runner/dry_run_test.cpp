@@ -15,7 +15,7 @@ class DryRun : public Batch {
 protected:
     DryRun() { write_workflow("1"); }
     void make_pipe(const std::string& name) { EXPECT_EQ(::mkfifo((folder_ / name).c_str(), 0600), 0); }
-    std::string said_of(const std::string& scan, std::vector<std::string> more = {}) {
+    std::string path_prefix(const std::string& scan, std::vector<std::string> more = {}) {
         more.insert(more.begin(), {"run", "w.yaml", scan, "-o", "out", "--dry-run"});
         const ProgramResult result = scanmill(more);
         EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -25,10 +25,11 @@ protected:
 
 TEST_F(DryRun, ScanThatIsNoFile_SaysWhatItIsAndWhatCanBeDone) {
     make_pipe("pipe.ply");
-    EXPECT_THAT(said_of("pipe.ply"), AllOf(HasSubstr("'pipe.ply' is a pipe"), HasSubstr("; copy what it gives into")));
-    EXPECT_THAT(said_of("/dev/null"), HasSubstr("'/dev/null' is a device"));
-    EXPECT_THAT(said_of("."), AllOf(HasSubstr("'.' is a folder"), HasSubstr("by a pattern as DIR/*.ply")));
-    EXPECT_THAT(said_of("absent.ply"), HasSubstr("'absent.ply': there is no such file"));
+    EXPECT_THAT(path_prefix("pipe.ply"),
+                AllOf(HasSubstr("'pipe.ply' is a pipe"), HasSubstr("; copy what it gives into")));
+    EXPECT_THAT(path_prefix("/dev/null"), HasSubstr("'/dev/null' is a device"));
+    EXPECT_THAT(path_prefix("."), AllOf(HasSubstr("'.' is a folder"), HasSubstr("by a pattern as DIR/*.ply")));
+    EXPECT_THAT(path_prefix("absent.ply"), HasSubstr("'absent.ply': there is no such file"));
 }
 
 TEST_F(DryRun, BatchOverAPipe_SaysSoWhereItStands) {
@@ -52,17 +53,17 @@ TEST_F(DryRun, ValueThatIsNotKept_HasTheReasonThatWasAskedFor) {
     write_scans("a", 1);
     const std::string scan = "scans/a_01.xyz";
     ASSERT_EQ(scanmill({"run", "w.yaml", scan, "-o", "out", "--keep", "never"}).exit_code, 0);
-    EXPECT_THAT(said_of(scan), HasSubstr("its 'points' is not in the cache: the run that made it did not keep it"));
+    EXPECT_THAT(path_prefix(scan), HasSubstr("its 'points' is not in the cache: the run that made it did not keep it"));
     EXPECT_THAT(
-        said_of(scan, {"--keep", "never"}),
+        path_prefix(scan, {"--keep", "never"}),
         AllOf(HasSubstr("will run because its 'points' is not in the cache, and with --keep never none is kept"),
               Not(HasSubstr("quick"))));
 }
 
 TEST_F(DryRun, OneOfAThing_IsNamedAsOne) {
     write_scans("a", 2);
-    EXPECT_THAT(said_of("scans/a_01.xyz"), HasSubstr(" cached, 1 cell\n"));
-    EXPECT_THAT(said_of("scans/a_01.xyz", {"scans/a_02.xyz"}), HasSubstr(" cached, 2 cells\n"));
+    EXPECT_THAT(path_prefix("scans/a_01.xyz"), HasSubstr(" cached, 1 cell\n"));
+    EXPECT_THAT(path_prefix("scans/a_01.xyz", {"scans/a_02.xyz"}), HasSubstr(" cached, 2 cells\n"));
     EXPECT_THAT(scanmill({"check", "w.yaml", "--plan"}).out, HasSubstr("w: 2 steps, 1 variant\n"));
     folder_.write("w.yaml", "scanmill: 1\nname: w\nsteps: [{test-step: {factor: {sweep: [1, 2]}}}]\n");
     EXPECT_THAT(scanmill({"check", "w.yaml", "--plan"}).out, HasSubstr("w: 2 steps, 2 variants\n"));

@@ -113,7 +113,7 @@ TEST_F(MergeCommand, BunnysTenViews_AreOneCloud) {
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     const json report = json::parse(ran.out);
     ASSERT_EQ(report.at("cells").size(), 1u);
-    EXPECT_EQ(report.at("cells").at(0).at("outputs").at(0).at("facts").at("points"), 362272);
+    EXPECT_EQ(report.at("cells").at(0).at("outputs").at(0).at("properties").at("points"), 362272);
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST(RunCommand, RunJson_IsJsonWithKeysMetricsAndFiles) {
     ASSERT_EQ(report.at("cells").size(), 1u);
     const json& cell = report.at("cells").at(0);
     EXPECT_EQ(cell.at("outcome"), "done");
-    EXPECT_EQ(cell.at("outputs").at(0).at("facts").at("closed"), true);
+    EXPECT_EQ(cell.at("outputs").at(0).at("properties").at("closed"), true);
     for (const json& step : report.at("steps")) EXPECT_EQ(step.at("key").get<std::string>().size(), 32u);
 }
 
@@ -200,10 +200,10 @@ TEST(RunCommand, RealScan_ThroughTheQuickstart) {
     const ProgramResult ran =
         scanmill_program({"run", quickstart(), kitten.string(), "--json", "-o", "out"}, {.folder = folder.path()});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
-    const json facts = json::parse(ran.out).at("cells").at(0).at("outputs").at(0).at("facts");
-    EXPECT_EQ(facts.at("closed"), true);
-    EXPECT_EQ(facts.at("genus"), 1);
-    EXPECT_EQ(facts.at("components"), 1);
+    const json properties = json::parse(ran.out).at("cells").at(0).at("outputs").at(0).at("properties");
+    EXPECT_EQ(properties.at("closed"), true);
+    EXPECT_EQ(properties.at("genus"), 1);
+    EXPECT_EQ(properties.at("components"), 1);
 }
 
 }  // namespace

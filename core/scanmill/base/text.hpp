@@ -16,7 +16,7 @@ inline std::string_view by_count(std::uint64_t count, std::string_view singular,
 }
 
 /// The count and its word.
-inline std::string counted(std::uint64_t count, std::string_view singular, std::string_view plural) {
+inline std::string count_text(std::uint64_t count, std::string_view singular, std::string_view plural) {
     return std::to_string(count).append(" ").append(by_count(count, singular, plural));
 }
 

@@ -101,7 +101,7 @@ bool Column::operator==(const Column& other) const {
 void ColumnTable::add(Column column) {
     if (find(column.name())) throw Error("two columns are called '{}'; names must differ", column.name());
     if (!columns_.empty() && columns_.front().rows() != column.rows())
-        throw Error("column '{}' has {}, the others have {}", column.name(), counted(column.rows(), "row", "rows"),
+        throw Error("column '{}' has {}, the others have {}", column.name(), count_text(column.rows(), "row", "rows"),
                     columns_.front().rows());
     columns_.push_back(std::move(column));
 }

@@ -13,7 +13,7 @@ constexpr u32 unused = ~u32(0);
 void require_rows(const ColumnTable& columns, std::size_t rows, std::string_view element) {
     for (const Column& column : columns)
         if (column.rows() != rows)
-            throw Error("column '{}' has {} for {} {}", column.name(), counted(column.rows(), "row", "rows"), rows,
+            throw Error("column '{}' has {} for {} {}", column.name(), count_text(column.rows(), "row", "rows"), rows,
                         element);
 }
 

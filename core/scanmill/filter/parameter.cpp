@@ -188,7 +188,7 @@ ParameterValue parse(const ParameterSpec& spec, const WrittenParameter& written)
     };
     if (!spec.list) return item(written.items.front());
     if (spec.size && written.items.size() != *spec.size)
-        throw Error("has {}; expected {}", counted(written.items.size(), "value", "values"), expectation(spec));
+        throw Error("has {}; expected {}", count_text(written.items.size(), "value", "values"), expectation(spec));
     std::vector<ParameterScalar> values;
     for (const std::string& text : written.items) values.push_back(item(text));
     return values;

@@ -82,7 +82,7 @@ std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path,
     if (!mesh)
         throw Error("'{}': points are needed; the file contains {}", path.string(), name_of(loaded.value.kind()));
     warn(options.on_warning, "'{}': points were asked for; {} left out", path.string(),
-         counted(mesh->triangles.size(), "triangle was", "triangles were"));
+         count_text(mesh->triangles.size(), "triangle was", "triangles were"));
     return std::make_shared<const PointCloud>(points_of(*mesh));
 }
 
@@ -93,7 +93,7 @@ std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path,
     if (!points)
         throw Error("'{}': a mesh is needed; the file contains {}", path.string(), name_of(loaded.value.kind()));
     throw Error("'{}': a mesh is needed; the file holds {} and not a single face", path.string(),
-                counted(points->size(), "point", "points"))
+                count_text(points->size(), "point", "points"))
         .hint("make a surface of the points first, by a workflow of filters that lead from points to a mesh");
 }
 

@@ -57,17 +57,17 @@ MappedFile::MappedFile(const std::filesystem::path& path, bool whole) {
     // Without O_NONBLOCK, opening a named pipe would wait for its writer forever.
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
     if (file.number < 0) throw_unopened(errno);
-    struct stat facts;
-    if (::fstat(file.number, &facts) != 0) throw_unopened(errno);
-    if (S_ISDIR(facts.st_mode))
+    struct stat status;
+    if (::fstat(file.number, &status) != 0) throw_unopened(errno);
+    if (S_ISDIR(status.st_mode))
         throw Error("is a folder, not a file").hint("name one scan, or use a pattern as DIR/*.ply");
-    if (!S_ISREG(facts.st_mode)) throw_irregular();
-    if (facts.st_size == 0) throw Error("is empty (0 bytes)");
-    size_ = static_cast<std::size_t>(facts.st_size);
+    if (!S_ISREG(status.st_mode)) throw_irregular();
+    if (status.st_size == 0) throw Error("is empty (0 bytes)");
+    size_ = static_cast<std::size_t>(status.st_size);
     // One call that maps all pages beats a fault for every few of them.
     data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE | (whole ? MAP_POPULATE : 0), file.number, 0);
     if (data_ == MAP_FAILED)
-        throw Error("its {} cannot be mapped: {}", counted(size_, "byte", "bytes"),
+        throw Error("its {} cannot be mapped: {}", count_text(size_, "byte", "bytes"),
                     std::generic_category().message(errno));
 }
 

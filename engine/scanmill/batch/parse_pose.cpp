@@ -25,7 +25,7 @@ bool read_numbers(const YamlNode& node, std::span<double> values, std::string_vi
     if (!require_list(node, expected, diagnostics)) return false;
     if (node.items.size() != values.size()) {
         diagnostics.error(node.position, fmt::format("a list of {}; expected {}",
-                                                     counted(node.items.size(), "value", "values"), expected));
+                                                     count_text(node.items.size(), "value", "values"), expected));
         return false;
     }
     bool sound = true;
@@ -53,7 +53,7 @@ auto or_report(Position position, Diagnostics& diagnostics, Make&& make) -> std:
 std::optional<RigidTransform> from_matrix(const YamlNode& node, Diagnostics& diagnostics) {
     if (node.items.size() != 4) {
         diagnostics.error(node.position, fmt::format("a matrix of {}; expected 4 rows of 4 numbers",
-                                                     counted(node.items.size(), "row", "rows")));
+                                                     count_text(node.items.size(), "row", "rows")));
         return std::nullopt;
     }
     std::array<double, 16> matrix;

@@ -47,11 +47,11 @@ std::vector<CachedFile> files_of(const fs::path& folder, std::string_view kind) 
     std::error_code gone;  // others may remove what is listed
     for (fs::recursive_directory_iterator entry(folder / layout / kind, gone), end; !gone && entry != end;
          entry.increment(gone)) {
-        struct stat facts;
-        if (::stat(entry->path().c_str(), &facts) != 0 || !S_ISREG(facts.st_mode)) continue;
-        const std::int64_t used = std::int64_t(facts.st_mtim.tv_sec) * 1'000'000'000 + facts.st_mtim.tv_nsec;
+        struct stat properties;
+        if (::stat(entry->path().c_str(), &properties) != 0 || !S_ISREG(properties.st_mode)) continue;
+        const std::int64_t used = std::int64_t(properties.st_mtim.tv_sec) * 1'000'000'000 + properties.st_mtim.tv_nsec;
         if (is_in_the_making(entry->path(), used)) continue;
-        files.push_back({entry->path(), static_cast<u64>(facts.st_size), used});
+        files.push_back({entry->path(), static_cast<u64>(properties.st_size), used});
     }
     return files;
 }
@@ -174,13 +174,13 @@ bool Cache::keep_value(const EncodedValue& value) {
 }
 
 std::string Cache::file_hash(const fs::path& file) {
-    struct stat facts;
+    struct stat properties;
     std::error_code unknown;
     const fs::path whole = fs::absolute(file, unknown);
-    if (unknown || ::stat(whole.c_str(), &facts) != 0) return content_hash(file);  // says what is wrong
-    const std::string description =
-        fmt::format("{} {} {} {}.{:09} {}.{:09}", facts.st_dev, facts.st_ino, facts.st_size, facts.st_mtim.tv_sec,
-                    facts.st_mtim.tv_nsec, facts.st_ctim.tv_sec, facts.st_ctim.tv_nsec);
+    if (unknown || ::stat(whole.c_str(), &properties) != 0) return content_hash(file);  // says what is wrong
+    const std::string description = fmt::format(
+        "{} {} {} {}.{:09} {}.{:09}", properties.st_dev, properties.st_ino, properties.st_size,
+        properties.st_mtim.tv_sec, properties.st_mtim.tv_nsec, properties.st_ctim.tv_sec, properties.st_ctim.tv_nsec);
     const std::string name = KeyBuilder().field("file", whole.string()).key();
     const auto memo = read(
         "files", name, [](const fs::path& of) { return read_checked(of, "file"); }, false);
@@ -189,7 +189,7 @@ std::string Cache::file_hash(const fs::path& file) {
         struct stat written;
         constexpr time_t settled = 2;
         if (::stat(place("files", name).c_str(), &written) == 0 &&
-            written.st_mtim.tv_sec - std::max(facts.st_mtim.tv_sec, facts.st_ctim.tv_sec) > settled)
+            written.st_mtim.tv_sec - std::max(properties.st_mtim.tv_sec, properties.st_ctim.tv_sec) > settled)
             return memo->substr(description.size() + 1);
     }
     std::string hash = content_hash(file);

@@ -22,7 +22,7 @@ public:
           policy_(policy),
           nodes_(graph.nodes.size()) {}
 
-    std::vector<NodeForesight> see() {
+    std::vector<NodePrediction> see() {
         for (const RunCell& cell : graph_.cells)
             for (const RunOutput& output : cell.outputs) nodes_[output.node].needed.insert(output.port);
         // A node's inputs stand before it: from the end, everybody who needs its values has spoken.
@@ -33,7 +33,7 @@ public:
 private:
     void look_at(std::size_t index) {
         const RunNode& node = graph_.nodes[index];
-        NodeForesight& seen = nodes_[index];
+        NodePrediction& seen = nodes_[index];
         const PlannedStep* step = graph_.step(node);
         if (step && !step->expectations.empty()) seen.needed.insert(step->spec.outputs.front().name);
         if (cache_ && !node.is_uncacheable) seen.known = remembered(*cache_, node.key);
@@ -82,12 +82,12 @@ private:
     const RunGraph& graph_;
     const Cache* cache_;
     KeepRule::Policy policy_;
-    std::vector<NodeForesight> nodes_;
+    std::vector<NodePrediction> nodes_;
 };
 
 }  // namespace
 
-std::vector<NodeForesight> foresee(const RunGraph& graph, const Cache* cache, KeepRule::Policy policy) {
+std::vector<NodePrediction> predict(const RunGraph& graph, const Cache* cache, KeepRule::Policy policy) {
     return Seer(graph, cache, policy).see();
 }
 

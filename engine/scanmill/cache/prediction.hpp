@@ -13,7 +13,7 @@
 
 namespace scanmill {
 
-struct NodeForesight {
+struct NodePrediction {
     std::optional<StepResult> known;  ///< what the cache remembers of the node, under its plan key
     bool will_run = true;
     std::string why;  ///< it will run, as a part of a sentence; empty for a node that will not
@@ -23,7 +23,7 @@ struct NodeForesight {
 /// For every node of the graph. Nothing is remembered without a cache. A node runs when the cache does not know it, or
 /// when a value of it is needed that was not kept: by an output to be written, an expectation, or a step that runs.
 /// `policy` is what this run keeps: where a value is missing, the reason depends on it.
-std::vector<NodeForesight> foresee(const RunGraph& graph, const Cache* cache,
-                                   KeepRule::Policy policy = KeepRule::Policy::worth);
+std::vector<NodePrediction> predict(const RunGraph& graph, const Cache* cache,
+                                    KeepRule::Policy policy = KeepRule::Policy::worth);
 
 }  // namespace scanmill

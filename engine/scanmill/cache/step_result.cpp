@@ -19,8 +19,9 @@ const ResultOutput* StepResult::output(std::string_view port) const {
 }
 
 std::string to_bytes(const StepResult& result) {
-    Json json{{"metrics", rows_of(result.metrics)}, {"facts", rows_of(result.facts)}, {"warnings", result.warnings},
-              {"seconds", result.seconds},          {"outputs", Json::array()},       {"resolved", Json::array()}};
+    Json json{{"metrics", rows_of(result.metrics)}, {"properties", rows_of(result.properties)},
+              {"warnings", result.warnings},        {"seconds", result.seconds},
+              {"outputs", Json::array()},           {"resolved", Json::array()}};
     for (const ResultOutput& output : result.outputs)
         json["outputs"].push_back({output.port, output.kind.name(), output.content, output.bytes});
     for (const auto& [name, value] : result.resolved) json["resolved"].push_back({name, value.items, value.list});
@@ -33,7 +34,7 @@ StepResult step_result_from(std::string_view bytes) try {
     const Json json = Json::from_cbor(bytes);
     StepResult result;
     result.metrics = metrics_from(json.at("metrics"));
-    result.facts = metrics_from(json.at("facts"));
+    result.properties = metrics_from(json.at("properties"));
     result.warnings = json.at("warnings").get<std::vector<std::string>>();
     result.seconds = json.at("seconds").get<double>();
     for (const Json& row : json.at("outputs")) {

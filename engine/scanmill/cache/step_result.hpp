@@ -46,7 +46,7 @@ struct StepResult {
     /// Parameters as the filter got them, lengths in the scan's unit.
     std::vector<std::pair<std::string, WrittenParameter>> resolved;
     Metrics metrics;
-    Metrics facts;  ///< of the primary output; empty when nobody asked for them
+    Metrics properties;  ///< of the primary output; empty when nobody asked for them
     std::vector<std::string> warnings;
     double seconds = 0;  ///< that the filter took
 

@@ -132,7 +132,7 @@ private:
             if (!argument) continue;  // an unknown parameter, or one whose text was wrong
             const bool is_told =
                 !written.literal.list && name_parts_.size() > told;  // by the name of what it stands for
-            if (parameter.value.sweep && !is_told) tell_swept(step, parameter.name, argument->value);
+            if (parameter.value.sweep && !is_told) warn_swept(step, parameter.name, argument->value);
             all.push_back(std::move(*argument));
         }
         return all;
@@ -165,12 +165,12 @@ private:
         const WrittenValue* chosen = &values[choices_.choose(&values, values.size())];
         if (values.size() > 1) {
             bound_.emplace(name, chosen);
-            tell_swept(step, name, chosen->literal);
+            warn_swept(step, name, chosen->literal);
         }
         return chosen;
     }
 
-    void tell_swept(const StepSyntax& step, const std::string& name, const WrittenParameter& value) {
+    void warn_swept(const StepSyntax& step, const std::string& name, const WrittenParameter& value) {
         // A second sweep of the same name tells whose it is.
         const std::string label = swept_.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
         swept_.insert(name);

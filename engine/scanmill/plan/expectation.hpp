@@ -12,7 +12,7 @@ namespace scanmill {
 std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec,
                                                    Diagnostics& diagnostics);
 
-/// What `expect` may ask for: the filter's metrics, and the facts about its primary output.
+/// What `expect` may ask for: the filter's metrics, and the properties about its primary output.
 std::vector<MetricSpec> expectable(const FilterSpec& spec);
 
 /// How a number of this unit is written in a workflow; of areas and volumes, before the unit is raised to its power.

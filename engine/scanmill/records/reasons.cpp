@@ -18,16 +18,16 @@ std::string value_in(const Texts& texts, const std::string& name) {
 
 class Explainer {
 public:
-    Explainer(std::vector<NodeForesight>& foresight, FilterLibrary& library, const RunGraph& graph,
+    Explainer(std::vector<NodePrediction>& prediction, FilterLibrary& library, const RunGraph& graph,
               const RunRecords& records)
-        : foresight_(foresight),
+        : prediction_(prediction),
           library_(library),
           graph_(graph),
           records_(records) {}
 
     void explain_all() {
         for (std::size_t index = 0; index < graph_.nodes.size(); ++index) {
-            NodeForesight& seen = foresight_[index];
+            NodePrediction& seen = prediction_[index];
             if (!seen.will_run || seen.known) continue;
             if (std::string why = reason(index); !why.empty()) seen.why = std::move(why);
         }
@@ -77,7 +77,7 @@ private:
                                             now.empty() ? "nothing" : now));
         if (past.seed != graph_.seed) found.push_back(fmt::format("the seed changed {} → {}", past.seed, graph_.seed));
         for (const NodeInput& input : node.inputs)
-            if (!foresight_[input.node].known) {
+            if (!prediction_[input.node].known) {
                 const RunNode& from = graph_.nodes[input.node];
                 found.push_back(from.step ? fmt::format("what '{}' gives may change", graph_.label(from))
                                           : std::string("the scan changed"));
@@ -85,7 +85,7 @@ private:
         return found;
     }
 
-    std::vector<NodeForesight>& foresight_;
+    std::vector<NodePrediction>& prediction_;
     FilterLibrary& library_;
     const RunGraph& graph_;
     const RunRecords& records_;
@@ -93,9 +93,9 @@ private:
 
 }  // namespace
 
-void explain(std::vector<NodeForesight>& foresight, FilterLibrary& library, const RunGraph& graph,
+void explain(std::vector<NodePrediction>& prediction, FilterLibrary& library, const RunGraph& graph,
              const RunRecords& records) {
-    Explainer(foresight, library, graph, records).explain_all();
+    Explainer(prediction, library, graph, records).explain_all();
 }
 
 }  // namespace scanmill

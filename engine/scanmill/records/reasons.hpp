@@ -10,7 +10,7 @@ namespace scanmill {
 /// Replaces "it has not run like this" by what differs from the step of the same name on the same scan in the newest
 /// run of the workflow that has one: parameters with both values, the filter's version or build, the seed, the scan's
 /// content, what an earlier step gives. Where variants have several such steps, the one that differs least counts.
-void explain(std::vector<NodeForesight>& foresight, FilterLibrary& library, const RunGraph& graph,
+void explain(std::vector<NodePrediction>& prediction, FilterLibrary& library, const RunGraph& graph,
              const RunRecords& records);
 
 }  // namespace scanmill

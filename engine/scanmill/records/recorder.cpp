@@ -61,7 +61,7 @@ void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
     step.log = report.effort.log;
     step.resolved = texts_of(report.resolved);
     step.metrics = report.metrics;
-    step.facts = report.facts;
+    step.properties = report.properties;
     step.warnings = report.warnings;
     steps_.push_back(std::move(step));
     flush_when_due();
@@ -78,7 +78,7 @@ void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
     record.nodes = cell.nodes;
     for (const OutputReport& output : report.outputs)
         record.outputs.push_back({output.file.string(), std::string(name_of(output.kind)),
-                                  std::string(name_of(output.outcome)), output.facts});
+                                  std::string(name_of(output.outcome)), output.properties});
     cells_.push_back(std::move(record));
     flush_when_due();
 }

@@ -177,9 +177,9 @@ void RunRecords::insert(std::int64_t run, const std::vector<StepRecord>& steps, 
         run_row(step_row);
         const std::int64_t id = sqlite.getLastInsertRowid();
         database_->step_ids[{run, step.node}] = id;
-        for (const Metrics* metrics : {&step.metrics, &step.facts})
+        for (const Metrics* metrics : {&step.metrics, &step.properties})
             for (const Metric& metric : metrics->values) {
-                SQLite::bind(metric_row, id, metrics == &step.facts ? 1 : 0, metric.name);
+                SQLite::bind(metric_row, id, metrics == &step.properties ? 1 : 0, metric.name);
                 bind(metric_row, 4, metric.value);
                 metric_row.bind(5, std::string(name_of(metric.unit)));
                 run_row(metric_row);
@@ -214,7 +214,7 @@ void RunRecords::insert(std::int64_t run, const std::vector<StepRecord>& steps, 
             SQLite::bind(output_row, id, output.file, output.kind, output.outcome);
             run_row(output_row);
             const std::int64_t output_id = sqlite.getLastInsertRowid();
-            for (const Metric& fact : output.facts.values) {
+            for (const Metric& fact : output.properties.values) {
                 SQLite::bind(fact_row, output_id, fact.name);
                 bind(fact_row, 3, fact.value);
                 fact_row.bind(4, std::string(name_of(fact.unit)));
@@ -349,7 +349,8 @@ RunDetails RunRecords::run(std::int64_t id) const {
             step.attempts = static_cast<unsigned>(steps.getColumn(21).getInt64());
             metrics.bind(1, steps.getColumn(0).getInt64());
             while (metrics.executeStep())
-                (metrics.getColumn(0).getInt() ? step.facts : step.metrics).values.push_back(metric_from(metrics, 1));
+                (metrics.getColumn(0).getInt() ? step.properties : step.metrics)
+                    .values.push_back(metric_from(metrics, 1));
             metrics.reset();
             warnings.bind(1, steps.getColumn(0).getInt64());
             while (warnings.executeStep()) step.warnings.push_back(warnings.getColumn(0).getString());
@@ -368,7 +369,8 @@ RunDetails RunRecords::run(std::int64_t id) const {
                                 "SELECT node FROM cell_step JOIN step ON step.id = cell_step.step WHERE cell = ? "
                                 "ORDER BY cell_step.rowid");
         SQLite::Statement outputs(sqlite, "SELECT id, file, kind, outcome FROM output WHERE cell = ? ORDER BY id");
-        SQLite::Statement facts(sqlite, "SELECT name, value, unit FROM output_fact WHERE output = ? ORDER BY rowid");
+        SQLite::Statement properties(sqlite,
+                                     "SELECT name, value, unit FROM output_fact WHERE output = ? ORDER BY rowid");
         cells.bind(1, id);
         while (cells.executeStep()) {
             CellRecord cell{
@@ -389,9 +391,9 @@ RunDetails RunRecords::run(std::int64_t id) const {
                                     outputs.getColumn(2).getString(),
                                     outputs.getColumn(3).getString(),
                                     {}};
-                facts.bind(1, outputs.getColumn(0).getInt64());
-                while (facts.executeStep()) output.facts.values.push_back(metric_from(facts, 0));
-                facts.reset();
+                properties.bind(1, outputs.getColumn(0).getInt64());
+                while (properties.executeStep()) output.properties.values.push_back(metric_from(properties, 0));
+                properties.reset();
                 cell.outputs.push_back(std::move(output));
             }
             outputs.reset();

@@ -43,13 +43,13 @@ struct StepRecord {
     unsigned threads = 0, attempts = 0;
     std::vector<std::string> log;  ///< the last lines that it wrote to standard output and error
     std::vector<std::pair<std::string, std::string>> authored, resolved;  ///< parameters, as text
-    Metrics metrics, facts;
+    Metrics metrics, properties;
     std::vector<std::string> warnings;
 };
 
 struct OutputRecord {
     std::string file, kind, outcome;
-    Metrics facts;
+    Metrics properties;
 };
 
 struct CellRecord {

@@ -26,7 +26,7 @@ struct RunSettings {
     /// Values that several steps wait for are kept whatever that costs: other workers can then help out, and a crash
     /// in one step takes nothing from the others.
     bool shares_values = false;
-    std::vector<NodeForesight> foresight = {};  ///< when it is known already
+    std::vector<NodePrediction> prediction = {};  ///< when it is known already
 };
 
 /// Told of what happens while it happens. Every call comes from the running thread, but progress and warnings of a

@@ -46,7 +46,7 @@ Scheduler::Scheduler(FilterLibrary& library, const RunGraph& graph, Workers& wor
       workers_(workers),
       settings_(settings),
       observer_(observer),
-      foresight_(settings.foresight.empty() ? foresee(graph, settings.cache) : settings.foresight),
+      prediction_(settings.prediction.empty() ? predict(graph, settings.cache) : settings.prediction),
       nodes_(graph.nodes.size()),
       cells_(graph.cells.size()),
       writes_of_cell_(graph.cells.size()),
@@ -102,7 +102,7 @@ void Scheduler::lay_out() {
         }
     }
     for (std::size_t node = 0; node < nodes_.size(); ++node) {
-        if (!foresight_[node].will_run) nodes_[node].kept = foresight_[node].needed;
+        if (!prediction_[node].will_run) nodes_[node].kept = prediction_[node].needed;
         to_consider_.push_back({node});
     }
     for (std::size_t write = 0; write < writes_.size(); ++write)
@@ -119,14 +119,14 @@ void Scheduler::lay_out() {
 /// The node's result is known, and only what it is expected to be has to be asked.
 bool Scheduler::only_expects(std::size_t node) const {
     const PlannedStep* step = graph_.step(graph_.nodes[node]);
-    return !foresight_[node].will_run && step && !step->expectations.empty();
+    return !prediction_[node].will_run && step && !step->expectations.empty();
 }
 
 std::vector<Scheduler::Source> Scheduler::sources(const Task& task) const {
     if (task.write > 0) return {writes_[task.write - 1].source};
     std::vector<Source> all;
     const RunNode& node = graph_.nodes[task.node];
-    if (foresight_[task.node].will_run)
+    if (prediction_[task.node].will_run)
         for (const NodeInput& input : node.inputs) all.push_back({input.node, input.from});
     else if (only_expects(task.node))
         all.push_back({task.node, graph_.step(node)->spec.outputs.front().name});
@@ -161,7 +161,7 @@ void Scheduler::consider(const Task& task) {
             return;
         }
     }
-    if (task.write == 0 && !foresight_[task.node].will_run && !only_expects(task.node)) return adopt(task.node);
+    if (task.write == 0 && !prediction_[task.node].will_run && !only_expects(task.node)) return adopt(task.node);
     const std::size_t index = nodes_[task.node].component;
     components_[index].ready.insert(task);
     if (!components_[index].home) fresh_.insert(index);
@@ -177,7 +177,7 @@ void Scheduler::adopt(std::size_t index) {
     NodeReport report;
     report.origin = Origin::cached;
     report.outcome = Outcome::done;
-    scanmill::adopt(*foresight_[index].known, graph_.step(node), node.step ? "" : said_of(node.leaf.file), report);
+    scanmill::adopt(*prediction_[index].known, graph_.step(node), node.step ? "" : path_prefix(node.leaf.file), report);
     for (const std::string& warning : report.warnings) observer_.node_warning(node, warning);
     JobReport done;
     done.outcome = Outcome::done;
@@ -264,7 +264,7 @@ bool Scheduler::may_help(const Task& task) const {
 /// Steps of different nodes that do the same on equal inputs: the second takes what the first made.
 std::string Scheduler::twin_key(const Task& task) const {
     const RunNode& node = graph_.nodes[task.node];
-    if (task.write > 0 || !node.step || !foresight_[task.node].will_run || !settings_.cache || node.is_uncacheable)
+    if (task.write > 0 || !node.step || !prediction_[task.node].will_run || !settings_.cache || node.is_uncacheable)
         return {};
     const PlannedStep& step = *graph_.step(node);
     return work_key(step, node.code, step.parameters, inputs_of(node));
@@ -328,7 +328,7 @@ JobInput Scheduler::input_from(const Source& source, const std::string& port) co
     JobInput input{port, source.node, source.port, {}, {}};
     const RunNode& node = graph_.nodes[source.node];
     if (!node.step) input.leaf = node.leaf;
-    if (const std::optional<StepResult>& known = foresight_[source.node].known)
+    if (const std::optional<StepResult>& known = prediction_[source.node].known)
         if (const ResultOutput* output = known->output(source.port)) input.content = output->content;
     return input;
 }
@@ -346,7 +346,7 @@ JobMemory Scheduler::memory_of(std::size_t index, std::size_t worker) const {
     memory.is_used = settings_.cache && !node.is_uncacheable;
     memory.plan_key = node.key;
     memory.code = node.code;
-    memory.needed.assign(foresight_[index].needed.begin(), foresight_[index].needed.end());
+    memory.needed.assign(prediction_[index].needed.begin(), prediction_[index].needed.end());
     const bool is_away = components_[state.component].home != worker;
     memory.keep_always = settings_.shares_values && (is_away || state.uses_left > 1);
     for (const NodeInput& input : node.inputs) memory.inputs_cost += nodes_[input.node].cost;
@@ -388,9 +388,9 @@ Job Scheduler::job(const Task& task, std::size_t worker) const {
     }
     const PlannedStep& planned = *graph_.step(node);
     job.frames = {frame_of(task.node), on_scan};
-    if (!foresight_[task.node].will_run) {
+    if (!prediction_[task.node].will_run) {
         const std::string& primary = planned.spec.outputs.front().name;
-        job.work = ExpectWork{step(), foresight_[task.node].known->metrics, input_from({task.node, primary}, primary)};
+        job.work = ExpectWork{step(), prediction_[task.node].known->metrics, input_from({task.node, primary}, primary)};
         return job;
     }
     job.work = StepWork{step(), library_.build_id(planned.spec.name), inputs_of(node), node.parameter_files,
@@ -441,10 +441,10 @@ void Scheduler::ended(std::size_t worker, JobReport report, bool lost_values) {
     if (task.write > 0) {
         finish_write(task, std::move(report));
     } else {
-        if (foresight_[task.node].will_run && !lost_values) here.holds.insert(task.node);
+        if (prediction_[task.node].will_run && !lost_values) here.holds.insert(task.node);
         const bool is_away = components_[component].home != worker;
         finish_node(task.node, std::move(report));
-        const std::set<std::string>& needed = foresight_[task.node].needed;
+        const std::set<std::string>& needed = prediction_[task.node].needed;
         // Values that cannot be kept do not get home: helping would mean doing things twice. A streamed scan never is
         // kept, for whoever needs it opens its file.
         if (is_away && nodes_[task.node].state == State::done && !graph_.nodes[task.node].leaf.is_streamed &&
@@ -466,7 +466,7 @@ void Scheduler::leave(std::size_t worker) {
 void Scheduler::finish_node(std::size_t index, JobReport done) {
     const RunNode& node = graph_.nodes[index];
     NodeState& state = nodes_[index];
-    NodeForesight& seen = foresight_[index];
+    NodePrediction& seen = prediction_[index];
     NodeReport& report = report_.nodes[index];
     const Task task{index};
     const std::vector<Source> used = sources(task);
@@ -481,7 +481,7 @@ void Scheduler::finish_node(std::size_t index, JobReport done) {
         report.origin = Origin::cached;
         report.outcome = done.outcome;
         report.failure = std::move(done.node.failure);
-        if (done.outcome == Outcome::done) report.facts = std::move(done.node.facts);
+        if (done.outcome == Outcome::done) report.properties = std::move(done.node.properties);
     }
     if (seen.will_run) {
         report.why = seen.why;
@@ -566,7 +566,7 @@ bool Scheduler::lost_input(const Task& task, std::size_t worker) {
             return true;
         }
         NodeState& from = nodes_[source.node];
-        foresight_[source.node].needed.insert(source.port);
+        prediction_[source.node].needed.insert(source.port);
         if (from.state == State::done)
             make_again(source.node, report_.nodes[source.node].origin == Origin::ran
                                         ? "its value was lost, with the worker that held it or by the cache"
@@ -581,7 +581,7 @@ bool Scheduler::lost_input(const Task& task, std::size_t worker) {
 void Scheduler::ask_no_more(std::size_t index) {
     const std::string primary = graph_.step(graph_.nodes[index])->spec.outputs.front().name;
     release({index, primary});
-    NodeForesight& seen = foresight_[index];
+    NodePrediction& seen = prediction_[index];
     seen.needed.insert(primary);
     seen.will_run = true;
     seen.why = "the cache has lost its value";
@@ -596,8 +596,8 @@ void Scheduler::make_again(std::size_t index, const std::string& why) {
     node.kept.clear();
     node.failures = 0;
     node.stays_home = true;
-    foresight_[index].will_run = true;
-    foresight_[index].why = why;
+    prediction_[index].will_run = true;
+    prediction_[index].why = why;
     for (const NodeInput& input : graph_.nodes[index].inputs) ++nodes_[input.node].uses_left;
     ++components_[node.component].tasks_left;
     to_consider_.push_back({index});

@@ -136,7 +136,7 @@ private:
     const RunSettings& settings_;
     RunObserver& observer_;
     RunReport report_;
-    std::vector<NodeForesight> foresight_;
+    std::vector<NodePrediction> prediction_;
     std::vector<NodeState> nodes_;
     std::vector<CellState> cells_;
     std::vector<Write> writes_;

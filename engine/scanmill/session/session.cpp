@@ -50,8 +50,8 @@ void remove_incomplete_outputs(const RunGraph& graph) {
 }
 
 std::string processor() {
-    std::ifstream facts("/proc/cpuinfo");
-    for (std::string line; std::getline(facts, line);)
+    std::ifstream properties("/proc/cpuinfo");
+    for (std::string line; std::getline(properties, line);)
         if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(": ") + 2));
     return "unknown processor";
 }
@@ -77,8 +77,8 @@ Session::Session(SessionSettings settings, Cache* cache) : settings_(std::move(s
 
 Session::~Session() = default;
 
-std::vector<NodeForesight> Session::predict(const RunGraph& graph, FilterLibrary& library) const {
-    std::vector<NodeForesight> predictions = foresee(graph, cache_, settings_.keep);
+std::vector<NodePrediction> Session::predict(const RunGraph& graph, FilterLibrary& library) const {
+    std::vector<NodePrediction> predictions = scanmill::predict(graph, cache_, settings_.keep);
     const fs::path records = settings_.output_folder / records_file;
     std::error_code absent;
     if (!cache_ || !fs::exists(records, absent)) return predictions;
@@ -96,7 +96,7 @@ unsigned Session::jobs(const RunGraph& graph) const {
     return static_cast<unsigned>(std::clamp<u64>(std::min<u64>(graph.cells.size(), held), 1, usable_cores()));
 }
 
-RunReport Session::run(const SessionTask& task, FilterLibrary& library, std::vector<NodeForesight> predictions,
+RunReport Session::run(const SessionTask& task, FilterLibrary& library, std::vector<NodePrediction> predictions,
                        const std::vector<RunObserver*>& observers,
                        const std::function<void(const RunStarted&)>& on_start) {
     require_writable(settings_.output_folder);
@@ -114,7 +114,7 @@ RunReport Session::run(const SessionTask& task, FilterLibrary& library, std::vec
     run_settings.fail_fast = settings_.fail_fast;
     run_settings.cache = cache_;
     run_settings.shares_values = jobs > 0 && cache_ && settings_.keep != KeepRule::Policy::never;
-    run_settings.foresight = std::move(predictions);
+    run_settings.prediction = std::move(predictions);
     run_settings.is_cancelled = settings_.is_cancelled;
     std::unique_ptr<Workers> in_process;
     if (processes_)
@@ -160,7 +160,7 @@ std::string machine_text() {
     ::uname(&system);
     const u64 memory = static_cast<u64>(::sysconf(_SC_PHYS_PAGES)) * static_cast<u64>(::sysconf(_SC_PAGESIZE));
     return fmt::format("{}, {}, {}, {} {} {}", processor(),
-                       counted(std::thread::hardware_concurrency(), "core", "cores"), byte_size_text(memory),
+                       count_text(std::thread::hardware_concurrency(), "core", "cores"), byte_size_text(memory),
                        system.sysname, system.release, system.machine);
 }
 

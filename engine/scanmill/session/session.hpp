@@ -52,14 +52,14 @@ public:
     void on_warning(std::function<void(std::string)> warn) { *warn_ = std::move(warn); }
 
     /// Which nodes will run and why; what changed since the last run into the same folder is taken from its records.
-    std::vector<NodeForesight> predict(const RunGraph& graph, FilterLibrary& library) const;
+    std::vector<NodePrediction> predict(const RunGraph& graph, FilterLibrary& library) const;
 
     /// As set; else as many as there are cells and cores, and as memory allows when each job takes the largest scan.
     unsigned jobs(const RunGraph& graph) const;
 
     /// Runs the graph, records the run, and evicts from the cache what exceeds its limit. Throws Error when results
     /// cannot be written to the output folder. `on_start` is called once, before the first step.
-    RunReport run(const SessionTask& task, FilterLibrary& library, std::vector<NodeForesight> predictions,
+    RunReport run(const SessionTask& task, FilterLibrary& library, std::vector<NodePrediction> predictions,
                   const std::vector<RunObserver*>& observers, const std::function<void(const RunStarted&)>& on_start);
 
 private:

@@ -112,7 +112,7 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
 }
 
 void write_description(const fs::path& file, const std::string& sha256, const std::string& how, const Value& value,
-                       const Metrics& facts) {
+                       const Metrics& properties) {
     Json json = Json::parse(how);
     const std::optional<Frame> frame = frame_of(value);
     json["file"] = {{"name", file.filename().string()},
@@ -121,7 +121,7 @@ void write_description(const fs::path& file, const std::string& sha256, const st
                     {"kind", name_of(kind_of(value))},
                     {"unit", frame && frame->unit != LengthUnit::unknown ? Json(symbol(frame->unit)) : Json()},
                     {"frame", frame && !frame->name.empty() ? Json(frame->name) : Json()},
-                    {"facts", to_json(facts)}};
+                    {"properties", to_json(properties)}};
     AtomicFile description(description_of(file));
     description.write(dumped(json) + "\n");
     description.commit();

@@ -37,8 +37,8 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
                      const std::vector<NodeReport>& reports);
 
 /// Writes the description of a file that was written: `how` (of made_how()), with the file's name, bytes and `sha256`
-/// (of what was written, see Sha256), and the value's unit, frame and facts. Throws Error as AtomicFile.
+/// (of what was written, see Sha256), and the value's unit, frame and properties. Throws Error as AtomicFile.
 void write_description(const std::filesystem::path& file, const std::string& sha256, const std::string& how,
-                       const Value& value, const Metrics& facts);
+                       const Value& value, const Metrics& properties);
 
 }  // namespace scanmill

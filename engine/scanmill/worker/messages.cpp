@@ -250,7 +250,7 @@ Json to_json(const NodeReport& node) {
             {"effort", {node.effort.seconds, node.effort.cpu_seconds, node.effort.peak_memory, node.effort.threads}},
             {"resolved", rows_of(node.resolved)},
             {"metrics", rows_of(node.metrics)},
-            {"facts", rows_of(node.facts)},
+            {"properties", rows_of(node.properties)},
             {"warnings", node.warnings}};
 }
 
@@ -263,7 +263,7 @@ NodeReport node_from(const Json& json, const PlannedStep* step) {
     node.effort = {effort.at(0), effort.at(1), effort.at(2), effort.at(3), {}};
     if (step && !json.at("resolved").empty()) node.resolved = parameters_from(json.at("resolved"), step->spec);
     node.metrics = metrics_from(json.at("metrics"));
-    node.facts = metrics_from(json.at("facts"));
+    node.properties = metrics_from(json.at("properties"));
     node.warnings = json.at("warnings").get<std::vector<std::string>>();
     return node;
 }
@@ -272,13 +272,13 @@ Json to_json(const OutputReport& output) {
     return {{"file", output.file.native()},
             {"outcome", static_cast<int>(output.outcome)},
             {"kind", output.kind.name()},
-            {"facts", rows_of(output.facts)},
+            {"properties", rows_of(output.properties)},
             {"warnings", output.warnings}};
 }
 
 OutputReport output_from(const Json& json) {
     return {json.at("file").get<std::string>(), static_cast<Outcome>(json.at("outcome").get<int>()),
-            kind_from(json.at("kind")), metrics_from(json.at("facts")),
+            kind_from(json.at("kind")), metrics_from(json.at("properties")),
             json.at("warnings").get<std::vector<std::string>>()};
 }
 

@@ -63,7 +63,7 @@ struct NodeReport {
     unsigned attempts = 0;  ///< times that it was begun
     ParameterSet resolved;  ///< as the filter got them: lengths in the scan's unit
     Metrics metrics;        ///< of the filter, in its declared order
-    Metrics facts;  ///< of the primary output, or of the file that was read; only where something asked for them
+    Metrics properties;  ///< of the primary output, or of the file that was read; only where something asked for them
     std::vector<std::string> warnings;
 };
 
@@ -71,7 +71,7 @@ struct OutputReport {
     std::filesystem::path file;
     Outcome outcome = Outcome::skipped;
     Kind kind = kind_of<PointCloud>();
-    Metrics facts;
+    Metrics properties;
     std::vector<std::string> warnings;
 };
 

@@ -26,11 +26,11 @@ namespace {
 constexpr u64 unlimited = std::numeric_limits<u64>::max();
 
 u64 of_machine() {
-    std::ifstream facts("/proc/meminfo");
-    for (std::string name, unit; facts >> name;) {
+    std::ifstream properties("/proc/meminfo");
+    for (std::string name, unit; properties >> name;) {
         u64 amount = 0;
-        facts >> amount;
-        std::getline(facts, unit);
+        properties >> amount;
+        std::getline(properties, unit);
         if (name == "MemAvailable:") return amount * 1024;
     }
     return unlimited;
@@ -182,7 +182,7 @@ ProcessState ProcessState::now() {
 
 std::string ProcessState::changes_since(const ProcessState& before) const {
     if (open_files_ > before.open_files_)
-        return counted(open_files_ - before.open_files_, "more file is open", "more files are open");
+        return count_text(open_files_ - before.open_files_, "more file is open", "more files are open");
     if (open_files_ < before.open_files_) return "files were closed that somebody else had opened";
     if (folder_ != before.folder_) return "the working folder changed";
     if (locale_ != before.locale_) return "the locale changed";

@@ -179,8 +179,8 @@ Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDe
 
 void require_expectations(const PlannedStep& step, const Value& primary, NodeReport& report) {
     if (step.expectations.empty()) return;
-    report.facts = properties_of(primary);
-    Metrics known = report.facts;
+    report.properties = properties_of(primary);
+    Metrics known = report.properties;
     for (const Metric& metric : report.metrics.values) known.set(metric.name, metric.value, metric.unit);
     require_met(step.expectations, known, length_scale(primary));
 }

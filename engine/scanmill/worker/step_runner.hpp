@@ -66,8 +66,8 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
 Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
                  const PointStream& scan, ContextOptions options, const Recall& recall, NodeReport& report);
 
-/// Puts the facts about the step's primary output into the report, when it expects something. Throws Error naming what
-/// outputs and metrics do not meet.
+/// Puts the properties about the step's primary output into the report, when it expects something. Throws Error naming
+/// what outputs and metrics do not meet.
 void require_expectations(const PlannedStep& step, const Value& primary, NodeReport& report);
 
 }  // namespace scanmill

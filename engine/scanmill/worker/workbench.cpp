@@ -165,7 +165,7 @@ void Workbench::check_expectations(const PlannedStep& step, const Value& primary
     } catch (const Error& error) {
         throw Unmet{error};
     }
-    facts_[place] = report.facts;
+    properties_[place] = report.properties;
 }
 
 void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
@@ -182,11 +182,11 @@ void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
     Sha256 hash;
     options.on_bytes = [&](std::string_view bytes) { hash.add(bytes); };
     write_file(work.file, *value, options);
-    const auto known = facts_.find({work.value.node, work.value.from});
-    written.facts = known != facts_.end() ? known->second : properties_of(*value);
+    const auto known = properties_.find({work.value.node, work.value.from});
+    written.properties = known != properties_.end() ? known->second : properties_of(*value);
     constexpr std::size_t longest_name = NAME_MAX;
     if (description_of(work.file).filename().native().size() <= longest_name)
-        write_description(work.file, hash.text(), work.made_how, *value, written.facts);
+        write_description(work.file, hash.text(), work.made_how, *value, written.properties);
     else
         options.on_warning(fmt::format("'{}' has no description: its name would be too long", work.file.string()));
     written.outcome = Outcome::done;
@@ -197,7 +197,7 @@ void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
 namespace {
 
 /// For what is read again: what there is to be said was said when it was read first.
-void said_before(std::string) {}
+void ignore_warning(std::string) {}
 
 }  // namespace
 
@@ -214,9 +214,9 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     Value value = read_leaf(work.leaf, on_warning);
     if (check) check->require();
     if (is_geometric(value.kind()))
-        report.node.facts.set("points", static_cast<double>(positions_of(value).size()), Unit::count);
+        report.node.properties.set("points", static_cast<double>(positions_of(value).size()), Unit::count);
     values_[job.node] = {{"", std::move(value)}};
-    remember(job, work.memory, work.memory.plan_key, said_of(work.leaf.file), seconds_since(start), report);
+    remember(job, work.memory, work.memory.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
 }
 
 /// The scan stays open in place of its value, and is known as the value would be. False when its file must be read as a
@@ -238,7 +238,7 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
     };
     const auto scan = scans_.open(job.node, work.leaf, job.threads, uses_cache(memory), on_warning, look);
     if (!scan) return false;
-    report.node.facts.set("points", static_cast<double>(scan->size()), Unit::count);
+    report.node.properties.set("points", static_cast<double>(scan->size()), Unit::count);
     std::vector<ResultOutput> outputs;
     if (known) {
         outputs = known->outputs;
@@ -250,7 +250,7 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
     report.result.outputs = std::move(outputs);
     for (const ResultOutput& output : report.result.outputs)
         if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
-    remember(job, memory, memory.plan_key, said_of(work.leaf.file), seconds_since(start), report);
+    remember(job, memory, memory.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
     return true;
 }
 
@@ -274,14 +274,14 @@ std::shared_ptr<const PointStream> Workbench::stream_for(const StepWork& work, u
     if (!input.leaf || !input.leaf->is_streamed) return nullptr;
     if (const auto scan = scans_.find(input.node)) return scan;
     if (find(input.node, input.from)) return nullptr;  // its file had to be read as a whole
-    return scans_.open(input.node, *input.leaf, threads, cache_ != nullptr, said_before);
+    return scans_.open(input.node, *input.leaf, threads, cache_ != nullptr, ignore_warning);
 }
 
 std::optional<Value> Workbench::fetch(const JobInput& input, JobReport& report) {
     if (std::optional<Value> value = at_hand(input)) return value;
     std::optional<Value> value;
     if (input.leaf) {
-        value = read_leaf(*input.leaf, said_before);
+        value = read_leaf(*input.leaf, ignore_warning);
         if (cache_) require_unchanged(input.leaf->file, input.leaf->content);
     }
     if (value)
@@ -291,7 +291,7 @@ std::optional<Value> Workbench::fetch(const JobInput& input, JobReport& report) 
     return value;
 }
 
-std::string said_of(const std::filesystem::path& file) { return "'" + file.string() + "': "; }
+std::string path_prefix(const std::filesystem::path& file) { return "'" + file.string() + "': "; }
 
 // What a bench and the cache know from each other: results remembered and recalled, values kept.
 
@@ -319,7 +319,7 @@ std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::stri
 
 /// Hands the result to the cache, and its values where that is worth it.
 void Workbench::remember(const Job& job, const JobMemory& memory, const std::string& run_key,
-                         const std::string& said_of, double seconds, JobReport& report) {
+                         const std::string& path_prefix, double seconds, JobReport& report) {
     if (!uses_cache(memory)) return;
     StepResult& result = report.result;
     const auto* work = std::get_if<StepWork>(&job.work);
@@ -327,10 +327,10 @@ void Workbench::remember(const Job& job, const JobMemory& memory, const std::str
         if (!std::holds_alternative<std::monostate>(value) && !names_files(work->step->spec, name))
             result.resolved.emplace_back(name, written(value));
     result.metrics = report.node.metrics;
-    result.facts = report.node.facts;
+    result.properties = report.node.properties;
     // Equal files of other names share the result: what is said of reading begins with the name.
     for (const std::string& warning : report.node.warnings)
-        result.warnings.push_back(warning.starts_with(said_of) ? warning.substr(said_of.size()) : warning);
+        result.warnings.push_back(warning.starts_with(path_prefix) ? warning.substr(path_prefix.size()) : warning);
     result.seconds = seconds;
     keep_values(job.node, memory, memory.inputs_cost + seconds, report);
     if (cache_->keep_step(run_key, result)) cache_->keep_run_key(memory.plan_key, run_key);
@@ -350,11 +350,11 @@ void Workbench::keep_values(std::size_t node, const JobMemory& memory, double co
     }
 }
 
-void adopt(const StepResult& result, const PlannedStep* step, const std::string& said_of, NodeReport& report) {
+void adopt(const StepResult& result, const PlannedStep* step, const std::string& path_prefix, NodeReport& report) {
     report.metrics = result.metrics;
-    report.facts = result.facts;
+    report.properties = result.properties;
     report.warnings.clear();
-    for (const std::string& warning : result.warnings) report.warnings.push_back(said_of + warning);
+    for (const std::string& warning : result.warnings) report.warnings.push_back(path_prefix + warning);
     if (!step) return;
     report.resolved = {};
     for (const auto& [name, value] : step->parameters.values)

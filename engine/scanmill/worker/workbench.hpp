@@ -36,7 +36,7 @@ public:
     void forget(std::size_t node) {
         values_.erase(node);
         scans_.forget(node);
-        std::erase_if(facts_, [&](const auto& facts) { return facts.first.first == node; });
+        std::erase_if(properties_, [&](const auto& properties) { return properties.first.first == node; });
     }
     bool is_empty() const { return values_.empty() && scans_.empty(); }
 
@@ -65,7 +65,7 @@ private:
     // workbench_memory.cpp
     std::optional<Outputs> recalled(const StepWork& work, const std::string& run_key, const JobListener& listener,
                                     JobReport& report) const;
-    void remember(const Job& job, const JobMemory& memory, const std::string& run_key, const std::string& said_of,
+    void remember(const Job& job, const JobMemory& memory, const std::string& run_key, const std::string& path_prefix,
                   double seconds, JobReport& report);
     void keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report);
 
@@ -75,7 +75,7 @@ private:
     std::filesystem::path scratch_, folder_;
     std::map<std::size_t, std::vector<StepInput>> values_;  // by node
     OpenScans scans_;
-    std::map<Place, Metrics> facts_;  // of values, where they were asked for
+    std::map<Place, Metrics> properties_;  // of values, where they were asked for
 };
 
 /// On a clock that only goes forward.
@@ -83,10 +83,10 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What `step` remembers of a result, in the words of this node: warnings of reading begin with `said_of`.
-void adopt(const StepResult& result, const PlannedStep* step, const std::string& said_of, NodeReport& report);
+/// What `step` remembers of a result, in the words of this node: warnings of reading begin with `path_prefix`.
+void adopt(const StepResult& result, const PlannedStep* step, const std::string& path_prefix, NodeReport& report);
 
 /// How warnings of reading this file begin.
-std::string said_of(const std::filesystem::path& file);
+std::string path_prefix(const std::filesystem::path& file);
 
 }  // namespace scanmill

@@ -109,7 +109,7 @@ void WorkerProcesses::wait(const WorkerListener& listener, std::chrono::millisec
             watched.push_back({descriptor, POLLIN, 0});
     }
     for (std::size_t worker = 0; worker < places_.size(); ++worker)
-        if (places_[worker].is_gone && places_[worker].job) return tell_gone(worker, listener);
+        if (places_[worker].is_gone && places_[worker].job) return report_gone(worker, listener);
     const auto milliseconds = std::chrono::ceil<std::chrono::milliseconds>(until_next_look(patience)).count();
     ::poll(watched.data(), watched.size(), static_cast<int>(std::max<std::int64_t>(milliseconds, 0)));
     for (std::size_t worker = 0; worker < places_.size(); ++worker)
@@ -185,7 +185,7 @@ void WorkerProcesses::enforce_limits(std::size_t worker, const WorkerListener& l
     constexpr std::chrono::milliseconds grace(1200);
     if (cancelled_ && now - *cancelled_ > grace) {
         place.process.reset();
-        return tell_end(worker, listener, {}, true);
+        return report_end(worker, listener, {}, true);
     }
     if (job.seconds_limit > 0 && place.is_ready &&
         now - place.begun >= std::chrono::duration<double>(job.seconds_limit))
@@ -253,7 +253,7 @@ void WorkerProcesses::take_report(std::size_t worker, const WorkerListener& list
         report.node.effort.log = place.process->log();
         place.process.reset();
     }
-    tell_end(worker, listener, std::move(report), is_spoilt);
+    report_end(worker, listener, std::move(report), is_spoilt);
 }
 
 void WorkerProcesses::end_of_process(std::size_t worker, const WorkerListener& listener) {
@@ -270,7 +270,7 @@ void WorkerProcesses::end_of_process(std::size_t worker, const WorkerListener& l
         report.node.failure = failure_of(*place.job, end.signal ? Cause::signal : Cause::exit, error,
                                          end.signal ? end.signal : end.exit_code);
     }
-    tell_end(worker, listener, std::move(report), true);
+    report_end(worker, listener, std::move(report), true);
 }
 
 void WorkerProcesses::end_by_force(std::size_t worker, const WorkerListener& listener, Cause cause, Error error,
@@ -282,10 +282,10 @@ void WorkerProcesses::end_by_force(std::size_t worker, const WorkerListener& lis
     report.outcome = Outcome::failed;
     report.node.failure = failure_of(*place.job, cause, std::move(error), number);
     report.node.effort.peak_memory = peak_of(place, end);
-    tell_end(worker, listener, std::move(report), true);
+    report_end(worker, listener, std::move(report), true);
 }
 
-void WorkerProcesses::tell_gone(std::size_t worker, const WorkerListener& listener) {
+void WorkerProcesses::report_gone(std::size_t worker, const WorkerListener& listener) {
     Place& place = places_[worker];
     const bool others_live = std::ranges::any_of(places_, [](const Place& each) { return !each.is_gone; });
     if (others_live) {
@@ -296,7 +296,7 @@ void WorkerProcesses::tell_gone(std::size_t worker, const WorkerListener& listen
     report.outcome = Outcome::failed;
     report.node.failure = failure_of(*place.job, Cause::exit, *start_failure_);
     place.is_gone = false;  // perhaps there is room for one the next time
-    tell_end(worker, listener, std::move(report), true);
+    report_end(worker, listener, std::move(report), true);
 }
 
 u64 WorkerProcesses::peak_of(const Place& place, const ProcessEnd& end) const {
@@ -305,7 +305,8 @@ u64 WorkerProcesses::peak_of(const Place& place, const ProcessEnd& end) const {
     return std::max(place.peak_memory, end.peak_memory > ours || place.peak_memory == 0 ? end.peak_memory : 0);
 }
 
-void WorkerProcesses::tell_end(std::size_t worker, const WorkerListener& listener, JobReport report, bool lost_values) {
+void WorkerProcesses::report_end(std::size_t worker, const WorkerListener& listener, JobReport report,
+                                 bool lost_values) {
     Place& place = places_[worker];
     if (place.process) {
         place.process->read_log();

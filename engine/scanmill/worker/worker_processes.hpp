@@ -69,9 +69,9 @@ private:
     void take_report(std::size_t worker, const WorkerListener& listener, JobReport report);
     void end_of_process(std::size_t worker, const WorkerListener& listener);
     void end_by_force(std::size_t worker, const WorkerListener& listener, Cause cause, Error error, int number);
-    void tell_gone(std::size_t worker, const WorkerListener& listener);
+    void report_gone(std::size_t worker, const WorkerListener& listener);
     u64 peak_of(const Place& place, const ProcessEnd& end) const;
-    void tell_end(std::size_t worker, const WorkerListener& listener, JobReport report, bool lost_values);
+    void report_end(std::size_t worker, const WorkerListener& listener, JobReport report, bool lost_values);
 
     WorkerProcessSettings settings_;
     WorkerStart start_;

@@ -46,7 +46,7 @@ StepResult some_result() {
                       {"mesh", kind_of<TriangleMesh>(), "", 0}};
     result.resolved = {{"bin-size", {{"0.1 u"}, false}}, {"axis", {{"0", "1"}, true}}};
     result.metrics = {{{"kept", 17, Unit::count}, {"rms", std::numeric_limits<double>::quiet_NaN(), Unit::length}}};
-    result.facts = {{{"points", 17, Unit::count}}};
+    result.properties = {{{"points", 17, Unit::count}}};
     result.warnings = {"one", "two\n\xff"};
     result.seconds = 0.1 + 0.2;
     return result;
@@ -105,7 +105,7 @@ TEST_F(CacheTest, WhatWasKept_ComesBackToAnotherProcess) {
     EXPECT_TRUE(result.resolved[1].second.list);
     EXPECT_EQ(result.metrics.find("kept")->value, 17);
     EXPECT_TRUE(std::isnan(result.metrics.find("rms")->value));
-    EXPECT_EQ(result.facts.values, some_result().facts.values);
+    EXPECT_EQ(result.properties.values, some_result().properties.values);
     EXPECT_EQ(result.warnings, some_result().warnings);
     EXPECT_EQ(result.seconds, 0.1 + 0.2);
     EXPECT_THAT(told_, IsEmpty());

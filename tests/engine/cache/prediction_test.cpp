@@ -17,19 +17,19 @@ TEST_F(CachedRun, Foresight_SaysWhatWillRunAndWhy) {
     run_two("factor: 2", "factor: 3");
     prepare("  - id: first\n    test-step: {factor: 2}\n  - id: second\n    test-step: {factor: 4}\n", {scan("a.xyz")},
             "outputs: {'{scan}.ply': second.points}\n");
-    const std::vector<NodeForesight> seen = foresee(graph_, &cache_);
+    const std::vector<NodePrediction> seen = predict(graph_, &cache_);
     EXPECT_FALSE(seen[0].will_run);
     EXPECT_FALSE(seen[1].will_run);
     EXPECT_THAT(seen[1].needed, ElementsAre("points"));
     EXPECT_TRUE(seen[2].will_run);
     EXPECT_THAT(seen[2].why, HasSubstr("has not run on such inputs"));
-    EXPECT_THAT(foresee(graph_, nullptr)[0].why, HasSubstr("no cache"));
+    EXPECT_THAT(predict(graph_, nullptr)[0].why, HasSubstr("no cache"));
 }
 
 TEST_F(CachedRun, Foresight_SaysWhyAValueIsMissing) {
     keep_ = KeepRule::Policy::never;
     run_two("factor: 2", "factor: 3");
-    EXPECT_THAT(foresee(graph_, &cache_, KeepRule::Policy::never)[2].why,
+    EXPECT_THAT(predict(graph_, &cache_, KeepRule::Policy::never)[2].why,
                 testing::AllOf(HasSubstr("'points' is not in the cache"), HasSubstr("--keep never"),
                                testing::Not(HasSubstr("quick"))));
 }
@@ -37,15 +37,15 @@ TEST_F(CachedRun, Foresight_SaysWhyAValueIsMissing) {
 TEST_F(CachedRun, ForesightOfAValueThatTookLong_DoesNotCallItQuick) {
     keep_ = KeepRule::Policy::never;
     run("  - test-step: {mode: slow}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-step.points}\n");
-    EXPECT_THAT(foresee(graph_, &cache_)[1].why, testing::AllOf(HasSubstr("did not keep it, or it was removed since"),
+    EXPECT_THAT(predict(graph_, &cache_)[1].why, testing::AllOf(HasSubstr("did not keep it, or it was removed since"),
                                                                 testing::Not(HasSubstr("quick"))));
-    StepResult quick = *foresee(graph_, &cache_)[1].known;
+    StepResult quick = *predict(graph_, &cache_)[1].known;
     quick.seconds = 0;
     const std::string run_key(32, 'a');
     cache_.clear();
     cache_.keep_run_key(graph_.nodes[1].key, run_key);
     cache_.keep_step(run_key, quick);
-    EXPECT_EQ(foresee(graph_, &cache_)[1].why, "its 'points' was not kept, being quick to make again");
+    EXPECT_EQ(predict(graph_, &cache_)[1].why, "its 'points' was not kept, being quick to make again");
 }
 
 }  // namespace

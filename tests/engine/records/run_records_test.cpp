@@ -46,7 +46,7 @@ StepRecord some_step(std::size_t node) {
     step.authored = {{"bin-size", "1 %diag"}};
     step.resolved = {{"bin-size", "0.3 u"}, {"min-points", "1"}};
     step.metrics = {{{"kept", 7, Unit::count}, {"rms", std::numeric_limits<double>::quiet_NaN(), Unit::length}}};
-    step.facts = {{{"closed", 1, Unit::boolean}}};
+    step.properties = {{{"closed", 1, Unit::boolean}}};
     step.warnings = {"one", "two"};
     step.failure = {"signal", 11, "it crashed"};
     step.peak_memory = 3'000'000'000;
@@ -95,7 +95,7 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     EXPECT_EQ(step.resolved, some_step(2).resolved);
     EXPECT_EQ(step.metrics.find("kept")->value, 7);
     EXPECT_TRUE(std::isnan(step.metrics.find("rms")->value));
-    EXPECT_EQ(step.facts.find("closed")->unit, Unit::boolean);
+    EXPECT_EQ(step.properties.find("closed")->unit, Unit::boolean);
     EXPECT_EQ(step.warnings, some_step(2).warnings);
     EXPECT_EQ(step.workflow, "thinning");
     EXPECT_EQ(step.failure.cause, "signal");
@@ -112,7 +112,7 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     EXPECT_EQ(run.cells[0].failure.cause, "time");
     EXPECT_EQ(run.cells[0].failure.error, "what went wrong");
     EXPECT_THAT(run.cells[0].nodes, ElementsAre(0, 2));
-    EXPECT_EQ(run.cells[0].outputs[0].facts.find("triangles")->value, 12);
+    EXPECT_EQ(run.cells[0].outputs[0].properties.find("triangles")->value, 12);
 }
 
 /// The file was written by the program that first had such tables, over one good scan and one bad.

@@ -25,7 +25,7 @@ TEST_F(CachedRun, TheSameAgain_ComputesNothingAndWritesTheSame) {
     EXPECT_TRUE(again.all_done());
     EXPECT_EQ(content_of(folder_ / "out/a.ply"), first);
     EXPECT_EQ(again.nodes[2].metrics.find("points")->value, 4);
-    EXPECT_EQ(again.nodes[0].facts.find("points")->value, 4);
+    EXPECT_EQ(again.nodes[0].properties.find("points")->value, 4);
     EXPECT_THAT(again.nodes[2].warnings, ElementsAre(HasSubstr("asked to warn"))) << "a warning holds for the result";
     EXPECT_EQ(again.nodes[1].resolved.find("factor") != nullptr, true);
     EXPECT_THAT(told_, IsEmpty());
@@ -65,7 +65,7 @@ TEST_F(CachedRun, AnotherContentUnderTheSameName_IsAnotherScan) {
     fs::remove(folder_ / "a.xyz");
     scan("a.xyz", "0 0 0\n7 0 0\n");
     prepare("  - test-step: {factor: 2}\n", {(folder_ / "a.xyz").string()});
-    EXPECT_FALSE(foresee(graph_, &cache_)[0].known);
+    EXPECT_FALSE(predict(graph_, &cache_)[0].known);
 }
 
 TEST_F(CachedRun, ScanThatChangesAfterPlanning_Fails) {

@@ -22,7 +22,7 @@ protected:
         EXPECT_EQ(::mkfifo(path.c_str(), 0600), 0);
         return path;
     }
-    static std::string said_of(const std::filesystem::path& path) {
+    static std::string path_prefix(const std::filesystem::path& path) {
         const std::optional<Error> error = why_no_file(path);
         return error ? error->what() : "";
     }
@@ -36,14 +36,14 @@ TEST_F(NoFile, FilesAndLinksToThem_AreFiles) {
 }
 
 TEST_F(NoFile, WhatIsThereInstead_IsNamedWithAWayOut) {
-    EXPECT_THAT(said_of(pipe()), AllOf(HasSubstr("pipe.xyz' is a pipe, not a file"), HasSubstr("\nhint: copy")));
-    EXPECT_THAT(said_of("/dev/zero"), AllOf(HasSubstr("'/dev/zero' is a device"), HasSubstr("\nhint: copy")));
-    EXPECT_THAT(said_of(folder_.path()), AllOf(HasSubstr("is a folder"), HasSubstr("hint: name one file")));
-    EXPECT_THAT(said_of(folder_ / "absent.ply"), HasSubstr("there is no such file"));
+    EXPECT_THAT(path_prefix(pipe()), AllOf(HasSubstr("pipe.xyz' is a pipe, not a file"), HasSubstr("\nhint: copy")));
+    EXPECT_THAT(path_prefix("/dev/zero"), AllOf(HasSubstr("'/dev/zero' is a device"), HasSubstr("\nhint: copy")));
+    EXPECT_THAT(path_prefix(folder_.path()), AllOf(HasSubstr("is a folder"), HasSubstr("hint: name one file")));
+    EXPECT_THAT(path_prefix(folder_ / "absent.ply"), HasSubstr("there is no such file"));
     std::filesystem::create_symlink(folder_ / "absent.ply", folder_ / "broken.ply");
-    EXPECT_THAT(said_of(folder_ / "broken.ply"), HasSubstr("there is no such file"));
+    EXPECT_THAT(path_prefix(folder_ / "broken.ply"), HasSubstr("there is no such file"));
     std::filesystem::create_symlink(folder_ / "loop", folder_ / "loop");
-    EXPECT_THAT(said_of(folder_ / "loop"), HasSubstr("cannot be looked at"));
+    EXPECT_THAT(path_prefix(folder_ / "loop"), HasSubstr("cannot be looked at"));
 }
 
 TEST_F(NoFile, GraphOverAPipe_SaysWhatItIsAndIsNotKeptWaiting) {

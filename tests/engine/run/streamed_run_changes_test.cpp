@@ -16,7 +16,7 @@ TEST_F(StreamedRun, ScanThatChangesAfterPlanning_Fails) {
     const RunReport report = run_graph();
     EXPECT_THAT(report.nodes[0].failure.text, HasSubstr("changed while the run was going on"));
     EXPECT_FALSE(fs::exists(folder_ / "out/a.ply"));
-    EXPECT_FALSE(foresee(graph_, cache_.get())[0].known) << "under the key of what it held before";
+    EXPECT_FALSE(predict(graph_, cache_.get())[0].known) << "under the key of what it held before";
 }
 
 TEST_F(StreamedRun, ScanThatChangesBetweenOpeningAndTheStep_Fails) {

@@ -68,7 +68,7 @@ protected:
             EXPECT_EQ(a.outcome, b.outcome);
             EXPECT_EQ(a.failure.text, b.failure.text);
             EXPECT_EQ(a.metrics.values, b.metrics.values);
-            EXPECT_EQ(a.facts.values, b.facts.values);
+            EXPECT_EQ(a.properties.values, b.properties.values);
             EXPECT_EQ(a.warnings, b.warnings);
             ASSERT_EQ(a.resolved.values.size(), b.resolved.values.size());
             for (std::size_t p = 0; p < a.resolved.values.size(); ++p)

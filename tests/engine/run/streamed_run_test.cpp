@@ -60,7 +60,7 @@ TEST_F(StreamedRun, HandsTheFilterAStream) {
     const RunReport report = run_logging(scan("a.xyz"));
     EXPECT_TRUE(report.all_done()) << report.cells[0].failure.text;
     EXPECT_EQ(logged(), "stream 0.03 u 4\n") << "the diagonal is 3";
-    EXPECT_EQ(report.nodes[0].facts.find("points")->value, 4);
+    EXPECT_EQ(report.nodes[0].properties.find("points")->value, 4);
 }
 
 TEST_F(StreamedRun, WithoutACache_HandsTheFilterAStream) {

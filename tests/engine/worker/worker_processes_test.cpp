@@ -45,13 +45,13 @@ TEST_F(WorkerProcessesTest, Worker_GivesWhatThisProcessGives) {
     EXPECT_EQ(content_of(folder_ / "out/a.ply"), file);
     for (std::size_t i = 0; i < here.nodes.size(); ++i) {
         EXPECT_EQ(there.nodes[i].metrics.values, here.nodes[i].metrics.values);
-        EXPECT_EQ(there.nodes[i].facts.values, here.nodes[i].facts.values);
+        EXPECT_EQ(there.nodes[i].properties.values, here.nodes[i].properties.values);
         EXPECT_EQ(there.nodes[i].warnings, here.nodes[i].warnings);
         ASSERT_EQ(there.nodes[i].resolved.values.size(), here.nodes[i].resolved.values.size());
         for (std::size_t p = 0; p < here.nodes[i].resolved.values.size(); ++p)
             EXPECT_EQ(text(there.nodes[i].resolved.values[p].second), text(here.nodes[i].resolved.values[p].second));
     }
-    EXPECT_EQ(there.cells[0].outputs[0].facts.values, here.cells[0].outputs[0].facts.values);
+    EXPECT_EQ(there.cells[0].outputs[0].properties.values, here.cells[0].outputs[0].properties.values);
 }
 
 TEST_F(WorkerProcessesTest, ProcessesThatAreNoWorkers_FailTheirJobs) {

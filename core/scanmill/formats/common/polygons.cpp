@@ -14,7 +14,7 @@ namespace {
 template <class T>
 [[noreturn]] void throw_bad_index(std::string_view element, std::size_t row, T index, std::size_t vertices) {
     throw Error("{} {} names vertex {}; there {} {}, numbered from 0", element, row, +index,
-                by_count(vertices, "is", "are"), counted(vertices, "vertex", "vertices"));
+                by_count(vertices, "is", "are"), count_text(vertices, "vertex", "vertices"));
 }
 
 template <class T>
@@ -103,8 +103,8 @@ void put_faces(TriangleMesh& mesh, Fans fans, const ColumnTable& columns,
                const std::function<void(std::string)>& on_warning) {
     if (fans.polygons > 0)
         warn(on_warning, "{} cut into fans; the mesh has {}",
-             counted(fans.polygons, "face of more than three corners was", "faces of more than three corners were"),
-             counted(fans.triangles.size(), "triangle", "triangles"));
+             count_text(fans.polygons, "face of more than three corners was", "faces of more than three corners were"),
+             count_text(fans.triangles.size(), "triangle", "triangles"));
     if (fans.polygons > 0)
         for (const Column& column : columns)
             if (column.is_list())
@@ -114,7 +114,8 @@ void put_faces(TriangleMesh& mesh, Fans fans, const ColumnTable& columns,
                      column.name());
     if (fans.left_out > 0)
         warn(on_warning, "{} left out",
-             counted(fans.left_out, "face of fewer than three corners was", "faces of fewer than three corners were"));
+             count_text(fans.left_out, "face of fewer than three corners was",
+                        "faces of fewer than three corners were"));
     mesh.face_columns = fans.polygons + fans.left_out > 0 ? columns.gather(fans.face_of) : columns;
     mesh.triangles = std::move(fans.triangles);
 }

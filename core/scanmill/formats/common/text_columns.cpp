@@ -204,11 +204,11 @@ private:
             table_.add(*colour);
             return;
         }
-        tell_no_colour(columns);
+        warn_no_colour(columns);
         for (const std::size_t column : columns) add(column);
     }
 
-    void tell_no_colour(const std::vector<std::size_t>& columns) const {
+    void warn_no_colour(const std::vector<std::size_t>& columns) const {
         warn(on_warning_, "the columns {} are no colours of whole numbers from 0 to 255; they are kept as they are",
              list(columns));
     }
@@ -226,7 +226,7 @@ private:
         if (std::ranges::find(names_, is_normal ? "normal" : "colour") != names_.end()) return std::nullopt;
         if (!is_normal) {
             std::optional<Column> colour = as_colour(parts);
-            if (!colour) tell_no_colour(group.columns);
+            if (!colour) warn_no_colour(group.columns);
             return colour;
         }
         if (!are_unit_normals(parts)) warn(on_warning_, "not all normals ({}) have unit length", list(group.columns));

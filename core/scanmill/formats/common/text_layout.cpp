@@ -47,7 +47,7 @@ public:
     }
 
 private:
-    std::string counted_columns() const { return counted(layout_.width, "column", "columns"); }
+    std::string counted_columns() const { return count_text(layout_.width, "column", "columns"); }
 
     /// Twice as many numbers in a row with semicolons as names is what decimal commas look like.
     Error names_do_not_fit() {

@@ -19,7 +19,7 @@ struct TextColumns {
     const Column* colour = nullptr;   ///< 3 or 4 × uint8
     const Column* texture = nullptr;  ///< 2 × float32 or float64
 
-    /// Of those that are there, for tell_left_out().
+    /// Of those that are there, for warn_left_out().
     std::vector<std::string_view> names() const;
 };
 

@@ -30,7 +30,7 @@ bool all_floats(const Frame& frame, std::span<const Vec3> positions) {
     return true;
 }
 
-void tell_lost_precision(const Frame& frame, std::span<const Vec3> positions, bool as_float, std::string_view format,
+void warn_lost_precision(const Frame& frame, std::span<const Vec3> positions, bool as_float, std::string_view format,
                          const WriteOptions& options) {
     constexpr double bearable = 1e-6;
     double worst = 0;
@@ -53,7 +53,7 @@ void tell_lost_precision(const Frame& frame, std::span<const Vec3> positions, bo
          as_float ? "PLY keeps them" : "write it in a frame nearer to the scan");
 }
 
-void tell_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
+void warn_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
                    const WriteOptions& options, std::span<const std::string_view> kept) {
     std::string names;
     std::size_t count = 0;
@@ -63,7 +63,7 @@ void tell_left_out(const ColumnTable& columns, std::string_view element, std::st
     }
     if (count > 0)
         warn(options.on_warning, "{} left out {} of the {} ({}); PLY keeps them", format,
-             counted(count, "column", "columns"), element, names);
+             count_text(count, "column", "columns"), element, names);
 }
 
 TriangleMesh with_used_vertices(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options) {
@@ -73,19 +73,19 @@ TriangleMesh with_used_vertices(const TriangleMesh& mesh, std::string_view forma
     const auto unused = static_cast<std::size_t>(std::ranges::count(is_used, false));
     if (unused == 0) return mesh;  // shares its arrays
     warn(options.on_warning, "{} left out {} that no triangle uses; PLY keeps them", format,
-         counted(unused, "vertex", "vertices"));
+         count_text(unused, "vertex", "vertices"));
     return without_unused_vertices(mesh);
 }
 
-void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options,
+void warn_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options,
                          std::span<const std::string_view> kept_of_vertices,
                          std::span<const std::string_view> kept_of_faces) {
-    tell_left_out(mesh.vertex_columns, "vertices", format, options, kept_of_vertices);
-    tell_left_out(mesh.face_columns, "faces", format, options, kept_of_faces);
-    tell_left_out(mesh.edge_columns, "edges", format, options);
+    warn_left_out(mesh.vertex_columns, "vertices", format, options, kept_of_vertices);
+    warn_left_out(mesh.face_columns, "faces", format, options, kept_of_faces);
+    warn_left_out(mesh.edge_columns, "edges", format, options);
     if (!mesh.sharp_edges.empty())
         warn(options.on_warning, "{} left out that {} are sharp; PLY keeps it", format,
-             counted(mesh.sharp_edges.size(), "edge", "edges"));
+             count_text(mesh.sharp_edges.size(), "edge", "edges"));
 }
 
 std::string one_line(std::string_view name) {

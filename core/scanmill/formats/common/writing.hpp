@@ -18,16 +18,16 @@ bool all_floats(const Frame& frame, std::span<const Vec3> positions);
 
 /// Tells when writing world coordinates, as float or as double, moves some by more than a millionth of the diagonal.
 /// Throws Error when a finite coordinate would become infinite.
-void tell_lost_precision(const Frame& frame, std::span<const Vec3> positions, bool as_float, std::string_view format,
+void warn_lost_precision(const Frame& frame, std::span<const Vec3> positions, bool as_float, std::string_view format,
                          const WriteOptions& options);
 
 /// Tells that the columns of `element` ("vertices") are left out, by name, but those in `kept`.
-void tell_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
+void warn_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
                    const WriteOptions& options, std::span<const std::string_view> kept = {});
 
 /// Tells all of a mesh that a format of little more than triangles leaves out: the columns but those kept, described
 /// and sharp edges.
-void tell_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options,
+void warn_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options,
                          std::span<const std::string_view> kept_of_vertices = {},
                          std::span<const std::string_view> kept_of_faces = {});
 

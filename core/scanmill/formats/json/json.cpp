@@ -41,7 +41,7 @@ LoadedFile read_json(const FileBytes& file, const ReadOptions& options) {
 
 void write_json(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     if (const std::optional<Frame> frame = frame_of(value))
-        tell_lost_precision(*frame, positions_of(value).span(), false, "JSON", options);
+        warn_lost_precision(*frame, positions_of(value).span(), false, "JSON", options);
     Json document;
     value.kind().info().to_json(value.object(), document);
     // A frame's name may be any bytes; those that are not UTF-8 are replaced.

@@ -23,7 +23,7 @@ bool is_compressed(const LasHeader& header, const std::vector<LasRecord>& record
                           shell_word(file.path)));
 }
 
-void tell_left_out(const LasHeader& header, const std::vector<LasRecord>& records, std::string_view bytes,
+void warn_left_out(const LasHeader& header, const std::vector<LasRecord>& records, std::string_view bytes,
                    bool unit_is_used, const ReadOptions& options) {
     std::string list;
     constexpr std::size_t most_listed = 6;
@@ -37,13 +37,13 @@ void tell_left_out(const LasHeader& header, const std::vector<LasRecord>& record
     if (count > most_listed) list += ", …";
     if (count > 0)
         warn(options.on_warning, "{} left out ({})",
-             counted(count, "variable length record was", "variable length records were"), list);
+             count_text(count, "variable length record was", "variable length records were"), list);
     if (header.extended_records > 0)
         warn(options.on_warning, "{} left out",
-             counted(header.extended_records, "record behind the points was", "records behind the points were"));
+             count_text(header.extended_records, "record behind the points was", "records behind the points were"));
     const std::size_t rest = bytes.size() - header.points_begin - header.points * header.point_size;
     if (rest > 0 && header.extended_records == 0)
-        warn(options.on_warning, "{} behind the last point and left out", counted(rest, "byte was", "bytes were"));
+        warn(options.on_warning, "{} behind the last point and left out", count_text(rest, "byte was", "bytes were"));
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ LoadedFile read_las(const FileBytes& file, const ReadOptions& options) {
     require_las_points(header, file.bytes);
     const LengthUnit unit = las_unit(records, options);
     const bool unit_is_used = unit != LengthUnit::unknown && options.unit == LengthUnit::unknown;
-    tell_left_out(header, records, file.bytes, unit_is_used, options);
+    warn_left_out(header, records, file.bytes, unit_is_used, options);
     const std::vector<LasExtra> extras = read_las_extra(header, records, options);
 
     LoadedFile loaded;

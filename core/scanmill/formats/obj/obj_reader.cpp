@@ -77,7 +77,7 @@ private:
         double value = 0;
         if (!text_.more())
             throw Error("line {}: {} has {}, here are fewer", text_.line(), row,
-                        counted(static_cast<u64>(needed), "number", "numbers"));
+                        count_text(static_cast<u64>(needed), "number", "numbers"));
         if (!text_.number(value))
             throw Error("line {}: {} is no number for {}", text_.line(), quote(text_.last_token()), row);
         return value;
@@ -132,7 +132,7 @@ private:
         if (spelled == 0) throw Error("line {}: a face names vertex 0; vertices are numbered from 1", text_.line());
         if (static_cast<u64>(-(spelled + 1)) >= known)
             throw Error("line {}: a face names vertex {}, backwards from here; there are {} before it", text_.line(),
-                        spelled, counted(known, "vertex", "vertices"));
+                        spelled, count_text(known, "vertex", "vertices"));
         return static_cast<u32>(known - static_cast<u64>(-(spelled + 1)) - 1);
     }
 
@@ -144,7 +144,7 @@ private:
             if (ahead.index >= positions_.size())
                 throw Error("line {}: a face names vertex {}; there {} {}, numbered from 1", ahead.line,
                             ahead.index + 1, by_count(positions_.size(), "is", "are"),
-                            counted(positions_.size(), "vertex", "vertices"))
+                            count_text(positions_.size(), "vertex", "vertices"))
                     .hint("the file is truncated or wrong: fetch or export it again");
     }
 
@@ -156,7 +156,7 @@ private:
         return columns;
     }
 
-    void tell_left_out() const {
+    void warn_left_out() const {
         left_out_.tell(options_.on_warning);
         if (weighted_ > 0)
             warn(options_.on_warning,
@@ -165,11 +165,11 @@ private:
                  weighted_, positions_.size());
         if (deep_textures_ > 0)
             warn(options_.on_warning, "the third number of {} left out",
-                 counted(deep_textures_, "texture coordinate (vt) was", "texture coordinates (vt) was"));
+                 count_text(deep_textures_, "texture coordinate (vt) was", "texture coordinates (vt) was"));
         if (overlong_ > 0)
             warn(options_.on_warning,
                  "{} more numbers than OBJ knows there, first in line {}; the rest was passed over",
-                 counted(overlong_, "row has", "rows have"), first_overlong_);
+                 count_text(overlong_, "row has", "rows have"), first_overlong_);
     }
 
     LoadedFile assembled() {
@@ -180,7 +180,7 @@ private:
         loaded.comments = text_.comments().texts();
         TriangleMesh mesh;
         mesh.frame = declared_frame(loaded.comments, options_);
-        tell_left_out();
+        warn_left_out();
         mesh.vertex_columns = vertex_columns();
         const Column faces("corners", Buffer(std::move(offsets_)), Buffer(std::move(corners_)));
         put_faces(mesh, triangulated(faces, positions_.size()), {}, options_.on_warning);

@@ -13,14 +13,14 @@ namespace scanmill {
 namespace {
 
 /// A fourth channel would keep many programs from reading the vertex at all.
-void tell_lost_opacity(const Column& colour, const WriteOptions& options) {
+void warn_lost_opacity(const Column& colour, const WriteOptions& options) {
     if (colour.components() != 4) return;
     const auto channels = colour.values<u8>();
     std::size_t see_through = 0;
     for (std::size_t row = 0; row < colour.rows(); ++row) see_through += channels[4 * row + 3] != 255;
     if (see_through > 0)
         warn(options.on_warning, "OBJ left out the opacity (the fourth channel of 'colour') of {}; PLY keeps it",
-             counted(see_through, "vertex", "vertices"));
+             count_text(see_through, "vertex", "vertices"));
 }
 
 /// Colours that are no bytes, as they were read: red, green and blue; empty when they are not all there.
@@ -66,13 +66,13 @@ void put_list(std::string_view keyword, const Column* column, OutputBuffer& out)
 void write_obj(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const TriangleMesh& mesh = *value.get<TriangleMesh>();
     const TextColumns columns(mesh.vertex_columns);
-    tell_lost_precision(mesh.frame, mesh.positions.span(), false, "OBJ", options);
+    warn_lost_precision(mesh.frame, mesh.positions.span(), false, "OBJ", options);
     std::vector<std::string_view> kept = columns.names();
     const std::vector<const Column*> channels =
         columns.colour ? std::vector<const Column*>() : plain_colours(mesh.vertex_columns);
     for (const Column* channel : channels) kept.push_back(channel->name());
-    tell_bare_triangles(mesh, "OBJ", options, kept);
-    if (columns.colour) tell_lost_opacity(*columns.colour, options);
+    warn_bare_triangles(mesh, "OBJ", options, kept);
+    if (columns.colour) warn_lost_opacity(*columns.colour, options);
 
     out.text(comment_lines(mesh.frame));
     put_vertices(mesh, columns.colour, channels, out);

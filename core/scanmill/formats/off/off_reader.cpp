@@ -95,8 +95,8 @@ private:
         constexpr u64 least_vertex = 6, least_face = 2;
         if (vertices_ > bytes_.size() / least_vertex || faces_ > bytes_.size() / least_face)
             throw Error("line {} promises {} and {}; the file has only {}", text_.line(),
-                        counted(vertices_, "vertex", "vertices"), counted(faces_, "face", "faces"),
-                        counted(bytes_.size(), "byte", "bytes"))
+                        count_text(vertices_, "vertex", "vertices"), count_text(faces_, "face", "faces"),
+                        count_text(bytes_.size(), "byte", "bytes"))
                 .hint("the file is truncated or its header is wrong: fetch or export it again");
     }
 
@@ -153,12 +153,12 @@ private:
                 u64 vertex = 0;
                 if (!text_.more())
                     throw Error("line {}: face {} has {} of its {}", text_.line(), row, i,
-                                counted(length, "corner", "corners"));
+                                count_text(length, "corner", "corners"));
                 const bool is_number = text_.number(vertex);
                 if (!is_number || vertex >= vertices_)
                     throw Error("line {}: face {} names vertex {}; there {} {}, numbered from 0", text_.line(), row,
                                 is_number ? std::to_string(vertex) : quote(text_.last_token()),
-                                by_count(vertices_, "is", "are"), counted(vertices_, "vertex", "vertices"));
+                                by_count(vertices_, "is", "are"), count_text(vertices_, "vertex", "vertices"));
                 corners.push_back(static_cast<u32>(vertex));
             }
             offsets.push_back(corners.size());

@@ -39,10 +39,10 @@ void write_off(const Value& value, OutputBuffer& out, const WriteOptions& option
     const TriangleMesh& mesh = *value.get<TriangleMesh>();
     const TextColumns of_vertices(mesh.vertex_columns);
     const Column* const face_colour = TextColumns(mesh.face_columns).colour;
-    tell_lost_precision(mesh.frame, mesh.positions.span(), false, "OFF", options);
+    warn_lost_precision(mesh.frame, mesh.positions.span(), false, "OFF", options);
     std::vector<std::string_view> of_faces;
     if (face_colour) of_faces.push_back(face_colour->name());
-    tell_bare_triangles(mesh, "OFF", options, of_vertices.names(), of_faces);
+    warn_bare_triangles(mesh, "OFF", options, of_vertices.names(), of_faces);
 
     if (of_vertices.texture) out.text("ST");
     if (of_vertices.colour) out.text("C");

@@ -105,7 +105,7 @@ public:
             else
                 pass_over(element);
         }
-        tell_trailing_bytes();
+        warn_trailing_bytes();
         return assembled();
     }
 
@@ -144,7 +144,7 @@ private:
             warn(options_.on_warning,
                  "{} of element {} hold more values than the header has properties, first in line "
                  "{}; the rest of the line was passed over",
-                 counted(overlong.count, "row", "rows"), quote(element.name), overlong.first_line);
+                 count_text(overlong.count, "row", "rows"), quote(element.name), overlong.first_line);
     }
 
     void read_vertices(const PlyElement& element) {
@@ -179,7 +179,7 @@ private:
         }
         if (element.count > 0)
             warn(options_.on_warning, "element '{}' has no list vertex_indices: its {} left out", element.name,
-                 counted(element.count, "row was", "rows were"));
+                 count_text(element.count, "row was", "rows were"));
         return std::nullopt;
     }
 
@@ -193,7 +193,7 @@ private:
                 Edges{std::move(*first), std::move(*second), table.columns()};
         } else if (element.count > 0) {
             warn(options_.on_warning, "element '{}' has no vertex1 and vertex2: its {} left out", element.name,
-                 counted(element.count, "row was", "rows were"));
+                 count_text(element.count, "row was", "rows were"));
         }
     }
 
@@ -205,10 +205,10 @@ private:
             warn(options_.on_warning,
                  "the element {} with its {} was left out: only vertex, face, tristrips, edge "
                  "and sharp_edge have a meaning here",
-                 quote(element.name), counted(element.count, "row", "rows"));
+                 quote(element.name), count_text(element.count, "row", "rows"));
     }
 
-    void tell_trailing_bytes() {
+    void warn_trailing_bytes() {
         if (ascii()) {
             if (text_.next_row())
                 warn(options_.on_warning, "the text from line {} on belongs to no element and was passed over",
@@ -218,7 +218,7 @@ private:
         const std::string_view rest = bytes_.substr(at_);
         if (rest.find_first_not_of("\r\n") != std::string_view::npos)
             warn(options_.on_warning, "{} after the last element passed over at the file's end",
-                 counted(rest.size(), "byte", "bytes"));
+                 count_text(rest.size(), "byte", "bytes"));
     }
 
     Array<Edge> numbered(const Edges& edges, std::string_view element) const {
@@ -239,7 +239,7 @@ private:
         } else {
             if (!mesh.face_columns.empty() && !triangles.empty()) {
                 warn(options_.on_warning, "{} left out: the triangle strips have none",
-                     counted(mesh.face_columns.size(), "column of the faces was", "columns of the faces were"));
+                     count_text(mesh.face_columns.size(), "column of the faces was", "columns of the faces were"));
                 mesh.face_columns = {};
             }
             triangles.insert(triangles.begin(), mesh.triangles.begin(), mesh.triangles.end());
@@ -251,7 +251,7 @@ private:
     void put_edges(TriangleMesh& mesh) const {
         if (edges_ && edges_->columns.empty() && edges_->first.rows() > 0)
             warn(options_.on_warning, "{} left out: no column says anything about them",
-                 counted(edges_->first.rows(), "edge was", "edges were"));
+                 count_text(edges_->first.rows(), "edge was", "edges were"));
         if (edges_ && !edges_->columns.empty()) {
             mesh.edges = numbered(*edges_, "edge");
             mesh.edge_columns = edges_->columns;
@@ -280,7 +280,7 @@ private:
         if (mesh.triangles.empty()) {
             if (const std::size_t edges = mesh.edges.size() + mesh.sharp_edges.size(); edges > 0)
                 warn(options_.on_warning, "{} left out: without a face the file is a point cloud",
-                     counted(edges, "edge was", "edges were"));
+                     count_text(edges, "edge was", "edges were"));
             loaded.value =
                 std::make_shared<const PointCloud>(PointCloud{mesh.frame, std::move(positions_), std::move(columns_)});
         } else {

@@ -181,7 +181,7 @@ void put_vertices(const Frame& frame, std::span<const Vec3> positions, bool as_f
 
 /// Tells what the sum with the origin loses on the way.
 bool coordinates_fit_float(const Frame& frame, std::span<const Vec3> positions, const WriteOptions& options) {
-    if (frame.origin != Vec3::Zero()) tell_lost_precision(frame, positions, false, "PLY", options);
+    if (frame.origin != Vec3::Zero()) warn_lost_precision(frame, positions, false, "PLY", options);
     return all_floats(frame, positions);
 }
 

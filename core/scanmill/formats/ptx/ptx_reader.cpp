@@ -52,7 +52,7 @@ private:
         for (int i = 0; i < size; ++i) {
             if (!text_.more())
                 throw Error("line {}: the {} of scan {} has {} in a row; {} are needed", text_.line(), what, scan_,
-                            counted(static_cast<u64>(i), "number", "numbers"), size);
+                            count_text(static_cast<u64>(i), "number", "numbers"), size);
             if (!text_.number(numbers[i]))
                 throw Error("line {}: {} is no number for the {} of scan {}", text_.line(), quote(text_.last_token()),
                             what, scan_);
@@ -68,7 +68,7 @@ private:
         const u64 most = text_size / least_cell + 1;
         if (header_.rows > 0 && header_.columns > most / header_.rows)
             throw Error("line {}: scan {} promises {} x {} cells; the file has only {}", header_.line, scan_,
-                        header_.columns, header_.rows, counted(text_size, "byte", "bytes"))
+                        header_.columns, header_.rows, count_text(text_size, "byte", "bytes"))
                 .hint("the file is truncated or its header is wrong: fetch or export it again");
     }
 
@@ -118,7 +118,8 @@ public:
     LoadedFile read() {
         for (; text_.next_row(); ++scans_) read_scan();
         if (scans_ == 0) throw Error("holds no points: nothing but blanks");
-        if (positions_.empty()) throw Error("holds no points: {} without a return", counted(empty_, "cell", "cells"));
+        if (positions_.empty())
+            throw Error("holds no points: {} without a return", count_text(empty_, "cell", "cells"));
         require_countable(positions_.size(), "points");
         tell();
 
@@ -141,7 +142,7 @@ private:
         for (u64 cell = 0; cell < header.cells(); ++cell) {
             if (!text_.next_row())
                 throw Error("line {}: the text ends after {} of the {} of scan {}", text_.line(), cell,
-                            counted(header.cells(), "cell", "cells"), scans_)
+                            count_text(header.cells(), "cell", "cells"), scans_)
                     .hint("the file is truncated: fetch or export it again");
             read_cell(header);
         }

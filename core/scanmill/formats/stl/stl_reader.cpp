@@ -79,7 +79,7 @@ LoadedFile assembled(Soup soup, std::vector<std::string> comments, std::string e
         soup.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
     if (const auto count = static_cast<u64>(degenerate); count > 0)
         warn(options.on_warning, "{} of {} {} degenerate (two corners at one place); {} kept", degenerate,
-             counted(soup.triangles.size(), "facet", "facets"), by_count(count, "is", "are"),
+             count_text(soup.triangles.size(), "facet", "facets"), by_count(count, "is", "are"),
              by_count(count, "it is", "they are"));
     TriangleMesh mesh;
     mesh.frame = declared_frame(comments, options);
@@ -95,17 +95,17 @@ LoadedFile read_binary(std::string_view bytes, const ReadOptions& options) {
     constexpr std::size_t body = stl_header_size + 4;
     if (bytes.size() < body)
         throw Error("is {} long; a binary STL file has a header of {} bytes and a count of 4",
-                    counted(bytes.size(), "byte", "bytes"), stl_header_size);
+                    count_text(bytes.size(), "byte", "bytes"), stl_header_size);
     const std::size_t facets = little_endian<u32>(bytes.data() + stl_header_size);
     const std::size_t fitting = (bytes.size() - body) / stl_facet_size;
     if (facets > fitting)
         throw Error("the STL header promises {} of {} bytes; the {} that follow hold {}",
-                    counted(facets, "facet", "facets"), stl_facet_size, counted(bytes.size() - body, "byte", "bytes"),
-                    fitting)
+                    count_text(facets, "facet", "facets"), stl_facet_size,
+                    count_text(bytes.size() - body, "byte", "bytes"), fitting)
             .hint("the file is truncated or no STL at all: fetch or export it again");
     if (const std::size_t rest = bytes.size() - body - facets * stl_facet_size; rest > 0)
         warn(options.on_warning, "{} after the last facet passed over at the file's end",
-             counted(rest, "byte", "bytes"));
+             count_text(rest, "byte", "bytes"));
 
     Soup soup(facets);
     Array<std::uint16_t> attributes(facets);
@@ -153,7 +153,7 @@ public:
         }
         if (inside)
             throw Error("line {}: the text ends inside a solid, after {}; 'endsolid' is missing", text_.line(),
-                        counted(soup_.triangles.size(), "facet", "facets"))
+                        count_text(soup_.triangles.size(), "facet", "facets"))
                 .hint("the file is truncated: fetch or export it again");
         if (solids_ > 1) soup_.columns.add(Column("solid", 1, Buffer(std::move(solid_of_))));
         return assembled(std::move(soup_), std::move(comments_), "ascii", options_);

@@ -54,13 +54,13 @@ void write_stl(const Value& value, OutputBuffer& out, const WriteOptions& option
     if (whole.triangles.empty()) throw Error("nothing to write: the mesh has no triangles, and STL holds nothing else");
     require_countable(whole.triangles.size(), "triangles");
     const TriangleMesh mesh = with_used_vertices(whole, "STL", options);
-    tell_lost_precision(mesh.frame, mesh.positions.span(), true, "STL", options);
-    tell_bare_triangles(mesh, "STL", options);
+    warn_lost_precision(mesh.frame, mesh.positions.span(), true, "STL", options);
+    warn_bare_triangles(mesh, "STL", options);
     if (const std::size_t collapsed = collapsed_triangles(mesh); collapsed > 0)
         warn(options.on_warning,
              "{} collapsed: corners that differ are equal in STL's single precision; PLY "
              "keeps them apart",
-             counted(collapsed, "triangle", "triangles"));
+             count_text(collapsed, "triangle", "triangles"));
 
     Frame frame = mesh.frame;
     frame.name = one_line(frame.name);

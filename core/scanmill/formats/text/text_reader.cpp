@@ -64,7 +64,7 @@ LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options)
     if (positions.empty()) throw Error("holds no points: no row begins with p");
     require_countable(positions.size(), "points");
     if (others > 0)
-        warn(options.on_warning, "{} not of points ({}) and left out", counted(others, "row is", "rows are"),
+        warn(options.on_warning, "{} not of points ({}) and left out", count_text(others, "row is", "rows are"),
              fmt::join(tags, ", "));
 
     LoadedFile loaded;
@@ -94,11 +94,11 @@ public:
         if (!layout_.passed_over.empty())
             warn(options_.on_warning,
                  "the comment {} was passed over: it does not name x, y, z and then the rest of {}",
-                 quote(layout_.passed_over), counted(layout_.width, "column", "columns"));
+                 quote(layout_.passed_over), count_text(layout_.width, "column", "columns"));
         if (layout_.unread_comments > 0)
             warn(options_.on_warning,
                  "{} before the numbers, behind the first {}, {} not looked through for the names of columns",
-                 counted(layout_.unread_comments, "comment", "comments"), KeptComments::most,
+                 count_text(layout_.unread_comments, "comment", "comments"), KeptComments::most,
                  by_count(layout_.unread_comments, "was", "were"));
         read_rows();
         std::optional<Column> normals = normals_behind_points();
@@ -167,7 +167,7 @@ private:
     }
 
     [[noreturn]] void throw_width(std::size_t found) const {
-        throw Error("line {}: found {}; the rows before have {}", text_.line(), counted(found, "column", "columns"),
+        throw Error("line {}: found {}; the rows before have {}", text_.line(), count_text(found, "column", "columns"),
                     layout_.width);
     }
 
@@ -207,11 +207,11 @@ private:
         const std::size_t found = positions_.size() - block.first;
         if (found == block.promised) return;
         if (extension_ == "pwn")
-            throw Error("line {} declares {}; {} {}", block.line, counted(block.promised, "point", "points"), found,
+            throw Error("line {} declares {}; {} {}", block.line, count_text(block.promised, "point", "points"), found,
                         by_count(found, "row follows", "rows follow"))
                 .hint("the file is truncated or its count is wrong: correct that line");
         warn(options_.on_warning, "line {} declares {}; {} {}: the count is wrong, or the file is incomplete",
-             block.line, counted(block.promised, "point", "points"), found, by_count(found, "follows", "follow"));
+             block.line, count_text(block.promised, "point", "points"), found, by_count(found, "follows", "follow"));
     }
 
     /// The second half of the rows, taken away from them, when the only count says that they are twice as many as there

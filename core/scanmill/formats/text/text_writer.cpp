@@ -9,10 +9,10 @@ namespace scanmill {
 void write_xyz(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     const PointCloud& cloud = *value.get<PointCloud>();
     const Column* const normal = TextColumns(cloud.columns).normal;
-    tell_lost_precision(cloud.frame, cloud.positions.span(), false, "XYZ", options);
+    warn_lost_precision(cloud.frame, cloud.positions.span(), false, "XYZ", options);
     std::vector<std::string_view> kept;
     if (normal) kept.push_back(normal->name());
-    tell_left_out(cloud.columns, "points", "XYZ", options, kept);
+    warn_left_out(cloud.columns, "points", "XYZ", options, kept);
 
     out.text(comment_lines(cloud.frame));
     for (std::size_t row = 0; row < cloud.size(); ++row) {

@@ -18,23 +18,23 @@ constexpr double least_mean_normal = 0.1, least_area = 1e-3;
 constexpr double longer_by = 1 + 1e-9;
 
 /// The boundary side that leaves the vertex where this one arrives, in the same fan of triangles.
-u32 next_along_boundary(u32 side, std::span<const u32> twins) {
-    u32 next = sides::after(side);
-    while (twins[next] != sides::boundary) next = sides::after(twins[next]);
+u32 next_along_boundary(u32 half_edge, std::span<const u32> opposite) {
+    u32 next = half_edges::after(half_edge);
+    while (opposite[next] != half_edges::boundary) next = half_edges::after(opposite[next]);
     return next;
 }
 
 }  // namespace
 
-std::vector<Array<u32>> boundary_loops(const TriangleMesh& mesh, std::span<const u32> twins) {
+std::vector<Array<u32>> boundary_loops(const TriangleMesh& mesh, std::span<const u32> opposite) {
     std::vector<Array<u32>> loops;
-    std::vector<bool> seen(twins.size(), false);
+    std::vector<bool> seen(opposite.size(), false);
     for (u32 first = 0; first < 3 * mesh.triangles.size(); ++first) {
-        if (twins[first] != sides::boundary || seen[first]) continue;
+        if (opposite[first] != half_edges::boundary || seen[first]) continue;
         Array<u32>& loop = loops.emplace_back();
-        for (u32 side = first; !seen[side]; side = next_along_boundary(side, twins)) {
-            seen[side] = true;
-            loop.push_back(side);
+        for (u32 half_edge = first; !seen[half_edge]; half_edge = next_along_boundary(half_edge, opposite)) {
+            seen[half_edge] = true;
+            loop.push_back(half_edge);
         }
     }
     return loops;
@@ -43,13 +43,13 @@ std::vector<Array<u32>> boundary_loops(const TriangleMesh& mesh, std::span<const
 LoopShape loop_shape(const TriangleMesh& mesh, std::span<const u32> loop, std::span<const Vec3> normals) {
     LoopShape shape;
     Vec3 twice_area = Vec3::Zero(), weighted_normals = Vec3::Zero();
-    const Vec3& origin = mesh.positions[sides::start(mesh, loop[0])];
-    for (const u32 side : loop) {
-        const Vec3& from = mesh.positions[sides::start(mesh, side)];
-        const Vec3& to = mesh.positions[sides::end(mesh, side)];
+    const Vec3& origin = mesh.positions[half_edges::start(mesh, loop[0])];
+    for (const u32 half_edge : loop) {
+        const Vec3& from = mesh.positions[half_edges::start(mesh, half_edge)];
+        const Vec3& to = mesh.positions[half_edges::end(mesh, half_edge)];
         const double length = (to - from).norm();
         shape.length += length;
-        weighted_normals += length * normals[side / 3];
+        weighted_normals += length * normals[half_edge / 3];
         twice_area += (from - origin).cross(to - origin);
     }
     const double coherent = weighted_normals.norm();
@@ -60,14 +60,14 @@ LoopShape loop_shape(const TriangleMesh& mesh, std::span<const u32> loop, std::s
 }
 
 std::vector<bool> outer_loops(std::span<const std::span<const u32>> loops, std::span<const LoopShape> shapes,
-                              std::span<const u32> twins) {
+                              std::span<const u32> opposite) {
     std::vector<bool> outer(loops.size());
     for (std::size_t i = 0; i < loops.size(); ++i) outer[i] = shapes[i].clear && shapes[i].area > 0;
     if (std::ranges::all_of(shapes, &LoopShape::clear)) return outer;
 
-    DisjointSets pieces(twins.size() / 3);
-    for (u32 side = 0; side < twins.size(); ++side)
-        if (twins[side] < sides::no_side) pieces.unite(side / 3, twins[side] / 3);
+    DisjointSets pieces(opposite.size() / 3);
+    for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge)
+        if (opposite[half_edge] < half_edges::no_half_edge) pieces.unite(half_edge / 3, opposite[half_edge] / 3);
     std::unordered_map<u32, std::size_t> longest;  // loop of every piece; looked up only
     for (std::size_t i = 0; i < loops.size(); ++i) {
         const auto [best, is_new] = longest.try_emplace(pieces.find(loops[i][0] / 3), i);

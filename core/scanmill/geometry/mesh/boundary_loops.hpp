@@ -15,9 +15,9 @@ namespace scanmill {
 /// Every boundary side is in exactly one loop; where a mesh touches itself in a vertex a loop stays with its fan of
 /// triangles. By the lowest side, which comes first.
 ///
-/// Pre: `twins` by sides::oriented_twins. Cost: linear in the sides, and in the triangles round the boundary's
+/// Pre: `opposite` by half_edges::opposites. Cost: linear in the sides, and in the triangles round the boundary's
 /// vertices.
-std::vector<Array<u32>> boundary_loops(const TriangleMesh& mesh, std::span<const u32> twins);
+std::vector<Array<u32>> boundary_loops(const TriangleMesh& mesh, std::span<const u32> opposite);
 
 struct LoopShape {
     double length = 0;
@@ -40,6 +40,6 @@ LoopShape loop_shape(const TriangleMesh& mesh, std::span<const u32> loop, std::s
 /// Pre: the shapes of all loops of the mesh. Cost: linear in the triangles when a shape is not clear, else in the
 /// loops.
 std::vector<bool> outer_loops(std::span<const std::span<const u32>> loops, std::span<const LoopShape> shapes,
-                              std::span<const u32> twins);
+                              std::span<const u32> opposite);
 
 }  // namespace scanmill

@@ -35,16 +35,17 @@ Vec3 normal_of(const TriangleMesh& mesh, const Triangle& triangle) {
     return length > thinnest * longest ? Vec3(across / length) : Vec3::Zero();
 }
 
-double squared_length(const TriangleMesh& mesh, u32 side) {
-    return (mesh.positions[sides::end(mesh, side)] - mesh.positions[sides::start(mesh, side)]).squaredNorm();
+double squared_length(const TriangleMesh& mesh, u32 half_edge) {
+    return (mesh.positions[half_edges::end(mesh, half_edge)] - mesh.positions[half_edges::start(mesh, half_edge)])
+        .squaredNorm();
 }
 
 /// Gives normals to the triangles that have none, from the border of the proper ones inwards, all of a round at once.
 class ThinTriangles {
 public:
-    ThinTriangles(const TriangleMesh& mesh, std::span<const u32> twins, Array<Vec3>& normals)
+    ThinTriangles(const TriangleMesh& mesh, std::span<const u32> opposite, Array<Vec3>& normals)
         : mesh_(mesh),
-          twins_(twins),
+          opposite_(opposite),
           normals_(normals) {}
 
     void fill(std::vector<u32> waiting) {
@@ -64,16 +65,16 @@ public:
     }
 
 private:
-    bool has_twin(u32 side) const { return twins_[side] < sides::no_side; }
+    bool has_opposite(u32 half_edge) const { return opposite_[half_edge] < half_edges::no_half_edge; }
 
     Vec3 neighbours_normal(u32 triangle) const {
         Vec3 best = Vec3::Zero();
         double longest = -1;
-        for (u32 side = 3 * triangle; side < 3 * triangle + 3; ++side) {
-            if (!has_twin(side)) continue;
-            const Vec3& normal = normals_[twins_[side] / 3];
+        for (u32 half_edge = 3 * triangle; half_edge < 3 * triangle + 3; ++half_edge) {
+            if (!has_opposite(half_edge)) continue;
+            const Vec3& normal = normals_[opposite_[half_edge] / 3];
             if (normal == Vec3::Zero()) continue;
-            const double length = squared_length(mesh_, side);
+            const double length = squared_length(mesh_, half_edge);
             if (length > longest || (length == longest && lower(normal, best))) {
                 longest = length;
                 best = normal;
@@ -82,32 +83,34 @@ private:
         return best;
     }
     void add_waiting_neighbours(u32 triangle, std::vector<u32>& waiting) const {
-        for (u32 side = 3 * triangle; side < 3 * triangle + 3; ++side)
-            if (has_twin(side) && normals_[twins_[side] / 3] == Vec3::Zero()) waiting.push_back(twins_[side] / 3);
+        for (u32 half_edge = 3 * triangle; half_edge < 3 * triangle + 3; ++half_edge)
+            if (has_opposite(half_edge) && normals_[opposite_[half_edge] / 3] == Vec3::Zero())
+                waiting.push_back(opposite_[half_edge] / 3);
     }
 
     const TriangleMesh& mesh_;
-    std::span<const u32> twins_;
+    std::span<const u32> opposite_;
     Array<Vec3>& normals_;
 };
 
 }  // namespace
 
-FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> twins, unsigned threads) {
+FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> opposite, unsigned threads) {
     FacetNormals result;
     result.unit.resize(mesh.triangles.size());
     constexpr std::size_t chunk = 1 << 14;
     for_each_chunk(threads, mesh.triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const Triangle& triangle = mesh.triangles[t];
-            result.unit[t] = sides::names_a_vertex_twice(triangle) ? Vec3(Vec3::Zero()) : normal_of(mesh, triangle);
+            result.unit[t] =
+                half_edges::names_a_vertex_twice(triangle) ? Vec3(Vec3::Zero()) : normal_of(mesh, triangle);
         }
     });
     std::vector<u32> thin;
     for (u32 t = 0; t < mesh.triangles.size(); ++t)
         if (result.unit[t] == Vec3::Zero()) thin.push_back(t);
     result.without_area = thin.size();
-    ThinTriangles(mesh, twins, result.unit).fill(std::move(thin));
+    ThinTriangles(mesh, opposite, result.unit).fill(std::move(thin));
     return result;
 }
 

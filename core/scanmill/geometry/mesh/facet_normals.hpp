@@ -22,10 +22,10 @@ struct FacetNormals {
 /// that was triangulated with needles stays flat, and of a needle in a sharp edge the long side is smooth, the short
 /// ones are sharp.
 ///
-/// Pre: finite positions whose differences are numbers; `twins` by sides::oriented_twins.
+/// Pre: finite positions whose differences are numbers; `opposite` by half_edges::opposites.
 /// Post: no bit depends on the order of the triangles or vertices, nor on which corner a triangle names first.
 /// Cost: linear, 24 bytes per triangle.
-FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> twins, unsigned threads);
+FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> opposite, unsigned threads);
 
 /// Angles between normals that differ from a limit by no more than this, in radians, count as equal to it: what
 /// rounding does to the sides of a regular prism.

@@ -15,19 +15,19 @@ namespace scanmill {
 struct FeatureLine {
     FeatureType type;
     bool closed;
-    Array<u32> sides;
+    Array<u32> half_edges;
 };
 
 class FeatureNet {
 public:
-    /// `sharp`: for every side whether its edge is a crease; equal for twins, false on the boundary.
+    /// `sharp`: for every side whether its edge is a crease; equal for opposite half-edges, false on the boundary.
     FeatureNet(const TriangleMesh& mesh, std::span<const u32> twins, const std::vector<bool>& sharp,
                double corner_angle);
 
     /// Vertices of the mesh by their number here: by place, then by number in the mesh.
     std::span<const u32> vertices() const { return vertices_; }
-    u32 number_at_start(u32 side) const;
-    u32 number_at_end(u32 side) const;
+    u32 number_at_start(u32 half_edge) const;
+    u32 number_at_end(u32 half_edge) const;
     /// By number, whether the vertex is a corner.
     bool is_corner(u32 number) const { return is_corner_[number]; }
 
@@ -38,7 +38,7 @@ public:
 private:
     struct Crease {
         u32 end;  ///< number
-        u32 side;
+        u32 half_edge;
     };
     void number_vertices(const std::vector<bool>& sharp);
     void find_creases(const std::vector<bool>& sharp);
@@ -49,7 +49,7 @@ private:
     void begin_at_the_lowest(Array<u32>& loop) const;
 
     const TriangleMesh& mesh_;
-    std::span<const u32> twins_;
+    std::span<const u32> opposite_;
     Array<u32> vertices_;
     Array<u32> number_;          // by vertex of the mesh
     Array<u32> begin_;           // by number, and one more: into creases_

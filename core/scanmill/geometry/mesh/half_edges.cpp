@@ -7,22 +7,23 @@
 
 #include "scanmill/base/error.hpp"
 
-namespace scanmill::sides {
+namespace scanmill::half_edges {
 
 namespace {
 
 /// By edge, then by number. Pre: they stand by number, and all have one smaller vertex.
-void sort_by_edge(std::span<Side> sides) {
+void sort_by_edge(std::span<VertexHalfEdge> half_edges) {
     constexpr std::size_t few = 32;
-    if (sides.size() > few) {
-        std::ranges::stable_sort(sides, {}, &Side::other);
+    if (half_edges.size() > few) {
+        std::ranges::stable_sort(half_edges, {}, &VertexHalfEdge::other);
         return;
     }
-    for (std::size_t i = 1; i < sides.size(); ++i) {
-        const Side side = sides[i];
+    for (std::size_t i = 1; i < half_edges.size(); ++i) {
+        const VertexHalfEdge half_edge = half_edges[i];
         std::size_t place = i;
-        for (; place > 0 && sides[place - 1].other > side.other; --place) sides[place] = sides[place - 1];
-        sides[place] = side;
+        for (; place > 0 && half_edges[place - 1].other > half_edge.other; --place)
+            half_edges[place] = half_edges[place - 1];
+        half_edges[place] = half_edge;
     }
 }
 
@@ -33,11 +34,11 @@ std::string vertex_text(const TriangleMesh& mesh, u32 vertex) {
 
 /// Edges that no oriented surface has: the first of them as its sides, and their number.
 struct Offenders {
-    std::vector<Side> first;
+    std::vector<VertexHalfEdge> first;
     std::size_t edges = 0;
 
-    void add(std::span<const Side> sides) {
-        if (edges++ == 0) first.assign(sides.begin(), sides.end());
+    void add(std::span<const VertexHalfEdge> half_edges) {
+        if (edges++ == 0) first.assign(half_edges.begin(), half_edges.end());
     }
     std::string edge_text(const TriangleMesh& mesh) const {
         const u32 a = start(mesh, first[0].number), b = end(mesh, first[0].number);
@@ -66,8 +67,8 @@ void require_orientation(const TriangleMesh& mesh, const Offenders& alike) {
 
 }  // namespace
 
-SidesOfVertices sides_of_vertices(const TriangleMesh& mesh) {
-    SidesOfVertices result;
+ByVertex by_smaller_vertex(const TriangleMesh& mesh) {
+    ByVertex result;
     std::vector<u32>& begin = result.begin;
     begin.resize(mesh.positions.size() + 1);
     const auto for_each_side = [&](auto&& action) {
@@ -79,41 +80,43 @@ SidesOfVertices sides_of_vertices(const TriangleMesh& mesh) {
     };
     for_each_side([&](u32, u32 a, u32 b) { ++begin[std::min(a, b)]; });
     std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), u32(0));
-    result.sides.resize(begin.back());
+    result.half_edges.resize(begin.back());
     std::vector<u32> next(begin.begin(), begin.end() - 1);
-    for_each_side([&](u32 side, u32 a, u32 b) { result.sides[next[std::min(a, b)]++] = {std::max(a, b), side}; });
+    for_each_side([&](u32 half_edge, u32 a, u32 b) {
+        result.half_edges[next[std::min(a, b)]++] = {std::max(a, b), half_edge};
+    });
     for (std::size_t vertex = 0; vertex + 1 < begin.size(); ++vertex)
-        sort_by_edge({result.sides.data() + begin[vertex], result.sides.data() + begin[vertex + 1]});
+        sort_by_edge({result.half_edges.data() + begin[vertex], result.half_edges.data() + begin[vertex + 1]});
     return result;
 }
 
-Array<u32> oriented_twins(const TriangleMesh& mesh) {
+Array<u32> opposites(const TriangleMesh& mesh) {
     require_consistent(mesh);
     constexpr std::size_t most = boundary / 3 - 1;  // sides are numbered with 32 bits
     if (mesh.triangles.size() > most)
         throw Error("the mesh has {} triangles; at most {} are possible", mesh.triangles.size(), most);
-    const SidesOfVertices by_vertex = sides_of_vertices(mesh);
-    const std::span<const Side> all = by_vertex.sides;
-    Array<u32> twins(3 * mesh.triangles.size(), no_side);
+    const ByVertex by_vertex = by_smaller_vertex(mesh);
+    const std::span<const VertexHalfEdge> all = by_vertex.half_edges;
+    Array<u32> opposite(3 * mesh.triangles.size(), no_half_edge);
     Offenders crowded, alike;
     for (u32 a = 0; a < mesh.positions.size(); ++a)
         for (u32 first = by_vertex.begin[a], last; first < by_vertex.begin[a + 1]; first = last) {
             for (last = first + 1; last < by_vertex.begin[a + 1] && all[last].other == all[first].other;) ++last;
-            const std::span<const Side> edge = all.subspan(first, last - first);
+            const std::span<const VertexHalfEdge> edge = all.subspan(first, last - first);
             if (edge.size() == 1) {
-                twins[edge[0].number] = boundary;
+                opposite[edge[0].number] = boundary;
             } else if (edge.size() > 2) {
                 crowded.add(edge);
             } else if (start(mesh, edge[0].number) == start(mesh, edge[1].number)) {
                 alike.add(edge);
             } else {
-                twins[edge[0].number] = edge[1].number;
-                twins[edge[1].number] = edge[0].number;
+                opposite[edge[0].number] = edge[1].number;
+                opposite[edge[1].number] = edge[0].number;
             }
         }
     require_two_at_most(mesh, crowded);
     require_orientation(mesh, alike);
-    return twins;
+    return opposite;
 }
 
-}  // namespace scanmill::sides
+}  // namespace scanmill::half_edges

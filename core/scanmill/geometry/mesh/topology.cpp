@@ -8,7 +8,7 @@
 
 namespace scanmill {
 
-using sides::after, sides::before;
+using half_edges::after, half_edges::before;
 
 namespace {
 
@@ -16,16 +16,16 @@ constexpr u32 none = ~u32(0);
 
 /// Whether the corner's fan, found by going around its vertex from triangle to triangle, has so many corners. Pre: no
 /// edge at the vertex is in more than two triangles.
-bool fan_has(const TriangleMesh& mesh, const std::vector<u32>& twins, u32 corner, u32 corners) {
-    const u32 vertex = sides::start(mesh, corner);
+bool fan_has(const TriangleMesh& mesh, const std::vector<u32>& opposite, u32 corner, u32 corners) {
+    const u32 vertex = half_edges::start(mesh, corner);
     u32 seen = 1;
     for (const u32 first : {corner, before(corner)}) {
-        for (u32 side = first; twins[side] != none; ++seen) {
-            const u32 twin = twins[side];
-            const bool starts_here = sides::start(mesh, twin) == vertex;
-            const u32 here = starts_here ? twin : after(twin);
+        for (u32 half_edge = first; opposite[half_edge] != none; ++seen) {
+            const u32 other = opposite[half_edge];
+            const bool starts_here = half_edges::start(mesh, other) == vertex;
+            const u32 here = starts_here ? other : after(other);
             if (here == corner) return seen == corners;
-            side = starts_here ? before(twin) : here;
+            half_edge = starts_here ? before(other) : here;
         }
     }
     return seen == corners;
@@ -34,47 +34,47 @@ bool fan_has(const TriangleMesh& mesh, const std::vector<u32>& twins, u32 corner
 }  // namespace
 
 MeshTopology topology(const TriangleMesh& mesh) {
-    MeshTopology facts;
-    facts.triangles = mesh.triangles.size();
+    MeshTopology result;
+    result.triangles = mesh.triangles.size();
     std::vector<bool> used(mesh.positions.size(), false);
     std::vector<bool> unmanifold(mesh.positions.size(), false);
     for (const Triangle& triangle : mesh.triangles) {
-        if (sides::names_a_vertex_twice(triangle)) ++facts.degenerate_triangles;
+        if (half_edges::names_a_vertex_twice(triangle)) ++result.degenerate_triangles;
         for (u32 vertex : triangle) used[vertex] = true;
     }
-    facts.vertices = static_cast<std::size_t>(std::ranges::count(used, true));
-    facts.unused_vertices = used.size() - facts.vertices;
+    result.vertices = static_cast<std::size_t>(std::ranges::count(used, true));
+    result.unused_vertices = used.size() - result.vertices;
 
-    const sides::SidesOfVertices by_vertex = sides::sides_of_vertices(mesh);
-    std::vector<u32> twins(3 * mesh.triangles.size(), none);  // across edges of two triangles
+    const half_edges::ByVertex by_vertex = half_edges::by_smaller_vertex(mesh);
+    std::vector<u32> opposite(3 * mesh.triangles.size(), none);  // across edges of two triangles
     DisjointSets faces(mesh.triangles.size());
     DisjointSets boundary(mesh.positions.size());
     std::vector<bool> on_boundary(mesh.positions.size(), false);
     for (u32 a = 0; a < mesh.positions.size(); ++a)
         for (u32 first = by_vertex.begin[a], last; first < by_vertex.begin[a + 1]; first = last) {
-            const u32 b = by_vertex.sides[first].other, side = by_vertex.sides[first].number;
-            for (last = first + 1; last < by_vertex.begin[a + 1] && by_vertex.sides[last].other == b; ++last)
-                faces.unite(side / 3, by_vertex.sides[last].number / 3);
-            ++facts.edges;
+            const u32 b = by_vertex.half_edges[first].other, half_edge = by_vertex.half_edges[first].number;
+            for (last = first + 1; last < by_vertex.begin[a + 1] && by_vertex.half_edges[last].other == b; ++last)
+                faces.unite(half_edge / 3, by_vertex.half_edges[last].number / 3);
+            ++result.edges;
             if (last - first == 1) {
-                ++facts.boundary_edges;
+                ++result.boundary_edges;
                 boundary.unite(a, b);
                 on_boundary[a] = on_boundary[b] = true;
             } else if (last - first > 2) {
-                ++facts.nonmanifold_edges;
+                ++result.nonmanifold_edges;
                 unmanifold[a] = unmanifold[b] = true;
             } else {
-                const u32 twin = by_vertex.sides[first + 1].number;
-                twins[side] = twin;
-                twins[twin] = side;
-                if (sides::start(mesh, side) == sides::start(mesh, twin)) ++facts.misoriented_edges;
+                const u32 other = by_vertex.half_edges[first + 1].number;
+                opposite[half_edge] = other;
+                opposite[other] = half_edge;
+                if (half_edges::start(mesh, half_edge) == half_edges::start(mesh, other)) ++result.misoriented_edges;
             }
         }
 
     std::vector<u32> corner_of(mesh.positions.size(), none), corners(mesh.positions.size(), 0);
     for (u32 t = 0; t < mesh.triangles.size(); ++t) {
-        if (sides::names_a_vertex_twice(mesh.triangles[t])) continue;
-        if (faces.find(t) == t) ++facts.components;
+        if (half_edges::names_a_vertex_twice(mesh.triangles[t])) continue;
+        if (faces.find(t) == t) ++result.components;
         for (u32 i = 0; i < 3; ++i) {
             const u32 vertex = mesh.triangles[t][i];
             corner_of[vertex] = 3 * t + i;
@@ -83,19 +83,20 @@ MeshTopology topology(const TriangleMesh& mesh) {
     }
     for (u32 vertex = 0; vertex < mesh.positions.size(); ++vertex)
         if (corners[vertex] > 0 && !unmanifold[vertex])
-            unmanifold[vertex] = !fan_has(mesh, twins, corner_of[vertex], corners[vertex]);
-    facts.nonmanifold_vertices = static_cast<std::size_t>(std::ranges::count(unmanifold, true));
+            unmanifold[vertex] = !fan_has(mesh, opposite, corner_of[vertex], corners[vertex]);
+    result.nonmanifold_vertices = static_cast<std::size_t>(std::ranges::count(unmanifold, true));
     for (u32 vertex = 0; vertex < on_boundary.size(); ++vertex)
-        if (on_boundary[vertex] && boundary.find(vertex) == vertex) ++facts.boundary_loops;
+        if (on_boundary[vertex] && boundary.find(vertex) == vertex) ++result.boundary_loops;
 
-    facts.euler = static_cast<long>(facts.vertices) - static_cast<long>(facts.edges) +
-                  static_cast<long>(facts.triangles - facts.degenerate_triangles);
-    const bool manifold = facts.triangles > 0 && facts.degenerate_triangles == 0 && facts.nonmanifold_edges == 0 &&
-                          facts.nonmanifold_vertices == 0 && facts.misoriented_edges == 0;
-    facts.closed = manifold && facts.boundary_edges == 0;
+    result.euler = static_cast<long>(result.vertices) - static_cast<long>(result.edges) +
+                   static_cast<long>(result.triangles - result.degenerate_triangles);
+    const bool manifold = result.triangles > 0 && result.degenerate_triangles == 0 && result.nonmanifold_edges == 0 &&
+                          result.nonmanifold_vertices == 0 && result.misoriented_edges == 0;
+    result.closed = manifold && result.boundary_edges == 0;
     if (manifold)
-        facts.genus = static_cast<long>(facts.components) - (facts.euler + static_cast<long>(facts.boundary_loops)) / 2;
-    return facts;
+        result.genus =
+            static_cast<long>(result.components) - (result.euler + static_cast<long>(result.boundary_loops)) / 2;
+    return result;
 }
 
 }  // namespace scanmill

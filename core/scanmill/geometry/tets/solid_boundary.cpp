@@ -59,7 +59,7 @@ Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labe
                 for (int corner = 0; corner < 4; ++corner) {
                     const u32 across = tets.neighbours[c][corner];
                     const bool at_hull = across == TetMesh::outside_hull;
-                    // Without a branch: which facets are on the boundary cannot be foreseen.
+                    // Without a branch: which facets are on the boundary cannot be predicted.
                     const unsigned is_open = unsigned(at_hull) | unsigned(labels[at_hull ? 0 : across] != solid);
                     mask |= is_open << corner;
                     count += is_open;

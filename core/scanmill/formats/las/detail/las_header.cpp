@@ -38,7 +38,7 @@ void require_sense(const LasHeader& header, std::string_view bytes) {
         throw Error("has points of format {}; LAS knows 0 to {}", header.point_format, point_sizes.size() - 1);
     if (header.points_begin < header.size || header.points_begin > bytes.size())
         throw Error("the points begin at byte {}, by the header of {}; the file has {}", header.points_begin,
-                    counted(header.size, "byte", "bytes"), counted(bytes.size(), "byte", "bytes"))
+                    count_text(header.size, "byte", "bytes"), count_text(bytes.size(), "byte", "bytes"))
             .hint(std::string(truncated_hint));
     if (header.is_compressed) return;  // the sizes of points are another's business
     if (header.point_size < las_point_size(header.point_format))
@@ -69,7 +69,7 @@ std::size_t las_point_size(u32 point_format) { return point_sizes.at(point_forma
 LasHeader read_las_header(std::string_view bytes) {
     constexpr std::size_t versions_end = 96;
     if (bytes.size() < versions_end)
-        throw Error("is {} long; the header of a LAS file takes {} or more", counted(bytes.size(), "byte", "bytes"),
+        throw Error("is {} long; the header of a LAS file takes {} or more", count_text(bytes.size(), "byte", "bytes"),
                     least_header(0));
     const char* const at = bytes.data();
     LasHeader header;
@@ -108,10 +108,10 @@ LasHeader read_las_header(std::string_view bytes) {
 void require_las_points(const LasHeader& header, std::string_view bytes) {
     const std::size_t room = bytes.size() - header.points_begin;
     if (header.points == 0)
-        throw Error("holds no points: its header says 0, and {} follow it", counted(room, "byte", "bytes"));
+        throw Error("holds no points: its header says 0, and {} follow it", count_text(room, "byte", "bytes"));
     if (header.points > room / header.point_size)
         throw Error("promises {} of {} bytes; the {} from byte {} on hold {}",
-                    counted(header.points, "point", "points"), header.point_size, counted(room, "byte", "bytes"),
+                    count_text(header.points, "point", "points"), header.point_size, count_text(room, "byte", "bytes"),
                     header.points_begin, room / header.point_size)
             .hint(std::string(truncated_hint));
     require_countable(header.points, "points");

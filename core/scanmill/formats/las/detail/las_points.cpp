@@ -78,7 +78,7 @@ std::vector<LasExtra> read_las_extra(const LasHeader& header, const std::vector<
     const std::size_t rest = header.point_size - las_point_size(header.point_format) - described_bytes;
     if (rest > 0)
         warn(options.on_warning, "{} of each point {} of no described type and left out",
-             counted(rest, "extra byte", "extra bytes"), by_count(rest, "is", "are"));
+             count_text(rest, "extra byte", "extra bytes"), by_count(rest, "is", "are"));
     return extras;
 }
 

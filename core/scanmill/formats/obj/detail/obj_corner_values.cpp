@@ -36,7 +36,7 @@ Array<u32> ObjCornerValues::values_of_vertices(std::span<const u32> corners, std
     return values;
 }
 
-void ObjCornerValues::tell_unused(const std::function<void(std::string)>& on_warning) const {
+void ObjCornerValues::warn_unused(const std::function<void(std::string)>& on_warning) const {
     std::vector<bool> used(count());
     for (u32 value : value_of_)
         if (value != none) used[value] = true;
@@ -63,7 +63,7 @@ void ObjCornerValues::add_column(ColumnTable& columns, std::span<const u32> corn
         if (count() == 0) return;
         if (count() != vertices)
             return warn(on_warning, "the {} {} were left out: no face names them, and there {} {}", count(), what_,
-                        by_count(vertices, "is", "are"), counted(vertices, "vertex", "vertices"));
+                        by_count(vertices, "is", "are"), count_text(vertices, "vertex", "vertices"));
         if (!corners.empty())
             warn(on_warning, "no face names the {} {}: they were given to the vertices of equal number", count(),
                  what_);
@@ -84,7 +84,7 @@ void ObjCornerValues::add_column(ColumnTable& columns, std::span<const u32> corn
         one_to_one = value_of_vertex[vertex] == vertex || value_of_vertex[vertex] == none;
     if (one_to_one) return add(std::move(numbers_));
 
-    tell_unused(on_warning);
+    warn_unused(on_warning);
     if (const auto without = std::ranges::count(value_of_vertex, none); without > 0)
         warn(on_warning, "{} of {} vertices have none of the {}: they were given zeros", without, vertices, what_);
     add(gathered(value_of_vertex));

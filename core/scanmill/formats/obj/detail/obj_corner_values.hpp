@@ -47,7 +47,7 @@ private:
     bool are_equal(u32 a, u32 b) const;
     /// The value of every vertex: a number, none or several.
     Array<u32> values_of_vertices(std::span<const u32> corners, std::size_t vertices) const;
-    void tell_unused(const std::function<void(std::string)>& on_warning) const;
+    void warn_unused(const std::function<void(std::string)>& on_warning) const;
     Array<double> gathered(std::span<const u32> value_of_vertex) const;
 
     std::string column_;

@@ -78,26 +78,26 @@ void ObjLeftOut::tell(const std::function<void(std::string)>& on_warning) const 
     if (!divisions.empty()) warn(on_warning, "{} were made one; which faces belong to which was left out", divisions);
     if (const Rows& rows = of(ObjSubject::library); rows.count > 0)
         warn(on_warning, "{} not read: materials and their images were left out, the first of {}",
-             counted(rows.names.size(), "material library (mtllib) was", "material libraries (mtllib) were"),
+             count_text(rows.names.size(), "material library (mtllib) was", "material libraries (mtllib) were"),
              quote(rows.first_name));
     if (const Rows& rows = of(ObjSubject::line); rows.count > 0)
-        warn(on_warning, "{} left out, first in line {}", counted(rows.count, "line (l) was", "lines (l) were"),
+        warn(on_warning, "{} left out, first in line {}", count_text(rows.count, "line (l) was", "lines (l) were"),
              rows.first_line);
     if (const Rows& rows = of(ObjSubject::point); rows.count > 0)
         warn(on_warning, "{} left out, first in line {}; their vertices are kept as all are",
-             counted(rows.count, "row of points (p) was", "rows of points (p) were"), rows.first_line);
+             count_text(rows.count, "row of points (p) was", "rows of points (p) were"), rows.first_line);
 
-    const auto tell_rows = [&](ObjSubject subject, std::string_view meaning) {
+    const auto warn_rows = [&](ObjSubject subject, std::string_view meaning) {
         const Rows& rows = of(subject);
         if (rows.count == 0) return;
         std::string words;
         for (std::string_view keyword : rows.keywords) words.append(words.empty() ? "" : ", ").append(quote(keyword));
-        warn(on_warning, "{} left out, first in line {}: {} ({})", counted(rows.count, "row was", "rows were"),
+        warn(on_warning, "{} left out, first in line {}: {} ({})", count_text(rows.count, "row was", "rows were"),
              rows.first_line, meaning, words);
     };
-    tell_rows(ObjSubject::free_form, "free-form curves and surfaces are not read");
-    tell_rows(ObjSubject::display, "they concern the display only");
-    tell_rows(ObjSubject::unknown, "OBJ does not know what they begin with");
+    warn_rows(ObjSubject::free_form, "free-form curves and surfaces are not read");
+    warn_rows(ObjSubject::display, "they concern the display only");
+    warn_rows(ObjSubject::unknown, "OBJ does not know what they begin with");
 }
 
 std::string ObjLeftOut::first_unknown() const {

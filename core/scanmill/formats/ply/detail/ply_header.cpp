@@ -94,7 +94,7 @@ private:
         // A header that ends the file needs no line end after its last word.
         if (end == std::string_view::npos && at_ >= file_.size())
             throw Error("the file ends after {} inside its PLY header; 'end_header' is missing",
-                        counted(header_.lines, "line", "lines"));
+                        count_text(header_.lines, "line", "lines"));
         const std::string_view line = file_.substr(at_, end == std::string_view::npos ? end : end - at_);
         at_ = end == std::string_view::npos ? file_.size() : end + 1;
         ++header_.lines;
@@ -201,8 +201,8 @@ void require_room(const PlyElement& element, PlyEncoding encoding, std::size_t l
     const u64 fitting = (left + (encoding == PlyEncoding::ascii ? 1 : 0)) / row;
     if (element.count > fitting)
         throw Error("the header promises {} of element {}, each at least {} long; the {} that follow hold at most {}",
-                    counted(element.count, "row", "rows"), quote(element.name), counted(row, "byte", "bytes"),
-                    counted(left, "byte", "bytes"), fitting)
+                    count_text(element.count, "row", "rows"), quote(element.name), count_text(row, "byte", "bytes"),
+                    count_text(left, "byte", "bytes"), fitting)
             .hint("the file is truncated or its header is wrong: fetch or export it again");
 }
 
