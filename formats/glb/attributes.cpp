@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "scanmill/formats/common/column_names.hpp"
+#include "scanmill/formats/common/writing.hpp"
 #include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill::glb {

@@ -14,9 +14,8 @@
 #include <numeric>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/formats/common/column_names.hpp"
-#include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/common/writing.hpp"
+#include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill::vtk {
 

@@ -10,7 +10,6 @@
 #include "filters/voxel_thin_cases.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/formats/open_point_stream.hpp"
 #include "support/peak_memory.hpp"
 #include "support/real_data.hpp"
 #include "support/same_points.hpp"

@@ -45,9 +45,9 @@ inline void add_seen(const aiScene& scene, const aiNode& node, const aiMatrix4x4
 }
 
 template <class T>
-SeenByAssimp through_assimp(const T& object, const char* name, Told* told = nullptr) {
+SeenByAssimp through_assimp(const T& object, const char* name, Warnings* warnings = nullptr) {
     const TemporaryFolder folder;
-    write_file(folder / name, std::make_shared<const T>(object), told ? told->writing() : WriteOptions{});
+    write_file(folder / name, std::make_shared<const T>(object), warnings ? warnings->writing() : WriteOptions{});
     Assimp::Importer importer;
     const aiScene* scene = importer.ReadFile((folder / name).string(), 0);
     SeenByAssimp seen;

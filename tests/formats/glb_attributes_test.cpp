@@ -17,9 +17,9 @@ TEST(GlbAttributes, Normals_AreRotatedAndNormalised_AndColoursAreLinear) {
     PointCloud cloud = two_points();
     cloud.columns.add(Column("normal", 3, Buffer<float>{0, 0, 2, 0.6f, 0.8f, 0}));
     cloud.columns.add(Column("colour", 3, Buffer<u8>{0, 188, 255, 10, 0, 0}));
-    Told told;
-    const SeenByAssimp seen = through_assimp(cloud, "a.glb", &told);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    Warnings warnings;
+    const SeenByAssimp seen = through_assimp(cloud, "a.glb", &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
     ASSERT_EQ(seen.normals.size(), 2u);
     EXPECT_LT((seen.normals[0] - Vec3(0, 1, 0)).norm(), 1e-6);
     EXPECT_LT((seen.normals[1] - Vec3(0.6, 0, -0.8)).norm(), 1e-6);
@@ -49,9 +49,9 @@ TEST(GlbAttributes, OtherColumns_AreAttributesOfTheirOwn) {
     cloud.columns.add(Column("bits", 3, Buffer<std::int8_t>{-1, 2, 3, 4, -5, -128}));
     cloud.columns.add(Column("id", 1, Buffer<u32>{16777216, 3}));
     cloud.columns.add(Column("intensity", 1, Buffer<double>{0.5, 0.25}));
-    Told told;
-    const Container glb(cloud, &told);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    Warnings warnings;
+    const Container glb(cloud, &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
     EXPECT_EQ((*glb.attribute("_RING"))["componentType"], 5123);
     EXPECT_EQ(glb.number<std::uint16_t>("_RING", 1, 0), 65535);
     EXPECT_EQ((*glb.attribute("_BITS"))["componentType"], 5120);
@@ -71,9 +71,9 @@ TEST(GlbLosses, AreReportedByName) {
     cloud.columns.add(Column("time", 1, Buffer<double>{0.1, 1}));
     cloud.columns.add(Column("a b", 1, Buffer<float>{1, 2}));
     cloud.columns.add(Column("A_B", 1, Buffer<float>{1, 2}));
-    Told told;
-    const Container glb(cloud, &told);
-    EXPECT_THAT(told.sentences,
+    Warnings warnings;
+    const Container glb(cloud, &warnings);
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("left out the column 'lists': it holds lists"),
                             HasSubstr("left out the column 'wide': it has 5 numbers per row"),
                             HasSubstr("left out the column 'holes': 1 of its numbers is NaN or infinite"),
@@ -88,21 +88,22 @@ TEST(GlbLosses, AreReportedByName) {
 TEST(GlbLosses, NormalsWithoutDirection_AreNotWrittenAsNormals) {
     PointCloud cloud = two_points();
     cloud.columns.add(Column("normal", 3, Buffer<float>{0, 0, 1, 0, 0, 0}));
-    Told told;
-    const Container glb(cloud, &told);
+    Warnings warnings;
+    const Container glb(cloud, &warnings);
     EXPECT_FALSE(glb.attribute("NORMAL"));
     EXPECT_EQ(glb.number<float>("_NORMAL", 0, 2), 1.f);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("'normal' as '_NORMAL' and not as normals: 1 of them has no")));
+    EXPECT_THAT(warnings.sentences,
+                ElementsAre(HasSubstr("'normal' as '_NORMAL' and not as normals: 1 of them has no")));
 }
 
 TEST(GlbLosses, OfFacesAndEdges_AreReported) {
     TriangleMesh mesh = cube_in(LengthUnit::metre);
     mesh.face_columns.add(Column("group", 1, Buffer<u8>(Array<u8>(12, u8(1)))));
     mesh.sharp_edges = {{0, 1}};
-    Told told;
-    through_assimp(mesh, "a.glb", &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("GLB left out 1 column of the faces (group)"),
-                                            HasSubstr("GLB left out that 1 edge are sharp")));
+    Warnings warnings;
+    through_assimp(mesh, "a.glb", &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("GLB left out 1 column of the faces (group)"),
+                                                HasSubstr("GLB left out that 1 edge are sharp")));
 }
 
 }  // namespace

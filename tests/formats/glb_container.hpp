@@ -25,8 +25,9 @@ struct Container {
     std::string_view numbers;
 
     template <class T>
-    explicit Container(const T& object, Told* told = nullptr)
-        : bytes(write_bytes("a.glb", std::make_shared<const T>(object), told ? told->writing() : WriteOptions{})) {
+    explicit Container(const T& object, Warnings* warnings = nullptr)
+        : bytes(write_bytes("a.glb", std::make_shared<const T>(object),
+                            warnings ? warnings->writing() : WriteOptions{})) {
         const auto length = number_at<u32>(bytes, 12);
         json = Json::parse(std::string_view(bytes).substr(20, length));
         numbers = std::string_view(bytes).substr(28 + length);

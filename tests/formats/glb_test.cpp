@@ -21,9 +21,9 @@ TEST(GlbWriter, VertexOfNoTriangle_IsLeftOutAndMovesNothing) {
     for (const Vec3& p : mesh.positions) positions.push_back(p + Vec3(432100, 5421000, 0));
     positions.push_back({0, 0, 0});
     mesh.positions = std::move(positions);
-    Told told;
-    const Container written(mesh, &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("GLB left out 1 vertex that no triangle uses")));
+    Warnings warnings;
+    const Container written(mesh, &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("GLB left out 1 vertex that no triangle uses")));
     const Json& accessor = *written.attribute("POSITION");
     EXPECT_EQ(accessor["count"], 8);
     for (int axis = 0; axis < 3; ++axis)
@@ -33,9 +33,9 @@ TEST(GlbWriter, VertexOfNoTriangle_IsLeftOutAndMovesNothing) {
 TEST(GlbWriter, MillimetresWithZUp_BecomeMetresWithYUp) {
     PointCloud cloud = two_points();
     cloud.frame.unit = LengthUnit::millimetre;
-    Told told;
-    const SeenByAssimp seen = through_assimp(cloud, "a.glb", &told);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    Warnings warnings;
+    const SeenByAssimp seen = through_assimp(cloud, "a.glb", &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
     ASSERT_EQ(seen.vertices, 2u) << seen.error;
     EXPECT_EQ(seen.primitive_types, static_cast<unsigned>(aiPrimitiveType_POINT));
     EXPECT_LT((seen.positions[0] - Vec3(0.001, 0.003, -0.002)).norm(), 1e-9);
@@ -77,9 +77,9 @@ TEST(GlbWriter, FarFromZero_TheNodeHasTheOriginAndVerticesKeepMicrometres) {
     PointCloud cloud;
     cloud.frame = {LengthUnit::metre, Vec3(5e5, 5.5e6, 0), "site"};
     cloud.positions = {Vec3(0, 0, 0), Vec3(1e-6, 0.25, 0.5), Vec3(1, 1, 1)};
-    Told told;
-    const Container glb(cloud, &told);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    Warnings warnings;
+    const Container glb(cloud, &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
     const Json& node = glb.json["nodes"][0];
     EXPECT_EQ(node["name"], "site");
     ASSERT_TRUE(node.contains("translation"));
@@ -93,9 +93,9 @@ TEST(GlbWriter, FarFromZero_TheNodeHasTheOriginAndVerticesKeepMicrometres) {
 }
 
 TEST(GlbWriter, UnknownUnit_IsAssumedToBeMetreWithAWarning) {
-    Told told;
-    const SeenByAssimp seen = through_assimp(cube(3), "a.glb", &told);
-    EXPECT_THAT(told.sentences,
+    Warnings warnings;
+    const SeenByAssimp seen = through_assimp(cube(3), "a.glb", &warnings);
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("the unit is not known: 1 was written as 1 m; declare the unit")));
     EXPECT_EQ(seen.box.high, Vec3(3, 3, 0));
 }

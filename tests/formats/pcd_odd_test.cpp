@@ -96,11 +96,11 @@ TEST(PcdReader_Normals, AreKnownByEitherOfTheirNames) {
 }
 
 TEST(PcdReader_Fields, WithTheNameOfAnotherColumn_AreRenamedWithAWarning) {
-    Told told;
-    const auto cloud =
-        points_in("FIELDS x y z rgb colour label\n" + pcd_head + "POINTS 1\nDATA ascii\n1 2 3 0 5 6\n", "a.pcd", &told);
+    Warnings warnings;
+    const auto cloud = points_in("FIELDS x y z rgb colour label\n" + pcd_head + "POINTS 1\nDATA ascii\n1 2 3 0 5 6\n",
+                                 "a.pcd", &warnings);
     EXPECT_EQ(cloud->columns.find("colour_2")->number(0), 5);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the field 'colour' became the column 'colour_2'")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("the field 'colour' became the column 'colour_2'")));
     EXPECT_THAT(refusal_of("FIELDS x y z x a b\n" + pcd_head + "DATA ascii\n1 2 3 4 5 6\n", "a.pcd"),
                 HasSubstr("line 1: two fields are called 'x'"));
     std::string many = "FIELDS x y z";
@@ -117,15 +117,15 @@ TEST(PcdReader_Viewpoint, IsSevenNumbers) {
 }
 
 TEST(PcdReader_WindowsLineEnds, AreNotPartOfCommentsAndNames) {
-    Told told;
+    Warnings warnings;
     std::string text =
         "# unit mm\n# frame part\nFIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA ascii\n1 2 3 4 5 6\n";
     for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.replace(at, 1, "\r\n");
-    const auto cloud = points_in(text, "a.pcd", &told);
+    const auto cloud = points_in(text, "a.pcd", &warnings);
     EXPECT_EQ(cloud->frame.unit, LengthUnit::millimetre);
     EXPECT_EQ(cloud->frame.name, "part");
     EXPECT_TRUE(cloud->columns.find("c"));
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 TEST(PcdReader_FieldsWithoutTypes_ThatReachBeyondThePoint, AreRefused) {
@@ -136,13 +136,14 @@ TEST(PcdReader_FieldsWithoutTypes_ThatReachBeyondThePoint, AreRefused) {
 }
 
 TEST(PcdReader_BytesAfterTheLastPoint, AreReported) {
-    Told told;
+    Warnings warnings;
     points_in("FIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA binary\n" + std::string(24, '\0') + "later", "a.pcd",
-              &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("5 bytes were behind the last point and left out")));
-    told.sentences.clear();
-    points_in("FIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA binary\n" + std::string(4096, '\0'), "a.pcd", &told);
-    EXPECT_THAT(told.sentences, IsEmpty()) << "a page filled with zeros";
+              &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("5 bytes were behind the last point and left out")));
+    warnings.sentences.clear();
+    points_in("FIELDS x y z a b c\n" + pcd_head + "POINTS 1\nDATA binary\n" + std::string(4096, '\0'), "a.pcd",
+              &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty()) << "a page filled with zeros";
 }
 
 }  // namespace

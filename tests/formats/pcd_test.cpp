@@ -13,14 +13,14 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 TEST(PcdReader, Ascii_KeepsRowsInOrder) {
-    Told told;
-    const auto cloud = points_in(xyz_header(2, "ascii") + "1 2 3\n-0.5 1e3 nan\n", "a.pcd", &told);
+    Warnings warnings;
+    const auto cloud = points_in(xyz_header(2, "ascii") + "1 2 3\n-0.5 1e3 nan\n", "a.pcd", &warnings);
     ASSERT_EQ(cloud->size(), 2u);
     EXPECT_EQ(world_of(*cloud, 0), Vec3(1, 2, 3));
     EXPECT_EQ(world_of(*cloud, 1).head<2>(), Eigen::Vector2d(-0.5, 1000));
     EXPECT_TRUE(std::isnan(world_of(*cloud, 1).z()));
     EXPECT_TRUE(cloud->columns.empty());
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 TEST(PcdReader, Binary_KeepsTypesAndNames) {
@@ -80,14 +80,14 @@ TEST(PcdReader, FieldsOfSeveralNumbersAndPadding_AreRead) {
 }
 
 TEST(PcdReader, GridAndSensorPose_AreReported) {
-    Told told;
+    Warnings warnings;
     std::string text = xyz_header(4, "ascii", "# unit mm\n# frame bench\n") + "0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
     text.replace(text.find("WIDTH 4\nHEIGHT 1"), 16, "WIDTH 2\nHEIGHT 2");
     text.replace(text.find("0 0 0 1 0 0 0"), 13, "0 0 5 1 0 0 0");
-    const auto cloud = points_in(text, "a.pcd", &told);
+    const auto cloud = points_in(text, "a.pcd", &warnings);
     EXPECT_EQ(cloud->frame.unit, LengthUnit::millimetre);
     EXPECT_EQ(cloud->frame.name, "bench");
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the grid of 2 × 2 points"), HasSubstr("VIEWPOINT 0 0 5")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("the grid of 2 × 2 points"), HasSubstr("VIEWPOINT 0 0 5")));
 }
 
 TEST(PcdReader, BlankLinesOfAnAsciiFile_AreNotPoints) {
@@ -108,11 +108,11 @@ TEST(PcdReader, AsciiIntegers_KeepEveryDigitOrAreRefused) {
 }
 
 TEST(PcdReader, IdentityViewpoint_IsNotReported) {
-    Told told;
+    Warnings warnings;
     std::string text = xyz_header(1, "ascii") + "1 2 3\n";
     text.replace(text.find("0 0 0 1 0 0 0"), 13, "0.0 0 0 1.0 0 0 0");
-    points_in(text, "a.pcd", &told);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    points_in(text, "a.pcd", &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 }  // namespace

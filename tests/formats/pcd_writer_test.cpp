@@ -28,13 +28,13 @@ PointCloud every_column() {
 TEST(PcdWriter, EveryColumn_IsReadBackUnchanged) {
     const TemporaryFolder folder;
     const PointCloud cloud = every_column();
-    Told told;
-    write_file(folder / "a.pcd", std::make_shared<const PointCloud>(cloud), told.writing());
+    Warnings warnings;
+    write_file(folder / "a.pcd", std::make_shared<const PointCloud>(cloud), warnings.writing());
     const auto back = read_points(folder / "a.pcd");
     EXPECT_EQ(rows_of(back->positions), rows_of(cloud.positions));
     EXPECT_EQ(back->columns, cloud.columns);
     EXPECT_EQ(back->frame, cloud.frame);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 TEST(PcdWriter, Positions_AreDoublesOnlyWhereFloatsAreInexact) {
@@ -54,13 +54,13 @@ TEST(PcdWriter, Positions_AreDoublesOnlyWhereFloatsAreInexact) {
 
 TEST(PcdWriter_Losses, NamesReservedByPcd_AreChangedWithAWarning) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     PointCloud cloud;
     cloud.positions = {Vec3(1, 2, 3)};
     for (const char* name : {"_", "normal_x", "rgb", "a b", "a_b", "plain"})
         cloud.columns.add(Column(name, 1, Buffer<float>{7}));
-    write_file(folder / "a.pcd", std::make_shared<const PointCloud>(cloud), told.writing());
-    EXPECT_EQ(told.sentences.size(), 5u);
+    write_file(folder / "a.pcd", std::make_shared<const PointCloud>(cloud), warnings.writing());
+    EXPECT_EQ(warnings.sentences.size(), 5u);
     const auto back = read_points(folder / "a.pcd");
     EXPECT_EQ(back->columns.size(), 6u);
     for (const char* name : {"__2", "normal_x_2", "rgb_2", "a_b", "a_b_2", "plain"})
@@ -69,12 +69,12 @@ TEST(PcdWriter_Losses, NamesReservedByPcd_AreChangedWithAWarning) {
 
 TEST(PcdWriter_Losses, ListsAreReported) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     PointCloud cloud;
     cloud.positions = {Vec3(1, 2, 3)};
     cloud.columns.add(Column("seen_by", Buffer<u64>{0, 2}, Buffer<u32>{4, 5}));
-    write_file(folder / "a.pcd", std::make_shared<const PointCloud>(cloud), told.writing());
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the lists of the column 'seen_by'")));
+    write_file(folder / "a.pcd", std::make_shared<const PointCloud>(cloud), warnings.writing());
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("the lists of the column 'seen_by'")));
 }
 
 }  // namespace

@@ -16,8 +16,9 @@ struct SeenBy3mf {
     std::vector<Vec3> vertices;  ///< without the offset
 };
 
-inline std::string bytes_of_3mf(const TriangleMesh& mesh, Told* told = nullptr) {
-    return write_bytes("a.3mf", std::make_shared<const TriangleMesh>(mesh), told ? told->writing() : WriteOptions{});
+inline std::string bytes_of_3mf(const TriangleMesh& mesh, Warnings* warnings = nullptr) {
+    return write_bytes("a.3mf", std::make_shared<const TriangleMesh>(mesh),
+                       warnings ? warnings->writing() : WriteOptions{});
 }
 
 /// lib3mf's objects are left to the end of the program.

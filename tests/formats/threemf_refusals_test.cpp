@@ -18,9 +18,9 @@ TEST(ThreemfLosses, AreReportedByName) {
     mesh.vertex_columns.add(Column("colour", 3, Buffer<u8>(Array<u8>(24, u8(9)))));
     mesh.face_columns.add(Column("group", 1, Buffer<u8>(Array<u8>(12, u8(1)))));
     mesh.sharp_edges = {{0, 1}, {1, 2}};
-    Told told;
-    bytes_of_3mf(mesh, &told);
-    EXPECT_THAT(told.sentences,
+    Warnings warnings;
+    bytes_of_3mf(mesh, &warnings);
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("3MF left out 1 column of the vertices (colour)"),
                             HasSubstr("3MF left out 1 column of the faces (group)"), HasSubstr("2 edges are sharp")));
 }

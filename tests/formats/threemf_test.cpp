@@ -20,9 +20,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 TEST(ThreemfWriter, Cube_IsReadAsACube) {
-    Told told;
-    const SeenByAssimp seen = through_assimp(cube_in(LengthUnit::millimetre, 2.5), "a.3mf", &told);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    Warnings warnings;
+    const SeenByAssimp seen = through_assimp(cube_in(LengthUnit::millimetre, 2.5), "a.3mf", &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
     ASSERT_EQ(seen.error, "");
     EXPECT_EQ(seen.meshes, 1u);
     EXPECT_EQ(seen.vertices, 8u);
@@ -61,9 +61,9 @@ TEST(ThreemfWriter, FarOffset_IsTheSameInSingleAndDouble) {
 }
 
 TEST(ThreemfWriter, VertexOfNoTriangle_IsLeftOutAndMovesNothing) {
-    Told told;
-    const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(far_cube({4.321e8, 5.421e8, 0}, true), &told));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3MF left out 1 vertex that no triangle uses")));
+    Warnings warnings;
+    const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(far_cube({4.321e8, 5.421e8, 0}, true), &warnings));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("3MF left out 1 vertex that no triangle uses")));
     ASSERT_EQ(seen.vertices.size(), 8u);
     BoundingBox box;
     for (const Vec3& v : seen.vertices) {
@@ -88,9 +88,9 @@ TEST(ThreemfWriter, EveryUnit_IsDeclared) {
 }
 
 TEST(ThreemfWriter, UnknownUnit_IsAssumedToBeMillimetreWithAWarning) {
-    Told told;
-    EXPECT_EQ(read_by_3mf(bytes_of_3mf(cube(1), &told)).unit, static_cast<DWORD>(NMR::MODELUNIT_MILLIMETER));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 was written as 1 mm; declare the unit")));
+    Warnings warnings;
+    EXPECT_EQ(read_by_3mf(bytes_of_3mf(cube(1), &warnings)).unit, static_cast<DWORD>(NMR::MODELUNIT_MILLIMETER));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 was written as 1 mm; declare the unit")));
 }
 
 TEST(ThreemfWriter, FrameName_IsTheObjects) {
@@ -109,18 +109,18 @@ TEST(ThreemfWriter, Coordinates_AreRoundedAtTheSixthDecimal_NotTruncated) {
 }
 
 TEST(ThreemfWriter, TinyShapes_AreMovedWithAWarning) {
-    Told told;
-    bytes_of_3mf(cube_in(LengthUnit::metre, 0.0123456789), &told);
-    EXPECT_THAT(told.sentences,
+    Warnings warnings;
+    bytes_of_3mf(cube_in(LengthUnit::metre, 0.0123456789), &warnings);
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(AllOf(HasSubstr("coordinates moved by up to"), HasSubstr("a smaller unit"))));
 }
 
 TEST(ThreemfWriter, FarFromZero_OffsetAndVerticesAddUp) {
     TriangleMesh mesh = cube_in(LengthUnit::metre);
     mesh.frame.origin = Vec3(1234567, -7654321.5, 0);
-    Told told;
-    const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(mesh, &told));
-    EXPECT_THAT(told.sentences, IsEmpty());
+    Warnings warnings;
+    const SeenBy3mf seen = read_by_3mf(bytes_of_3mf(mesh, &warnings));
+    EXPECT_THAT(warnings.sentences, IsEmpty());
     for (std::size_t i = 0; i < 8; ++i)
         EXPECT_LT((seen.offset + seen.vertices[i] - (mesh.frame.origin + mesh.positions[i])).norm(), 3e-6) << i;
     EXPECT_NE(seen.offset, Vec3::Zero());

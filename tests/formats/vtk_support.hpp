@@ -26,11 +26,11 @@ vtkSmartPointer<Data> read_by_vtk(const fs::path& file) {
     return reader->GetOutput();
 }
 
-/// The value, written to a file and read back; warnings into `told`.
+/// The value, written to a file and read back; warnings into `warnings`.
 template <class T>
-vtkSmartPointer<vtkPolyData> through_vtp(const T& object, Told* told = nullptr) {
+vtkSmartPointer<vtkPolyData> through_vtp(const T& object, Warnings* warnings = nullptr) {
     const TemporaryFolder folder;
-    write_file(folder / "a.vtp", std::make_shared<const T>(object), told ? told->writing() : WriteOptions{});
+    write_file(folder / "a.vtp", std::make_shared<const T>(object), warnings ? warnings->writing() : WriteOptions{});
     return read_by_vtk<vtkXMLPolyDataReader, vtkPolyData>(folder / "a.vtp");
 }
 

@@ -53,9 +53,9 @@ TEST(VtpWriter, Points_AreCells_AndWellKnownColumnsAreMarked) {
     cloud.columns.add(Column("colour", 4, Buffer<u8>{1, 2, 3, 4, 5, 6, 7, 8}));
     cloud.columns.add(Column("texture", 2, Buffer<double>{0.25, 0.5, 0.75, 1}));
     cloud.columns.add(Column("histogram", 5, Buffer<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
-    Told told;
-    const auto data = through_vtp(cloud, &told);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    Warnings warnings;
+    const auto data = through_vtp(cloud, &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
     EXPECT_THAT(cells_in(data->GetVerts()), ElementsAre(ElementsAre(0), ElementsAre(1)));
     EXPECT_EQ(point_in(data, 1), Vec3(4, 5, 6));
     EXPECT_EQ(data->GetPoints()->GetDataType(), VTK_DOUBLE);
@@ -103,9 +103,9 @@ TEST(VtpWriter, Mesh_KeepsColumnsOfFacesAndEdges_AndSharpEdges) {
     mesh.edges = {{0, 1}, {1, 3}};
     mesh.edge_columns.add(Column("angle", 1, Buffer<float>{0.5f, 0.25f}));
     mesh.sharp_edges = {{1, 3}};
-    Told told;
-    const auto data = through_vtp(mesh, &told);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    Warnings warnings;
+    const auto data = through_vtp(mesh, &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
     EXPECT_THAT(cells_in(data->GetPolys()), ElementsAre(ElementsAre(0, 2, 1), ElementsAre(3, 0, 1)));
     EXPECT_EQ(data->GetNumberOfVerts(), 0);
     EXPECT_EQ(data->GetNumberOfPoints(), 4);
@@ -121,22 +121,23 @@ TEST(VtpWriter_Names, WithReservedCharacters_AreKept_AndInvalidTextIsReported) {
     PointCloud cloud = two_points();
     for (const char* name : {"a<b>\"&'", "Größe", "line\nend", "bad\xff", "bad_"})
         cloud.columns.add(Column(name, 1, Buffer<float>{7, 8}));
-    Told told;
-    const auto data = through_vtp(cloud, &told);
+    Warnings warnings;
+    const auto data = through_vtp(cloud, &warnings);
     vtkPointData* columns = data->GetPointData();
     EXPECT_EQ(columns->GetNumberOfArrays(), 5);
     for (const char* name : {"a<b>\"&'", "Größe", "line_end", "bad_", "bad__2"})
         EXPECT_TRUE(columns->GetArray(name)) << name;
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("under the name 'line_end'"), HasSubstr("under the name 'bad_'"),
-                                            HasSubstr("the column 'bad_' under the name 'bad__2'")));
+    EXPECT_THAT(warnings.sentences,
+                ElementsAre(HasSubstr("under the name 'line_end'"), HasSubstr("under the name 'bad_'"),
+                            HasSubstr("the column 'bad_' under the name 'bad__2'")));
 }
 
 TEST(VtpWriter_Losses, ListsAreReported) {
     PointCloud cloud = two_points();
     cloud.columns.add(Column("seen_by", Buffer<u64>{0, 2, 3}, Buffer<u32>{4, 5, 6}));
-    Told told;
-    EXPECT_EQ(through_vtp(cloud, &told)->GetPointData()->GetNumberOfArrays(), 0);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("VTP left out the lists of the column 'seen_by'")));
+    Warnings warnings;
+    EXPECT_EQ(through_vtp(cloud, &warnings)->GetPointData()->GetNumberOfArrays(), 0);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("VTP left out the lists of the column 'seen_by'")));
 }
 
 TEST(VtpWriter, EqualValues_GiveEqualBytes) {

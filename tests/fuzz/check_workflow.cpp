@@ -96,7 +96,7 @@ bool check_setting(std::string_view bytes) {
     for (const std::string& filter : declared_library().names())
         for (const ParameterSpec& parameter : declared_library().find(filter)->parameters)
             for (const WrittenValue& written : value.values) require_lasting(parameter, written.literal);
-    // No value suits every parameter at once; that it could be one is all that can be said.
+    // No value fits every parameter at once; planning must only not fail on it.
     plan_and_require(taking_n(), {{"n", value}}, diagnostics);
     return true;
 }

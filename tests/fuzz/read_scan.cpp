@@ -3,8 +3,8 @@
 
 #include "fuzz/targets.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/formats/common/format.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/formats/registry.hpp"
 
 namespace scanmill::test {
 

@@ -6,7 +6,6 @@
 #include "fuzz/targets.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/formats/open_point_stream.hpp"
 #include "support/same_points.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -14,7 +13,7 @@ namespace scanmill::test {
 
 namespace {
 
-/// The value that the stream says it is, positions taken piece by piece and columns both ways.
+/// The stream's points, after checking that pieces, single columns and gather() agree.
 PointCloud put_together(const PointStream& stream) {
     std::vector<u32> rows(stream.size());
     std::iota(rows.begin(), rows.end(), 0u);
@@ -44,18 +43,18 @@ PointCloud put_together(const PointStream& stream) {
 bool read_stream(std::string_view extension, std::string_view bytes) {
     static const TemporaryFolder folder;
     const std::filesystem::path path = folder.write("scan." + std::string(extension), bytes);
-    std::vector<std::string> told, told_whole;
+    std::vector<std::string> warnings, warnings_whole;
     const auto stream =
-        open_point_stream(path, {.on_warning = [&](std::string text) { told.push_back(std::move(text)); }}, 1);
+        open_point_stream(path, {.on_warning = [&](std::string text) { warnings.push_back(std::move(text)); }}, 1);
     if (!stream) return false;
     require_law(may_be_point_stream(path), "a stream of a file that does not begin like one");
     std::shared_ptr<const PointCloud> whole;
     try {
-        whole = read_points(path, {.on_warning = [&](std::string text) { told_whole.push_back(std::move(text)); }});
+        whole = read_points(path, {.on_warning = [&](std::string text) { warnings_whole.push_back(std::move(text)); }});
     } catch (const Error& error) {
         throw LawBroken("a stream of a file that cannot be read: " + error.sentence());
     }
-    require_law(told == told_whole, "opening a stream tells something else than reading");
+    require_law(warnings == warnings_whole, "opening a stream gives other warnings than reading");
     const PointCloud streamed = put_together(*stream);
     require_law(same_points(streamed, *whole), "the stream's points differ from those that are read");
     const BoundingBox box = bounding_box(whole->positions.span());

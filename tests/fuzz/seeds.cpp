@@ -12,7 +12,7 @@ namespace scanmill::test {
 
 namespace {
 
-/// A text, and binary numbers behind it.
+/// A text, followed by binary numbers.
 class Bytes {
 public:
     Bytes(std::string text, std::endian order) : bytes_(std::move(text)), order_(order) {}
@@ -54,7 +54,7 @@ std::string ply_points(std::endian order) {
     return file.all();
 }
 
-/// Three points far from zero that can be read piece by piece, with columns before and behind, and a line's end.
+/// Three points far from zero that can be read piece by piece, with columns before and after, and a line end.
 std::string ply_stream(std::endian order) {
     Bytes file(ply_header(order,
                           "comment frame part\nelement vertex 3\nproperty uchar flag\nproperty double x\n"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The seeds that are no text: made here rather than kept as bytes that nobody can read.
+/// Binary seeds, made by readable code.
 
 #include <string>
 #include <vector>

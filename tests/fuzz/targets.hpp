@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What hostile bytes are fed to: everything that reads what strangers wrote. A target says whether the bytes were
-/// accepted, and throws LawBroken when what it read contradicts itself; a crash, a leak or any other exception is a
-/// finding too.
+/// Fuzz targets: all functions that read files of others. A target returns whether the bytes were accepted, and throws
+/// LawBroken when the result contradicts itself; a crash, a leak or any other exception is a finding as well.
 ///
-/// The targets are rows of one table (targets.cpp); each has seeds in corpus/<name>/ and perhaps words in <name>.dict.
-/// With clang, SCANMILL_FUZZ makes a fuzzer of them; without, a test feeds them the seeds.
+/// The targets are rows of one table (targets.cpp); each has seeds in corpus/<name>/ and optionally words in
+/// <name>.dict. With clang, SCANMILL_FUZZ builds a fuzzer from them; without, a test runs them on the seeds.
 
 #include <span>
 #include <stdexcept>
@@ -34,8 +33,8 @@ inline void require_law(bool holds, const std::string& law) {
 /// Reads the bytes as a scan called "scan.EXTENSION"; what was read is consistent, and comes back from every format
 /// that can carry it.
 bool read_scan(std::string_view extension, std::string_view bytes);
-/// Opens the bytes as a stream of the points in "scan.EXTENSION"; whether there is one. It is what reading the file
-/// gives, and tells what that tells. Every scan that is read goes through this, too.
+/// Opens the bytes as a stream of the points in "scan.EXTENSION"; returns whether there is one. Its points and warnings
+/// must be those of reading the file. read_scan() runs this as well.
 bool read_stream(std::string_view extension, std::string_view bytes);
 /// Parses and plans a workflow, against filters that exist only as declarations.
 bool check_workflow_text(std::string_view bytes);

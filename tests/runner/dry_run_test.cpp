@@ -26,9 +26,9 @@ protected:
 TEST_F(DryRun, ScanThatIsNoFile_SaysWhatItIsAndWhatCanBeDone) {
     make_pipe("pipe.ply");
     EXPECT_THAT(path_prefix("pipe.ply"),
-                AllOf(HasSubstr("'pipe.ply' is a pipe"), HasSubstr("; copy what it gives into")));
+                AllOf(HasSubstr("'pipe.ply' is a pipe"), HasSubstr("; copy its content into")));
     EXPECT_THAT(path_prefix("/dev/null"), HasSubstr("'/dev/null' is a device"));
-    EXPECT_THAT(path_prefix("."), AllOf(HasSubstr("'.' is a folder"), HasSubstr("by a pattern as DIR/*.ply")));
+    EXPECT_THAT(path_prefix("."), AllOf(HasSubstr("'.' is a folder"), HasSubstr("by a pattern such as DIR/*.ply")));
     EXPECT_THAT(path_prefix("absent.ply"), HasSubstr("'absent.ply': there is no such file"));
 }
 
@@ -38,7 +38,7 @@ TEST_F(DryRun, BatchOverAPipe_SaysSoWhereItStands) {
     for (const ProgramResult& result : {run_batch({"--dry-run"}), scanmill({"check", "b.yaml", "--plan"})}) {
         EXPECT_EQ(result.exit_code, 2);
         EXPECT_THAT(result.err, AllOf(HasSubstr("b.yaml:3:9: "), HasSubstr("pipe.ply' is a pipe, not a file"),
-                                      HasSubstr("; copy what it gives into"), HasSubstr("\n1 error in 'b.yaml'\n")));
+                                      HasSubstr("; copy its content into"), HasSubstr("\n1 error in 'b.yaml'\n")));
     }
     write_scans("a", 1);
     write_batch("{path: scans/*.xyz, truth: pipe.ply}");

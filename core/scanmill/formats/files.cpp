@@ -1,78 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/files.hpp"
 
-#include "scanmill/base/error.hpp"
 #include "scanmill/data/conversions.hpp"
 #include "scanmill/formats/common/reading.hpp"
-#include "scanmill/formats/registry.hpp"
 #include "scanmill/io/atomic_file.hpp"
-#include "scanmill/io/mapped_file.hpp"
 #include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill {
 
 namespace {
 
-/// Readers and writers speak of "line 12"; which file that is, is added here, once, to errors and warnings alike.
-template <class Action>
-auto naming(const std::filesystem::path& path, Action&& action) {
-    try {
-        return action();
-    } catch (const Error& error) {
-        Error named("'{}': {}", path.string(), error.sentence());
-        for (const std::string& frame : error.frames()) named.add_frame(frame);
-        named.set_hint(error.hint());
-        throw named;
-    }
-}
-
-std::function<void(std::string)> naming(const std::filesystem::path& path,
-                                        const std::function<void(std::string)>& on_warning) {
-    if (!on_warning) return {};
-    return [path, &on_warning](std::string sentence) { on_warning("'" + path.string() + "': " + sentence); };
-}
-
 LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
     if (file.bytes.empty()) throw Error("is empty (0 bytes)");
-    return format_of(file).read(file, {naming(file.path, options.on_warning), options.unit});
+    return format_of(file).read(file, {warnings_with_file_name(file.path, options.on_warning), options.unit});
 }
 
-/// Whether nothing is there that should be. A closed, smooth mesh has no features, and that is worth writing.
-bool is_empty(const Value& value) {
-    return is_geometric(value.kind()) && !value.find<FeatureGraph>() && positions_of(value).empty();
-}
-
+/// Throws Error for a value without points. Features may be empty: a closed, smooth mesh has none.
 Format::Write writer_for(const std::filesystem::path& path, const Value& value) {
     const Kind kind = kind_of(value);
     const std::string extension = path.extension().string();
     for (const Format& format : formats()) {
         const Format::Write write = format.has_extension(extension) ? format.writer(kind) : nullptr;
         if (!write) continue;
-        if (is_empty(value)) throw Error("nothing to write: the {} without a single point", name_of(kind));
+        if (is_geometric(kind) && !value.find<FeatureGraph>() && positions_of(value).empty())
+            throw Error("nothing to write: the {} without a single point", name_of(kind));
         return write;
     }
     const std::string choices = writable_extensions(kind);
     if (const std::string reason = why_unusable(extension); !reason.empty())
         throw Error("{} cannot be written with the extension '{}': {}", name_of(kind), extension, reason);
-    Error error("{} cannot be written with the extension '{}'", name_of(kind), extension);
-    if (choices.empty())
-        error.set_hint("no format here carries this kind");
-    else
-        error.set_hint("extensions for it: " + choices);
-    throw error;
+    throw Error("{} cannot be written with the extension '{}'", name_of(kind), extension)
+        .hint(choices.empty() ? "no format here carries this kind" : "extensions for it: " + choices);
 }
 
 }  // namespace
 
 LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& options) {
-    return naming(path, [&] {
+    return with_file_name(path, [&] {
         const MappedFile file(path);
         return read_named({path, file.bytes()}, options);
     });
 }
 
 LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name, const ReadOptions& options) {
-    return naming(name, [&] { return read_named({name, bytes}, options); });
+    return with_file_name(name, [&] { return read_named({name, bytes}, options); });
 }
 
 std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path, const ReadOptions& options) {
@@ -94,28 +65,53 @@ std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path,
         throw Error("'{}': a mesh is needed; the file contains {}", path.string(), name_of(loaded.value.kind()));
     throw Error("'{}': a mesh is needed; the file holds {} and not a single face", path.string(),
                 count_text(points->size(), "point", "points"))
-        .hint("make a surface of the points first, by a workflow of filters that lead from points to a mesh");
+        .hint("make a surface of the points first, with a workflow whose filters turn points into a mesh");
+}
+
+std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path, const ReadOptions& options,
+                                               unsigned threads, const OnWorldPositions& on_positions) {
+    try {
+        auto file = std::make_unique<MappedFile>(path, false);
+        const Format& format = format_of({path, file->bytes()});
+        if (format.open_stream)
+            return format.open_stream(std::move(file),
+                                      {warnings_with_file_name(path, options.on_warning), options.unit}, threads,
+                                      on_positions);
+    } catch (const Error&) {
+        // read_points() throws it again, with the file's name.
+    }
+    return nullptr;
+}
+
+bool may_be_point_stream(const std::filesystem::path& path) {
+    try {
+        const MappedFile file(path, false);
+        const Format& format = format_of({path, file.bytes()});
+        return format.may_stream && format.may_stream(file.bytes());
+    } catch (const Error&) {
+        return false;
+    }
 }
 
 void write_file(const std::filesystem::path& path, const Value& value, const WriteOptions& options) {
-    naming(path, [&] {
+    with_file_name(path, [&] {
         const Format::Write write = writer_for(path, value);
         AtomicFile file(path);
         OutputBuffer out([&](std::string_view bytes) {
             file.write(bytes);
             if (options.on_bytes) options.on_bytes(bytes);
         });
-        write(value, out, {naming(path, options.on_warning)});
+        write(value, out, {warnings_with_file_name(path, options.on_warning)});
         out.flush();
         file.commit();
     });
 }
 
 std::string write_bytes(const std::filesystem::path& name, const Value& value, const WriteOptions& options) {
-    return naming(name, [&] {
+    return with_file_name(name, [&] {
         std::string bytes;
         OutputBuffer out([&bytes](std::string_view piece) { bytes += piece; });
-        writer_for(name, value)(value, out, {naming(name, options.on_warning)});
+        writer_for(name, value)(value, out, {warnings_with_file_name(name, options.on_warning)});
         out.flush();
         return bytes;
     });

@@ -1,57 +1,56 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/formats/registry.hpp"
-
 #include <algorithm>
+#include <cctype>
 #include <iterator>
 
-#include "scanmill/base/error.hpp"
+#include "scanmill/formats/common/built_in.hpp"
 #include "scanmill/formats/common/reading.hpp"
-#include "scanmill/formats/e57/e57.hpp"
-#include "scanmill/formats/json/json.hpp"
-#include "scanmill/formats/las/las.hpp"
-#include "scanmill/formats/obj/obj.hpp"
-#include "scanmill/formats/off/off.hpp"
-#include "scanmill/formats/ply/ply.hpp"
-#include "scanmill/formats/ptx/ptx.hpp"
-#include "scanmill/formats/stl/stl.hpp"
-#include "scanmill/formats/text/text.hpp"
+#include "scanmill/formats/files.hpp"
 
 namespace scanmill {
 
 namespace {
 
-std::vector<std::pair<Kind, Format::Write>> json_writers() {
-    std::vector<std::pair<Kind, Format::Write>> writers;
-    for (const Kind kind : all_kinds())
-        if (kind.has_json()) writers.emplace_back(kind, write_json);
-    return writers;
-}
-
-std::vector<Format> built_in() {
-    return {
-        {"PLY",
-         {"ply"},
-         recognise_ply,
-         read_ply,
-         {{kind_of<PointCloud>(), write_ply_points}, {kind_of<TriangleMesh>(), write_ply_mesh}}},
-        {"STL", {"stl"}, recognise_stl, read_stl, {{kind_of<TriangleMesh>(), write_stl}}},
-        {"OFF", {"off"}, recognise_off, read_off, {{kind_of<TriangleMesh>(), write_off}}},
-        {"OBJ", {"obj"}, recognise_obj, read_obj, {{kind_of<TriangleMesh>(), write_obj}}},
-        {"XYZ", {"xyz", "txt"}, recognise_xyz, read_xyz, {{kind_of<PointCloud>(), write_xyz}}},
-        // Read alike, but not written: commas, a count or normals are expected of them.
-        {"CSV", {"csv", "pts", "pwn", "asc"}, recognise_xyz, read_xyz, {}},
-        {"PTX", {"ptx"}, recognise_ptx, read_ptx, {}},
-        {"LAS", {"las", "laz"}, recognise_las, read_las, {}},
-        {"E57", {"e57"}, recognise_e57, refuse_e57, {}, true},
-        {"JSON", {"json"}, recognise_json, read_json, json_writers()},
+/// E57 (ASTM E2807), the exchange format of terrestrial scanners: recognised, so that its refusal can name a converter.
+Format e57_format() {
+    static constexpr std::string_view magic = "ASTM-E57";
+    const auto recognise = [](std::string_view head, u64) {
+        return head.starts_with(magic) ? Recognition::certain : Recognition::no;
     };
+    const auto refuse = [](const FileBytes& file, const ReadOptions&) -> LoadedFile {
+        if (!file.bytes.starts_with(magic)) throw Error("is not an E57 file: it does not begin with {}", magic);
+        throw Error("is an E57 file; E57 is not read")
+            .hint(fmt::format("convert it with a free program: CloudCompare -SILENT -O {0} -C_EXPORT_FMT PLY "
+                              "-SAVE_CLOUDS, or: pdal translate {0} out.las",
+                              shell_word(file.path)));
+    };
+    return {"E57", {"e57"}, recognise, refuse, {}, true};
 }
 
 }  // namespace
 
+std::string plain_extension(std::string_view extension) {
+    if (extension.starts_with('.')) extension.remove_prefix(1);
+    std::string plain(extension);
+    for (char& c : plain) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return plain;
+}
+
+bool Format::has_extension(std::string_view extension) const {
+    return std::ranges::find(extensions, plain_extension(extension)) != extensions.end();
+}
+
+Format::Write Format::writer(Kind kind) const {
+    for (const auto& [written, write] : writers)
+        if (written == kind) return write;
+    return {};
+}
+
 std::span<const Format> formats() {
     static const std::vector<Format> table = [] {
-        std::vector<Format> rows = built_in();
+        std::vector<Format> rows{ply_format(), stl_format(), off_format(), obj_format()};
+        std::ranges::move(text_formats(), std::back_inserter(rows));
+        for (const auto& format : {ptx_format, las_format, e57_format, json_format}) rows.push_back(format());
         std::ranges::move(module_formats(), std::back_inserter(rows));
         return rows;
     }();
@@ -71,13 +70,13 @@ const Format& format_of(const FileBytes& file) {
         if (format.has_extension(extension)) return format;
     if (plausible) return *plausible;
 
-    std::string known;
+    std::vector<std::string> readable;
     for (const Format& format : formats())
-        if (!format.is_refused) known.append(known.empty() ? "" : ", ").append(format.name);
+        if (!format.is_refused) readable.push_back(format.name);
     constexpr std::size_t shown = 16;
     throw Error("is of no known format: it begins with {} and has {}", quote(head.substr(0, shown)),
                 extension.empty() ? std::string("no extension") : "the extension '" + extension + "'")
-        .hint("formats that are read: " + known);
+        .hint(fmt::format("formats that are read: {}", fmt::join(readable, ", ")));
 }
 
 bool can_write(std::string_view extension, Kind kind) {
@@ -92,12 +91,10 @@ std::string why_unusable(std::string_view extension) {
 }
 
 std::string writable_extensions(Kind kind) {
-    std::string extensions;
+    std::vector<std::string> extensions;
     for (const Format& format : formats())
-        if (format.writer(kind))
-            for (const std::string& extension : format.extensions)
-                extensions.append(extensions.empty() ? "" : ", ").append(extension);
-    return extensions;
+        if (format.writer(kind)) std::ranges::copy(format.extensions, std::back_inserter(extensions));
+    return fmt::format("{}", fmt::join(extensions, ", "));
 }
 
 }  // namespace scanmill

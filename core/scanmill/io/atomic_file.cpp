@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <system_error>
+#include <utility>
 
 #include "scanmill/base/error.hpp"
 
@@ -21,14 +22,15 @@ namespace fs = std::filesystem;
 
 std::string reason_of(int number) { return std::generic_category().message(number); }
 
+[[noreturn]] void throw_failed() { throw Error("writing failed: {}; the file was not made", reason_of(errno)); }
+
 fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
 
 fs::path temporary_name(const fs::path& folder, unsigned attempt) {
     return folder / fmt::format(".scanmill-{}-{}.part", ::getpid(), attempt);
 }
 
-/// The rename itself must survive a power cut. Some network file systems cannot sync a folder: then nothing is lost
-/// that could be saved.
+/// Makes the rename survive a power cut. Errors are ignored: some network file systems cannot sync a folder.
 void sync_folder(const fs::path& folder) {
     const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0) return;
@@ -47,7 +49,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
     if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_symlink(status))
         throw Error("cannot be written: a {} has this name", fs::is_directory(status) ? "folder" : "pipe or device");
 
-    // Without /proc the file could not be named afterwards.
+    // Without /proc the file could not be named later.
     if (::access("/proc/self/fd", X_OK) == 0)
         descriptor_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
     if (descriptor_ < 0) open_named(folder);
@@ -75,35 +77,27 @@ void AtomicFile::write(std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
         if (written < 0 && errno == EINTR) continue;
-        if (written < 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
+        if (written < 0) throw_failed();
         bytes.remove_prefix(static_cast<std::size_t>(written));
     }
 }
 
-/// Gives the file without a name this one; false when it is taken.
-bool AtomicFile::link_to(const fs::path& name) const {
-    const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);
-    if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
-    if (errno == EEXIST) return false;
-    throw Error("cannot be written in '{}': {}", folder_of(name).string(), reason_of(errno));
-}
-
 void AtomicFile::commit(Sync sync) {
-    if (sync == Sync::yes && ::fsync(descriptor_) != 0)
-        throw Error("writing failed: {}; the file was not made", reason_of(errno));
-    const bool is_named = temporary_.empty() && link_to(target_);
-    // linkat() replaces nothing, so the way to a name that is taken is by another one.
-    for (unsigned attempt = 0; !is_named && temporary_.empty(); ++attempt) {
-        const fs::path name = temporary_name(folder_of(target_), attempt);
-        if (link_to(name)) temporary_ = name;
+    if (sync == Sync::yes && ::fsync(descriptor_) != 0) throw_failed();
+    // linkat() replaces no file, rename() does: a file without a name gets a temporary one first.
+    const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);
+    const fs::path folder = folder_of(target_);
+    for (unsigned attempt = 0; temporary_.empty(); ++attempt) {
+        const fs::path name = temporary_name(folder, attempt);
+        if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0)
+            temporary_ = name;
+        else if (errno != EEXIST)
+            throw Error("cannot be written in '{}': {}", folder.string(), reason_of(errno));
     }
-    const int closed = ::close(descriptor_);
-    descriptor_ = -1;
-    if (closed != 0) throw Error("writing failed: {}; the file was not made", reason_of(errno));
-    if (!is_named && ::rename(temporary_.c_str(), target_.c_str()) != 0)
-        throw Error("cannot be written: {}", reason_of(errno));
+    if (::close(std::exchange(descriptor_, -1)) != 0) throw_failed();
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw Error("cannot be written: {}", reason_of(errno));
     temporary_.clear();
-    if (sync == Sync::yes) sync_folder(folder_of(target_));
+    if (sync == Sync::yes) sync_folder(folder);
 }
 
 void remove_abandoned_parts(const fs::path& folder) {
@@ -114,7 +108,7 @@ void remove_abandoned_parts(const fs::path& folder) {
         if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
         const int process = std::atoi(name.c_str() + prefix.size());
         if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) continue;
-        // Another machine, which counts its processes for itself, would be writing.
+        // A process of another machine may be writing the file.
         constexpr std::chrono::minutes settled(1);
         std::error_code ignored;
         const auto written = fs::last_write_time(entry->path(), ignored);

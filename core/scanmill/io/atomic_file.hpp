@@ -2,11 +2,10 @@
 #pragma once
 /// A file that appears whole or not at all.
 ///
-/// Bytes go to a file without a name on the target's file system; commit() makes them durable (fsync), gives them the
-/// target's name and makes that durable; nothing is synced when the file can be made again at any time. Without
-/// commit() nothing is left, however the process ends. Where there is a file of the target's name, or on file systems
-/// that know no files without one, a temporary name (`.scanmill-….part`) comes in between, which only a process that is
-/// killed just then leaves.
+/// Bytes go to an unnamed file on the target's file system. commit() writes them to disk (fsync), gives the file a
+/// temporary name (`.scanmill-….part`) and renames it to the target. Without commit() no file is left, even if the
+/// process is killed. On file systems without unnamed files, the temporary name exists from the start and stays if the
+/// process is killed; remove_abandoned_parts() removes it.
 
 #include <filesystem>
 #include <string_view>
@@ -15,7 +14,7 @@ namespace scanmill {
 
 class AtomicFile {
 public:
-    /// Throws Error: the folder is missing or not writable, the target exists and is no regular file.
+    /// Throws Error: the folder is missing or not writable, the target exists and is not a regular file.
     explicit AtomicFile(std::filesystem::path target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -23,19 +22,19 @@ public:
 
     /// Appends; throws Error when the disk is full or fails.
     void write(std::string_view bytes);
+    /// `no` skips fsync, for a file that can be made again at any time.
     enum class Sync { yes, no };
     void commit(Sync sync = Sync::yes);
 
 private:
     void open_named(const std::filesystem::path& folder);
-    bool link_to(const std::filesystem::path& name) const;
 
     std::filesystem::path target_;
     std::filesystem::path temporary_;  ///< empty while the file has no name
     int descriptor_ = -1;
 };
 
-/// Removes from the folder the temporary names of processes that are gone, a minute after they were last written to.
+/// Removes temporary files of processes that no longer run, a minute after their last change.
 void remove_abandoned_parts(const std::filesystem::path& folder);
 
 }  // namespace scanmill

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A file's bytes, read-only, without copying them.
+/// Reading files: the bytes of a regular file without a copy, and why a path is not a regular file.
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
+
+#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 
-/// Maps a regular, non-empty file for the object's life. Throws Error for what is missing, a folder, another kind of
-/// thing than a regular file, not readable for us, or empty. Whoever shortens the file meanwhile kills the reader with
-/// SIGBUS: scans are written once and read afterwards.
+/// Maps a regular, non-empty file for the object's life. Throws Error for a path that is missing, a folder, not a
+/// regular file, unreadable or empty. A process that shortens the file meanwhile kills the reader with SIGBUS: scans
+/// are written once and read afterwards.
 class MappedFile {
 public:
-    /// `whole`: everything will be read, so all of it is fetched at once. Else what is not touched costs no memory.
+    /// `whole` loads all pages at once, for a file that is read completely. Otherwise only the pages that are read take
+    /// memory.
     explicit MappedFile(const std::filesystem::path& path, bool whole = true);
     ~MappedFile();
     MappedFile(const MappedFile&) = delete;
@@ -20,15 +24,19 @@ public:
 
     std::string_view bytes() const { return {static_cast<const char*>(data_), size_}; }
 
-    /// These bytes will be read next: their pages are mapped in one call. `part` is a part of bytes().
+    /// Loads the pages of `part`, a part of bytes(), in one call. Use it right before reading them.
     void fetch(std::string_view part) const noexcept;
-    /// These bytes are not needed for now: their pages, and what touching them mapped around them, no longer count as
-    /// memory of this process. Reading them, or what else lies in these pages, is allowed, also meanwhile.
+    /// Frees the pages of `part` and those that were mapped around it. Reading them again loads them again; other
+    /// threads may read them meanwhile.
     void release(std::string_view part) const noexcept;
 
 private:
     void* data_ = nullptr;
     std::size_t size_ = 0;
 };
+
+/// Empty for a regular file, else an Error that names what the path leads to and what to do. Opens nothing: opening a
+/// pipe would wait for its writer. Does not check read permission.
+std::optional<Error> why_no_file(const std::filesystem::path& path);
 
 }  // namespace scanmill

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Gathers small pieces of output, binary or text, into large ones for whoever stores them: a file, or memory.
+/// Gathers small pieces of output, binary or text, into large ones for a file or memory.
 ///
-/// Binary numbers are little-endian on every machine; text numbers are the shortest that read back equal, whatever the
+/// Binary numbers are little-endian on every machine; text numbers are the shortest that read back equal, in any
 /// locale.
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace scanmill {
 
-/// The same number with its bytes in the other order.
+/// The same number with its bytes reversed.
 template <class T>
 T byte_swapped(T number) {
     std::array<std::byte, sizeof(T)> bytes;
@@ -56,9 +56,9 @@ public:
     /// Room for `size` bytes that the caller fills before the next call.
     char* room(std::size_t size) {
         if (space_.size() - used_ < size) make_room(size);
-        char* const place = space_.data() + used_;
+        char* const begin = space_.data() + used_;
         used_ += size;
-        return place;
+        return begin;
     }
     void flush() {
         sink_({space_.data(), used_});
@@ -77,9 +77,7 @@ private:
     std::size_t used_ = 0;
 };
 
-// Numbers in the bytes of little-endian files, on every machine.
-
-/// Pre: sizeof(T) bytes are there.
+/// The number stored as little-endian bytes, on every machine. Pre: `source` has sizeof(T) bytes.
 template <class T>
 T little_endian(const char* source) {
     T number;

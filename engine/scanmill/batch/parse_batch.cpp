@@ -5,7 +5,7 @@
 #include "scanmill/batch/batch.hpp"
 #include "scanmill/batch/parse_scans.hpp"
 #include "scanmill/filter/parameter.hpp"
-#include "scanmill/io/regular_file.hpp"
+#include "scanmill/io/mapped_file.hpp"
 #include "scanmill/workflow/grammar.hpp"
 #include "scanmill/workflow/sizes.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/batch/parse_pose.hpp"
-#include "scanmill/io/regular_file.hpp"
+#include "scanmill/io/mapped_file.hpp"
 #include "scanmill/workflow/grammar.hpp"
 #include "scanmill/workflow/parse_value.hpp"
 

@@ -9,7 +9,7 @@
 #include "scanmill/graph/keys.hpp"
 #include "scanmill/graph/output_files.hpp"
 #include "scanmill/graph/streaming.hpp"
-#include "scanmill/io/regular_file.hpp"
+#include "scanmill/io/mapped_file.hpp"
 #include "scanmill/plan/output_template.hpp"
 #include "scanmill/plan/step_parameters.hpp"
 #include "scanmill/workflow/grammar.hpp"

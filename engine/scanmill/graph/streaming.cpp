@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "scanmill/formats/open_point_stream.hpp"
+#include "scanmill/formats/files.hpp"
 
 namespace scanmill {
 

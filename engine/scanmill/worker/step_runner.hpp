@@ -8,7 +8,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/filter/context.hpp"
 #include "scanmill/filter/ports.hpp"
-#include "scanmill/formats/open_point_stream.hpp"
+#include "scanmill/formats/files.hpp"
 #include "scanmill/graph/graph.hpp"
 #include "scanmill/plan/plan.hpp"
 #include "scanmill/worker/report.hpp"

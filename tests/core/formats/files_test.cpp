@@ -65,11 +65,12 @@ TEST(ReadFile_Format, IsDecidedByContent_NotByExtension) {
 
 TEST(ReadPoints_OfAMesh, GivesItsVertices_AndTellsTheFacesLeftOut) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     write_file(folder / "a.ply", one_triangle());
-    EXPECT_THAT(rows_of(read_points(folder / "a.ply", told.reading())->positions),
+    EXPECT_THAT(rows_of(read_points(folder / "a.ply", warnings.reading())->positions),
                 ElementsAre(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)));
-    EXPECT_THAT(told.sentences, ElementsAre(testing::AllOf(HasSubstr("a.ply"), HasSubstr("1 triangle was left out"))));
+    EXPECT_THAT(warnings.sentences,
+                ElementsAre(testing::AllOf(HasSubstr("a.ply"), HasSubstr("1 triangle was left out"))));
 }
 
 TEST(ReadMesh_OfPoints, IsRefusedWithAWayOut) {
@@ -154,20 +155,21 @@ TEST(WriteFile_ThroughALink, ReplacesTheLink_NotWhatItNames) {
     EXPECT_EQ(content_of(folder / "a.xyz"), "1 2 3\n");
 }
 
-/// A limit on the size of files stands in for a full disk: write() fails in the same place. Spoils the process.
-bool is_told_of_a_full_disk() {
+/// Simulates a full disk with a limit on the size of files: write() fails at the same point. Leaves the process
+/// unusable.
+bool reports_a_full_disk() {
     const TemporaryFolder folder;
     ::signal(SIGXFSZ, SIG_IGN);
     const rlimit tiny{1000, 1000};
     ::setrlimit(RLIMIT_FSIZE, &tiny);
     const Value cloud =
         std::make_shared<const PointCloud>(PointCloud{{}, Buffer(Array<Vec3>(1000, Vec3(1, 2, 3))), {}});
-    const std::string told = error_of([&] { write_file(folder / "a.ply", cloud); });
-    return told.find("writing failed") != std::string::npos && folder.files() == 0;
+    const std::string warnings = error_of([&] { write_file(folder / "a.ply", cloud); });
+    return warnings.find("writing failed") != std::string::npos && folder.files() == 0;
 }
 
 TEST(WriteFile_OnAFullDisk, SaysSo) {
-    EXPECT_EXIT(::_exit(is_told_of_a_full_disk() ? 0 : 1), testing::ExitedWithCode(0), "");
+    EXPECT_EXIT(::_exit(reports_a_full_disk() ? 0 : 1), testing::ExitedWithCode(0), "");
 }
 
 TEST(WithoutInvalidPoints_OfACloud, DropsThemWithTheirRows) {

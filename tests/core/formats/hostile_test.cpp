@@ -15,7 +15,7 @@ const fs::path data_folder = fs::path(SCANMILL_SOURCE_DIR) / "tests/data";
 
 struct Defect {
     const char* file;
-    const char* told;
+    const char* warnings;
 };
 
 const std::vector<Defect> defects{
@@ -23,7 +23,7 @@ const std::vector<Defect> defects{
     {"header_only.ply", "promises 3 rows of element 'vertex'"},
     {"header_without_end.ply", "'end_header' is missing"},
     {"truncated_ascii.ply", "line 10: the text ends after 2 of 3 rows"},
-    {"truncated_in_a_row_ascii.ply", "line 9: row 1 of element 'vertex' ends before its property 'z'"},
+    {"truncated_in_a_row_ascii.ply", "line 9: the row ends before the property 'z' in row 1 of element 'vertex'"},
     {"truncated_binary.ply", "the 32 bytes that follow hold at most 2"},
     {"truncated_in_a_list_binary.ply", "ends at byte 214 inside row 0 of 1 of element 'face'"},
     {"face_index_too_large.ply", "face 0 names vertex 3; there are 3"},
@@ -61,8 +61,8 @@ const std::vector<Defect> defects{
     {"truncated_ascii.stl", "line 6: the text ends inside facet 0"},
     {"truncated_after_a_facet_ascii.stl", "'endsolid' is missing"},
     {"facet_of_four_corners.stl", "line 7: found 'vertex' inside facet 0; expected 'endloop'"},
-    {"corner_of_two_numbers.stl", "line 4: a vertex has three numbers"},
-    {"word_for_a_number.stl", "line 4: 'O' is no number"},
+    {"corner_of_two_numbers.stl", "line 4: the row ends before a coordinate of a vertex"},
+    {"word_for_a_number.stl", "line 4: 'O' is not a number"},
     {"keyword_unknown.stl", "line 3: found 'ring'"},
     {"keyword_only.off", "ends before the numbers"},
     {"blank.off", "holds no points"},
@@ -74,7 +74,7 @@ const std::vector<Defect> defects{
     {"faces_2_to_40.off", "line 2 promises 1 vertex and 1099511627776 faces"},
     {"truncated_vertices.off", "ends after 3 of 4 vertices"},
     {"truncated_faces.off", "ends after 1 of 2 faces"},
-    {"vertex_of_two_numbers.off", "line 4: vertex 1 ends before its coordinates"},
+    {"vertex_of_two_numbers.off", "line 4: the row ends before the coordinates of vertex 1"},
     {"word_for_a_number.off", "line 4: 'nil'"},
     {"face_index_too_large.off", "line 6: face 0 names vertex 3; there are 3"},
     {"face_index_negative.off", "line 6: face 0 names vertex '-1'"},
@@ -83,9 +83,9 @@ const std::vector<Defect> defects{
     {"four_dimensions.off", "'4OFF'"},
     {"binary.off", "binary OFF is not read"},
     {"comments_only.obj", "holds no points: no row is a vertex (v)"},
-    {"object_file_of_a_compiler.obj", "which OBJ does not know"},
-    {"vertex_of_two_numbers.obj", "line 2: a vertex (v) has 3 numbers, here are fewer"},
-    {"word_for_a_number.obj", "line 2: 'nil' is no number"},
+    {"object_file_of_a_compiler.obj", "which is not an OBJ keyword"},
+    {"vertex_of_two_numbers.obj", "line 2: the row ends before a coordinate of a vertex (v)"},
+    {"word_for_a_number.obj", "line 2: 'nil' is not a number"},
     {"face_index_too_large.obj", "line 4: a face names vertex 4; there are 3"},
     {"face_index_zero.obj", "line 4: a face names vertex 0"},
     {"face_index_before_the_first.obj", "line 4: a face names vertex -4"},
@@ -115,7 +115,7 @@ TEST(Readers_BrokenFile, IsRefusedWithWhatAndWhere) {
     for (const Defect& defect : defects) {
         const fs::path path = data_folder / defect.file;
         EXPECT_THAT(sentence_for(path),
-                    testing::AllOf(testing::StartsWith("'" + path.string() + "': "), HasSubstr(defect.told)))
+                    testing::AllOf(testing::StartsWith("'" + path.string() + "': "), HasSubstr(defect.warnings)))
             << defect.file;
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// What comments declare counts wherever it stands, however many there are.
+/// Declarations in comments count at any position, in any number of comments.
 #include "core/formats/support.hpp"
 
 namespace scanmill::test {
@@ -16,8 +16,8 @@ std::string comments(std::size_t count) {
     return text;
 }
 
-Frame frame_in(const std::string& text, const char* name, Told* told = nullptr) {
-    return *frame_of(read_bytes(text, name, told ? told->reading() : ReadOptions{}).value);
+Frame frame_in(const std::string& text, const char* name, Warnings* warnings = nullptr) {
+    return *frame_of(read_bytes(text, name, warnings ? warnings->reading() : ReadOptions{}).value);
 }
 
 struct Content {
@@ -32,7 +32,7 @@ const std::vector<Content> contents{
     {"a.xyz", "", "p 1 2 3\np 4 5 6\n"},
 };
 
-TEST(ManyComments, UnitAndFrameBehindTheThousandth_Count) {
+TEST(ManyComments, UnitAndFrameAfterTheThousandth_Count) {
     for (const std::size_t count : {0u, 998u, 999u, 1000u, 1001u, 1500u})
         for (const Content& content : contents) {
             const std::string declared = comments(count) + "# unit mm\n# frame part\n" + comments(7);
@@ -45,43 +45,46 @@ TEST(ManyComments, UnitAndFrameBehindTheThousandth_Count) {
         }
 }
 
-TEST(ManyComments, OfSeveralUnits_TheLastCounts_AndDifferentOnesAreTold) {
+TEST(ManyComments, OfSeveralUnits_TheLastCounts_AndDifferentOnesAreReported) {
     for (const std::size_t count : {0u, 1500u}) {
-        Told told;
+        Warnings warnings;
         const std::string text =
             "# unit m\n" + comments(count) + "# unit cm\n# unit parsec\n# unit of measure\n" + comments(3) + "1 2 3\n";
-        EXPECT_EQ(frame_in(text, "a.xyz", &told).unit, LengthUnit::centimetre);
-        EXPECT_THAT(told.sentences, Contains(HasSubstr("both 'unit m' and 'unit cm'; the last counts"))) << count;
-        EXPECT_THAT(told.sentences, Contains(HasSubstr("the unit 'parsec' is unknown"))) << count;
+        EXPECT_EQ(frame_in(text, "a.xyz", &warnings).unit, LengthUnit::centimetre);
+        EXPECT_THAT(warnings.sentences, Contains(HasSubstr("both 'unit m' and 'unit cm'; the last counts"))) << count;
+        EXPECT_THAT(warnings.sentences, Contains(HasSubstr("the unit 'parsec' is unknown"))) << count;
     }
 }
 
-TEST(ManyComments, OfUnitsAllBehindTheThousandth_DifferentOnesAreTold) {
-    const auto told_of = [](const std::string& units) {
-        Told told;
-        EXPECT_EQ(frame_in("1 2 3\n" + comments(1500) + units, "a.xyz", &told).unit, LengthUnit::centimetre) << units;
-        return told.sentences;
+TEST(ManyComments, OfUnitsAllAfterTheThousandth_DifferentOnesAreReported) {
+    const auto warnings_of = [](const std::string& units) {
+        Warnings warnings;
+        EXPECT_EQ(frame_in("1 2 3\n" + comments(1500) + units, "a.xyz", &warnings).unit, LengthUnit::centimetre)
+            << units;
+        return warnings.sentences;
     };
-    EXPECT_THAT(told_of("# unit cm\n# unit cm\n"), IsEmpty());
+    EXPECT_THAT(warnings_of("# unit cm\n# unit cm\n"), IsEmpty());
     for (const char* units : {"# unit mm\n# unit cm\n", "# unit mm\n# unit cm\n# unit cm\n",
                               "# unit cm\n# unit mm\n# unit cm\n", "# unit m\n# unit mm\n# unit mm\n# unit cm\n"})
-        EXPECT_THAT(told_of(units), ElementsAre(HasSubstr("both 'unit mm' and 'unit cm'; the last counts"))) << units;
+        EXPECT_THAT(warnings_of(units), ElementsAre(HasSubstr("both 'unit mm' and 'unit cm'; the last counts")))
+            << units;
 }
 
-TEST(ManyComments, NamesBehindTheThousandth_AreToldToBePassedOver) {
+TEST(ManyComments, NamesAfterTheThousandth_AreReportedAsIgnored) {
     const std::string names = "# x y z weight\n", row = "1 2 3 4\n";
-    Told told;
-    const auto near = points_in(comments(999) + names + row, "a.xyz", &told);
+    Warnings warnings;
+    const auto near = points_in(comments(999) + names + row, "a.xyz", &warnings);
     EXPECT_NE(near->columns.find("weight"), nullptr);
-    EXPECT_THAT(told.sentences, IsEmpty());
-    const auto far = points_in(comments(1000) + names + row, "a.xyz", &told);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
+    const auto far = points_in(comments(1000) + names + row, "a.xyz", &warnings);
     EXPECT_NE(far->columns.find("c4"), nullptr);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 comment before the numbers, behind the first 1000, was not "
-                                                      "looked through for the names of columns")));
-    told.sentences.clear();
-    points_in(comments(1000) + "x y z weight\n" + row, "a.xyz", &told);
-    points_in(row + comments(5000), "a.xyz", &told);
-    EXPECT_THAT(told.sentences, IsEmpty()) << "names in a row need none, and comments behind the first row have none";
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 comment before the numbers, after the first 1000, was not "
+                                                          "searched for the names of columns")));
+    warnings.sentences.clear();
+    points_in(comments(1000) + "x y z weight\n" + row, "a.xyz", &warnings);
+    points_in(row + comments(5000), "a.xyz", &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty())
+        << "names in a row need none, and comments after the first row have none";
 }
 
 TEST(ManyComments, TakeLittleMemory) {

@@ -16,8 +16,8 @@ struct MeshSample {
     std::size_t vertices;  ///< 0: the file is refused
     std::size_t triangles;  ///< 0: the file is read as points
     double area;
-    /// A part of what is told or, without vertices, of the refusal; nothing may be told when empty.
-    const char* told = "";
+    /// A part of a warning or, without vertices, of the refusal; empty when no warning is allowed.
+    const char* warnings = "";
 };
 
 inline double area_of(const TriangleMesh& mesh) {
@@ -31,9 +31,9 @@ inline double area_of(const TriangleMesh& mesh) {
 
 inline void expect_as_stated(const MeshSample& sample, const fs::path& folder) {
     SCOPED_TRACE(std::string(sample.file) + ": " + sample.what);
-    Told told;
+    Warnings warnings;
     try {
-        const LoadedFile loaded = read_file(folder / sample.file, told.reading());
+        const LoadedFile loaded = read_file(folder / sample.file, warnings.reading());
         if (const auto* cloud = loaded.value.find<PointCloud>()) {
             EXPECT_EQ(cloud->size(), sample.vertices);
             EXPECT_EQ(sample.triangles, 0u);
@@ -49,12 +49,12 @@ inline void expect_as_stated(const MeshSample& sample, const fs::path& folder) {
         }
     } catch (const Error& error) {
         EXPECT_EQ(sample.vertices, 0u) << error.what();
-        told.sentences.push_back(error.sentence());
+        warnings.sentences.push_back(error.sentence());
     }
-    if (std::string_view(sample.told).empty())
-        EXPECT_THAT(told.sentences, testing::IsEmpty());
+    if (std::string_view(sample.warnings).empty())
+        EXPECT_THAT(warnings.sentences, testing::IsEmpty());
     else
-        EXPECT_THAT(told.sentences, testing::Contains(testing::HasSubstr(sample.told)));
+        EXPECT_THAT(warnings.sentences, testing::Contains(testing::HasSubstr(sample.warnings)));
 }
 
 /// Every sample as stated; every file of the folder is in the table, so that a new one is not passed over.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file that is written to while its stream is open: what no longer fits what was seen of it is told, never handed
-// out.
+// A file that changes while its stream is open: content that does not fit the first reading throws, and is never
+// returned.
 #include <limits>
 
 #include "core/formats/support.hpp"
-#include "scanmill/formats/open_point_stream.hpp"
+#include "scanmill/formats/files.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 
 /// Opens `before`, puts `after` into the same file, and asks for everything.
-void expect_told(const char* name, const std::string& before, const std::string& after) {
+void expect_reported(const char* name, const std::string& before, const std::string& after) {
     ASSERT_EQ(before.size(), after.size()) << "a file that is cut short ends the program";
     const TemporaryFolder folder;
     const fs::path path = folder.write(name, before);
@@ -30,17 +30,17 @@ void expect_told(const char* name, const std::string& before, const std::string&
     EXPECT_EQ(error_of([&] { stream->read(0, room); }).hint(), "run it again");
 }
 
-TEST(PointStreamOfAFileThatChanges, TextOfOtherRows_IsTold) {
+TEST(PointStreamOfAFileThatChanges, TextOfOtherRows_IsReported) {
     const std::string before = "1 2 3\n4 5 6\n7 8 9.00000\n";
-    expect_told("fewer.xyz", before, "1 2 3\n4 5 6\n           \n");
-    expect_told("more.xyz", before, "1 2 3\n4 5 6\n7 8 9\n1 2 3\n");
-    expect_told("short_row.xyz", before, "1 2 3\n4   6\n7 8 9.00000\n");
-    expect_told("word.xyz", before, "1 2 3\n4 x 6\n7 8 9.00000\n");
-    expect_told("nan.xyz", before, "1 2 3\n4 5 6\n7 8     nan\n");
+    expect_reported("fewer.xyz", before, "1 2 3\n4 5 6\n           \n");
+    expect_reported("more.xyz", before, "1 2 3\n4 5 6\n7 8 9\n1 2 3\n");
+    expect_reported("short_row.xyz", before, "1 2 3\n4   6\n7 8 9.00000\n");
+    expect_reported("word.xyz", before, "1 2 3\n4 x 6\n7 8 9.00000\n");
+    expect_reported("nan.xyz", before, "1 2 3\n4 5 6\n7 8     nan\n");
 }
 
-TEST(PointStreamOfAFileThatChanges, CoordinatesOutsideTheBounds_AreTold) {
-    expect_told("outside.xyz", "1 2 3\n4 5 6\n", "1 2 3\n4 5 7\n");
+TEST(PointStreamOfAFileThatChanges, CoordinatesOutsideTheBounds_AreReported) {
+    expect_reported("outside.xyz", "1 2 3\n4 5 6\n", "1 2 3\n4 5 7\n");
     const auto ply = [](float number) {
         std::string file =
             "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
@@ -48,11 +48,11 @@ TEST(PointStreamOfAFileThatChanges, CoordinatesOutsideTheBounds_AreTold) {
         for (const float each : {1.f, 2.f, 3.f, 4.f, 5.f, number}) file += bytes_of(each);
         return file;
     };
-    expect_told("outside.ply", ply(6), ply(2));
-    expect_told("nan.ply", ply(6), ply(std::numeric_limits<float>::quiet_NaN()));
+    expect_reported("outside.ply", ply(6), ply(2));
+    expect_reported("nan.ply", ply(6), ply(std::numeric_limits<float>::quiet_NaN()));
 }
 
-TEST(PointStreamOfAFileThatChanges, GatheringWhatIsThereNoMore_IsTold) {
+TEST(PointStreamOfAFileThatChanges, GatheringWhatIsThereNoMore_IsReported) {
     const TemporaryFolder folder;
     const fs::path path = folder.write("a.xyz", "1 2 3\n4 5 6\n7 8 9\n");
     const auto stream = open_point_stream(path, {}, 1);

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "core/formats/support.hpp"
-#include "scanmill/formats/open_point_stream.hpp"
+#include "scanmill/formats/files.hpp"
 #include "support/peak_memory.hpp"
 
 namespace scanmill::test {

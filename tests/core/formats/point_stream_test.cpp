@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A file read piece by piece is the file read whole, bit for bit; or it is not read so.
 
-#include "scanmill/formats/open_point_stream.hpp"
+#include "scanmill/formats/files.hpp"
 
 #include <cmath>
 #include <limits>
@@ -90,7 +90,7 @@ PointCloud streamed(const PointStream& stream, const std::vector<u32>& rows, uns
 }
 
 void expect_as_read_whole(const fs::path& path) {
-    Told whole_told, told;
+    Warnings whole_told, warnings;
     const auto whole = read_points(path, whole_told.reading());
     EXPECT_TRUE(may_be_point_stream(path));
     std::vector<u32> all(whole->size()), some;
@@ -98,16 +98,16 @@ void expect_as_read_whole(const fs::path& path) {
     std::mt19937 source(1);
     std::ranges::copy_if(all, std::back_inserter(some), [&](u32) { return source() % 7 == 0; });
     for (const unsigned threads : {1u, 4u}) {
-        told.sentences.clear();
+        warnings.sentences.clear();
         Array<Vec3> world;
-        const auto stream = open_point_stream(path, told.reading(), threads, [&](std::span<const Vec3> positions) {
+        const auto stream = open_point_stream(path, warnings.reading(), threads, [&](std::span<const Vec3> positions) {
             world.insert(world.end(), positions.begin(), positions.end());
         });
         ASSERT_TRUE(stream);
         ASSERT_EQ(world.size(), whole->size());
         for (std::size_t i = 0; i < world.size(); ++i)
-            ASSERT_EQ(world[i] - stream->frame().origin, whole->positions[i]) << "what is told meanwhile";
-        EXPECT_EQ(told.sentences, whole_told.sentences);
+            ASSERT_EQ(world[i] - stream->frame().origin, whole->positions[i]) << "positions passed to on_positions";
+        EXPECT_EQ(warnings.sentences, whole_told.sentences);
         EXPECT_EQ(stream->frame(), whole->frame);
         EXPECT_EQ(stream->size(), whole->size());
         EXPECT_EQ(stream->bounds().low, bounding_box(whole->positions.span()).low);
@@ -117,7 +117,7 @@ void expect_as_read_whole(const fs::path& path) {
     }
 }
 
-/// `begins_so`: only what stands further back forbids it.
+/// `begins_so`: only later content prevents streaming.
 void expect_not_read_so(std::string_view content, const char* name, bool begins_so = false) {
     const TemporaryFolder folder;
     const fs::path path = folder.write(name, content);
@@ -171,9 +171,9 @@ TEST(PointStream, OfManyComments_DeclaresWhatTheFileReadWholeDoes) {
 TEST(PointStream, TellsWhatReadingTells) {
     const TemporaryFolder folder;
     const auto path = folder.write("a.xyz", "# unit furlong\n1 2 3\n");
-    Told told;
-    ASSERT_TRUE(open_point_stream(path, told.reading(), 1));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("furlong")));
+    Warnings warnings;
+    ASSERT_TRUE(open_point_stream(path, warnings.reading(), 1));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("furlong")));
     expect_as_read_whole(path);
 }
 

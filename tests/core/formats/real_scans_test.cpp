@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scans that others wrote, with the counts that are known of them.
+// Scans from other sources, with their published counts.
 #include "core/formats/support.hpp"
 #include "support/real_data.hpp"
 
@@ -19,9 +19,9 @@ TEST(Readers_RealScan, BunnyOfStanford_HasItsKnownCountsAndBounds) {
 
 TEST(Readers_RealScan, RawRangeScan_IsAPointCloudWithoutItsGrid) {
     SCANMILL_REAL_SCAN(path, shared_data, "1-bunny/raw/bun000.ply");
-    Told told;
-    EXPECT_EQ(read_file(path, told.reading()).value.get<PointCloud>()->size(), 40256u);
-    EXPECT_THAT(told.sentences, testing::ElementsAre(testing::HasSubstr("204800 rows")));
+    Warnings warnings;
+    EXPECT_EQ(read_file(path, warnings.reading()).value.get<PointCloud>()->size(), 40256u);
+    EXPECT_THAT(warnings.sentences, testing::ElementsAre(testing::HasSubstr("204800 rows")));
 }
 
 TEST(Readers_RealScan, FemurStl_IsClosed_ByEulersFormula) {
@@ -62,12 +62,12 @@ TEST(Readers_RealScan, ThroughEveryWriter_AMeshComesBack) {
     const TemporaryFolder folder;
     const auto mesh = read_mesh(path);
     for (const char* name : {"a.ply", "a.stl", "a.off", "a.obj"}) {
-        Told told;
-        write_file(folder / name, mesh, told.writing());
+        Warnings warnings;
+        write_file(folder / name, mesh, warnings.writing());
         const auto back = read_mesh(folder / name);
         EXPECT_TRUE(std::ranges::equal(back->positions, mesh->positions)) << name;
         EXPECT_TRUE(std::ranges::equal(back->triangles, mesh->triangles)) << name;
-        EXPECT_TRUE(told.sentences.empty()) << name;
+        EXPECT_TRUE(warnings.sentences.empty()) << name;
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Tables of files that others wrote, and what is known of each.
+/// Tables of files that other programs wrote, with the expected content of each.
 
 #include <set>
 
@@ -13,7 +13,7 @@ struct Sample {
     const char* file;  ///< under 6-formats
     std::size_t points;  ///< 0: the file is refused
     /// The names of the columns, or a part of the refusal.
-    std::string told;
+    std::string warnings;
     Vec3 last{0, 0, 0};  ///< the last point, in the world
 };
 
@@ -31,12 +31,12 @@ inline void check_samples(const std::vector<Sample>& samples, const std::vector<
             EXPECT_EQ(cloud->size(), sample.points) << sample.file;
             std::string names;
             for (const Column& column : cloud->columns) names += (names.empty() ? "" : " ") + column.name();
-            EXPECT_EQ(names, sample.told) << sample.file;
+            EXPECT_EQ(names, sample.warnings) << sample.file;
             // Half a unit in the last place of 10^7.
             EXPECT_LT((world_of(*cloud, cloud->size() - 1) - sample.last).norm(), 1e-9) << sample.file;
         } catch (const Error& error) {
             EXPECT_EQ(sample.points, 0u) << sample.file << ": " << error.sentence();
-            EXPECT_THAT(error.sentence(), testing::HasSubstr(sample.told)) << sample.file;
+            EXPECT_THAT(error.sentence(), testing::HasSubstr(sample.warnings)) << sample.file;
         }
     }
     EXPECT_THAT(unknown, testing::IsEmpty());

@@ -19,8 +19,8 @@ namespace scanmill::test {
 
 namespace fs = std::filesystem;
 
-/// Options that keep what was told.
-struct Told {
+/// Collects warnings through the options.
+struct Warnings {
     std::vector<std::string> sentences;
     ReadOptions reading() {
         return {[this](std::string sentence) { sentences.push_back(std::move(sentence)); }};
@@ -34,12 +34,14 @@ inline void put_file(const fs::path& path, std::string_view content) {
     std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
 }
 
-inline std::shared_ptr<const PointCloud> points_in(std::string_view bytes, const char* name, Told* told = nullptr) {
-    return read_bytes(bytes, name, told ? told->reading() : ReadOptions{}).value.get<PointCloud>();
+inline std::shared_ptr<const PointCloud> points_in(std::string_view bytes, const char* name,
+                                                   Warnings* warnings = nullptr) {
+    return read_bytes(bytes, name, warnings ? warnings->reading() : ReadOptions{}).value.get<PointCloud>();
 }
 
-inline std::shared_ptr<const TriangleMesh> mesh_in(std::string_view bytes, const char* name, Told* told = nullptr) {
-    return read_bytes(bytes, name, told ? told->reading() : ReadOptions{}).value.get<TriangleMesh>();
+inline std::shared_ptr<const TriangleMesh> mesh_in(std::string_view bytes, const char* name,
+                                                   Warnings* warnings = nullptr) {
+    return read_bytes(bytes, name, warnings ? warnings->reading() : ReadOptions{}).value.get<TriangleMesh>();
 }
 
 /// The sentence of the Error that reading throws.

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "scanmill/formats/files.hpp"
-#include "scanmill/formats/open_point_stream.hpp"
 #include "scanmill/plugin/library.hpp"
 #include "support/same_points.hpp"
 #include "support/temporary_folder.hpp"

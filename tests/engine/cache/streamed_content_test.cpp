@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a streamed scan is called in the cache is what its value would be called.
 #include "scanmill/cache/streamed_content.hpp"
-#include "scanmill/formats/open_point_stream.hpp"
+#include "scanmill/formats/files.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/io/regular_file.hpp"
+#include "scanmill/io/mapped_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,12 +43,12 @@ TEST_F(NoFile, WhatIsThereInstead_IsNamedWithAWayOut) {
     std::filesystem::create_symlink(folder_ / "absent.ply", folder_ / "broken.ply");
     EXPECT_THAT(path_prefix(folder_ / "broken.ply"), HasSubstr("there is no such file"));
     std::filesystem::create_symlink(folder_ / "loop", folder_ / "loop");
-    EXPECT_THAT(path_prefix(folder_ / "loop"), HasSubstr("cannot be looked at"));
+    EXPECT_THAT(path_prefix(folder_ / "loop"), HasSubstr("cannot be examined"));
 }
 
 TEST_F(NoFile, GraphOverAPipe_SaysWhatItIsAndIsNotKeptWaiting) {
     prepare("  - test-step:\n", {pipe()});
-    EXPECT_THAT(graph_.nodes[0].unreadable, AllOf(HasSubstr("is a pipe"), HasSubstr("copy what it gives")));
+    EXPECT_THAT(graph_.nodes[0].unreadable, AllOf(HasSubstr("is a pipe"), HasSubstr("copy its content")));
     prepare("  - test-step:\n", {"/dev/zero"});
     EXPECT_THAT(graph_.nodes[0].unreadable, HasSubstr("is a device"));
     prepare("  - test-step:\n", {folder_.path().string()});

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/common/colours.hpp"
 
-#include <fmt/format.h>
 #include <cassert>
-#include <cmath>
-
-#include "scanmill/base/error.hpp"
-#include "scanmill/data/quantity.hpp"
-#include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill {
 
@@ -15,16 +9,11 @@ namespace {
 
 constexpr double full = 255;
 
-/// Digits behind the point; none when there is an exponent, which no one writes into a colour by hand.
-std::size_t digits_behind_point(std::string_view spelling) {
+/// Digits after the point; 0 with an exponent, which nobody writes into a colour by hand.
+std::size_t digits_after_point(std::string_view spelling) {
     const std::size_t point = spelling.find('.');
     if (point == std::string_view::npos || spelling.find_first_of("eE") != std::string_view::npos) return 0;
     return spelling.size() - point - 1;
-}
-
-bool cuts_to(double value, u8 byte) {
-    return static_cast<int>(value * full) == byte &&
-           static_cast<int>(static_cast<float>(value) * static_cast<float>(full)) == byte;
 }
 
 std::string shortest_fraction(u8 byte) {
@@ -35,10 +24,13 @@ std::string shortest_fraction(u8 byte) {
         for (const double numerator : {below, below + 1}) {
             const double value = numerator / scale;
             const std::string spelling = fmt::format("{:.{}f}", value, digits);
-            if (byte_of_fraction(spelling, value) == byte && cuts_to(value, byte)) return spelling;
+            const bool is_truncated_alike =
+                static_cast<int>(value * full) == byte &&
+                static_cast<int>(static_cast<float>(value) * static_cast<float>(full)) == byte;
+            if (is_truncated_alike && byte_of_fraction(spelling, value) == byte) return spelling;
         }
     }
-    assert(!"one of so many digits is near enough and not below");
+    assert(!"a decimal of nine digits is exact enough");
     return {};
 }
 
@@ -46,12 +38,12 @@ std::string shortest_fraction(u8 byte) {
 
 std::optional<u8> byte_of_fraction(std::string_view spelling, double value) {
     if (!(value >= 0 && value <= 1)) return std::nullopt;
-    constexpr double single_precision = 0x1p-23;  // a rounded reciprocal, times the byte, rounded
+    constexpr double single_precision = 0x1p-23;  // error of byte * (1 / 255) with both steps rounded
     const double byte = std::round(value * full);
     const double error = std::abs(value - byte / full);
     if (error > single_precision) {
         constexpr std::size_t least_digits = 3;
-        const std::size_t digits = digits_behind_point(spelling);
+        const std::size_t digits = digits_after_point(spelling);
         if (digits < least_digits) return std::nullopt;
         if (error > 0.5 * std::pow(10.0, -static_cast<double>(digits)) + single_precision) return std::nullopt;
     }
@@ -72,7 +64,7 @@ void RowColours::read_row(TextCursor& text, std::size_t leave) {
         const std::string_view token = text.token();
         double value = 0;
         if (!parse_number(token, value))
-            throw Error("line {}: {} is no number for a colour", text.line(), quote(token));
+            throw Error("line {}: {} is not a number for a colour", text.line(), quote(token));
         if (width == most) throw Error("line {}: more than {} numbers for a colour", text.line(), most);
         // 1.0 is a full channel, 1 the faintest: the spelling decides.
         if (token.find_first_not_of("0123456789") != std::string_view::npos || value > 255) bytes_ = false;
@@ -88,8 +80,9 @@ void RowColours::add_columns(ColumnTable& columns, std::string_view elements,
                              const std::function<void(std::string)>& on_warning) const {
     if (coloured_ == 0) return;
     if (!uniform_ || coloured_ != rows_ || width_ == 2)
-        return warn(on_warning, "the colours of {} of {} {} were left out: not all have one of the same form",
-                    coloured_, rows_, elements);
+        return warn(on_warning,
+                    "the colours of {} of {} {} were left out: some have none or another number of channels", coloured_,
+                    rows_, elements);
     if ((bytes_ || fractions_) && width_ >= 3) {
         const double full = fractions_ ? 255 : 1;
         Array<u8> colours(values_.size());
@@ -98,7 +91,7 @@ void RowColours::add_columns(ColumnTable& columns, std::string_view elements,
         return;
     }
     if (width_ >= 3)
-        warn(on_warning, "the colours of the {} are no bytes; they are kept as columns of numbers: red, green, blue{}",
+        warn(on_warning, "the colours of the {} are not bytes; they are kept as columns of numbers: red, green, blue{}",
              elements, width_ == 4 ? ", alpha" : "");
     constexpr std::array<const char*, 4> channels{"red", "green", "blue", "alpha"};
     for (std::size_t channel = 0; channel < width_; ++channel) {

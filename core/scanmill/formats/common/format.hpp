@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What a file format is to us: its names, how to recognise it, how to read it, how to write each kind.
-///
-/// The formats are rows of one table (formats.cpp); nothing else knows them by name. A format from a loadable module is
-/// one more row of the same type.
+/// A file format: names, recognition, reader, writers. All formats are rows of one table, formats(); no other code
+/// refers to a format by name. A loadable module adds a row of the same type.
 
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "scanmill/data/point_stream.hpp"
+#include "scanmill/io/mapped_file.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill {
@@ -19,9 +21,9 @@ namespace scanmill {
 class OutputBuffer;
 
 struct ReadOptions {
-    /// Called with one sentence for everything that was left out, changed or looked doubtful. May be empty.
+    /// Called with one sentence for everything that is left out, changed or doubtful. May be empty.
     std::function<void(std::string)> on_warning;
-    /// When known, the unit of the coordinates, whatever the file says of itself.
+    /// Unless unknown, the unit of the coordinates; it overrides the unit that the file declares.
     LengthUnit unit = LengthUnit::unknown;
 };
 
@@ -30,18 +32,18 @@ struct LoadedFile {
     Value value;
     std::string format;  ///< "PLY"
     std::string encoding;  ///< "binary little-endian", "ascii"
-    /// The file's own remarks, in order: comment and obj_info lines, `#` lines, the text of an STL header.
+    /// The file's comments, in order: comment and obj_info lines, `#` lines, the text of an STL header.
     std::vector<std::string> comments;
 };
 
 struct WriteOptions {
     /// Called with one sentence for everything that the format cannot carry. May be empty.
     std::function<void(std::string)> on_warning;
-    /// Called with all that goes into the file, piece by piece, in order. May be empty.
+    /// Called with all bytes of the file, piece by piece, in order. May be empty.
     std::function<void(std::string_view)> on_bytes = {};
 };
 
-/// A file's content, whole, while it is read.
+/// The whole content of a file.
 struct FileBytes {
     std::filesystem::path path;
     std::string_view bytes;
@@ -50,7 +52,7 @@ struct FileBytes {
 /// How sure a format is that a file is its own. Certain beats the extension, the extension beats plausible.
 enum class Recognition { no, plausible, certain };
 
-/// The first bytes of a file that recognises() may look at.
+/// The first bytes of a file that recognises() may read.
 constexpr std::size_t head_size = 4096;
 
 struct Format {
@@ -58,6 +60,9 @@ struct Format {
     using Read = std::function<LoadedFile(const FileBytes& file, const ReadOptions& options)>;
     /// Pre: the value is of the kind that the writer is listed for, and has points; features may have none.
     using Write = std::function<void(const Value& value, OutputBuffer& out, const WriteOptions& options)>;
+    using OpenStream =
+        std::function<std::unique_ptr<PointStream>(std::unique_ptr<MappedFile> file, const ReadOptions& options,
+                                                   unsigned threads, const OnWorldPositions& on_positions)>;
 
     std::string name;
     /// Lower case, without the dot; the first is the one to propose.
@@ -65,10 +70,15 @@ struct Format {
     Recognise recognises;
     Read read;
     std::vector<std::pair<Kind, Write>> writers;
-    /// `read` always throws: the format is only written, or listed so that it can say what to do instead.
+    /// `read` always throws: the format is only written, or listed so that its refusal names an alternative.
     bool is_refused = false;
     /// Why its module cannot be used, as a part of a sentence; `read` throws with it.
     std::string unusable = {};
+    /// Whether open_stream() may succeed; reads only the file's beginning and end. Both functions are empty for formats
+    /// that cannot be streamed, and may throw Error for a file that `read` refuses as well.
+    std::function<bool(std::string_view file)> may_stream = {};
+    /// Null for a file that cannot be streamed.
+    OpenStream open_stream = {};
 
     bool has_extension(std::string_view extension) const;
     /// Empty when the format cannot carry the kind.
@@ -77,5 +87,15 @@ struct Format {
 
 /// "PLY" → "ply", ".Stl" → "stl": the form in which Format lists extensions.
 std::string plain_extension(std::string_view extension);
+
+/// Every format, in the order in which they are tried and listed: the built-in ones, then those of modules.
+std::span<const Format> formats();
+
+/// The formats of loadable modules. Defined in plugin/format_modules.cpp, which loads them.
+std::vector<Format> module_formats();
+
+/// The format of a file: the first that is certain of its content, else that of its extension, else the first that
+/// finds the content plausible. Throws Error with the file's first bytes.
+const Format& format_of(const FileBytes& file);
 
 }  // namespace scanmill

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scanmill/base/error.hpp"
 #include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill {
@@ -28,41 +27,49 @@ u32 checked(T index, std::size_t vertices, std::string_view element, std::size_t
     return static_cast<u32>(index);
 }
 
-/// Counts before anything is stored: triangles, polygons, short faces.
-std::size_t count_triangles(const Buffer<u64>& offsets, Fans& fans) {
-    u64 triangles = 0;
-    for (std::size_t face = 0; face + 1 < offsets.size(); ++face) {
-        const u64 corners = offsets[face + 1] - offsets[face];
-        if (corners < 3) ++fans.left_out;
-        if (corners > 3) ++fans.polygons;
-        if (corners >= 3) triangles += corners - 2;
-    }
-    require_countable(triangles, "triangles");
-    return triangles;
-}
-
 }  // namespace
 
-Fans triangulated(const Column& faces, std::size_t vertices) {
-    Fans fans;
-    fans.triangles.resize(count_triangles(faces.offsets(), fans));
-    const bool renumbered = fans.polygons + fans.left_out > 0;
-    if (renumbered) fans.face_of.resize(fans.triangles.size());
+void put_faces(TriangleMesh& mesh, const Column& faces, std::size_t vertices, const ColumnTable& columns,
+               const std::function<void(std::string)>& on_warning) {
+    const Buffer<u64>& offsets = faces.offsets();
+    std::size_t polygons = 0, left_out = 0, total = 0;
+    for (std::size_t face = 0; face < faces.rows(); ++face) {
+        const u64 corners = offsets[face + 1] - offsets[face];
+        if (corners < 3) ++left_out;
+        if (corners > 3) ++polygons;
+        if (corners >= 3) total += corners - 2;
+    }
+    require_countable(total, "triangles");
+    const bool is_renumbered = polygons + left_out > 0;
+    Array<Triangle> triangles(total);
+    Array<u32> face_of(is_renumbered ? total : 0);
     visit_scalar(faces.type(), [&](auto zero) {
         const auto corners = faces.values<decltype(zero)>();
         std::size_t made = 0;
-        for (std::size_t face = 0; face < faces.rows(); ++face) {
-            const u64 begin = faces.offsets()[face];
-            const u64 end = faces.offsets()[face + 1];
-            for (u64 i = begin + 2; i < end; ++i) {
-                if (renumbered) fans.face_of[made] = static_cast<u32>(face);
-                fans.triangles[made++] = {checked(corners[begin], vertices, "face", face),
-                                          checked(corners[i - 1], vertices, "face", face),
-                                          checked(corners[i], vertices, "face", face)};
+        for (std::size_t face = 0; face < faces.rows(); ++face)
+            for (u64 begin = offsets[face], i = begin + 2; i < offsets[face + 1]; ++i) {
+                if (is_renumbered) face_of[made] = static_cast<u32>(face);
+                triangles[made++] = {checked(corners[begin], vertices, "face", face),
+                                     checked(corners[i - 1], vertices, "face", face),
+                                     checked(corners[i], vertices, "face", face)};
             }
-        }
     });
-    return fans;
+    if (polygons > 0) {
+        warn(on_warning, "{} cut into fans; the mesh has {}",
+             count_text(polygons, "face of more than three corners was", "faces of more than three corners were"),
+             count_text(total, "triangle", "triangles"));
+        for (const Column& column : columns)
+            if (column.is_list())
+                warn(on_warning,
+                     "the column '{}' has a list for every face: each triangle of a face that was cut has the whole "
+                     "list, whose values for corners do not fit the triangle's",
+                     column.name());
+    }
+    if (left_out > 0)
+        warn(on_warning, "{} left out",
+             count_text(left_out, "face of fewer than three corners was", "faces of fewer than three corners were"));
+    mesh.face_columns = is_renumbered ? columns.gather(face_of) : columns;
+    mesh.triangles = std::move(triangles);
 }
 
 Array<Triangle> triangles_of_strips(const Column& strips, std::size_t vertices) {
@@ -97,27 +104,6 @@ Array<u32> vertex_numbers(const Column& column, std::size_t vertices, std::strin
             numbers[row] = checked(values[row], vertices, element, row);
     });
     return numbers;
-}
-
-void put_faces(TriangleMesh& mesh, Fans fans, const ColumnTable& columns,
-               const std::function<void(std::string)>& on_warning) {
-    if (fans.polygons > 0)
-        warn(on_warning, "{} cut into fans; the mesh has {}",
-             count_text(fans.polygons, "face of more than three corners was", "faces of more than three corners were"),
-             count_text(fans.triangles.size(), "triangle", "triangles"));
-    if (fans.polygons > 0)
-        for (const Column& column : columns)
-            if (column.is_list())
-                warn(on_warning,
-                     "the column '{}' has a list for every face: the triangles of a face that was cut carry its whole "
-                     "list, so what it says of the corners no longer fits theirs",
-                     column.name());
-    if (fans.left_out > 0)
-        warn(on_warning, "{} left out",
-             count_text(fans.left_out, "face of fewer than three corners was",
-                        "faces of fewer than three corners were"));
-    mesh.face_columns = fans.polygons + fans.left_out > 0 ? columns.gather(fans.face_of) : columns;
-    mesh.triangles = std::move(fans.triangles);
 }
 
 }  // namespace scanmill

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/common/reading.hpp"
 
-#include <algorithm>
-
-#include "scanmill/base/error.hpp"
+#include "scanmill/data/conversions.hpp"
 
 namespace scanmill {
+
+std::function<void(std::string)> warnings_with_file_name(const std::filesystem::path& path,
+                                                         const std::function<void(std::string)>& on_warning) {
+    if (!on_warning) return {};
+    return [path, &on_warning](const std::string& sentence) { on_warning("'" + path.string() + "': " + sentence); };
+}
 
 std::string_view without_byte_order_mark(std::string_view text) {
     constexpr std::string_view mark = "\xef\xbb\xbf";
@@ -13,41 +17,46 @@ std::string_view without_byte_order_mark(std::string_view text) {
     return text;
 }
 
-std::string_view declaration_in(std::string_view comment, std::string_view keyword) {
-    const auto trim = [&comment] {
-        while (!comment.empty() && (comment.front() == ' ' || comment.front() == '\t')) comment.remove_prefix(1);
-        while (!comment.empty() && (comment.back() == ' ' || comment.back() == '\t')) comment.remove_suffix(1);
-    };
-    trim();
-    if (!comment.starts_with(keyword) || comment.size() == keyword.size() || comment[keyword.size()] != ' ') return {};
-    comment.remove_prefix(keyword.size());
-    trim();
-    return comment;
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blanks = " \t\v\f\r";
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
-bool is_prose(std::string_view unit) { return unit.find(' ') != std::string_view::npos; }
+std::string_view declaration_in(std::string_view comment, std::string_view keyword) {
+    comment = trimmed(comment);
+    if (!comment.starts_with(keyword) || comment.size() == keyword.size() || comment[keyword.size()] != ' ') return {};
+    comment = trimmed(comment.substr(keyword.size()));
+    const bool is_prose = keyword == "unit" && comment.find(' ') != std::string_view::npos;
+    return is_prose ? std::string_view() : comment;
+}
+
+LengthUnit chosen_unit(LengthUnit declared, const ReadOptions& options) {
+    if (options.unit == LengthUnit::unknown) return declared;
+    if (declared != LengthUnit::unknown && declared != options.unit)
+        warn(options.on_warning, "the file declares 'unit {}'; it was read in {}, as requested", symbol(declared),
+             symbol(options.unit));
+    return options.unit;
+}
 
 Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions& options) {
     Frame frame;
     for (const std::string& comment : comments) {
         if (const std::string_view text = declaration_in(comment, "unit"); !text.empty()) {
-            if (const auto unit = length_unit(text)) {
-                if (frame.unit != LengthUnit::unknown && frame.unit != *unit)
-                    warn(options.on_warning, "the file says both 'unit {}' and 'unit {}'; the last counts",
-                         symbol(frame.unit), symbol(*unit));
-                frame.unit = *unit;
-            } else if (!is_prose(text))
-                warn(options.on_warning, "the unit {} is unknown and was passed over; known are {}", quote(text),
+            const auto unit = length_unit(text);
+            if (!unit) {
+                warn(options.on_warning, "the unit {} is unknown and was ignored; known units are {}", quote(text),
                      length_unit_symbols());
+                continue;
+            }
+            if (frame.unit != LengthUnit::unknown && frame.unit != *unit)
+                warn(options.on_warning, "the file declares both 'unit {}' and 'unit {}'; the last counts",
+                     symbol(frame.unit), symbol(*unit));
+            frame.unit = *unit;
         }
         if (const std::string_view name = declaration_in(comment, "frame"); !name.empty()) frame.name = name;
     }
-    if (options.unit != LengthUnit::unknown) {
-        if (frame.unit != LengthUnit::unknown && frame.unit != options.unit)
-            warn(options.on_warning, "the file says 'unit {}'; it was taken to be in {}, as was asked for",
-                 symbol(frame.unit), symbol(options.unit));
-        frame.unit = options.unit;
-    }
+    frame.unit = chosen_unit(frame.unit, options);
     return frame;
 }
 
@@ -80,6 +89,17 @@ void move_near_origin(Array<Vec3>& positions, const BoundingBox& box, Frame& fra
     frame.origin = distant_origin(box);
     if (frame.origin == Vec3::Zero()) return;
     for (Vec3& p : positions) p -= frame.origin;
+}
+
+LoadedFile loaded_file(std::string format, std::string encoding, std::vector<std::string> comments,
+                       Array<Vec3> positions, TriangleMesh mesh, const ReadOptions& options,
+                       std::optional<BoundingBox> box) {
+    mesh.frame = declared_frame(comments, options);
+    move_near_origin(positions, box ? *box : bounding_box(positions), mesh.frame);
+    mesh.positions = std::move(positions);
+    Value value = mesh.triangles.empty() ? Value(std::make_shared<const PointCloud>(points_of(mesh)))
+                                         : Value(std::make_shared<const TriangleMesh>(std::move(mesh)));
+    return {std::move(value), std::move(format), std::move(encoding), std::move(comments)};
 }
 
 }  // namespace scanmill

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What every reader needs: telling warnings, quoting doubtful bytes, the frame that a file declares, and positions
-/// near their origin.
+/// For all readers: warnings, the file's name in messages, declarations in comments, and the finished LoadedFile.
 
 #include <fmt/format.h>
 
 #include <map>
 
+#include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/columns.hpp"
-#include "scanmill/data/points.hpp"
+#include "scanmill/data/mesh.hpp"
 #include "scanmill/formats/common/format.hpp"
 
 namespace scanmill {
@@ -20,16 +19,40 @@ void warn(const std::function<void(std::string)>& on_warning, fmt::format_string
     if (on_warning) on_warning(fmt::format(sentence, std::forward<Arguments>(arguments)...));
 }
 
-/// Text editors of Windows begin a file with a mark of three bytes.
+constexpr const char* truncated_hint = "the file is truncated or its header is wrong: fetch or export it again";
+
+/// The result of the action. An Error that it throws gets the file's name before its sentence.
+template <class Action>
+auto with_file_name(const std::filesystem::path& path, Action&& action) {
+    try {
+        return action();
+    } catch (const Error& error) {
+        Error named("'{}': {}", path.string(), error.sentence());
+        for (const std::string& frame : error.frames()) named.add_frame(frame);
+        named.set_hint(error.hint());
+        throw named;
+    }
+}
+
+/// Passes warnings on with the file's name before each. Empty when `on_warning` is, which must outlive the result.
+std::function<void(std::string)> warnings_with_file_name(const std::filesystem::path& path,
+                                                         const std::function<void(std::string)>& on_warning);
+
+/// Without the three bytes with which text editors of Windows begin a file.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// What follows `keyword` and a blank in a comment, without blanks around it; empty when the comment does not begin so.
-std::string_view declaration_in(std::string_view comment, std::string_view keyword);
-/// Whether what follows "unit" is a sentence that happens to begin so.
-bool is_prose(std::string_view unit);
+/// Without blanks, tabs and carriage returns at both ends.
+std::string_view trimmed(std::string_view text);
 
-/// Unit and name as declared by lines "unit mm" and "frame NAME" among the comments; the options' unit counts more. A
-/// unit that is none is told.
+/// The text after `keyword` and a blank in a comment, without blanks around it; empty when the comment does not begin
+/// with them. For "unit", empty also for several words: a sentence that happens to begin with "unit".
+std::string_view declaration_in(std::string_view comment, std::string_view keyword);
+
+/// The options' unit if known, else `declared`. Warns when they differ.
+LengthUnit chosen_unit(LengthUnit declared, const ReadOptions& options);
+
+/// Unit and name as declared by lines "unit mm" and "frame NAME" among the comments; the options' unit has precedence.
+/// Warns of unknown units.
 Frame declared_frame(const std::vector<std::string>& comments, const ReadOptions& options);
 
 /// Length exponents of columns by name, as declared by comments "length-exponent N NAME".
@@ -42,5 +65,11 @@ void require_countable(u64 count, std::string_view elements);
 
 /// Chooses frame.origin for world positions that lie in `box` and makes them relative to it.
 void move_near_origin(Array<Vec3>& positions, const BoundingBox& box, Frame& frame);
+
+/// A reader's result with the frame that the comments declare: `mesh`, or a point cloud when it has no triangles, at
+/// these world positions. `box` bounds them; it is computed when absent.
+LoadedFile loaded_file(std::string format, std::string encoding, std::vector<std::string> comments,
+                       Array<Vec3> positions, TriangleMesh mesh, const ReadOptions& options,
+                       std::optional<BoundingBox> box = {});
 
 }  // namespace scanmill

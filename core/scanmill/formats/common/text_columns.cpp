@@ -3,20 +3,21 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <map>
+#include <ranges>
 #include <set>
-
-#include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill {
 
 namespace {
 
+constexpr std::size_t most_columns = 1000;
+
+using Indices = std::vector<std::size_t>;
+
 bool is_quote(char c) { return c == '"' || c == '\''; }
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
-/// Calls `action` for every character outside quotes with its place; stops when that returns true.
+/// Calls `action` with the position of every character outside quotes until it returns true.
 template <class Action>
 void outside_quotes(std::string_view line, Action&& action) {
     char open = '\0';
@@ -40,56 +41,15 @@ char separator_of(std::string_view line) {
     return ' ';
 }
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
-std::string_view unquoted(std::string_view name) {
-    if (name.size() >= 2 && is_quote(name.front()) && name.back() == name.front())
-        return trimmed(name.substr(1, name.size() - 2));
-    return name;
-}
-
-/// Lower case, without what people put between the words of a name.
-std::string plain(std::string_view name) {
-    std::string text;
-    for (const char c : name)
-        if (c != '_' && c != '-' && c != '.' && !is_blank(c))
-            text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
-
-std::optional<std::size_t> only_place(std::span<const std::string> names, std::string_view wanted) {
-    std::optional<std::size_t> place;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (plain(names[i]) != wanted) continue;
-        if (place) return std::nullopt;
-        place = i;
-    }
-    return place;
-}
-
-/// The places of all of them, or none.
-std::vector<std::size_t> places(std::span<const std::string> names, const std::vector<std::string_view>& wanted) {
-    std::vector<std::size_t> found;
-    for (const std::string_view name : wanted) {
-        const auto place = only_place(names, name);
-        if (!place) return {};
-        found.push_back(*place);
-    }
-    return found;
-}
-
-}  // namespace
-
-std::vector<std::string> split_names(std::string_view line, std::size_t most) {
+/// The names in a line, in order; at most most_columns + 1.
+std::vector<std::string> split_names(std::string_view line) {
     line = trimmed(line);
     const char separator = separator_of(line);
     std::vector<std::string> names;
     const auto add = [&](std::string_view name) {
-        name = unquoted(trimmed(name));
+        name = trimmed(name);
+        if (name.size() >= 2 && is_quote(name.front()) && name.back() == name.front())
+            name = trimmed(name.substr(1, name.size() - 2));
         names.push_back(name.empty() ? "c" + std::to_string(names.size() + 1) : std::string(name));
     };
     std::size_t begin = 0;
@@ -98,187 +58,233 @@ std::vector<std::string> split_names(std::string_view line, std::size_t most) {
         // Several blanks separate like one.
         if (ends && (separator != ' ' || i > begin)) add(line.substr(begin, i - begin));
         if (ends) begin = i + 1;
-        return names.size() > most;
+        return names.size() > most_columns;
     });
-    if (names.size() <= most && begin < line.size()) add(line.substr(begin));
+    if (names.size() <= most_columns && begin < line.size()) add(line.substr(begin));
     return names;
 }
 
-std::optional<std::array<std::size_t, 3>> axes_among(std::span<const std::string> names) {
-    const std::vector<std::size_t> found = places(names, {"x", "y", "z"});
-    if (found.empty()) return std::nullopt;
-    return std::array{found[0], found[1], found[2]};
+/// Lower case, without separators between the words of a name.
+std::string plain(std::string_view name) {
+    std::string text;
+    for (const char c : name)
+        if (c != '_' && c != '-' && c != '.' && !is_blank(c))
+            text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
 }
 
-std::optional<std::string> repeated_axis(std::span<const std::string> names) {
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const std::string name = plain(names[i]);
-        if (name != "x" && name != "y" && name != "z") continue;
-        for (const std::string& earlier : names.first(i))
-            if (plain(earlier) == name) return names[i];
+/// The indices of the wanted names, in that order; empty unless each of them occurs exactly once.
+Indices indices_of(std::span<const std::string> names, std::initializer_list<std::string_view> wanted) {
+    Indices indices;
+    for (const std::string_view name : wanted) {
+        const auto has_name = [&](const std::string& candidate) { return plain(candidate) == name; };
+        if (std::ranges::count_if(names, has_name) != 1) return {};
+        indices.push_back(static_cast<std::size_t>(std::ranges::find_if(names, has_name) - names.begin()));
     }
-    return std::nullopt;
+    return indices;
 }
 
-std::vector<NamedGroup> groups_among(std::span<const std::string> names) {
-    using Words = std::vector<std::string_view>;
-    std::vector<NamedGroup> groups;
-    const auto add_first = [&](NamedGroup::Kind kind, const std::vector<Words>& spellings) {
-        for (const Words& words : spellings)
-            if (std::vector<std::size_t> found = places(names, words); !found.empty()) {
-                groups.push_back({kind, std::move(found)});
+std::vector<std::string_view> tokens_of_row(TextCursor row) {
+    std::vector<std::string_view> tokens;
+    while (row.more() && tokens.size() <= most_columns) tokens.push_back(row.token());
+    return tokens;
+}
+
+bool is_number(std::string_view token) {
+    double ignored = 0;
+    return number_of_token(token, ignored);
+}
+
+class LayoutReader {
+public:
+    explicit LayoutReader(TextCursor& text) : text_(text) {}
+
+    TextLayout read() {
+        if (!text_.next_row()) throw Error("holds no points: only blanks and comments");
+        const bool counted = read_count();
+        if (read_names() && !counted) read_count();
+        layout_.width = tokens_of_row(text_).size();
+        if (layout_.width > most_columns) throw Error("line {}: more than {} columns", text_.line(), most_columns);
+        const std::string columns = count_text(layout_.width, "column", "columns");
+        if (layout_.width < 3)
+            throw Error("line {}: found {}; a point has at least the three numbers x, y and z", text_.line(), columns);
+        if (layout_.names.empty()) {
+            read_names_in_comments();
+        } else if (layout_.names.size() != layout_.width) {
+            Error error("line {}: {} for {} names", text_.line(), columns, layout_.names.size());
+            // Decimal commas in a row with semicolons look like twice as many numbers.
+            if (layout_.width == 2 * layout_.names.size())
+                error.set_hint("if the commas are decimal commas, write points instead: 1.5 for 1,5");
+            throw error;
+        }
+        return std::move(layout_);
+    }
+
+private:
+    bool read_count() {
+        TextCursor row = text_;
+        u64 count = 0;
+        if (!row.number(count) || row.more()) return false;
+        layout_.declared_points = count;
+        layout_.declared_in_line = text_.line();
+        if (!text_.next_row()) throw Error("holds no points: its last line is a count");
+        return true;
+    }
+
+    bool read_names() {
+        const std::vector<std::string_view> tokens = tokens_of_row(text_);
+        std::vector<std::string> names = split_names({tokens.front().begin(), tokens.back().end()});
+        const Indices axes = indices_of(names, {"x", "y", "z"});
+        if (axes.empty()) {
+            if (std::ranges::any_of(tokens, is_number)) return false;
+            std::set<std::string> found;
+            for (const std::string& name : names)
+                if (const std::string axis = plain(name);
+                    (axis == "x" || axis == "y" || axis == "z") && !found.insert(axis).second)
+                    throw Error("line {}: two columns are called {}", text_.line(), quote(name))
+                        .hint("rename one of them");
+            throw Error("line {}: {} is neither a row of numbers nor names among which are x, y and z", text_.line(),
+                        quote(tokens.front()));
+        }
+        std::ranges::copy(axes, layout_.axes.begin());
+        layout_.names = std::move(names);
+        if (!text_.next_row()) throw Error("holds no points: its only line has the names of columns");
+        return true;
+    }
+
+    /// "//X Y Z Intensity" and "# x y z nx ny nz" are comments to most programs and names to some.
+    void read_names_in_comments() {
+        layout_.unread_comments = text_.comments().others();
+        const std::vector<std::string> comments = text_.comments().texts();
+        for (const std::string& comment : std::views::reverse(comments)) {
+            std::vector<std::string> names = split_names(comment);
+            const Indices axes = indices_of(names, {"x", "y", "z"});
+            if (axes.empty()) continue;
+            if (names.size() == layout_.width && axes == Indices{0, 1, 2}) {
+                layout_.ignored_names.clear();
+                layout_.names = std::move(names);
                 return;
             }
-    };
-    add_first(NamedGroup::Kind::normal, {{"nx", "ny", "nz"}, {"normalx", "normaly", "normalz"}});
-    add_first(NamedGroup::Kind::colour,
-              {{"r", "g", "b", "a"}, {"red", "green", "blue", "alpha"}, {"r", "g", "b"}, {"red", "green", "blue"}});
-    return groups;
-}
+            layout_.ignored_names = comment;
+        }
+    }
 
-namespace {
+    TextCursor& text_;
+    TextLayout layout_;
+};
 
-using Components = std::vector<const Array<double>*>;
-
+/// Columns of one number each, some of which become the components of one column.
 class TextTable {
 public:
     TextTable(std::vector<std::string> names, std::vector<Array<double>> values,
               const std::function<void(std::string)>& on_warning)
         : names_(std::move(names)),
-          values_(std::move(values)),
-          on_warning_(on_warning) {}
-
-    ColumnTable named() {
-        std::map<std::size_t, Column> whole;  // by the place of the first of its components
-        std::set<std::size_t> taken;
-        for (const NamedGroup& group : groups_among(names_)) {
-            std::optional<Column> column = united(group);
-            if (!column) continue;
-            whole.emplace(*std::ranges::min_element(group.columns), std::move(*column));
-            taken.insert(group.columns.begin(), group.columns.end());
-        }
-        for (std::size_t i = 0; i < names_.size(); ++i) {
-            if (const auto found = whole.find(i); found != whole.end())
-                table_.add(found->second);
-            else if (!taken.contains(i))
-                add(i);
-        }
-        return std::move(table_);
+          on_warning_(on_warning) {
+        for (std::size_t i = 0; i < names_.size(); ++i)
+            columns_.emplace_back(Column(names_[i], 1, Buffer(std::move(values[i]))));
     }
 
-    ColumnTable numbered(bool is_pts) {
-        for (std::size_t i = 0; i < values_.size(); ++i) names_.push_back("c" + std::to_string(i + 4));
-        if (is_pts && (values_.size() == 1 || values_.size() == 4)) {
-            names_[0] = "intensity";
-            add(0);
-            if (values_.size() == 4) add_colour({1, 2, 3});
-            return std::move(table_);
+    bool has_unit_normals() const { return are_unit_normals(values(0), values(1), values(2)); }
+
+    void unite_normal(const Indices& parts) {
+        if (parts.empty() || has_column("normal")) return;
+        if (!are_unit_normals(values(parts[0]), values(parts[1]), values(parts[2])))
+            warn(on_warning_, "not all normals ({}) have unit length", list(parts));
+        unite<double>("normal", parts);
+    }
+
+    void unite_colour(const Indices& parts) {
+        if (parts.empty() || has_column("colour")) return;
+        const auto is_byte = [](double value) { return value >= 0 && value <= 255 && value == std::trunc(value); };
+        double highest = 0;
+        bool are_bytes = true;
+        for (const std::size_t part : parts) {
+            are_bytes = are_bytes && std::ranges::all_of(values(part), is_byte);
+            for (const double value : values(part)) highest = std::max(highest, value);
         }
-        if (values_.size() == 3) {
-            if (are_unit_normals(components({0, 1, 2}))) {
-                table_.add(joined("normal", components({0, 1, 2})));
-                return std::move(table_);
-            }
-            if (is_pts) {
-                add_colour({0, 1, 2});
-                return std::move(table_);
-            }
-            warn(on_warning_, "columns 4 to 6 are no unit normals; they are kept as c4, c5 and c6");
-        }
-        for (std::size_t i = 0; i < values_.size(); ++i) add(i);
-        return std::move(table_);
+        // When the highest number is 1, it may be the faintest channel or the full one.
+        if (are_bytes && highest != 1) return unite<u8>("colour", parts);
+        warn(on_warning_, "the columns {} are not colours of whole numbers from 0 to 255; they are kept as they are",
+             list(parts));
+    }
+
+    ColumnTable finished() {
+        ColumnTable table;
+        for (std::optional<Column>& column : columns_)
+            if (column) table.add(std::move(*column));
+        return table;
     }
 
 private:
-    Components components(const std::vector<std::size_t>& columns) const {
-        Components found;
-        for (const std::size_t column : columns) found.push_back(&values_[column]);
-        return found;
+    bool has_column(std::string_view name) const { return std::ranges::find(names_, name) != names_.end(); }
+    std::span<const double> values(std::size_t column) const { return columns_[column]->values<double>(); }
+
+    std::string list(const Indices& parts) const {
+        const auto name = [&](std::size_t part) { return names_[part]; };
+        return fmt::format("{}", fmt::join(parts | std::views::transform(name), ", "));
     }
 
-    /// A column as it is.
-    void add(std::size_t column) { table_.add(Column(names_[column], 1, Buffer(std::move(values_[column])))); }
-
-    void add_colour(const std::vector<std::size_t>& columns) {
-        if (const auto colour = as_colour(components(columns))) {
-            table_.add(*colour);
-            return;
-        }
-        warn_no_colour(columns);
-        for (const std::size_t column : columns) add(column);
-    }
-
-    void warn_no_colour(const std::vector<std::size_t>& columns) const {
-        warn(on_warning_, "the columns {} are no colours of whole numbers from 0 to 255; they are kept as they are",
-             list(columns));
-    }
-
-    std::string list(const std::vector<std::size_t>& columns) const {
-        std::string text;
-        for (const std::size_t column : columns) text.append(text.empty() ? "" : ", ").append(names_[column]);
-        return text;
-    }
-
-    /// The group as one column; nothing when it is none, or when another column has the name already.
-    std::optional<Column> united(const NamedGroup& group) const {
-        const bool is_normal = group.kind == NamedGroup::Kind::normal;
-        const Components parts = components(group.columns);
-        if (std::ranges::find(names_, is_normal ? "normal" : "colour") != names_.end()) return std::nullopt;
-        if (!is_normal) {
-            std::optional<Column> colour = as_colour(parts);
-            if (!colour) warn_no_colour(group.columns);
-            return colour;
-        }
-        if (!are_unit_normals(parts)) warn(on_warning_, "not all normals ({}) have unit length", list(group.columns));
-        return joined("normal", parts);
+    /// Replaces the first of the parts with a column of all of them, and removes the others.
+    template <class T>
+    void unite(const char* name, const Indices& parts) {
+        const std::size_t width = parts.size(), rows = columns_[parts[0]]->rows();
+        Array<T> united(width * rows);
+        for (std::size_t i = 0; i < width; ++i)
+            for (std::size_t row = 0; row < rows; ++row)
+                united[row * width + i] = static_cast<T>(values(parts[i])[row]);
+        for (const std::size_t part : parts) columns_[part].reset();
+        columns_[std::ranges::min(parts)] = Column(name, static_cast<u32>(width), Buffer(std::move(united)));
     }
 
     std::vector<std::string> names_;
-    std::vector<Array<double>> values_;
     const std::function<void(std::string)>& on_warning_;
-    ColumnTable table_;
+    std::vector<std::optional<Column>> columns_;
 };
-
-template <class T>
-Column side_by_side(std::string name, std::span<const Array<double>* const> components) {
-    const std::size_t width = components.size(), rows = components.front()->size();
-    Array<T> values(width * rows);
-    for (std::size_t i = 0; i < width; ++i)
-        for (std::size_t row = 0; row < rows; ++row) values[row * width + i] = static_cast<T>((*components[i])[row]);
-    return Column(std::move(name), static_cast<u32>(width), Buffer(std::move(values)));
-}
 
 }  // namespace
 
+TextLayout read_text_layout(TextCursor& text) { return LayoutReader(text).read(); }
+
+bool is_row_of_numbers(TextCursor row) { return std::ranges::all_of(tokens_of_row(std::move(row)), is_number); }
+
 ColumnTable text_columns(std::vector<std::string> names, std::vector<Array<double>> values, bool is_pts,
                          const std::function<void(std::string)>& on_warning) {
-    const bool headerless = names.empty();
+    using Spellings = std::initializer_list<std::initializer_list<std::string_view>>;
+    const auto first_of = [&names](Spellings spellings) {
+        Indices indices;
+        for (auto words = spellings.begin(); words != spellings.end() && indices.empty(); ++words)
+            indices = indices_of(names, *words);
+        return indices;
+    };
+    const Indices named_normal = first_of({{"nx", "ny", "nz"}, {"normalx", "normaly", "normalz"}});
+    const Indices named_colour =
+        first_of({{"r", "g", "b", "a"}, {"red", "green", "blue", "alpha"}, {"r", "g", "b"}, {"red", "green", "blue"}});
+    const std::size_t width = values.size();
+    const bool is_named = !names.empty();
+    for (std::size_t i = names.size(); i < width; ++i) names.push_back("c" + std::to_string(i + 4));
+    if (!is_named && is_pts && (width == 1 || width == 4)) names[0] = "intensity";
+
     TextTable table(std::move(names), std::move(values), on_warning);
-    return headerless ? table.numbered(is_pts) : table.named();
+    if (is_named) {
+        table.unite_normal(named_normal);
+        table.unite_colour(named_colour);
+    } else if (width == 3 && table.has_unit_normals()) {
+        table.unite_normal({0, 1, 2});
+    } else if (is_pts && (width == 3 || width == 4)) {
+        table.unite_colour(width == 3 ? Indices{0, 1, 2} : Indices{1, 2, 3});
+    } else if (width == 3) {
+        warn(on_warning, "columns 4 to 6 are not unit normals; they are kept as c4, c5 and c6");
+    }
+    return table.finished();
 }
 
-bool are_unit_normals(std::span<const Array<double>* const> components) {
+bool are_unit_normals(std::span<const double> x, std::span<const double> y, std::span<const double> z) {
     constexpr double tolerance = 0.1;
-    for (std::size_t row = 0; row < components[0]->size(); ++row) {
-        const double length = std::hypot((*components[0])[row], (*components[1])[row], (*components[2])[row]);
+    for (std::size_t row = 0; row < x.size(); ++row) {
+        const double length = std::hypot(x[row], y[row], z[row]);
         if (!(std::abs(length - 1) <= tolerance) && length != 0) return false;
     }
     return true;
-}
-
-Column joined(std::string name, std::span<const Array<double>* const> components) {
-    return side_by_side<double>(std::move(name), components);
-}
-
-std::optional<Column> as_colour(std::span<const Array<double>* const> components) {
-    double highest = 0;
-    for (const Array<double>* component : components)
-        for (const double value : *component) {
-            if (!(value >= 0 && value <= 255) || value != std::trunc(value)) return std::nullopt;
-            highest = std::max(highest, value);
-        }
-    if (highest == 1) return std::nullopt;  // the faintest, or of a scale that ends at 1
-    return side_by_side<u8>("colour", components);
 }
 
 }  // namespace scanmill

@@ -2,82 +2,61 @@
 #include "scanmill/formats/common/text_cursor.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <optional>
 
 #include "scanmill/data/quantity.hpp"
-#include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill {
 
-namespace {
-
-std::optional<LengthUnit> unit_of(std::string_view comment) { return length_unit(declaration_in(comment, "unit")); }
-
-/// 0 to 2, for what the comment declares.
-std::optional<std::size_t> kind_of(std::string_view comment) {
-    if (!declaration_in(comment, "frame").empty()) return 2;
-    const std::string_view unit = declaration_in(comment, "unit");
-    if (unit.empty() || is_prose(unit)) return {};
-    return length_unit(unit) ? 0 : 1;
-}
-
-}  // namespace
-
 void KeptComments::add(std::string_view comment) {
     ++added_;
-    if (added_ <= most) {
-        texts_.emplace_back(comment);
+    if (first_.size() < most) {
+        first_.emplace_back(comment);
         return;
     }
-    const std::optional<std::size_t> kind = kind_of(comment);
-    if (!kind) return;
-    std::size_t& place = places_[*kind];
-    if (*kind == 0 && place != 0 && unit_of(texts_[place]) != unit_of(comment)) keep_other_unit();
-    if (place == 0) {
-        place = texts_.size();
-        texts_.emplace_back();
-    }
-    texts_[place] = comment;
+    if (!declaration_in(comment, "frame").empty()) last_[frame] = comment;
+    const std::string_view declared = declaration_in(comment, "unit");
+    if (declared.empty()) return;
+    const auto unit = length_unit(declared);
+    std::string& last = last_[unit ? known_unit : unknown_unit];
+    if (unit && !last.empty() && length_unit(declaration_in(last, "unit")) != unit) last_[other_unit] = last;
+    last = comment;
 }
 
-void KeptComments::keep_other_unit() {
-    if (other_unit_ == 0) {
-        other_unit_ = places_[0];
-        places_[0] = 0;
-    } else
-        texts_[other_unit_] = texts_[places_[0]];
+std::vector<std::string> KeptComments::texts() const {
+    std::vector<std::string> texts = first_;
+    std::ranges::remove_copy(last_, std::back_inserter(texts), std::string());
+    return texts;
 }
 
 void KeptComments::append(const KeptComments& following) {
-    for (const std::string& text : following.texts_) add(text);
+    for (const std::string& text : following.texts()) add(text);
     added_ += following.others();
 }
 
 namespace {
 constexpr std::string_view infinite = "#INF";
-constexpr std::array<std::string_view, 4> no_numbers{infinite, "#IND", "#QNAN", "#SNAN"};
+constexpr std::array<std::string_view, 4> not_numbers{infinite, "#IND", "#QNAN", "#SNAN"};
 }  // namespace
 
 bool TextCursor::next_row() {
     if (begun_) {
         while (more()) token();
-        if (at_ != end_) pass_line_end();
+        if (at_ != end_) skip_line_end();
     }
     begun_ = true;
     gaps_ = 0;
     while (!more()) {
         if (at_ == end_) return false;
-        pass_line_end();
+        skip_line_end();
         gaps_ = 0;
     }
-    gaps_ = gaps_ & ~blank_gap ? empty_field : 0;  // what stands before the first token is no gap
+    gaps_ = gaps_ & ~blank_gap ? empty_field : 0;  // blanks before the first token separate nothing
     return true;
 }
 
 std::string_view TextCursor::token() {
     const char* const begin = at_;
-    // The first is the token's in any case: a continuation sign inside a line begins one.
+    // The first character always belongs to the token: a continuation sign inside a line begins one.
     if (at_ != end_) ++at_;
     while (at_ != end_ && !ends_token(at_)) ++at_;
     return {begin, at_};
@@ -99,37 +78,32 @@ std::pair<std::string_view, std::string_view> TextCursor::mixed_separators() con
     return {found.at(0), found.at(1)};
 }
 
-void TextCursor::pass_comment() {
+void TextCursor::skip_comment() {
     at_ += *at_ == '/' ? 2 : 1;
     const char* const begin = at_;
     while (at_ != end_ && !ends_line(*at_)) ++at_;
     comments_.add({begin, at_});
 }
 
-void TextCursor::pass_continuation() {
-    if (++at_ != end_) pass_line_end();
+void TextCursor::skip_continuation() {
+    if (++at_ != end_) skip_line_end();
 }
 
-void TextCursor::pass_line_end() {
+void TextCursor::skip_line_end() {
     const bool carriage_return = *at_++ == '\r';
     if (carriage_return && at_ != end_ && *at_ == '\n') ++at_;
     ++line_;
 }
 
-bool TextCursor::begins_no_number(std::string_view text) {
+bool TextCursor::begins_not_a_number(std::string_view text) {
     const auto begins = [text](std::string_view word) { return text.starts_with(word); };
-    return std::ranges::any_of(no_numbers, begins);
-}
-
-bool TextCursor::unusual_number(double& value) {
-    last_token_ = token();
-    return number_of_token(last_token_, value);
+    return std::ranges::any_of(not_numbers, begins);
 }
 
 bool number_of_token(std::string_view token, double& value) {
     const std::size_t hash = token.find('#');
     if (hash == std::string_view::npos) return parse_number(token, value);
-    for (const std::string_view word : no_numbers) {
+    for (const std::string_view word : not_numbers) {
         if (!token.substr(hash).starts_with(word)) continue;
         const std::string_view before = token.substr(0, hash), after = token.substr(hash + word.size());
         if ((before != "1." && before != "-1." && before != "+1.") ||

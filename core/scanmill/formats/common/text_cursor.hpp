@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The comments of a text, as many as anybody wants to read, and of all the others what they declare.
+/// Reads a text of numbers row by row and token by token, counts its lines and collects its comments.
+///
+/// A row is a line that holds at least one token; blank lines and comments are skipped. Lines end with LF, CRLF or CR;
+/// where a format allows it, a sign right before the line's end joins the next line to the row (in a comment it is
+/// text). Tokens are separated by blanks and tabs, and, where a format allows it, by commas, semicolons and bars.
+/// Numbers are read independently of the locale, in every spelling of nan and inf that parse_number() accepts. Nothing
+/// is copied.
 
 #include <array>
 #include <charconv>
@@ -12,48 +18,38 @@
 #include <utility>
 #include <vector>
 
+#include "scanmill/formats/common/reading.hpp"
+
 namespace scanmill {
 
-/// A file may hold a comment in every other line: memory is bounded.
+/// Comments in bounded memory: a file may have a comment in every other line.
 class KeptComments {
 public:
     static constexpr std::size_t most = 1000;
 
     void add(std::string_view comment);
-    /// Those of the text that follows, where two parts were read by themselves: as if all had been added here.
+    /// Adds the comments of the text that follows.
     void append(const KeptComments& following);
 
-    /// The first `most`; behind them the last of the others that declares a unit, before it the last that declares
-    /// another one, the last that seems to declare one which is unknown, and the last that declares a frame (see
-    /// declared_frame()).
-    const std::vector<std::string>& texts() const { return texts_; }
-    /// How many are not among texts().
-    std::size_t others() const { return added_ - texts_.size(); }
+    /// The first `most` comments. After them, of the others: the last that declares a different unit than the last
+    /// known unit, that last known unit, the last unknown unit, and the last frame (see declared_frame()).
+    std::vector<std::string> texts() const;
+    /// The number of comments that are not among texts().
+    std::size_t others() const { return added_ - texts().size(); }
 
 private:
-    /// The unit that was the last is no longer.
-    void keep_other_unit();
+    enum Declaration { other_unit, known_unit, unknown_unit, frame };
 
-    std::vector<std::string> texts_;
+    std::vector<std::string> first_;
+    std::array<std::string, 4> last_;  // by Declaration; empty when there is none
     std::size_t added_ = 0;
-    /// Where in texts_ the last of each kind of declaration is; 0: there is none.
-    std::array<std::size_t, 3> places_{};
-    std::size_t other_unit_ = 0;
 };
 
-// Walks through a text of numbers, row by row and token by token, and knows the line it is in.
-//
-// A row is a line that holds at least one token; blank lines and comments are passed over. Lines end with LF, CRLF or
-// CR; where a format allows it, a sign right before the line's end joins the next line to the row (in a comment it is
-// text). Tokens are separated by blanks and tabs, and, where a format allows it, by commas, semicolons and bars.
-// Numbers are read without regard to the locale, every spelling of nan and inf that parse_number() knows included.
-// Nothing is copied and nothing beyond the text is touched.
-
 struct TextRules {
-    bool commas = false;  ///< commas, semicolons and bars separate, too
+    bool commas = false;  ///< commas, semicolons and bars separate as well
     char comment = '\0';  ///< begins a comment that lasts until the line's end; none when zero
-    bool slashes = false;  ///< two slashes at the beginning of a token begin a comment, too
-    char continuation = '\0';  ///< joins two lines when it stands right before the line's end; none when zero
+    bool slashes = false;  ///< two slashes at the beginning of a token begin a comment as well
+    char continuation = '\0';  ///< joins two lines when it is the last character of the first; none when zero
     std::size_t line = 1;  ///< number of the first line
 };
 
@@ -69,37 +65,37 @@ public:
           separators_(rules.commas ? any_gap : blank_gap),
           line_(rules.line) {}
 
-    /// Moves to the next row, passing over what is left of this one; false at the end of the text.
+    /// Moves to the next row, skipping the rest of this one; false at the end of the text.
     bool next_row();
     /// Whether a token is left in this row.
     bool more();
     /// The next token of this row. Pre: more().
     std::string_view token();
-    /// The next token of this row as a number; false, consuming it, when it is none or does not fit the type. Whole
-    /// numbers may be written as 3.0 or +3. Pre: more().
+    /// The next token of this row as a number; false, consuming it, when it is not a number of the type. Whole numbers
+    /// may be written as 3.0 or +3. Pre: more().
     template <class Number>
     bool number(Number& value);
     /// The token that number() just refused.
     std::string_view last_token() const { return last_token_; }
     /// Makes `tail`, the end of the token just read, the next token.
     void put_back(std::string_view tail) { at_ = tail.data(); }
-    /// Between the numbers of this row, as far as it was read, stood different separators, say commas here and blanks
-    /// there: "1,5 2,5 3" may mean three numbers or five.
+    /// Whether the row, as far as it was read, has different separators, such as commas and blanks: "1,5 2,5 3" may
+    /// mean three numbers or five.
     bool mixes_separators() const { return (gaps_ & any_gap & ((gaps_ & any_gap) - 1)) != 0; }
-    /// The first two kinds that mixes_separators() saw: "commas" and "blanks". Pre: it does.
+    /// Two of the row's separators: "commas" and "blanks". Pre: mixes_separators().
     std::pair<std::string_view, std::string_view> mixed_separators() const;
-    /// A comma, semicolon or bar with nothing before it in this row, as far as it was read.
+    /// Whether the row, as far as it was read, has a comma, semicolon or bar without a number before it.
     bool has_empty_field() const { return gaps_ & empty_field; }
     /// Tokens left in this row; does not move.
     std::size_t count_tokens() const;
 
     /// Number of the current line.
     std::size_t line() const { return line_; }
-    /// The comments passed so far, without their sign.
+    /// The comments so far, without the characters that begin them.
     const KeptComments& comments() const { return comments_; }
 
 private:
-    // Bits of gaps_; the first four and line_end are also what a character is.
+    // Bits of gaps_; the first four and line_end are also the classes of characters.
     static constexpr unsigned comma_gap = 1, semicolon_gap = 2, bar_gap = 4, blank_gap = 8, any_gap = 15;
     static constexpr unsigned empty_field = 16, line_end = 32;
     static constexpr auto kinds = [] {
@@ -119,10 +115,10 @@ private:
     bool ends_token(const char* at) const {
         if ((kind(*at) & (separators_ | line_end)) != 0) return true;
         if (*at == '\0') return false;
-        return *at == rules_.continuation || (*at == rules_.comment && !begins_no_number({at, end_}));
+        return *at == rules_.continuation || (*at == rules_.comment && !begins_not_a_number({at, end_}));
     }
-    /// Whether this is the rest of what Microsoft's libraries print for infinity and NaN: 1.#INF, -1.#IND, 1.#QNAN.
-    static bool begins_no_number(std::string_view text);
+    /// Whether the text begins as infinity and NaN go on after "1." from Microsoft's libraries: #INF, #IND, #QNAN.
+    static bool begins_not_a_number(std::string_view text);
     bool at_comment() const {
         if (*at_ == '/') return rules_.slashes && end_ - at_ > 1 && at_[1] == '/';
         return *at_ == rules_.comment && rules_.comment != '\0';
@@ -131,16 +127,15 @@ private:
         return rules_.continuation != '\0' && at_ != end_ && *at_ == rules_.continuation &&
                (at_ + 1 == end_ || ends_line(at_[1]));
     }
-    void pass_gap(unsigned& all, int& commas) {
+    void skip_gap(unsigned& all, int& commas) {
         for (unsigned gap; at_ != end_ && (gap = gap_at(*at_)) != 0; ++at_) {
             all |= gap;
             commas += gap != blank_gap;
         }
     }
-    void pass_continuation();
-    void pass_comment();
-    void pass_line_end();
-    bool unusual_number(double& value);
+    void skip_continuation();
+    void skip_comment();
+    void skip_line_end();
 
     const char* at_;
     const char* end_;
@@ -157,15 +152,15 @@ inline bool TextCursor::more() {
     const char* const begin = at_;
     int commas = 0;
     unsigned all = 0;
-    pass_gap(all, commas);
+    skip_gap(all, commas);
     while (at_continuation()) {
-        pass_continuation();
-        pass_gap(all, commas);
+        skip_continuation();
+        skip_gap(all, commas);
     }
     if (commas > 1) gaps_ |= empty_field;
     if (at_ == end_ || ends_line(*at_)) return false;
     if (at_comment()) {
-        pass_comment();
+        skip_comment();
         return false;
     }
     if (at_ != begin) gaps_ |= commas == 0 ? blank_gap : all & ~blank_gap;
@@ -180,15 +175,35 @@ bool TextCursor::number(Number& value) {
         return true;
     }
     double wide = 0;
-    if (!unusual_number(wide)) return false;
+    last_token_ = token();
+    if (!number_of_token(last_token_, wide)) return false;
     if constexpr (std::is_integral_v<Number>) {
-        // The upper limit as a double may be rounded up to one too many: hence < and the successor.
+        // The largest integer may round up as a double: compare with its successor, which is exact.
         constexpr double low = static_cast<double>(std::numeric_limits<Number>::min());
         const double beyond = std::ldexp(1.0, std::numeric_limits<Number>::digits);
         if (!(wide >= low && wide < beyond) || wide != std::trunc(wide)) return false;
     }
     value = static_cast<Number>(wide);
     return true;
+}
+
+/// The next number of the row. Throws Error with the line when the row has ended or the token is not a number of the
+/// type; `purpose`, formatted with the arguments, describes the number there: "the normal of vertex 5".
+template <class Number = double, class... Arguments>
+Number next_number(TextCursor& text, fmt::format_string<Arguments...> purpose, Arguments&&... arguments) {
+    const auto described = [&] { return fmt::format(purpose, std::forward<Arguments>(arguments)...); };
+    Number value{};
+    if (!text.more()) throw Error("line {}: the row ends before {}", text.line(), described());
+    if (!text.number(value))
+        throw Error("line {}: {} is not a {}number for {}", text.line(), quote(text.last_token()),
+                    std::is_integral_v<Number> ? "whole " : "", described());
+    return value;
+}
+
+/// Moves to row `row` of `rows`. Throws Error when the text has ended: "line 9: the text ends after 3 of 8 faces".
+inline void require_row(TextCursor& text, u64 row, u64 rows, std::string_view elements) {
+    if (!text.next_row())
+        throw Error("line {}: the text ends after {} of {} {}", text.line(), row, rows, elements).hint(truncated_hint);
 }
 
 }  // namespace scanmill

@@ -4,19 +4,44 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scanmill/base/error.hpp"
 #include "scanmill/data/quantity.hpp"
-#include "scanmill/formats/common/reading.hpp"
 
 namespace scanmill {
 
 namespace {
 
-/// What is lost when origin + position is rounded to double: exact (Knuth's two-sum).
+/// The exact error when origin + position is rounded to double (Knuth's two-sum).
 double rounding_error(double origin, double position) {
     const double sum = origin + position;
     const double part = sum - origin;
     return (origin - (sum - part)) + (position - part);
+}
+
+/// The length of the UTF-8 character that the text begins with; 0 for a control character and when it is invalid
+/// (RFC 3629: the shortest form only, no surrogates, nothing above U+10FFFF; XML refuses U+FFFE and U+FFFF).
+std::size_t character_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    const unsigned first = byte(0);
+    const std::size_t length = first < 0x80 ? 1 : first >> 5 == 6 ? 2 : first >> 4 == 14 ? 3 : first >> 3 == 30 ? 4 : 0;
+    if (length == 0) return 0;
+    unsigned code = length == 1 ? first : first & (0x7f >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if (byte(i) >> 6 != 2) return 0;
+        code = code << 6 | (byte(i) & 0x3f);
+    }
+    constexpr std::array<unsigned, 5> least{0, ' ', 0x80, 0x800, 0x10000};
+    const bool is_surrogate = code >= 0xd800 && code <= 0xdfff;
+    return code < least[length] || code == 0x7f || is_surrogate || code == 0xfffe || code == 0xffff || code > 0x10ffff
+               ? 0
+               : length;
+}
+
+template <class T>
+void put_numbers(const Column& column, std::size_t row, OutputBuffer& out) {
+    for (const T value : column.values<T>().subspan(row * column.components(), column.components())) {
+        out.text(" ");
+        out.number(value);
+    }
 }
 
 }  // namespace
@@ -55,15 +80,12 @@ void warn_lost_precision(const Frame& frame, std::span<const Vec3> positions, bo
 
 void warn_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
                    const WriteOptions& options, std::span<const std::string_view> kept) {
-    std::string names;
-    std::size_t count = 0;
-    for (const Column& column : columns) {
-        if (std::ranges::find(kept, column.name()) != kept.end()) continue;
-        names.append(count++ == 0 ? "" : ", ").append(column.name());
-    }
-    if (count > 0)
+    std::vector<std::string_view> names;
+    for (const Column& column : columns)
+        if (std::ranges::find(kept, column.name()) == kept.end()) names.push_back(column.name());
+    if (!names.empty())
         warn(options.on_warning, "{} left out {} of the {} ({}); PLY keeps them", format,
-             count_text(count, "column", "columns"), element, names);
+             count_text(names.size(), "column", "columns"), element, fmt::join(names, ", "));
 }
 
 TriangleMesh with_used_vertices(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options) {
@@ -101,12 +123,72 @@ std::string exponent_comment(const Column& column) {
     return fmt::format("length-exponent {} {}", column.length_exponent(), column.name());
 }
 
-std::string comment_lines(const Frame& frame) {
+std::string comment_lines(const Frame& frame, std::string_view prefix) {
     std::string lines;
-    if (frame.unit != LengthUnit::unknown) lines.append("# unit ").append(symbol(frame.unit)).append("\n");
+    if (frame.unit != LengthUnit::unknown) lines += fmt::format("{}unit {}\n", prefix, symbol(frame.unit));
     if (const std::string name = one_line(frame.name); !name.empty())
-        lines.append("# frame ").append(name).append("\n");
+        lines += fmt::format("{}frame {}\n", prefix, name);
     return lines;
+}
+
+std::string valid_text(std::string_view text) {
+    std::string valid;
+    while (!text.empty()) {
+        const std::size_t length = character_length(text);
+        valid += length == 0 ? "_" : text.substr(0, length);
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return valid;
+}
+
+WrittenNames::WrittenNames(std::string_view format, const WriteOptions& options, std::set<std::string> taken)
+    : format_(format),
+      options_(&options),
+      taken_(std::move(taken)) {}
+
+std::string WrittenNames::add(std::string_view column, std::string wanted, std::string_view expected) {
+    while (!taken_.insert(wanted).second) wanted += "_2";
+    if (wanted != expected)
+        warn(options_->on_warning, "{} holds the column '{}' under the name '{}'", format_, column, wanted);
+    return wanted;
+}
+
+bool has_floats(const Column& column, u32 components) {
+    return column.components() == components &&
+           (column.type() == ScalarType::float32 || column.type() == ScalarType::float64);
+}
+
+TextColumns::TextColumns(const ColumnTable& columns)
+    : normal(columns.find("normal")),
+      colour(columns.find("colour")),
+      texture(columns.find("texture")) {
+    if (normal && !has_floats(*normal, 3)) normal = nullptr;
+    if (texture && !has_floats(*texture, 2)) texture = nullptr;
+    if (colour && (colour->type() != ScalarType::uint8 || colour->components() < 3 || colour->components() > 4))
+        colour = nullptr;
+}
+
+std::vector<std::string_view> TextColumns::names() const {
+    std::vector<std::string_view> names;
+    for (const Column* column : {normal, colour, texture})
+        if (column) names.push_back(column->name());
+    return names;
+}
+
+void put_position(const Frame& frame, const Vec3& position, OutputBuffer& out) {
+    const Vec3 p = world(frame, position);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis > 0) out.text(" ");
+        out.number(p[axis]);
+    }
+}
+
+void put_row_text(const Column& column, std::size_t row, OutputBuffer& out) {
+    switch (column.type()) {
+        case ScalarType::float32: return put_numbers<float>(column, row, out);
+        case ScalarType::float64: return put_numbers<double>(column, row, out);
+        default: return put_numbers<u8>(column, row, out);
+    }
 }
 
 }  // namespace scanmill

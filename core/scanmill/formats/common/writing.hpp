@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What every writer needs: world coordinates, what they lose, and the sentences for what a format cannot carry.
+/// For all writers: world coordinates and their precision, warnings about data that a format cannot carry, names of
+/// columns, and numbers as text.
 
+#include <set>
 #include <span>
 #include <string_view>
 
-#include "scanmill/data/mesh.hpp"
-#include "scanmill/formats/common/format.hpp"
+#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill {
 
@@ -16,33 +18,74 @@ inline Vec3 world(const Frame& frame, const Vec3& position) { return frame.origi
 /// Whether every world coordinate is exactly a float. NaN and infinities are.
 bool all_floats(const Frame& frame, std::span<const Vec3> positions);
 
-/// Tells when writing world coordinates, as float or as double, moves some by more than a millionth of the diagonal.
+/// Warns when writing world coordinates, as float or as double, moves some by more than a millionth of the diagonal.
 /// Throws Error when a finite coordinate would become infinite.
 void warn_lost_precision(const Frame& frame, std::span<const Vec3> positions, bool as_float, std::string_view format,
                          const WriteOptions& options);
 
-/// Tells that the columns of `element` ("vertices") are left out, by name, but those in `kept`.
+/// Warns that the columns of `element` ("vertices") are left out, with their names, except those in `kept`.
 void warn_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
                    const WriteOptions& options, std::span<const std::string_view> kept = {});
 
-/// Tells all of a mesh that a format of little more than triangles leaves out: the columns but those kept, described
-/// and sharp edges.
+/// Warns of everything in a mesh that a format for plain triangles leaves out: the columns except those kept, edges
+/// with columns, and sharp edges.
 void warn_bare_triangles(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options,
                          std::span<const std::string_view> kept_of_vertices = {},
                          std::span<const std::string_view> kept_of_faces = {});
 
-/// The mesh over the vertices that triangles use, after telling how many the format leaves out: where they lie is
-/// nothing to a surface.
+/// The mesh without vertices that no triangle uses, with a warning that counts them.
 TriangleMesh with_used_vertices(const TriangleMesh& mesh, std::string_view format, const WriteOptions& options);
 
-/// A frame's name fit for a comment, and as a reader finds it there: control characters, line ends above all, become
-/// blanks, and those around it go.
+/// A frame's name as one line of a comment, equal to what a reader finds there: control characters become blanks, and
+/// blanks around it are removed.
 std::string one_line(std::string_view name);
 
 /// "length-exponent 1 bin-size", which declared_exponents() reads; empty for a column whose exponent is 0.
 std::string exponent_comment(const Column& column);
 
-/// "# unit mm" and "# frame NAME", each on its line, as far as known.
-std::string comment_lines(const Frame& frame);
+/// "# unit mm" and "# frame NAME", each on its line, unless unknown or empty; `prefix` begins each line.
+std::string comment_lines(const Frame& frame, std::string_view prefix = "# ");
+
+/// The text as valid UTF-8 without control characters, which JSON and XML need: every other byte becomes '_'.
+std::string valid_text(std::string_view text);
+
+/// Names of columns in a format that allows fewer names than we do: makes them distinct and warns of changed ones.
+class WrittenNames {
+public:
+    /// `taken` are names that mean something else in the format. The options must outlive this.
+    WrittenNames(std::string_view format, const WriteOptions& options, std::set<std::string> taken = {});
+
+    /// `wanted`, with "_2" appended until it is a new name. Warns when that is not `expected`, the name that the
+    /// format's page documents.
+    std::string add(std::string_view column, std::string wanted, std::string_view expected);
+    std::string add(std::string_view column, std::string wanted) { return add(column, std::move(wanted), column); }
+
+private:
+    std::string format_;
+    const WriteOptions* options_;
+    std::set<std::string> taken_;
+};
+
+/// The columns that text formats write after the coordinates; nullptr where one is absent or has another form.
+struct TextColumns {
+    explicit TextColumns(const ColumnTable& columns);
+
+    const Column* normal;   ///< 3 × float32 or float64
+    const Column* colour;   ///< 3 or 4 × uint8
+    const Column* texture;  ///< 2 × float32 or float64
+
+    /// The names of those that are present, for warn_left_out().
+    std::vector<std::string_view> names() const;
+};
+
+/// Whether the column has `components` × float32 or float64.
+bool has_floats(const Column& column, u32 components);
+
+/// "x y z" in world coordinates.
+void put_position(const Frame& frame, const Vec3& position, OutputBuffer& out);
+
+/// A blank and a number for each component of a row, as the shortest decimals that read back equal in the column's
+/// type. Pre: the column has uint8, float32 or float64.
+void put_row_text(const Column& column, std::size_t row, OutputBuffer& out);
 
 }  // namespace scanmill

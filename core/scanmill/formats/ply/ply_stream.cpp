@@ -2,16 +2,12 @@
 #include <algorithm>
 
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/formats/common/reading.hpp"
-#include "scanmill/formats/ply/detail/ply_positions.hpp"
-#include "scanmill/formats/ply/detail/ply_table.hpp"
-#include "scanmill/formats/ply/ply.hpp"
+#include "scanmill/formats/ply/detail/ply_elements.hpp"
 
 namespace scanmill {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
 constexpr std::size_t rows_per_piece = std::size_t(1) << 16;
 
 class PlyStream : public PointStream {
@@ -19,15 +15,15 @@ public:
     PlyStream(std::unique_ptr<MappedFile> file, PlyHeader header)
         : file_(std::move(file)),
           header_(std::move(header)),
-          vertex_(header_.elements.front()) {
-        for (const PlyProperty& property : vertex_.properties) row_size_ += size_of(property.type);
+          vertex_(header_.elements.front()),
+          row_size_(vertex_.row_size()) {
         rows_ = file_->bytes().substr(header_.size, vertex_.count * row_size_);
         for (std::size_t row = 0; row < vertex_.count; row += rows_per_piece) pieces_.push_back(row);
         pieces_.push_back(vertex_.count);
     }
 
     bool open(const ReadOptions& options, unsigned threads, const OnWorldPositions& on_positions) {
-        if (!look_over(threads, on_positions)) return false;
+        if (!read_all(threads, on_positions)) return false;
         frame_ = declared_frame(header_.comments, options);
         choose_origin();
         return true;
@@ -52,11 +48,11 @@ private:
     std::vector<std::string> properties_of(std::string_view column) const {
         PlyElement none = vertex_;
         none.count = 0;
-        return ply_component_names(*PlyTable(none, header_.comments, axes).take(column));
+        return ply_component_names(*PlyTable(none, header_.comments, ply_axes).take(column));
     }
 
-    /// False when a coordinate is not finite.
-    bool look_over(unsigned threads, const OnWorldPositions& on_positions) {
+    /// Finds world_. False when a coordinate is not finite.
+    bool read_all(unsigned threads, const OnWorldPositions& on_positions) {
         struct Room {
             Array<Vec3> positions;
             FiniteBounds bounds;
@@ -73,17 +69,6 @@ private:
 
     std::string_view bytes_of(std::size_t first, std::size_t count) const {
         return rows_.substr(first * row_size_, count * row_size_);
-    }
-
-    /// Slots of x, y and z that store doubles from `positions` on. Pre: there are some.
-    static void place_axes(std::span<PlySlot> slots, Vec3* positions) {
-        for (PlySlot& slot : slots) {
-            const auto axis = std::ranges::find(axes, slot.property->name);
-            if (axis == axes.end()) continue;
-            slot.widened = true;
-            slot.stride = sizeof(Vec3);
-            slot.place = reinterpret_cast<std::byte*>(positions) + (axis - axes.begin()) * sizeof(double);
-        }
     }
 
     void decode(std::string_view rows, std::span<const PlySlot> slots) const {
@@ -109,18 +94,18 @@ private:
         return *bounds;
     }
 
-    /// Few rows far from each other touch as much of the file as all of it: what lies behind is given back on the way.
+    /// The bytes of these rows. Distant rows load as many pages as all rows: pages are released after each stretch.
     Array<char> picked_bytes(std::span<const u32> rows) const {
         constexpr std::size_t longest_stretch = std::size_t(1) << 20;
         Array<char> picked(rows.size() * row_size_);
-        char* place = picked.data();
+        char* destination = picked.data();
         u32 first = rows.front();
         for (const u32 row : rows) {
             if ((row - first) * row_size_ > longest_stretch) {
                 file_->release(bytes_of(first, row - first));
                 first = row;
             }
-            place = std::ranges::copy(bytes_of(row, 1), place).out;
+            destination = std::ranges::copy(bytes_of(row, 1), destination).out;
         }
         file_->release(bytes_of(first, rows.back() - first + 1));
         return picked;
@@ -129,14 +114,14 @@ private:
     PointCloud gather_world(std::span<const u32> rows, unsigned threads) const override {
         PlyElement kept = vertex_;
         kept.count = rows.size();
-        PlyTable table(kept, header_.comments, axes);
+        PlyTable table(kept, header_.comments, ply_axes);
         Array<Vec3> positions(rows.size());
         if (!rows.empty()) place_axes(table.slots(), positions.data());
         constexpr std::size_t block = 1 << 14;
         for_each_chunk(threads, rows.size(), block, [&](std::size_t begin, std::size_t end) {
             std::vector<PlySlot> slots(table.slots().begin(), table.slots().end());
             for (PlySlot& slot : slots)
-                if (slot.place) slot.place += begin * slot.stride;
+                if (slot.destination) slot.destination += begin * slot.stride;
             const Array<char> picked = picked_bytes(rows.subspan(begin, end - begin));
             decode({picked.data(), picked.size()}, slots);
         });
@@ -149,25 +134,22 @@ private:
     std::unique_ptr<MappedFile> file_;
     PlyHeader header_;
     const PlyElement& vertex_;
-    std::size_t row_size_ = 0;
+    std::size_t row_size_;
     std::string_view rows_;
 };
 
-/// Whether the file holds vertices and nothing else but perhaps ends of lines behind them, and all of them, so that
-/// nothing is left to be said of it.
+/// Whether the file holds all its vertices and nothing else except line ends after them, so that reading it gives no
+/// warning about its content.
 bool holds_only_vertices(std::string_view file, const PlyHeader& header) {
     if (header.encoding == PlyEncoding::ascii || header.elements.empty()) return false;
     const PlyElement& vertex = header.elements.front();
     if (vertex.name != "vertex" || vertex.count == 0 || vertex.count > ~u32(0) || vertex.has_lists()) return false;
-    const auto is_missing = [&](std::string_view axis) { return !vertex.find(axis); };
-    if (std::ranges::any_of(axes, is_missing)) return false;
+    if (!std::ranges::all_of(ply_axes, [&](std::string_view axis) { return vertex.find(axis); })) return false;
     const auto has_rows = [](const PlyElement& element) { return element.count > 0; };
     if (std::any_of(header.elements.begin() + 1, header.elements.end(), has_rows)) return false;
-    std::size_t row_size = 0;
-    for (const PlyProperty& property : vertex.properties) row_size += size_of(property.type);
     const std::string_view body = file.substr(header.size);
-    return body.size() / row_size >= vertex.count &&
-           body.substr(vertex.count * row_size).find_first_not_of("\r\n") == std::string_view::npos;
+    return body.size() / vertex.row_size() >= vertex.count &&
+           body.substr(vertex.count * vertex.row_size()).find_first_not_of("\r\n") == std::string_view::npos;
 }
 
 }  // namespace

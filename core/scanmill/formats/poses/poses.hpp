@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Poses of several scans in one file.
+/// Files with the poses of several scans.
 ///
-/// Two kinds of file, told apart by their content. A Stanford `.conf` has lines `bmesh FILE tx ty tz qx qy qz qw` (or
-/// `mesh …`), blank lines and `#` comments; `camera …` says where somebody looked from and moves nothing. Its
-/// quaternions stand for the inverse of the usual rotation: a point p goes to R(q)ᵀ p + t. JSON is as described in
-/// kinds/transform.hpp.
+/// The content decides between two formats. A Stanford `.conf` has lines `bmesh FILE tx ty tz qx qy qz qw` (or
+/// `mesh …`), blank lines and `#` comments; lines `camera …` are ignored. Its quaternions mean the inverse of the usual
+/// rotation: a point p goes to R(q)ᵀ p + t. JSON is as described in kinds/transform.hpp.
 
 #include <filesystem>
 #include <string>
@@ -18,16 +17,16 @@ namespace scanmill {
 
 using OnPoseWarning = OnWarning;
 
-/// In the file's order, at least one. Throws Error, beginning with the path, for a file that is missing or empty, and
-/// with the line, or the number of the pose from 1, for what cannot be read: unknown words, missing, superfluous or
-/// infinite numbers, a quaternion whose length is more than 0.1 % off 1, a matrix that is no rigid motion. A length
-/// that rounding to six digits does not explain is told; all quaternions are scaled to length 1.
+/// In the file's order, at least one. Throws Error that begins with the path, for a missing or empty file, and with the
+/// line or the number of the pose from 1 for unknown words, missing, superfluous or infinite numbers, a quaternion
+/// whose length is more than 0.1 % off 1, a matrix that is not a rigid motion. Warns of a quaternion whose length
+/// rounding to six digits does not explain; all quaternions are scaled to length 1.
 std::vector<ScanPose> read_poses(const std::filesystem::path& file, const OnPoseWarning& warn);
 
-/// The same from a file's content; errors and warnings come without the file's name.
+/// The same from a file's content; errors and warnings do not have the file's name.
 std::vector<ScanPose> parse_poses(std::string_view content, const OnPoseWarning& warn);
 
-/// Whether the pose says that it is of the scan with this name, with or without folder and extension.
+/// Whether the pose is for the scan with this name, with or without folder and extension.
 bool is_of(const ScanPose& pose, const std::string& scan);
 
 }  // namespace scanmill

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Names in formats that allow fewer of them: none is lost to another, and what is no text becomes some.
 
-#include "scanmill/formats/common/column_names.hpp"
+#include "scanmill/formats/common/writing.hpp"
 
 #include "core/formats/support.hpp"
 
@@ -23,16 +23,16 @@ TEST(ValidText, KeepsUtf8_AndReplacesEveryByteThatIsNone) {
     EXPECT_EQ(valid_text("\xe2\x82"), "__") << "cut short";
 }
 
-TEST(WrittenNames, StayDifferent_AndOnlyChangesAreTold) {
-    Told told;
-    const WriteOptions options = told.writing();
+TEST(WrittenNames, StayDifferent_AndOnlyChangesAreReported) {
+    Warnings warnings;
+    const WriteOptions options = warnings.writing();
     WrittenNames names("ABC", options, {"x"});
     EXPECT_EQ(names.add("a", "a"), "a");
     EXPECT_EQ(names.add("x", "x"), "x_2");
     EXPECT_EQ(names.add("x_2", "x_2"), "x_2_2");
     EXPECT_EQ(names.add("ring", "_RING", "_RING"), "_RING");
-    EXPECT_THAT(told.sentences, ElementsAre("ABC holds the column 'x' under the name 'x_2'",
-                                            "ABC holds the column 'x_2' under the name 'x_2_2'"));
+    EXPECT_THAT(warnings.sentences, ElementsAre("ABC holds the column 'x' under the name 'x_2'",
+                                                "ABC holds the column 'x_2' under the name 'x_2_2'"));
 }
 
 }  // namespace

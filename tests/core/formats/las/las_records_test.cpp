@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands around the points of a LAS file: sizes that lie, records, extra bytes, units, compression; E57.
+// Everything in a LAS file except its points: wrong sizes, records, extra bytes, units, compression; E57.
 #include "las_support.hpp"
 
 namespace scanmill::test {
@@ -25,18 +25,18 @@ std::string refused_with(std::size_t at, T number) {
 
 TEST(LasHeader_Refusals, SayWhatIsWrong) {
     EXPECT_THAT(refusal_of("LASF", "a.las"), HasSubstr("is 4 bytes long"));
-    EXPECT_THAT(refusal_of("LASER", "a.las"), HasSubstr("is no LAS file: it begins with 'LASE'"));
+    EXPECT_THAT(refusal_of("LASER", "a.las"), HasSubstr("is not a LAS file: it begins with 'LASE'"));
     EXPECT_THAT(refused_with(24, u8(2)), HasSubstr("is of LAS version 2.2"));
     EXPECT_THAT(refused_with(25, u8(5)), HasSubstr("is of LAS version 1.5"));
-    EXPECT_THAT(refused_with(94, std::uint16_t(226)), HasSubstr("takes 227 bytes or more; it says 226"));
-    EXPECT_THAT(refused_with(94, std::uint16_t(999)), HasSubstr("it says 999, and the file has 247"));
+    EXPECT_THAT(refused_with(94, std::uint16_t(226)), HasSubstr("takes 227 bytes or more; it declares 226"));
+    EXPECT_THAT(refused_with(94, std::uint16_t(999)), HasSubstr("it declares 999, and the file has 247"));
     EXPECT_THAT(refused_with(96, u32(226)), HasSubstr("the points begin at byte 226, by the header of 227 bytes"));
     EXPECT_THAT(refused_with(96, u32(248)), HasSubstr("the points begin at byte 248"));
-    EXPECT_THAT(refused_with(104, u8(11)), HasSubstr("points of format 11; LAS knows 0 to 10"));
-    EXPECT_THAT(refused_with(105, std::uint16_t(19)), HasSubstr("take 20 bytes or more; the header says 19"));
-    EXPECT_THAT(refused_with(131, 0.0), HasSubstr("the scale 0 and the offset 0 of x make no coordinates"));
+    EXPECT_THAT(refused_with(104, u8(11)), HasSubstr("points of format 11; LAS has 0 to 10"));
+    EXPECT_THAT(refused_with(105, std::uint16_t(19)), HasSubstr("take 20 bytes or more; the header declares 19"));
+    EXPECT_THAT(refused_with(131, 0.0), HasSubstr("the scale 0 and the offset 0 of x are invalid"));
     EXPECT_THAT(refused_with(171, std::numeric_limits<double>::infinity()), HasSubstr("the offset inf of z"));
-    EXPECT_THAT(refused_with(107, u32(0)), HasSubstr("holds no points: its header says 0, and 20 bytes follow it"));
+    EXPECT_THAT(refused_with(107, u32(0)), HasSubstr("holds no points: its header declares 0, and 20 bytes follow it"));
     EXPECT_THAT(refused_with(107, u32(2)), HasSubstr("promises 2 points of 20 bytes; the 20 bytes from byte 227 on"));
 }
 
@@ -45,7 +45,7 @@ TEST(LasHeader_OfVersion14, IsLonger) {
     las.minor_version = 4;
     std::string bytes = las.file();
     put_at(bytes, 94, std::uint16_t(374));
-    EXPECT_THAT(refusal_of(bytes, "a.las"), HasSubstr("LAS 1.4 takes 375 bytes or more; it says 374"));
+    EXPECT_THAT(refusal_of(bytes, "a.las"), HasSubstr("LAS 1.4 takes 375 bytes or more; it declares 374"));
 }
 
 TEST(LasHeader_ManyPoints, TakeNoMemory) {
@@ -56,43 +56,43 @@ TEST(LasHeader_ManyPoints, TakeNoMemory) {
     EXPECT_THAT(refusal_of(bytes, "a.las"), HasSubstr("promises 1099511627776 points of 20 bytes; the 20 bytes"));
 }
 
-TEST(LasRecords, AreLeftOutAndTold_Once) {
+TEST(LasRecords, AreLeftOutAndReported_Once) {
     LasBytes las = plain();
     las.add_record("hobu", 1234, "abc");
     las.add_record("LASF_Projection", 2112, "wkt");
-    Told told;
-    points_in(las.file(), "a.las", &told);
-    EXPECT_THAT(told.sentences,
+    Warnings warnings;
+    points_in(las.file(), "a.las", &warnings);
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("2 variable length records were left out (hobu 1234, LASF_Projection 2112)")));
 }
 
-TEST(LasRecords, ThatRunIntoThePoints_AreTold) {
+TEST(LasRecords, ThatRunIntoThePoints_AreReported) {
     LasBytes las = plain();
     las.add_record("a", 1, "abc");
     las.record_count = 4000000000u;
-    Told told;
-    EXPECT_EQ(points_in(las.file(), "a.las", &told)->size(), 1u);
-    EXPECT_THAT(told.sentences,
+    Warnings warnings;
+    EXPECT_EQ(points_in(las.file(), "a.las", &warnings)->size(), 1u);
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("record 2 of 4000000000 runs into the points"), HasSubstr("1 variable")));
     std::string bytes = las.file();
     put_at(bytes, 227 + 20, std::uint16_t(4));
-    told.sentences.clear();
-    points_in(bytes, "a.las", &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("record 1 of 4000000000 runs into the points")));
+    warnings.sentences.clear();
+    points_in(bytes, "a.las", &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("record 1 of 4000000000 runs into the points")));
 }
 
-TEST(LasRecords_BehindThePoints, AreTold) {
+TEST(LasRecords_BehindThePoints, AreReported) {
     LasBytes las = plain();
-    las.behind = "12345";
-    Told told;
-    points_in(las.file(), "a.las", &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("5 bytes were behind the last point and left out")));
+    las.trailing = "12345";
+    Warnings warnings;
+    points_in(las.file(), "a.las", &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("5 bytes after the last point ignored")));
     las.minor_version = 4;
     std::string bytes = las.file();
     put_at(bytes, 243, u32(2));
-    told.sentences.clear();
-    points_in(bytes, "a.las", &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("2 records behind the points were left out")));
+    warnings.sentences.clear();
+    points_in(bytes, "a.las", &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("2 records after the points were left out")));
 }
 
 TEST(LasExtraBytes, OfEveryNumber_AreColumnsOfTheirTypes) {
@@ -106,13 +106,13 @@ TEST(LasExtraBytes, OfEveryNumber_AreColumnsOfTheirTypes) {
     las.add_record("LASF_Spec", 4,
                    las_extra(4, "range") + las_extra(10, "width", 8 | 16, 2, 100) + las_extra(1, "intensity") +
                        las_extra(13, "pair"));
-    Told told;
-    const auto cloud = points_in(las.file(), "a.las", &told);
+    Warnings warnings;
+    const auto cloud = points_in(las.file(), "a.las", &warnings);
     EXPECT_THAT(numbers_of<std::int16_t>(cloud->columns.find("range")), ElementsAre(-300));
     EXPECT_THAT(numbers_of<double>(cloud->columns.find("width")), ElementsAre(105));
     EXPECT_THAT(numbers_of<u8>(cloud->columns.find("intensity_extra_1")), ElementsAre(1));
     EXPECT_THAT(numbers_of<std::uint16_t>(cloud->columns.find("pair")), ElementsAre(10, 20));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("'intensity' are called 'intensity_extra_1'")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("'intensity' are called 'intensity_extra_1'")));
 }
 
 TEST(LasExtraBytes, ScaleWithoutItsFlag_IsNotApplied) {
@@ -122,32 +122,32 @@ TEST(LasExtraBytes, ScaleWithoutItsFlag_IsNotApplied) {
     EXPECT_THAT(numbers_of<std::uint16_t>(points_in(las.file(), "a.las")->columns.find("raw")), ElementsAre(7));
 }
 
-TEST(LasExtraBytes, Undescribed_AreLeftOutAndTold) {
+TEST(LasExtraBytes, Undescribed_AreLeftOutAndReported) {
     LasBytes las = plain(6);
     put_at(las.points[0], 23, std::uint16_t(8));
-    Told told;
-    points_in(las.file(), "a.las", &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("6 extra bytes of each point are of no described type")));
+    Warnings warnings;
+    points_in(las.file(), "a.las", &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("6 extra bytes of each point are without a described type")));
     // Three bytes of type 0 before the one that is described.
     las.add_record("LASF_Spec", 4, las_extra(0, "opaque", 3) + las_extra(3, "known"));
-    told.sentences.clear();
-    const auto cloud = points_in(las.file(), "a.las", &told);
+    warnings.sentences.clear();
+    const auto cloud = points_in(las.file(), "a.las", &warnings);
     EXPECT_THAT(numbers_of<std::uint16_t>(cloud->columns.find("known")), ElementsAre(8));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("4 extra bytes of each point are of no described type")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("4 extra bytes of each point are without a described type")));
 }
 
-TEST(LasExtraBytes, BeyondThePoint_AreLeftOutAndTold) {
+TEST(LasExtraBytes, BeyondThePoint_AreLeftOutAndReported) {
     LasBytes las = plain(1);
     las.add_record("LASF_Spec", 4, las_extra(3, "wide"));
-    Told told;
-    EXPECT_EQ(points_in(las.file(), "a.las", &told)->columns.find("wide"), nullptr);
-    EXPECT_THAT(told.sentences, testing::Contains(HasSubstr("'wide' would lie beyond the 21 bytes of a point")));
+    Warnings warnings;
+    EXPECT_EQ(points_in(las.file(), "a.las", &warnings)->columns.find("wide"), nullptr);
+    EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr("'wide' would lie beyond the 21 bytes of a point")));
 }
 
 struct UnitCase {
     std::vector<std::pair<int, int>> keys;
     LengthUnit unit;
-    const char* told;  ///< nothing when null
+    const char* warnings;  ///< nothing when null
 };
 
 TEST(LasUnit, IsThatOfTheGeoTiffKeys) {
@@ -160,14 +160,14 @@ TEST(LasUnit, IsThatOfTheGeoTiffKeys) {
     for (const UnitCase& c : cases) {
         LasBytes las = plain();
         las.add_record("LASF_Projection", 34735, geo_keys(c.keys));
-        Told told;
-        EXPECT_EQ(points_in(las.file(), "a.las", &told)->frame.unit, c.unit);
+        Warnings warnings;
+        EXPECT_EQ(points_in(las.file(), "a.las", &warnings)->frame.unit, c.unit);
         const std::string left_out =
-            "(LASF_Projection 34735" + std::string(c.unit == LengthUnit::unknown ? ")" : " but for its unit)");
-        EXPECT_THAT(told.sentences, testing::Contains(HasSubstr(left_out)));
-        ASSERT_EQ(told.sentences.size(), c.told ? 2u : 1u);
-        if (c.told) {
-            EXPECT_THAT(told.sentences, testing::Contains(HasSubstr(c.told)));
+            "(LASF_Projection 34735" + std::string(c.unit == LengthUnit::unknown ? ")" : " except its unit)");
+        EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr(left_out)));
+        ASSERT_EQ(warnings.sentences.size(), c.warnings ? 2u : 1u);
+        if (c.warnings) {
+            EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr(c.warnings)));
         }
     }
     LasBytes las = plain();
@@ -204,7 +204,7 @@ TEST(E57, IsRefusedWithACommand) {
     const std::string bytes = "ASTM-E57" + std::string(40, '\0');
     EXPECT_THAT(refusal_of(bytes, "a.dat"), HasSubstr("is an E57 file; E57 is not read"));
     EXPECT_THAT(hint_for(bytes, "a.e57"), HasSubstr(": CloudCompare -SILENT -O a.e57 -C_EXPORT_FMT PLY -SAVE_CLOUDS,"));
-    EXPECT_THAT(refusal_of("something", "a.e57"), HasSubstr("is no E57 file"));
+    EXPECT_THAT(refusal_of("something", "a.e57"), HasSubstr("is not an E57 file"));
     EXPECT_THAT(hint_for("something else", "a.unknown"), testing::Not(HasSubstr("E57")));
 }
 

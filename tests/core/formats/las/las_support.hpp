@@ -14,13 +14,13 @@ void put_at(std::string& bytes, std::size_t at, T number) {
 
 struct LasBytes {
     u32 minor_version = 2;
-    u32 point_format = 0;  ///< as the header says it, with bits of compression
+    u32 point_format = 0;  ///< as in the header, with the compression bits
     std::array<double, 3> scale{1, 1, 1}, offset{0, 0, 0};
     std::string records;
     u32 record_count = 0;
     /// #points, all of one length.
     std::vector<std::string> points;
-    std::string behind;
+    std::string trailing;
 
     void add_record(std::string_view user, u32 id, std::string_view content) {
         std::string header(54, '\0');
@@ -52,7 +52,7 @@ struct LasBytes {
         if (minor_version >= 4) put_at(bytes, 247, u64(points.size()));
         bytes += records;
         for (const std::string& point : points) bytes += point;
-        return bytes + behind;
+        return bytes + trailing;
     }
 };
 

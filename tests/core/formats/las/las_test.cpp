@@ -71,8 +71,8 @@ TEST(LasReader_OldPointFormats, HaveTheirFields) {
     put_at(point, 28, std::uint16_t(1));
     put_at(point, 30, std::uint16_t(2));
     put_at(point, 32, std::uint16_t(255));
-    Told told;
-    const auto cloud = points_in(las.file(), "a.las", &told);
+    Warnings warnings;
+    const auto cloud = points_in(las.file(), "a.las", &warnings);
     EXPECT_THAT(column_names(*cloud),
                 ElementsAre("intensity", "return_number", "number_of_returns", "classification", "scan_angle",
                             "user_data", "point_source_id", "scan_direction", "withheld", "gps_time", "colour"));
@@ -86,7 +86,7 @@ TEST(LasReader_OldPointFormats, HaveTheirFields) {
     EXPECT_THAT(numbers_of<double>(cloud->columns.find("gps_time")), ElementsAre(123456.789));
     EXPECT_THAT(numbers_of<u8>(cloud->columns.find("colour")), ElementsAre(1, 2, 255));
     EXPECT_THAT(numbers_of<u8>(cloud->columns.find("withheld")), ElementsAre(1));
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 TEST(LasReader_NewPointFormats, HaveTheirFields) {
@@ -117,26 +117,26 @@ TEST(LasReader_NewPointFormats, HaveTheirFields) {
 
 TEST(LasReader_EveryPointFormat, HasTimeColourAndWavesWhereItsTableSaysSo) {
     for (u32 format = 0; format <= 10; ++format) {
-        Told told;
-        const auto cloud = points_in(one_point(format).file(), "a.las", &told);
+        Warnings warnings;
+        const auto cloud = points_in(one_point(format).file(), "a.las", &warnings);
         const auto is_among = [format](std::initializer_list<u32> formats) {
             return std::ranges::find(formats, format) != formats.end();
         };
         EXPECT_EQ(cloud->columns.find("gps_time") != nullptr, !is_among({0, 2})) << format;
         EXPECT_EQ(cloud->columns.find("colour") != nullptr, is_among({2, 3, 5, 7, 8, 10})) << format;
         EXPECT_EQ(cloud->columns.find("nir") != nullptr, is_among({8, 10})) << format;
-        EXPECT_EQ(told.sentences.size(), is_among({4, 5, 9, 10}) ? 1u : 0u) << format;
+        EXPECT_EQ(warnings.sentences.size(), is_among({4, 5, 9, 10}) ? 1u : 0u) << format;
         EXPECT_EQ(world_of(*cloud, 0), Vec3(1, 2, 3)) << format;
     }
 }
 
 TEST(LasReader_Colours, OfBytesTimesAFactor_AreBytes_OthersKeepTheirBits) {
-    const auto read = [](std::array<std::uint16_t, 3> colour, Told& told) {
+    const auto read = [](std::array<std::uint16_t, 3> colour, Warnings& warnings) {
         LasBytes las = one_point(2);
         for (std::size_t i = 0; i < 3; ++i) put_at(las.points[0], 20 + 2 * i, colour[i]);
-        return points_in(las.file(), "a.las", &told);
+        return points_in(las.file(), "a.las", &warnings);
     };
-    Told plain, full, shifted, wide;
+    Warnings plain, full, shifted, wide;
     EXPECT_THAT(numbers_of<u8>(read({0, 7, 255}, plain)->columns.find("colour")), ElementsAre(0, 7, 255));
     EXPECT_THAT(plain.sentences, IsEmpty());
     EXPECT_THAT(numbers_of<u8>(read({0, 257, 65535}, full)->columns.find("colour")), ElementsAre(0, 1, 255));

@@ -37,7 +37,7 @@ const std::vector<Sample> samples{
      1,
      basics + " scan_direction gps_time",
      {715001.346, 839349.171, 17.275000000000002}},
-    {"las/odd/pdal_no-points.las", 0, "its header says 0"},
+    {"las/odd/pdal_no-points.las", 0, "its header declares 0"},
     {"las/odd/pdal_prec3.las", 110, basics + " scan_direction gps_time colour", {636034.83, 849387.53, 458.83}},
     {"las/odd/pdal_simple-laszip-compressor-version-1.2r0.laz", 0, "is a LAZ file"},
     {"las/odd/pdal_spec_3.las", 10, basics + " gps_time colour", {289818.5, 4320980.59, 170.58}},

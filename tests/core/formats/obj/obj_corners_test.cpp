@@ -11,99 +11,100 @@ using testing::IsEmpty;
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
 
-std::vector<double> normals_of(std::string_view text, Told& told) {
-    return numbers_of<double>(mesh_in(text, "a.obj", &told)->vertex_columns.find("normal"));
+std::vector<double> normals_of(std::string_view text, Warnings& warnings) {
+    return numbers_of<double>(mesh_in(text, "a.obj", &warnings)->vertex_columns.find("normal"));
 }
 
 TEST(ObjReader_Normals, OneToOneWithVertices_BecomeAColumn) {
-    Told told;
+    Warnings warnings;
     const auto mesh = mesh_in(square + "vn 1 0 0\nvn 0 1 0\nvn 0 0 1\nvn 0 0 -2\nf 1//1 2//2 4//4\nf 1//1 4//4 3//-2\n",
-                              "a.obj", &told);
+                              "a.obj", &warnings);
     EXPECT_THAT(numbers_of<double>(mesh->vertex_columns.find("normal")),
                 ElementsAre(1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -2));
     EXPECT_EQ(mesh->vertex_columns.find("normal")->components(), 3u);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 TEST(ObjReader_Normals, SharedOrRepeated_GoToTheirVertices) {
-    Told told;
+    Warnings warnings;
     // The first is every vertex's; number 3 has equal numbers, so the corners agree.
-    EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 1 0 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 2//3 4//2 3//3\n", told),
+    EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 1 0 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 2//3 4//2 3//3\n", warnings),
                 ElementsAre(0, 0, 1, 0, 0, 1, 0, 0, 1, 1, 0, 0));
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
-TEST(ObjReader_Normals, ThatDifferAtACorner_AreLeftOutAndTold) {
-    Told told;
-    EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 2//1 4//2 3//2\n", told), IsEmpty());
-    EXPECT_THAT(told.sentences,
+TEST(ObjReader_Normals, ThatDifferAtACorner_AreLeftOutAndReported) {
+    Warnings warnings;
+    EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 2//1 4//2 3//2\n", warnings), IsEmpty());
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("the normals (vn) were left out: at 1 of 4 vertices they differ")));
 }
 
 TEST(ObjReader_Normals, OfVerticesThatNoFaceNames_AreThoseOfTheirNumber_OrZeros) {
-    Told told;
-    EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 0 0 2\nvn 0 0 3\nvn 0 0 4\nf 1//1 2//2 3//3\n", told),
+    Warnings warnings;
+    EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 0 0 2\nvn 0 0 3\nvn 0 0 4\nf 1//1 2//2 3//3\n", warnings),
                 ElementsAre(0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0, 4));
-    EXPECT_THAT(told.sentences, IsEmpty());
-    EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 0 0 2\nf 1//1 2//1 3//1\nf 3 2 4\n", told),
+    EXPECT_THAT(warnings.sentences, IsEmpty());
+    EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 0 0 2\nf 1//1 2//1 3//1\nf 3 2 4\n", warnings),
                 ElementsAre(0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 of 2 normals (vn) were left out: no face names them"),
-                                            HasSubstr("1 of 4 vertices have none of the normals (vn)")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 of 2 normals (vn) were left out: no face names them"),
+                                                HasSubstr("1 of 4 vertices have none of the normals (vn)")));
 }
 
 TEST(ObjReader_Normals, ThatNoFaceNames_BelongToTheVerticesOfEqualNumber_IfAsMany) {
-    Told told;
-    const auto cloud = points_in("vn 0 0 1\nv 1 2 3\nvn 0 1 0\nv 4 5 6\n", "a.obj", &told);
+    Warnings warnings;
+    const auto cloud = points_in("vn 0 0 1\nv 1 2 3\nvn 0 1 0\nv 4 5 6\n", "a.obj", &warnings);
     EXPECT_THAT(numbers_of<double>(cloud->columns.find("normal")), ElementsAre(0, 0, 1, 0, 1, 0));
-    EXPECT_THAT(told.sentences, IsEmpty());
-    EXPECT_THAT(normals_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nvn 0 0 3\nf 1 2 3\n", told),
+    EXPECT_THAT(warnings.sentences, IsEmpty());
+    EXPECT_THAT(normals_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nvn 0 0 3\nf 1 2 3\n", warnings),
                 ElementsAre(0, 0, 1, 0, 0, 2, 0, 0, 3));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("no face names the 3 normals (vn): they were given to the")));
-    told.sentences.clear();
-    EXPECT_THAT(normals_of(square + "vn 0 0 1\nf 1 2 3\n", told), IsEmpty());
-    EXPECT_THAT(told.sentences,
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("no face names the 3 normals (vn): they were given to the")));
+    warnings.sentences.clear();
+    EXPECT_THAT(normals_of(square + "vn 0 0 1\nf 1 2 3\n", warnings), IsEmpty());
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("the 1 normals (vn) were left out: no face names them, and there")));
 }
 
-TEST(ObjReader_Normals, ThatAreNotThere_AreTold_AndTheFaceIsKept) {
+TEST(ObjReader_Normals, ThatAreNotThere_AreReported_AndTheFaceIsKept) {
     for (const char* missing : {"3", "-3", "4294967295", "4294967296", "9223372036854775807", "-9223372036854775808"}) {
-        Told told;
-        EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 0 0 1\nf 1//1 2//2 3//" + missing + "\n", told), IsEmpty());
-        EXPECT_THAT(told.sentences,
+        Warnings warnings;
+        EXPECT_THAT(normals_of(square + "vn 0 0 1\nvn 0 0 1\nf 1//1 2//2 3//" + missing + "\n", warnings), IsEmpty());
+        EXPECT_THAT(warnings.sentences,
                     ElementsAre(HasSubstr("the normals (vn) were left out: 1 of 3 corners of faces name "
-                                          "one that is not there; there are 2")));
+                                          "a missing one; there are 2")));
     }
-    Told told;
-    EXPECT_THAT(normals_of(square + "f 1//1 2//1 3//1\n", told), IsEmpty());
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3 of 3 corners")));
+    Warnings warnings;
+    EXPECT_THAT(normals_of(square + "f 1//1 2//1 3//1\n", warnings), IsEmpty());
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("3 of 3 corners")));
     // They may follow the face, as vertices may.
-    EXPECT_THAT(normals_of("f 1//3 2//2 3//1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nvn 0 0 3\n", told),
+    EXPECT_THAT(normals_of("f 1//3 2//2 3//1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 2\nvn 0 0 3\n", warnings),
                 ElementsAre(0, 0, 3, 0, 0, 2, 0, 0, 1));
 }
 
 TEST(ObjReader_Texture, OneToOneWithVertices_BecomesAColumnOfTwo) {
-    Told told;
+    Warnings warnings;
     const auto mesh =
-        mesh_in(square + "vt 0.5\nvt 0.25 1\nvt 0 1 0\nvt 1 1 0.0\nf 1/1 2/2 3/3\nf 2/2 4/4 3/3\n", "a.obj", &told);
+        mesh_in(square + "vt 0.5\nvt 0.25 1\nvt 0 1 0\nvt 1 1 0.0\nf 1/1 2/2 3/3\nf 2/2 4/4 3/3\n", "a.obj", &warnings);
     EXPECT_THAT(numbers_of<double>(mesh->vertex_columns.find("texture")), ElementsAre(0.5, 0, 0.25, 1, 0, 1, 1, 1));
     EXPECT_EQ(mesh->vertex_columns.find("texture")->components(), 2u);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
-TEST(ObjReader_Texture, AtASeam_IsLeftOutAndTold) {
-    Told told;
-    const auto mesh = mesh_in(square + "vt 0 0\nvt 1 0\nf 1/1 2/1 3/1\nf 2/2 4/2 3/2\n", "a.obj", &told);
+TEST(ObjReader_Texture, AtASeam_IsLeftOutAndReported) {
+    Warnings warnings;
+    const auto mesh = mesh_in(square + "vt 0 0\nvt 1 0\nf 1/1 2/1 3/1\nf 2/2 4/2 3/2\n", "a.obj", &warnings);
     EXPECT_TRUE(mesh->vertex_columns.empty());
-    EXPECT_THAT(told.sentences,
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("the texture coordinates (vt) were left out: at 2 of 4 vertices they differ")));
 }
 
-TEST(ObjReader_Lists, ThirdTextureNumberAndFurtherNumbers_AreTold) {
-    Told told;
-    mesh_in(square + "vt 0 0 0.5\nvt 0 0 0 0\nvn 0 0 1 1\nf 1/1/1 2/1/1 3/1/1\nf 2/2/1 4/2/1 3/1/1\n", "a.obj", &told);
-    EXPECT_THAT(told.sentences,
+TEST(ObjReader_Lists, ThirdTextureNumberAndFurtherNumbers_AreReported) {
+    Warnings warnings;
+    mesh_in(square + "vt 0 0 0.5\nvt 0 0 0 0\nvn 0 0 1 1\nf 1/1/1 2/1/1 3/1/1\nf 2/2/1 4/2/1 3/1/1\n", "a.obj",
+            &warnings);
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("the third number of 1 texture coordinate (vt) was left out"),
-                            HasSubstr("2 rows have more numbers than OBJ knows there, first in line 6")));
+                            HasSubstr("2 rows have more numbers than OBJ allows there, first in line 6")));
 }
 
 }  // namespace

@@ -33,49 +33,49 @@ TEST(ObjReader_Face, MayStandBeforeItsVertices) {
 }
 
 TEST(ObjReader_Face, OfFourCorners_BecomesAFan_OfTwo_IsLeftOut) {
-    Told told;
-    const auto mesh = mesh_in(square + "f 1 2 4 3\nf 1 2\nf 1\nf\nf 1 2 3\n", "a.obj", &told);
+    Warnings warnings;
+    const auto mesh = mesh_in(square + "f 1 2 4 3\nf 1 2\nf 1\nf\nf 1 2 3\n", "a.obj", &warnings);
     EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{0, 1, 2}));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 face of more than three corners was cut"),
-                                            HasSubstr("3 faces of fewer than three corners were left out")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 face of more than three corners was cut"),
+                                                HasSubstr("3 faces of fewer than three corners were left out")));
 }
 
 TEST(ObjReader_Face, WithAMissingVertex_IsRefusedWithItsLine) {
-    for (const auto& [face, told] : std::vector<std::pair<const char*, const char*>>{
+    for (const auto& [face, warnings] : std::vector<std::pair<const char*, const char*>>{
              {"f 1 2 4\n", "line 4: a face names vertex 4; there are 3 vertices, numbered from 1"},
              {"f 1 2 3\nf 9 2 1\nf 1 11 10\n", "line 5: a face names vertex 9; there are 3 vertices"},
              {"f 1 2 0\n", "line 4: a face names vertex 0; vertices are numbered from 1"},
-             {"f 1 2 -4\n", "line 4: a face names vertex -4, backwards from here; there are 3 vertices before it"},
+             {"f 1 2 -4\n", "line 4: a face names vertex -4, counted backwards; there are 3 vertices before it"},
              {"f 1 2 4294967297\n", "line 4: a face names vertex 4294967297;"},
              {"f 1 2 1099511627776\n", "line 4: a face names vertex 1099511627776;"},
              {"f 1 2 9223372036854775807\n", "line 4: a face names vertex 9223372036854775807;"},
              {"f 1 2 -9223372036854775808\n", "line 4: a face names vertex -9223372036854775808,"},
-             {"f 1 2 9223372036854775808\n", "line 4: '9223372036854775808' is no corner of a face"},
-             {"f 1 2 three\n", "line 4: 'three' is no corner of a face"},
-             {"f 1 2 3.0\n", "line 4: '3.0' is no corner of a face"},
-             {"f 1 2 3/x/1\n", "line 4: '3/x/1' is no corner"},
-             {"f 1 2 3///1\n", "line 4: '3///1' is no corner"},
-             {"f 1 2 /3\n", "line 4: '/3' is no corner"}})
-        EXPECT_THAT(refusal_of(right_triangle + face, "a.obj"), HasSubstr(told)) << face;
+             {"f 1 2 9223372036854775808\n", "line 4: '9223372036854775808' is not a corner of a face"},
+             {"f 1 2 three\n", "line 4: 'three' is not a corner of a face"},
+             {"f 1 2 3.0\n", "line 4: '3.0' is not a corner of a face"},
+             {"f 1 2 3/x/1\n", "line 4: '3/x/1' is not a corner"},
+             {"f 1 2 3///1\n", "line 4: '3///1' is not a corner"},
+             {"f 1 2 /3\n", "line 4: '/3' is not a corner"}})
+        EXPECT_THAT(refusal_of(right_triangle + face, "a.obj"), HasSubstr(warnings)) << face;
     // One that is there at the end was only early.
     EXPECT_THAT(refusal_of("f 1 2 3\nf 1 2 4\n" + right_triangle, "a.obj"), HasSubstr("line 2: a face names vertex 4"));
 }
 
 TEST(ObjReader_Vertex, WithoutThreeNumbers_IsRefusedWithItsLine) {
     EXPECT_THAT(refusal_of("v 0 0 0\nv 1 0\n", "a.obj"),
-                HasSubstr("line 2: a vertex (v) has 3 numbers, here are fewer"));
-    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 O 0\n", "a.obj"), HasSubstr("line 2: 'O' is no number for a vertex (v)"));
+                HasSubstr("line 2: the row ends before a coordinate of a vertex (v)"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 O 0\n", "a.obj"), HasSubstr("line 2: 'O' is not a number for a coordinate of a vertex (v)"));
     EXPECT_THAT(refusal_of("v 0 0 0\nv 1 0 0 1 1 1 1 1\n", "a.obj"), HasSubstr("line 2: more than 4 numbers"));
-    EXPECT_THAT(refusal_of("v 0 0 0\nvn 1 0\n", "a.obj"), HasSubstr("line 2: a normal (vn) has 3 numbers"));
-    EXPECT_THAT(refusal_of("v 0 0 0\nvt\n", "a.obj"), HasSubstr("line 2: a texture coordinate (vt) has 1 number,"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nvn 1 0\n", "a.obj"), HasSubstr("line 2: the row ends before a normal (vn)"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nvt\n", "a.obj"), HasSubstr("line 2: the row ends before a texture coordinate (vt)"));
 }
 
-TEST(ObjReader_Vertex, Weight_IsToldUnlessItIsOne) {
-    Told told;
-    EXPECT_EQ(points_in("v 1 2 3 1.0\nv 4 5 6 1\n", "a.obj", &told)->positions[1], Vec3(4, 5, 6));
-    EXPECT_THAT(told.sentences, IsEmpty());
-    EXPECT_EQ(points_in("v 1 2 3 0.5\nv 4 5 6 1\n", "a.obj", &told)->positions[0], Vec3(1, 2, 3));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the weights of 1 of 2 vertices are not 1")));
+TEST(ObjReader_Vertex, Weight_IsReportedUnlessItIsOne) {
+    Warnings warnings;
+    EXPECT_EQ(points_in("v 1 2 3 1.0\nv 4 5 6 1\n", "a.obj", &warnings)->positions[1], Vec3(4, 5, 6));
+    EXPECT_THAT(warnings.sentences, IsEmpty());
+    EXPECT_EQ(points_in("v 1 2 3 0.5\nv 4 5 6 1\n", "a.obj", &warnings)->positions[0], Vec3(1, 2, 3));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("the weights of 1 of 2 vertices are not 1")));
 }
 
 TEST(ObjReader_Vertex, FarFromZero_KeepsItsLastDigits) {
@@ -98,10 +98,10 @@ TEST(ObjReader_Colours, FractionsOfBytesAreBytes_SoAreWholeNumbers_OthersAreDoub
     EXPECT_THAT(numbers_of<double>(reals->columns.find("blue")), ElementsAre(0, 1));
 }
 
-TEST(ObjReader_Colours, ThatNotEveryVertexHas_AreLeftOutAndTold) {
-    Told told;
-    EXPECT_TRUE(points_in("v 0 0 0 1 0 0\nv 1 0 0\n", "a.obj", &told)->columns.empty());
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the colours of 1 of 2 vertices were left out")));
+TEST(ObjReader_Colours, ThatNotEveryVertexHas_AreLeftOutAndReported) {
+    Warnings warnings;
+    EXPECT_TRUE(points_in("v 0 0 0 1 0 0\nv 1 0 0\n", "a.obj", &warnings)->columns.empty());
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("the colours of 1 of 2 vertices were left out")));
 }
 
 TEST(ObjReader_Text, EveryLineEndAndByteOrderMark_ReadAlike) {
@@ -133,54 +133,55 @@ TEST(ObjReader_Text, BackslashAtALinesEnd_ContinuesIt) {
     EXPECT_EQ(
         mesh_in("# C:\\scans\\\n" + right_triangle + "mtllib C:\\a\\b.mtl\nf 1 2 3 \\", "a.obj")->triangles.size(), 1u);
     EXPECT_THAT(refusal_of(right_triangle + "f 1 2\\\n 4\n", "a.obj"), HasSubstr("line 5: a face names vertex 4"));
-    EXPECT_THAT(refusal_of(right_triangle + "f 1 2\\3\n", "a.obj"), HasSubstr("is no corner of a face"));
+    EXPECT_THAT(refusal_of(right_triangle + "f 1 2\\3\n", "a.obj"), HasSubstr("is not a corner of a face"));
 }
 
 TEST(ObjReader_Text, Cut_IsReadOrRefused_ByWhatIsLeft) {
     const std::string whole = square + "f 1 2 4\nf 1 4 3";
     EXPECT_EQ(mesh_in(whole, "a.obj")->triangles.size(), 2u);
-    Told told;
-    EXPECT_EQ(mesh_in(whole.substr(0, whole.size() - 2), "a.obj", &told)->triangles.size(), 1u);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 face of fewer than three corners was left out")));
+    Warnings warnings;
+    EXPECT_EQ(mesh_in(whole.substr(0, whole.size() - 2), "a.obj", &warnings)->triangles.size(), 1u);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 face of fewer than three corners was left out")));
     EXPECT_EQ(points_in(whole.substr(0, square.size()), "a.obj")->size(), 4u);
     EXPECT_THAT(refusal_of(whole.substr(0, square.size() - 3), "a.obj"),
-                HasSubstr("line 4: a vertex (v) has 3 numbers"));
+                HasSubstr("line 4: the row ends before a coordinate of a vertex (v)"));
 }
 
 TEST(ObjReader_WithoutVertices, IsRefused) {
     for (const char* text : {"# nothing here\n", "\n\n", "o a\ng b\n", "vn 0 0 1\n"})
         EXPECT_THAT(refusal_of(text, "a.obj"), AllOf(HasSubstr("holds no points: no row is a vertex (v)"))) << text;
-    EXPECT_THAT(refusal_of("L\x01\x02\n", "a.obj"), HasSubstr("line 1 begins with 'L?\?', which OBJ does not know"));
+    EXPECT_THAT(refusal_of("L\x01\x02\n", "a.obj"), HasSubstr("line 1 begins with 'L?\?', which is not an OBJ keyword"));
 }
 
 TEST(ObjReader_WithoutFaces, IsACloudOfAllVertices) {
-    Told told;
-    EXPECT_EQ(points_in(square + "l 1 2 3\nl 3 4\np 1 2\n", "a.obj", &told)->size(), 4u);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("2 lines (l) were left out, first in line 5"),
-                                            HasSubstr("1 row of points (p) was left out, first in line 7")));
+    Warnings warnings;
+    EXPECT_EQ(points_in(square + "l 1 2 3\nl 3 4\np 1 2\n", "a.obj", &warnings)->size(), 4u);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("2 lines (l) were left out, first in line 5"),
+                                                HasSubstr("1 row of points (p) was left out, first in line 7")));
 }
 
-TEST(ObjReader_Divisions, AreToldWhenThereIsMoreThanOne) {
-    Told told;
-    mesh_in("o a\ng b c\nusemtl d\ns off\n" + right_triangle + "f 1 2 3\ng b c\nusemtl d\n", "a.obj", &told);
-    EXPECT_THAT(told.sentences, IsEmpty());
+TEST(ObjReader_Divisions, AreReportedWhenThereIsMoreThanOne) {
+    Warnings warnings;
+    mesh_in("o a\ng b c\nusemtl d\ns off\n" + right_triangle + "f 1 2 3\ng b c\nusemtl d\n", "a.obj", &warnings);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
     mesh_in("mtllib a.mtl\no a\ng\ng b c\ng b\nusemtl d\nusemtl e\nusemtl d\ns 1\ns 2\n" + right_triangle + "f 1 2 3\n",
-            "a.obj", &told);
-    EXPECT_THAT(told.sentences,
-                ElementsAre(HasSubstr("3 groups (g), 2 materials (usemtl), 2 smoothing groups (s) were made one"),
+            "a.obj", &warnings);
+    EXPECT_THAT(warnings.sentences,
+                ElementsAre(HasSubstr("3 groups (g), 2 materials (usemtl), 2 smoothing groups (s) were merged"),
                             HasSubstr("1 material library (mtllib) was not read: materials and their images were left "
                                       "out, the first of 'a.mtl'")));
 }
 
-TEST(ObjReader_OtherRows, AreCountedAndTold) {
-    Told told;
-    mesh_in(right_triangle + "f 1 2 3\nvp 0.5\ncurv 0 1 1 2\nend\nlod 3\nvc 1 0 0\nvc 1 0 0\nHello\n", "a.obj", &told);
+TEST(ObjReader_OtherRows, AreCountedAndReported) {
+    Warnings warnings;
+    mesh_in(right_triangle + "f 1 2 3\nvp 0.5\ncurv 0 1 1 2\nend\nlod 3\nvc 1 0 0\nvc 1 0 0\nHello\n", "a.obj",
+            &warnings);
     EXPECT_THAT(
-        told.sentences,
+        warnings.sentences,
         ElementsAre(HasSubstr("3 rows were left out, first in line 5: free-form curves and surfaces are not read "
                               "('vp', 'curv', 'end')"),
-                    HasSubstr("1 row was left out, first in line 8: they concern the display only ('lod')"),
-                    HasSubstr("3 rows were left out, first in line 9: OBJ does not know what they begin with "
+                    HasSubstr("1 row was left out, first in line 8: they only concern the display ('lod')"),
+                    HasSubstr("3 rows were left out, first in line 9: OBJ has no such keyword "
                               "('vc', 'Hello')")));
 }
 

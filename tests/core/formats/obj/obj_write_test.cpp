@@ -17,9 +17,10 @@ TriangleMesh one_triangle() {
     return mesh;
 }
 
-std::string written(const TriangleMesh& mesh, const char* name, Told* told = nullptr) {
+std::string written(const TriangleMesh& mesh, const char* name, Warnings* warnings = nullptr) {
     const TemporaryFolder folder;
-    write_file(folder / name, std::make_shared<const TriangleMesh>(mesh), told ? told->writing() : WriteOptions{});
+    write_file(folder / name, std::make_shared<const TriangleMesh>(mesh),
+               warnings ? warnings->writing() : WriteOptions{});
     return content_of(folder / name);
 }
 
@@ -70,8 +71,8 @@ TEST(ObjWriter_RandomMesh, ComesBackExactly_WithAllThatIsCarried_AndFromOffTheSa
     for (u32 seed = 1; seed <= 50; ++seed) {
         const TriangleMesh mesh = random_mesh(seed);
         for (const char* name : {"a.obj", "a.off"}) {
-            Told told;
-            const auto back = mesh_in(written(mesh, name, &told), name, &told);
+            Warnings warnings;
+            const auto back = mesh_in(written(mesh, name, &warnings), name, &warnings);
             ASSERT_EQ(back->positions.size(), mesh.positions.size());
             for (std::size_t i = 0; i < mesh.positions.size(); ++i)
                 ASSERT_EQ(back->frame.origin + back->positions[i], mesh.frame.origin + mesh.positions[i]) << seed;
@@ -79,7 +80,7 @@ TEST(ObjWriter_RandomMesh, ComesBackExactly_WithAllThatIsCarried_AndFromOffTheSa
             EXPECT_EQ(back->vertex_columns, mesh.vertex_columns) << seed;
             EXPECT_EQ(back->frame.unit, mesh.frame.unit);
             EXPECT_EQ(back->frame.name, mesh.frame.name);
-            EXPECT_THAT(told.sentences, IsEmpty()) << seed;
+            EXPECT_THAT(warnings.sentences, IsEmpty()) << seed;
         }
     }
 }
@@ -110,8 +111,8 @@ TEST(ObjWriter_MeshWithoutTriangles, ComesBackAsItsVertices) {
     EXPECT_EQ(back->columns, mesh.vertex_columns);
 }
 
-TEST(ObjWriter_Losses, AreTold) {
-    Told told;
+TEST(ObjWriter_Losses, AreReported) {
+    Warnings warnings;
     TriangleMesh mesh = one_triangle();
     mesh.vertex_columns.add(Column("normal", 3, Buffer<u8>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
     mesh.vertex_columns.add(Column("weight", 1, Buffer<float>{0, 0, 1}));
@@ -120,12 +121,13 @@ TEST(ObjWriter_Losses, AreTold) {
     mesh.edges = {Edge{0, 1}};
     mesh.edge_columns.add(Column("bend", 1, Buffer<u8>{1}));
     mesh.sharp_edges = {Edge{0, 1}};
-    const std::string text = written(mesh, "a.obj", &told);
+    const std::string text = written(mesh, "a.obj", &warnings);
     EXPECT_THAT(text, HasSubstr("v 0.1 0 -2 0.004 0.008 0.012\n"));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("2 columns of the vertices (normal, weight); PLY"),
-                                            HasSubstr("1 column of the faces (colour)"),
-                                            HasSubstr("1 column of the edges (bend)"), HasSubstr("1 edge are sharp"),
-                                            HasSubstr("the opacity (the fourth channel of 'colour') of 2 ")));
+    EXPECT_THAT(
+        warnings.sentences,
+        ElementsAre(HasSubstr("2 columns of the vertices (normal, weight); PLY"),
+                    HasSubstr("1 column of the faces (colour)"), HasSubstr("1 column of the edges (bend)"),
+                    HasSubstr("1 edge are sharp"), HasSubstr("the opacity (the fourth channel of 'colour') of 2 ")));
 }
 
 TEST(ObjWriter_Points, AreNotWritten) {
@@ -139,13 +141,13 @@ TEST(ObjWriter_Points, AreNotWritten) {
 
 TEST(ObjWriter_Colours, ThatAreNoBytes_ComeBack) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     const auto mesh = read_mesh(
-        folder.write("a.obj", "v 0 0 0 0.5 0.25 1\nv 1 0 0 0 0.1 0.7\nv 0 1 0 1 1 1\nf 1 2 3\n"), told.reading());
-    EXPECT_THAT(told.sentences, testing::ElementsAre(testing::HasSubstr("are no bytes; they are kept as columns")));
-    told.sentences.clear();
-    write_file(folder / "b.obj", mesh, told.writing());
-    EXPECT_THAT(told.sentences, testing::IsEmpty());
+        folder.write("a.obj", "v 0 0 0 0.5 0.25 1\nv 1 0 0 0 0.1 0.7\nv 0 1 0 1 1 1\nf 1 2 3\n"), warnings.reading());
+    EXPECT_THAT(warnings.sentences, testing::ElementsAre(testing::HasSubstr("are not bytes; they are kept as columns")));
+    warnings.sentences.clear();
+    write_file(folder / "b.obj", mesh, warnings.writing());
+    EXPECT_THAT(warnings.sentences, testing::IsEmpty());
     const auto back = read_mesh(folder / "b.obj");
     for (const char* channel : {"red", "green", "blue"})
         EXPECT_EQ(*back->vertex_columns.find(channel), *mesh->vertex_columns.find(channel));

@@ -20,10 +20,11 @@ TEST(OffReader_Plain, CountsOnTheirLineOrOnTheKeywords_ReadAlike) {
 }
 
 TEST(OffReader_Plain, Polygon_BecomesAFan) {
-    Told told;
-    const auto mesh = mesh_in("OFF\n4 2 4\n" + right_triangle + "1 1 0\n4 0 1 3 2\n3 0 1 2 # shade\n", "a.off", &told);
+    Warnings warnings;
+    const auto mesh =
+        mesh_in("OFF\n4 2 4\n" + right_triangle + "1 1 0\n4 0 1 3 2\n3 0 1 2 # shade\n", "a.off", &warnings);
     EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 3}, Triangle{0, 3, 2}, Triangle{0, 1, 2}));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 face of more than three corners was cut")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 face of more than three corners was cut")));
 }
 
 TEST(OffReader_Plain, WithoutFaces_IsAPointCloud) {
@@ -48,11 +49,11 @@ TEST(OffReader_Colours, FollowTheirFaceIntoTheFan) {
     EXPECT_THAT(numbers_of<u8>(mesh->face_columns.find("colour")), ElementsAre(1, 2, 3, 1, 2, 3, 4, 5, 6));
 }
 
-TEST(OffReader_Colours, ThatNotEveryFaceHas_AreLeftOutAndTold) {
-    Told told;
-    const auto mesh = mesh_in("OFF\n3 2 0\n" + right_triangle + "3 0 1 2 1 2 3\n3 2 1 0\n", "a.off", &told);
+TEST(OffReader_Colours, ThatNotEveryFaceHas_AreLeftOutAndReported) {
+    Warnings warnings;
+    const auto mesh = mesh_in("OFF\n3 2 0\n" + right_triangle + "3 0 1 2 1 2 3\n3 2 1 0\n", "a.off", &warnings);
     EXPECT_TRUE(mesh->face_columns.empty());
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 of 2 faces")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 of 2 faces")));
     EXPECT_THAT(refusal_of("OFF\n3 1 0\n" + right_triangle + "3 0 1 2 1 2 3 4 5\n", "a.off"),
                 HasSubstr("line 6: more than 4"));
     EXPECT_THAT(refusal_of("OFF\n3 1 0\n" + right_triangle + "3 0 1 2 red\n", "a.off"), HasSubstr("line 6: 'red'"));
@@ -66,31 +67,31 @@ TEST(OffReader_Prefixes, GiveNormalColourAndTexture) {
     EXPECT_THAT(numbers_of<u8>(cloud->columns.find("colour")), ElementsAre(10, 20, 30, 40, 11, 21, 31, 41));
     EXPECT_THAT(numbers_of<double>(cloud->columns.find("texture")), ElementsAre(0.5, 0.25, 0.75, 1));
     EXPECT_EQ(points_in("STOFF\n1 0 0\n1 2 3 0.5 0.25\n", "a.off")->columns.size(), 1u);
-    EXPECT_THAT(refusal_of("STOFF\n1 0 0\n1 2 3 0.5\n", "a.off"), HasSubstr("ends before its texture"));
-    EXPECT_THAT(refusal_of("NOFF\n1 0 0\n1 2 3 0 1\n", "a.off"), HasSubstr("ends before its normal"));
+    EXPECT_THAT(refusal_of("STOFF\n1 0 0\n1 2 3 0.5\n", "a.off"), HasSubstr("ends before the texture"));
+    EXPECT_THAT(refusal_of("NOFF\n1 0 0\n1 2 3 0 1\n", "a.off"), HasSubstr("ends before the normal"));
 }
 
-TEST(OffReader_Trailing, Text_IsTold) {
-    Told told;
-    mesh_in("OFF\n3 1 0\n" + right_triangle + "3 0 1 2\n3 2 1 0\n", "a.off", &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("from line 7 on")));
+TEST(OffReader_Trailing, Text_IsReported) {
+    Warnings warnings;
+    mesh_in("OFF\n3 1 0\n" + right_triangle + "3 0 1 2\n3 2 1 0\n", "a.off", &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("from line 7 on")));
 }
 
 TEST(OffWriter_Mesh, ComesBackExactly_WithUnitAndName) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     TriangleMesh mesh;
     mesh.frame = {LengthUnit::foot, Vec3(4194304, 0, 0), "site 7"};
     mesh.positions = {Vec3(0.1, 1.0 / 3, -1e-17), Vec3(1, 0, 5e300), Vec3(0, 1, 0)};
     mesh.triangles = {Triangle{2, 1, 0}};
-    write_file(folder / "a.off", std::make_shared<const TriangleMesh>(mesh), told.writing());
+    write_file(folder / "a.off", std::make_shared<const TriangleMesh>(mesh), warnings.writing());
     const auto back = read_mesh(folder / "a.off");
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_EQ(back->frame.origin + back->positions[i], mesh.frame.origin + mesh.positions[i]);
     EXPECT_THAT(rows_of(back->triangles), ElementsAre(Triangle{2, 1, 0}));
     EXPECT_EQ(back->frame.unit, LengthUnit::foot);
     EXPECT_EQ(back->frame.name, "site 7");
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 TEST(OffWriter_File, IsThisForOneTriangle) {
@@ -118,18 +119,18 @@ TEST(OffWriter_Columns, AreWrittenUnderTheirPrefixes_AndReadBackEqual) {
                                                                          {"STCNOFF\n", {normal, three, texture}}};
     for (const auto& [keyword, columns] : cases) {
         const TemporaryFolder folder;
-        Told told;
+        Warnings warnings;
         TriangleMesh mesh;
         mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
         mesh.triangles = {Triangle{0, 1, 2}, Triangle{2, 1, 0}};
         for (const Column& column : columns) mesh.vertex_columns.add(column);
         mesh.face_columns.add(Column("colour", 3, Buffer<u8>{1, 2, 3, 4, 5, 6}));
-        write_file(folder / "a.off", std::make_shared<const TriangleMesh>(mesh), told.writing());
+        write_file(folder / "a.off", std::make_shared<const TriangleMesh>(mesh), warnings.writing());
         EXPECT_THAT(content_of(folder / "a.off"), testing::StartsWith(keyword));
-        const auto back = mesh_in(content_of(folder / "a.off"), "a.off", &told);
+        const auto back = mesh_in(content_of(folder / "a.off"), "a.off", &warnings);
         EXPECT_EQ(back->vertex_columns, mesh.vertex_columns) << keyword;
         EXPECT_EQ(back->face_columns, mesh.face_columns) << keyword;
-        EXPECT_THAT(told.sentences, IsEmpty()) << keyword;
+        EXPECT_THAT(warnings.sentences, IsEmpty()) << keyword;
     }
 }
 
@@ -146,9 +147,9 @@ TEST(OffWriter_File, IsThisForAColouredTriangleWithNormals) {
               "CNOFF\n3 1 0\n0 0 0 0 0 1 0 1 255\n1 0 0 0 0.6 0.8 1 0 0\n0 1 0 0 0 -1 9 8 7\n3 0 1 2 1 2 3 4\n");
 }
 
-TEST(OffWriter_Losses, AreTold) {
+TEST(OffWriter_Losses, AreReported) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     TriangleMesh mesh;
     mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
     mesh.triangles = {Triangle{0, 1, 2}};
@@ -157,9 +158,9 @@ TEST(OffWriter_Losses, AreTold) {
     mesh.vertex_columns.add(Column("weight", 1, Buffer<float>{0, 0, 1}));
     mesh.face_columns.add(Column("solid", 1, Buffer<u32>{1}));
     mesh.sharp_edges = {Edge{0, 1}};
-    write_file(folder / "a.off", std::make_shared<const TriangleMesh>(mesh), told.writing());
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3 columns of the vertices (normal, colour, weight); PLY"),
-                                            HasSubstr("1 column of the faces (solid)"), HasSubstr("1 edge")));
+    write_file(folder / "a.off", std::make_shared<const TriangleMesh>(mesh), warnings.writing());
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("3 columns of the vertices (normal, colour, weight); PLY"),
+                                                HasSubstr("1 column of the faces (solid)"), HasSubstr("1 edge")));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ struct Variants {
     }
 };
 
-/// Every type as a scalar and in a list, lists between scalars, an element in between that nobody knows.
+/// Every type as a scalar and in a list, lists between scalars, an unknown element between them.
 Variants random_file(std::mt19937& random, std::size_t vertices, std::size_t faces) {
     Variants file = Variants::begin();
     file.text("element vertex " + std::to_string(vertices) +
@@ -109,7 +109,7 @@ TEST(PlyReader_Encodings, AreNamed) {
     EXPECT_EQ(read_bytes(file.big, "a").format, "PLY");
 }
 
-/// Points with x, y, z side by side (the fast way) or apart (the plain one).
+/// Points with adjacent x, y, z (the fast path) or separate ones (the general path).
 template <class Scalar>
 std::string points_file(const std::vector<std::array<Scalar, 3>>& points, bool side_by_side, bool big_endian) {
     const std::string type = sizeof(Scalar) == 4 ? "float" : "double";

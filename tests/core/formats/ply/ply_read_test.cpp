@@ -50,15 +50,15 @@ TEST(PlyReader_Ascii, CoordinatesDeclaredFloat_KeepAllTheirDigits) {
 }
 
 TEST(PlyReader_Ascii, Polygon_BecomesAFan_ItsColumnsRepeated) {
-    Told told;
+    Warnings warnings;
     const auto mesh =
         mesh_in(ascii("element vertex 5\n" + xyz + "element face 4\n" + corners + "property short part\n",
                       "0 0 0\n2 0 0\n3 1 0\n2 2 0\n0 2 0\n5 0 1 2 3 4 70\n3 0 1 2 71\n2 0 1 72\n4 4 3 2 1 73\n"),
-                "a.ply", &told);
+                "a.ply", &warnings);
     EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 3, 4},
                                                       Triangle{0, 1, 2}, Triangle{4, 3, 2}, Triangle{4, 2, 1}));
     EXPECT_THAT(numbers_of<std::int16_t>(mesh->face_columns.find("part")), ElementsAre(70, 70, 70, 71, 73, 73));
-    EXPECT_THAT(told.sentences,
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("2 faces of more than three corners"), HasSubstr("1 face of fewer")));
 }
 
@@ -107,12 +107,13 @@ TEST(PlyReader_Ascii, UnsignedLimits_AreExact) {
                 HasSubstr("'18446744073709551616'"));
 }
 
-TEST(PlyReader_Ascii, ValuesBehindTheLastProperty_ArePassedOverAndTold) {
-    Told told;
-    const auto mesh = mesh_in(
-        ascii(three_vertices + "element face 1\n" + corners, "0 0 0 9\n1 0 0\n0 1 0 8 7\n3 0 1 2\n"), "a.ply", &told);
+TEST(PlyReader_Ascii, ValuesBehindTheLastProperty_ArePassedOverAndReported) {
+    Warnings warnings;
+    const auto mesh =
+        mesh_in(ascii(three_vertices + "element face 1\n" + corners, "0 0 0 9\n1 0 0\n0 1 0 8 7\n3 0 1 2\n"), "a.ply",
+                &warnings);
     EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}));
-    EXPECT_THAT(told.sentences,
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(testing::AllOf(HasSubstr("2 rows of element 'vertex'"), HasSubstr("line 10"))));
 }
 
@@ -127,14 +128,14 @@ TEST(PlyReader_Ascii, ListColumnOfVertices_BecomesAListColumn) {
     EXPECT_EQ(cloud->positions[2], Vec3(2, 0, 0));
 }
 
-TEST(PlyReader_Ascii, RangeGridWithoutFaces_IsAPointCloudAndTold) {
-    Told told;
+TEST(PlyReader_Ascii, RangeGridWithoutFaces_IsAPointCloudAndReported) {
+    Warnings warnings;
     const auto cloud = points_in(ascii("obj_info num_cols 2\nelement vertex 1\n" + xyz +
                                            "element range_grid 3\nproperty list uchar int vertex_indices\n",
                                        "5 6 7\n0\n1 0\n0\n"),
-                                 "a.ply", &told);
+                                 "a.ply", &warnings);
     EXPECT_EQ(world_of(*cloud, 0), Vec3(5, 6, 7));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("'range_grid' with its 3 rows")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("'range_grid' with its 3 rows")));
 }
 
 TEST(PlyReader_Edges, WithColumns_AreKeptSmallerVertexFirst) {
@@ -149,16 +150,17 @@ TEST(PlyReader_Edges, WithColumns_AreKeptSmallerVertexFirst) {
     EXPECT_THAT(numbers_of<float>(mesh->edge_columns.find("bend")), ElementsAre(0.5f, 0.25f));
 }
 
-TEST(PlyReader_Edges, WithoutColumnsOrWithoutFaces_AreTold) {
-    Told told;
+TEST(PlyReader_Edges, WithoutColumnsOrWithoutFaces_AreReported) {
+    Warnings warnings;
     const std::string edges = "element edge 1\nproperty int vertex1\nproperty int vertex2\n";
     EXPECT_TRUE(mesh_in(ascii(three_vertices + edges + "element face 1\n" + corners, right_triangle + "0 1\n3 0 1 2\n"),
-                        "a.ply", &told)
+                        "a.ply", &warnings)
                     ->edges.empty());
-    EXPECT_EQ(points_in(ascii(three_vertices + edges + "property int a\n", right_triangle + "0 1 5\n"), "a.ply", &told)
-                  ->size(),
-              3u);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 edge was left out"), HasSubstr("1 edge was left out")));
+    EXPECT_EQ(
+        points_in(ascii(three_vertices + edges + "property int a\n", right_triangle + "0 1 5\n"), "a.ply", &warnings)
+            ->size(),
+        3u);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 edge was left out"), HasSubstr("1 edge was left out")));
 }
 
 TEST(PlyReader_Strips, TurnEveryOtherTriangle_RestartAtMinusOne_SkipRepeats) {
@@ -196,11 +198,11 @@ TEST(PlyReader_Frame, CommentsGiveUnitAndName_OptionsOverrule) {
     EXPECT_THAT(inches.comments, ElementsAre("unit mm", "frame part", "united we stand"));
 }
 
-TEST(PlyReader_Frame, UnknownUnit_IsTold) {
-    Told told;
-    const auto cloud = points_in(ascii("comment unit cubit\nelement vertex 1\n" + xyz, "1 2 3\n"), "a.ply", &told);
+TEST(PlyReader_Frame, UnknownUnit_IsReported) {
+    Warnings warnings;
+    const auto cloud = points_in(ascii("comment unit cubit\nelement vertex 1\n" + xyz, "1 2 3\n"), "a.ply", &warnings);
     EXPECT_EQ(cloud->frame.unit, LengthUnit::unknown);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("'cubit'")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("'cubit'")));
 }
 
 TEST(PlyReader_Frame, FarFromTheOrigin_MicrometresSurvive) {
@@ -218,24 +220,24 @@ TEST(PlyReader_Errors, BeginWithTheFile) {
                 testing::StartsWith("'some/where.ply': "));
 }
 
-TEST(PlyReader_Trailing, TextOrBytesBehindTheLastElement_AreTold) {
-    Told told;
-    points_in(ascii("element vertex 1\n" + xyz, "1 2 3\n4 5 6\n"), "a.ply", &told);
+TEST(PlyReader_Trailing, TextOrBytesBehindTheLastElement_AreReported) {
+    Warnings warnings;
+    points_in(ascii("element vertex 1\n" + xyz, "1 2 3\n4 5 6\n"), "a.ply", &warnings);
     const std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + xyz + "end_header\n";
-    points_in(header + std::string(12, '\0') + "\r\n", "a.ply", &told);
-    points_in(header + std::string(15, '\0'), "a.ply", &told);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("from line 9 on"), HasSubstr("3 bytes after")));
+    points_in(header + std::string(12, '\0') + "\r\n", "a.ply", &warnings);
+    points_in(header + std::string(15, '\0'), "a.ply", &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("from line 9 on"), HasSubstr("3 bytes after")));
 }
 
-TEST(PlyReader_ListsOfFaces, ThatWereCut_AreDoubtfulAndTold) {
-    Told told;
+TEST(PlyReader_ListsOfFaces, ThatWereCut_AreDoubtfulAndReported) {
+    Warnings warnings;
     mesh_in(
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
         "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n",
-        "a.ply", &told);
-    EXPECT_THAT(told.sentences, testing::ElementsAre(testing::HasSubstr("cut into fans"),
-                                                     testing::HasSubstr("'texcoord' has a list for every face")));
+        "a.ply", &warnings);
+    EXPECT_THAT(warnings.sentences, testing::ElementsAre(testing::HasSubstr("cut into fans"),
+                                                         testing::HasSubstr("'texcoord' has a list for every face")));
 }
 
 }  // namespace

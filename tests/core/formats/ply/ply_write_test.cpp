@@ -34,11 +34,11 @@ PointCloud rich_cloud() {
 
 TEST(PlyWriter_Points, WithEveryKindOfColumn_ComeBackTheSame) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     const PointCloud cloud = rich_cloud();
-    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), told.writing());
-    expect_same_points(*read_points(folder / "a.ply", told.reading()), cloud);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), warnings.writing());
+    expect_same_points(*read_points(folder / "a.ply", warnings.reading()), cloud);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 TEST(PlyWriter_Points, LongLists_GetALongerCount) {
@@ -53,7 +53,7 @@ TEST(PlyWriter_Points, LongLists_GetALongerCount) {
 
 TEST(PlyWriter_Mesh, WithColumnsEdgesAndSharpEdges_ComesBackTheSame) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     TriangleMesh mesh;
     mesh.frame = {LengthUnit::inch, Vec3::Zero(), "part"};
     mesh.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1.0 / 3)};
@@ -64,8 +64,8 @@ TEST(PlyWriter_Mesh, WithColumnsEdgesAndSharpEdges_ComesBackTheSame) {
     mesh.edges = {Edge{1, 3}, Edge{0, 1}};
     mesh.edge_columns.add(column<float>("bend", 1, {0.5f, -0.5f}));
     mesh.sharp_edges = {Edge{0, 1}, Edge{0, 3}, Edge{2, 3}};
-    write_file(folder / "a.ply", std::make_shared<const TriangleMesh>(mesh), told.writing());
-    const auto back = read_mesh(folder / "a.ply", told.reading());
+    write_file(folder / "a.ply", std::make_shared<const TriangleMesh>(mesh), warnings.writing());
+    const auto back = read_mesh(folder / "a.ply", warnings.reading());
     EXPECT_EQ(back->frame, mesh.frame);
     EXPECT_TRUE(std::ranges::equal(back->positions, mesh.positions));
     EXPECT_TRUE(std::ranges::equal(back->triangles, mesh.triangles));
@@ -74,7 +74,7 @@ TEST(PlyWriter_Mesh, WithColumnsEdgesAndSharpEdges_ComesBackTheSame) {
     EXPECT_EQ(back->vertex_columns, mesh.vertex_columns);
     EXPECT_EQ(back->face_columns, mesh.face_columns);
     EXPECT_EQ(back->edge_columns, mesh.edge_columns);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 TEST(PlyWriter_Coordinates, AreFloatOnlyWhenEveryOneIsExactlyAFloat) {
@@ -117,50 +117,50 @@ TEST(Writers_FrameName, IsWrittenAsItWillBeRead) {
         }
 }
 
-TEST(PlyWriter_Columns, OfLongIntegers_BecomeDoubleAndAreTold) {
+TEST(PlyWriter_Columns, OfLongIntegers_BecomeDoubleAndAreReported) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     PointCloud cloud{{}, {Vec3(1, 2, 3)}, {}};
     cloud.columns.add(column<std::int64_t>("exact", 1, {-(std::int64_t(1) << 53)}));
     cloud.columns.add(column<u64>("rounded", 1, {(u64(1) << 53) + 1}));
     cloud.columns.add(column<u64>("largest", 1, {~u64(0)}));
-    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), told.writing());
-    EXPECT_THAT(told.sentences,
+    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), warnings.writing());
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("every number is kept"), HasSubstr("rounded"), HasSubstr("were rounded")));
     const auto back = read_points(folder / "a.ply");
     EXPECT_THAT(numbers_of<double>(back->columns.find("exact")), ElementsAre(-9007199254740992.0));
     EXPECT_THAT(numbers_of<double>(back->columns.find("rounded")), ElementsAre(9007199254740992.0));
 }
 
-TEST(PlyWriter_Columns, WithNamesThatPlyForbids_AreRenamedAndTold) {
+TEST(PlyWriter_Columns, WithNamesThatPlyForbids_AreRenamedAndReported) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     PointCloud cloud{{}, {Vec3(1, 2, 3)}, {}};
     cloud.columns.add(column<float>("normal", 3, {0, 0, 1}));
     cloud.columns.add(column<float>("nx", 1, {4}));
     cloud.columns.add(column<float>("x", 1, {5}));
     cloud.columns.add(column<float>("two words\n", 1, {6}));
-    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), told.writing());
+    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), warnings.writing());
     const auto back = read_points(folder / "a.ply");
     EXPECT_EQ(world_of(*back, 0), Vec3(1, 2, 3));
     EXPECT_THAT(numbers_of<float>(back->columns.find("normal")), ElementsAre(0, 0, 1));
     EXPECT_THAT(numbers_of<float>(back->columns.find("nx_")), ElementsAre(4));
     EXPECT_THAT(numbers_of<float>(back->columns.find("x_")), ElementsAre(5));
     EXPECT_THAT(numbers_of<float>(back->columns.find("two_words_")), ElementsAre(6));
-    EXPECT_EQ(told.sentences.size(), 3u);
+    EXPECT_EQ(warnings.sentences.size(), 3u);
 }
 
-TEST(PlyWriter_Precision, LostInTheSumWithTheOrigin_IsTold) {
+TEST(PlyWriter_Precision, LostInTheSumWithTheOrigin_IsReported) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     // 2^40 + 1e-6: the nearest double is 2^40 itself, and the cloud is 2e-6 wide.
     PointCloud cloud{{LengthUnit::unknown, Vec3(1099511627776.0, 0, 0), ""}, {Vec3(1e-6, 0, 0), Vec3(-1e-6, 0, 0)}, {}};
-    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), told.writing());
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("moved by up to 1e-06, 0.5 of the diagonal")));
-    told.sentences.clear();
+    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), warnings.writing());
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("moved by up to 1e-06, 0.5 of the diagonal")));
+    warnings.sentences.clear();
     cloud.positions = {Vec3(1, 0, 0), Vec3(-1, 0, 0)};
-    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), told.writing());
-    EXPECT_THAT(told.sentences, IsEmpty());
+    write_file(folder / "a.ply", std::make_shared<const PointCloud>(cloud), warnings.writing());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST_F(PoseFiles, Rotations_AreOrthonormalAlthoughDigitsAreFew) {
     EXPECT_THAT(warnings_, IsEmpty()) << "six digits are what such files have";
 }
 
-TEST_F(PoseFiles, QuaternionOfFourDigits_IsScaledAndTold) {
+TEST_F(PoseFiles, QuaternionOfFourDigits_IsScaledAndReported) {
     const auto poses = read("\nbmesh a 0 0 0 0 0 0.6004 0.8\n");
     EXPECT_NEAR(poses[0].transform.rotation.determinant(), 1, 1e-15);
     EXPECT_THAT(warnings_, ElementsAre(AllOf(HasSubstr("p.conf': line 2: the quaternion has the length 1.00024"),
@@ -105,11 +105,11 @@ TEST_F(PoseFiles, BadConf_NamesTheLine) {
     EXPECT_EQ(sentence(good + "bmseh b.ply 0 0 0 0 0 0 1\n"),
               "line 3: 'bmseh' does not begin a line of poses; expected one of camera, mesh and bmesh; did you mean "
               "'bmesh'?");
-    EXPECT_EQ(sentence(good + "\nbmesh\n"), "line 4: 'bmesh' names no file");
+    EXPECT_EQ(sentence(good + "\nbmesh\n"), "line 4: 'bmesh' without a file's name");
     EXPECT_EQ(sentence(good + "bmesh b.ply 0 0 0 0 0 1\n"),
               "line 3: 6 words follow 'b.ply'; expected 7 numbers: tx ty tz qx qy qz qw");
     EXPECT_THAT(sentence(good + "bmesh b.ply 0 0 0 0 0 0 1 0\n"), HasSubstr("line 3: 8 words"));
-    EXPECT_EQ(sentence(good + "bmesh b.ply 0 1,5 0 0 0 0 1\n"), "line 3: ty of 'b.ply' is '1,5', which is no number");
+    EXPECT_EQ(sentence(good + "bmesh b.ply 0 1,5 0 0 0 0 1\n"), "line 3: '1,5' is not a number for ty of 'b.ply'");
     EXPECT_EQ(sentence(good + "bmesh b.ply 0 0 0 nan 0 0 1\n"), "line 3: qx of 'b.ply' is nan; a pose is finite");
     EXPECT_THAT(sentence("camera 0 0 0 0 0 0 1\n"), HasSubstr("holds no pose"));
 }

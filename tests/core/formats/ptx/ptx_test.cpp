@@ -19,13 +19,14 @@ std::string scan(const char* columns, const char* rows, const std::string& matri
 constexpr const char* order_left_out = "the order of the cells";
 
 TEST(PtxReader, OneScan_KeepsPointsIntensityAndColour) {
-    Told told;
-    const auto cloud = points_in(scan("2", "1", still, "1 2 3 0.25 10 20 30\n4 5 6 0.5 40 50 60\n"), "a.ptx", &told);
+    Warnings warnings;
+    const auto cloud =
+        points_in(scan("2", "1", still, "1 2 3 0.25 10 20 30\n4 5 6 0.5 40 50 60\n"), "a.ptx", &warnings);
     EXPECT_THAT(rows_of(cloud->positions), ElementsAre(Vec3(1, 2, 3), Vec3(4, 5, 6)));
     EXPECT_THAT(numbers_of<double>(cloud->columns.find("intensity")), ElementsAre(0.25, 0.5));
     EXPECT_THAT(numbers_of<u8>(cloud->columns.find("colour")), ElementsAre(10, 20, 30, 40, 50, 60));
     EXPECT_EQ(cloud->columns.find("scan"), nullptr);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr(order_left_out)));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr(order_left_out)));
 }
 
 TEST(PtxReader, Matrix_TurnsRowVectors_AndMovesByItsLastRow) {
@@ -37,47 +38,47 @@ TEST(PtxReader, Matrix_TurnsRowVectors_AndMovesByItsLastRow) {
 }
 
 TEST(PtxReader, CellsWithoutReturn_AreLeftOutAndCounted_BeforeTheMatrixMovesThem) {
-    Told told;
+    Warnings warnings;
     const std::string moved = "1 0 0 0\n0 1 0 0\n0 0 1 0\n7 0 0 1\n";
-    const auto cloud =
-        points_in(scan("2", "2", moved, "0 0 0 0.5 0 0 0\n1 0 0 1 1 2 3\n0 0 0 0\n-7 0 0 1 1 2 3\n"), "a.ptx", &told);
+    const auto cloud = points_in(scan("2", "2", moved, "0 0 0 0.5 0 0 0\n1 0 0 1 1 2 3\n0 0 0 0\n-7 0 0 1 1 2 3\n"),
+                                 "a.ptx", &warnings);
     EXPECT_THAT(rows_of(cloud->positions), ElementsAre(Vec3(8, 0, 0), Vec3(0, 0, 0)));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("2 of 4 cells without a return"), HasSubstr(order_left_out)));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("2 of 4 cells without a return"), HasSubstr(order_left_out)));
     EXPECT_THAT(refusal_of(scan("1", "1", still, "0 0 0 0\n"), "a.ptx"), HasSubstr("holds no points: 1 cell without"));
 }
 
-TEST(PtxReader, SeveralScans_AreOneCloud_WithAColumn_Told) {
-    Told told;
+TEST(PtxReader, SeveralScans_AreOneCloud_WithAColumn_Reported) {
+    Warnings warnings;
     const std::string far = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 9 1\n";
     const auto cloud = points_in(scan("1", "1", still, "1 2 3 0.5\n") + scan("0", "0", still, "") +
                                      scan("1", "2", far, "1 2 3 0.5\n4 5 6 0.5\n"),
-                                 "a.ptx", &told);
+                                 "a.ptx", &warnings);
     EXPECT_THAT(rows_of(cloud->positions), ElementsAre(Vec3(1, 2, 3), Vec3(1, 2, 12), Vec3(4, 5, 15)));
     EXPECT_THAT(numbers_of<u32>(cloud->columns.find("scan")), ElementsAre(0, 2, 2));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3 scans"), HasSubstr(order_left_out)));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("3 scans"), HasSubstr(order_left_out)));
 }
 
-TEST(PtxReader, ColoursOfSomeScansOnly_AreLeftOutAndTold) {
-    Told told;
-    const auto cloud =
-        points_in(scan("1", "1", still, "1 2 3 0.5\n") + scan("1", "1", still, "1 2 3 0.5 7 8 9\n"), "a.ptx", &told);
+TEST(PtxReader, ColoursOfSomeScansOnly_AreLeftOutAndReported) {
+    Warnings warnings;
+    const auto cloud = points_in(scan("1", "1", still, "1 2 3 0.5\n") + scan("1", "1", still, "1 2 3 0.5 7 8 9\n"),
+                                 "a.ptx", &warnings);
     EXPECT_EQ(cloud->columns.find("colour"), nullptr);
-    EXPECT_THAT(told.sentences, testing::Contains(HasSubstr("the colours of 1 of 2 points were left out")));
+    EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr("the colours of 1 of 2 points were left out")));
 }
 
 TEST(PtxReader, ColoursThatAreNoBytes_StayNumbers) {
-    Told told;
-    const auto cloud = points_in(scan("1", "1", still, "1 2 3 0.5 0.1 0.2 0.3\n"), "a.ptx", &told);
+    Warnings warnings;
+    const auto cloud = points_in(scan("1", "1", still, "1 2 3 0.5 0.1 0.2 0.3\n"), "a.ptx", &warnings);
     EXPECT_THAT(numbers_of<double>(cloud->columns.find("green")), ElementsAre(0.2));
-    EXPECT_THAT(told.sentences, testing::Contains(HasSubstr("kept as red, green and blue")));
+    EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr("red, green, blue are not colours")));
 }
 
-TEST(PtxReader, MatrixThatScalesOrMirrors_IsAppliedAndTold) {
-    Told told;
+TEST(PtxReader, MatrixThatScalesOrMirrors_IsAppliedAndReported) {
+    Warnings warnings;
     const std::string scaled = "1 0 0 0\n0 1 0 0\n0 0 2 0\n0 0 0 1\n";
-    EXPECT_EQ(world_of(*points_in(scan("1", "1", scaled, "1 2 3 0\n"), "a.ptx", &told), 0), Vec3(1, 2, 6));
-    EXPECT_THAT(told.sentences, testing::Contains(HasSubstr("no rigid motion, its axes are 1, 1 and 2 long")));
-    Told mirrored;
+    EXPECT_EQ(world_of(*points_in(scan("1", "1", scaled, "1 2 3 0\n"), "a.ptx", &warnings), 0), Vec3(1, 2, 6));
+    EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr("not a rigid motion, its axes are 1, 1 and 2 long")));
+    Warnings mirrored;
     const std::string mirror = "-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
     EXPECT_EQ(world_of(*points_in(scan("1", "1", mirror, "1 2 3 0\n"), "a.ptx", &mirrored), 0), Vec3(-1, 2, 3));
     EXPECT_THAT(mirrored.sentences, testing::Contains(HasSubstr("mirrors")));
@@ -98,11 +99,11 @@ TEST(PtxReader, MatrixThatIsNone_IsRefused) {
 
 TEST(PtxReader, Truncated_IsRefusedWithItsLine) {
     EXPECT_THAT(refusal_of(scan("2", "1", still, "1 2 3 0\n"), "a.ptx"),
-                HasSubstr("the text ends after 1 of the 2 cells of scan 0"));
-    EXPECT_THAT(refusal_of("1\n1\n0 0 0\n", "a.ptx"), HasSubstr("the text ends before the x axis of scan 0"));
-    EXPECT_THAT(refusal_of("2\n", "a.ptx"), HasSubstr("the text ends before the rows of scan 0"));
+                HasSubstr("the text ends after 1 of 2 cells of scan 0"));
+    EXPECT_THAT(refusal_of("1\n1\n0 0 0\n", "a.ptx"), HasSubstr("the text ends after 3 of 10 lines of the header of scan 0"));
+    EXPECT_THAT(refusal_of("2\n", "a.ptx"), HasSubstr("the text ends after 1 of 10 lines of the header of scan 0"));
     EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 3 0\n") + "1\n", "a.ptx"),
-                HasSubstr("the text ends before the rows of scan 1"));
+                HasSubstr("the text ends after 1 of 10 lines of the header of scan 1"));
 }
 
 TEST(PtxReader, WrongRows_AreRefusedWithTheirLine) {
@@ -112,7 +113,7 @@ TEST(PtxReader, WrongRows_AreRefusedWithTheirLine) {
     EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 3 4 5 6 7 8\n"), "a.ptx"), HasSubstr("line 11: a cell of"));
     EXPECT_THAT(refusal_of(scan("2", "1", still, "1 2 3 4\n1 2 3 4 5 6 7\n"), "a.ptx"),
                 HasSubstr("line 12: a cell has red, green and blue; those before in scan 0 have none"));
-    EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 x 4\n"), "a.ptx"), HasSubstr("line 11: 'x' is no number"));
+    EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 x 4\n"), "a.ptx"), HasSubstr("line 11: 'x' is not a number"));
     EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 3 4\n5 6 7 8\n"), "a.ptx"),
                 HasSubstr("line 12: expected the number of columns of scan 1"));
     EXPECT_THAT(refusal_of("1\n-1\n" + scanner + still, "a.ptx"), HasSubstr("line 2: expected the number of rows"));

@@ -4,8 +4,6 @@
 #include <random>
 
 #include "core/formats/support.hpp"
-#include "scanmill/formats/stl/detail/corner_merger.hpp"
-#include "scanmill/formats/stl/stl.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -14,13 +12,15 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+constexpr std::size_t header_size = 80, facet_size = 50;
+
 struct Facet {
     std::array<std::array<float, 3>, 3> corners;
     std::uint16_t attribute = 0;
 };
 
 std::string binary(const std::vector<Facet>& facets, std::string header = "") {
-    header.resize(stl_header_size, '\0');
+    header.resize(header_size, '\0');
     std::string file = header + bytes_of(static_cast<u32>(facets.size()));
     for (const Facet& facet : facets) {
         for (int i = 0; i < 3; ++i) file += bytes_of(7.0f);
@@ -32,6 +32,13 @@ std::string binary(const std::vector<Facet>& facets, std::string header = "") {
 }
 
 const std::vector<Facet> two_facets{{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}}, {{{{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}}};
+
+/// The header that a written file of this frame has.
+std::string stl_header(const Frame& frame) {
+    TriangleMesh mesh = *mesh_in(binary(two_facets), "a.stl");
+    mesh.frame = frame;
+    return write_bytes("a.stl", std::make_shared<const TriangleMesh>(mesh)).substr(0, header_size);
+}
 
 TEST(StlReader_Binary, EqualCorners_BecomeOneVertex_NumberedByFirstAppearance) {
     const auto mesh = mesh_in(binary(two_facets), "a.stl");
@@ -52,10 +59,10 @@ TEST(StlReader_Binary, BeginningWithSolid_IsStillBinaryWhenItsSizeSaysSo) {
     EXPECT_EQ(read_bytes(binary(two_facets, "solid"), "noname").format, "STL");
 }
 
-TEST(StlReader_Binary, TrailingBytes_AreTold_EvenBehindTheWordSolid) {
-    Told told;
-    EXPECT_EQ(mesh_in(binary(two_facets, "solid") + "xyz", "a.stl", &told)->triangles.size(), 2u);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3 bytes after the last facet")));
+TEST(StlReader_Binary, TrailingBytes_AreReported_EvenBehindTheWordSolid) {
+    Warnings warnings;
+    EXPECT_EQ(mesh_in(binary(two_facets, "solid") + "xyz", "a.stl", &warnings)->triangles.size(), 2u);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("3 bytes after the last facet")));
 }
 
 TEST(StlReader_Binary, AttributeBytes_AreAColumnWhenOneIsNotZero) {
@@ -66,12 +73,12 @@ TEST(StlReader_Binary, AttributeBytes_AreAColumnWhenOneIsNotZero) {
 }
 
 TEST(StlReader_Binary, DegenerateFacets_AreKeptAndCounted) {
-    Told told;
+    Warnings warnings;
     auto facets = two_facets;
     facets.push_back({{{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}}});
-    const auto mesh = mesh_in(binary(facets), "a.stl", &told);
+    const auto mesh = mesh_in(binary(facets), "a.stl", &warnings);
     EXPECT_EQ(mesh->triangles[2], (Triangle{0, 1, 0}));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 of 3 facets is degenerate")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 of 3 facets is degenerate")));
 }
 
 TEST(StlReader_Binary, InvalidCoordinates_AreReadAsTheyAre) {
@@ -122,11 +129,11 @@ TEST(StlWriter_File, HasUnitNormalsFromDoublePositions_AndZeroForDegenerate) {
     mesh.triangles = {Triangle{0, 1, 2}, Triangle{0, 2, 1}, Triangle{0, 1, 1}, Triangle{0, 1, 3}};
     write_file(folder / "a.stl", std::make_shared<const TriangleMesh>(mesh));
     const std::string file = content_of(folder / "a.stl");
-    ASSERT_EQ(file.size(), 84 + 4 * stl_facet_size);
+    ASSERT_EQ(file.size(), 84 + 4 * facet_size);
     EXPECT_FALSE(file.starts_with("solid"));
     const auto normal = [&](std::size_t facet) {
         std::array<float, 3> numbers;
-        std::memcpy(numbers.data(), file.data() + 84 + facet * stl_facet_size, sizeof numbers);
+        std::memcpy(numbers.data(), file.data() + 84 + facet * facet_size, sizeof numbers);
         return numbers;
     };
     EXPECT_THAT(normal(0), ElementsAre(0, 0, 1)) << "as floats, the world coordinates of this triangle are one point";
@@ -137,30 +144,30 @@ TEST(StlWriter_File, HasUnitNormalsFromDoublePositions_AndZeroForDegenerate) {
 
 TEST(StlWriter_Losses, TrianglesThatCollapseInSinglePrecision_AreCounted) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     TriangleMesh mesh;
-    // Far below the precision that is told by itself: a millionth of the diagonal.
+    // Far below a millionth of the diagonal, the loss that is reported.
     mesh.positions = {Vec3(0, 0, 0), Vec3(1000, 0, 0), Vec3(0, 1000, 0), Vec3(1000 + 1e-5, 0, 0)};
     mesh.triangles = {Triangle{0, 1, 2}, Triangle{1, 3, 2}, Triangle{1, 1, 2}};
-    write_file(folder / "a.stl", std::make_shared<const TriangleMesh>(mesh), told.writing());
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 triangle collapsed")));
+    write_file(folder / "a.stl", std::make_shared<const TriangleMesh>(mesh), warnings.writing());
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 triangle collapsed")));
 }
 
 TEST(StlWriter_Mesh, OfFloats_ComesBackTheSameWithItsFrame) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     const auto mesh = mesh_in(binary(two_facets, stl_header({LengthUnit::inch, Vec3::Zero(), "plate"})), "a.stl");
-    write_file(folder / "a.stl", mesh, told.writing());
+    write_file(folder / "a.stl", mesh, warnings.writing());
     const auto back = read_mesh(folder / "a.stl");
     EXPECT_TRUE(std::ranges::equal(back->positions, mesh->positions));
     EXPECT_TRUE(std::ranges::equal(back->triangles, mesh->triangles));
     EXPECT_EQ(back->frame, mesh->frame);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
-TEST(StlWriter_Losses, AreToldOneByOne) {
+TEST(StlWriter_Losses, AreReportedOneByOne) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     TriangleMesh mesh;
     mesh.frame = {LengthUnit::unknown, Vec3(1e6, 0, 0), std::string(100, 'n')};
     mesh.positions = {Vec3(0.01, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(5, 5, 5)};
@@ -170,9 +177,9 @@ TEST(StlWriter_Losses, AreToldOneByOne) {
     mesh.edges = {Edge{0, 1}};
     mesh.edge_columns.add(Column("bend", 1, Buffer<u8>{1}));
     mesh.sharp_edges = {Edge{0, 1}, Edge{0, 2}};
-    write_file(folder / "a.stl", std::make_shared<const TriangleMesh>(mesh), told.writing());
+    write_file(folder / "a.stl", std::make_shared<const TriangleMesh>(mesh), warnings.writing());
     // The float nearest to 1000000.01 is 1000000: a hundredth is lost.
-    EXPECT_THAT(told.sentences,
+    EXPECT_THAT(warnings.sentences,
                 ElementsAre(HasSubstr("1 vertex that no triangle uses"), HasSubstr("moved by up to 0.01"),
                             HasSubstr("1 column of the vertices (weight)"), HasSubstr("(part)"), HasSubstr("(bend)"),
                             HasSubstr("2 edges are sharp"), HasSubstr("frame's name of 100 bytes")));
@@ -188,19 +195,26 @@ TEST(StlWriter_Refuses, WhatStlCannotHold) {
     EXPECT_EQ(folder.files(), 0u);
 }
 
-TEST(CornerMerger_RandomCorners, GiveWhatAMapGives) {
+TEST(StlReader_RandomCorners, GiveTheVerticesOfAMap) {
     std::mt19937 random(3);
-    CornerMerger merger(10);
-    std::map<std::array<double, 3>, u32> known;
-    for (int i = 0; i < 50000; ++i) {
-        const std::array<double, 3> key{static_cast<double>(random() % 20), static_cast<double>(random() % 20) / 3,
-                                        static_cast<double>(random() % 20) * 1e300};
-        const u32 expected = known.try_emplace(key, static_cast<u32>(known.size())).first->second;
-        ASSERT_EQ(merger.add(Vec3(key[0], key[1], key[2])), expected);
+    const auto coordinate = [&](double scale) { return static_cast<double>(random() % 20) * scale; };
+    std::map<std::array<double, 3>, u32> numbers;
+    std::vector<Triangle> triangles;
+    std::string text = "solid\n";
+    for (int facet = 0; facet < 17000; ++facet) {
+        text += "facet normal 0 0 1\nouter loop\n";
+        for (u32& corner : triangles.emplace_back()) {
+            const std::array<double, 3> p{coordinate(1), coordinate(1.0 / 3), coordinate(1e300)};
+            corner = numbers.try_emplace(p, static_cast<u32>(numbers.size())).first->second;
+            text += fmt::format("vertex {} {} {}\n", p[0], p[1], p[2]);
+        }
+        text += "endloop\nendfacet\n";
     }
-    EXPECT_EQ(merger.size(), known.size());
-    const Array<Vec3> positions = merger.take_positions();
-    for (const auto& [key, number] : known) ASSERT_EQ(positions[number], Vec3(key[0], key[1], key[2]));
+    const auto mesh = mesh_in(text + "endsolid\n", "a.stl");
+    EXPECT_EQ(rows_of(mesh->triangles), triangles);
+    ASSERT_EQ(mesh->positions.size(), numbers.size());
+    for (const auto& [p, number] : numbers)
+        ASSERT_EQ(mesh->frame.origin + mesh->positions[number], Vec3(p[0], p[1], p[2]));
 }
 
 }  // namespace

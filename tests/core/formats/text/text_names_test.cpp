@@ -44,17 +44,17 @@ TEST(TextNames_EmptyName, IsTheColumnsNumber) {
 
 TEST(TextNames_Normals, OfEverySpelling_AreOneColumn) {
     for (const char* names : {"nx ny nz", "Nx Ny Nz", "NormalX NormalY NormalZ", "normal_x normal_y normal_z"}) {
-        Told told;
-        const auto cloud = points_in("x y z " + std::string(names) + "\n1 2 3 0.6 0.8 0\n", "a.txt", &told);
+        Warnings warnings;
+        const auto cloud = points_in("x y z " + std::string(names) + "\n1 2 3 0.6 0.8 0\n", "a.txt", &warnings);
         EXPECT_THAT(numbers_of<double>(cloud->columns.find("normal")), ElementsAre(0.6, 0.8, 0)) << names;
-        EXPECT_THAT(told.sentences, IsEmpty());
+        EXPECT_THAT(warnings.sentences, IsEmpty());
     }
 }
 
-TEST(TextNames_Normals, OfOtherThanUnitLength_AreTold) {
-    Told told;
-    EXPECT_THAT(names_of(*points_in("x y z nx ny nz\n1 2 3 0 0 4\n", "a.txt", &told)), ElementsAre("normal"));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("not all normals (nx, ny, nz) have unit length")));
+TEST(TextNames_Normals, OfOtherThanUnitLength_AreReported) {
+    Warnings warnings;
+    EXPECT_THAT(names_of(*points_in("x y z nx ny nz\n1 2 3 0 0 4\n", "a.txt", &warnings)), ElementsAre("normal"));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("not all normals (nx, ny, nz) have unit length")));
 }
 
 TEST(TextNames_Text, TwoOfThreeNormals_StayColumns) {
@@ -70,13 +70,13 @@ TEST(TextNames_Colours, OfWholeBytes_AreOneColumn) {
     EXPECT_THAT(numbers_of<u8>(with_alpha->columns.find("colour")), ElementsAre(10, 2, 3, 9));
 }
 
-TEST(TextNames_Colours, OfOtherNumbers_StayColumns_AndAreTold) {
+TEST(TextNames_Colours, OfOtherNumbers_StayColumns_AndAreReported) {
     // 256 is beyond a byte; 0.5 is of another scale; a largest channel of 1 may be either.
     for (const char* row : {"1 2 3 0 0 256", "1 2 3 0 0.5 1", "1 2 3 0 0 1", "1 2 3 -1 0 5", "1 2 3 nan 0 5"}) {
-        Told told;
-        const auto cloud = points_in("x y z R G B\n" + std::string(row) + "\n", "a.txt", &told);
+        Warnings warnings;
+        const auto cloud = points_in("x y z R G B\n" + std::string(row) + "\n", "a.txt", &warnings);
         EXPECT_THAT(names_of(*cloud), ElementsAre("R", "G", "B")) << row;
-        EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("the columns R, G, B are no colours"))) << row;
+        EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("the columns R, G, B are not colours"))) << row;
     }
     EXPECT_THAT(names_of(*points_in("x y z R G B\n1 2 3 0 0 2\n", "a.txt")), ElementsAre("colour"));
     EXPECT_THAT(names_of(*points_in("x y z R G B\n1 2 3 0 0 0\n", "a.txt")), ElementsAre("colour"));
@@ -87,21 +87,21 @@ TEST(TextNames_TakenName, KeepsTheComponentsApart) {
                 ElementsAre("r", "g", "b", "colour"));
 }
 
-TEST(TextNames_InAComment, ThatDoNotNameEveryColumn_AreToldAndPassedOver) {
+TEST(TextNames_InAComment, ThatDoNotNameEveryColumn_AreReportedAndPassedOver) {
     for (const char* comment : {"// x y z intensity weight", "# columns: x y z", "# point x y z"}) {
-        Told told;
-        const auto cloud = points_in(std::string(comment) + "\n1 2 3 4\n", "a.txt", &told);
+        Warnings warnings;
+        const auto cloud = points_in(std::string(comment) + "\n1 2 3 4\n", "a.txt", &warnings);
         EXPECT_EQ(world_of(*cloud, 0), Vec3(1, 2, 3)) << comment;
         EXPECT_THAT(names_of(*cloud), ElementsAre("c4")) << comment;
-        EXPECT_THAT(told.sentences,
-                    ElementsAre(HasSubstr("was passed over: it does not name x, y, z and then the rest")));
+        EXPECT_THAT(warnings.sentences,
+                    ElementsAre(HasSubstr("was ignored: it does not name x, y, z and then the rest")));
     }
 }
 
 TEST(TextNames_Text, InAComment_OfNoAxes_AreAComment) {
-    Told told;
-    EXPECT_THAT(names_of(*points_in("# a b c d\n1 2 3 4\n", "a.txt", &told)), ElementsAre("c4"));
-    EXPECT_THAT(told.sentences, IsEmpty());
+    Warnings warnings;
+    EXPECT_THAT(names_of(*points_in("# a b c d\n1 2 3 4\n", "a.txt", &warnings)), ElementsAre("c4"));
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
 TEST(TextNames_Refusals, SayTheLine) {
@@ -110,8 +110,8 @@ TEST(TextNames_Refusals, SayTheLine) {
     EXPECT_THAT(refusal_of("X,Y,Z,x\n1,2,3,4\n", "a.csv"), HasSubstr("two columns are called 'x'"));
     EXPECT_THAT(refusal_of("# c\nX,Y,Z,I\n1,2,3\n", "a.csv"), HasSubstr("line 3: 3 columns for 4 names"));
     EXPECT_THAT(refusal_of("x,y,z,i,i\n1,2,3,4,5\n", "a.csv"), HasSubstr("two columns are called 'i'"));
-    EXPECT_THAT(refusal_of("x,y,z\n1,2,three\n", "a.csv"), HasSubstr("line 2: 'three' is no number"));
-    EXPECT_THAT(refusal_of("x,y,z\n", "a.csv"), HasSubstr("its only line has the columns' names"));
+    EXPECT_THAT(refusal_of("x,y,z\n1,2,three\n", "a.csv"), HasSubstr("line 2: 'three' is not a number"));
+    EXPECT_THAT(refusal_of("x,y,z\n", "a.csv"), HasSubstr("its only line has the names of columns"));
 }
 
 TEST(TextNames_Text, UnknownExtension_IsATableWhenItsNamesSaySo) {

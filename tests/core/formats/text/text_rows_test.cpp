@@ -27,15 +27,15 @@ TEST(TextRows, TwoKindsOfSeparators_AreRefused_ForACommaMayBeDecimal) {
 
 TEST(TextRows, QuotedNumbers_AreNumbers) {
     EXPECT_EQ(world_of(*points_in("\"X\",\"Y\",\"Z\"\n\"1\",\"-2.5\",\"3\"\n", "a.csv"), 0), Vec3(1, -2.5, 3));
-    EXPECT_THAT(refusal_of("1,\"\",3\n", "a.csv"), HasSubstr("line 1: '\"\"' is no number"));
+    EXPECT_THAT(refusal_of("1,\"\",3\n", "a.csv"), HasSubstr("line 1: '\"\"' is not a number"));
 }
 
 TEST(TextRows, Comments_BeginWithSlashesToo) {
     const auto cloud = points_in("// unit mm\n1 2 3 // first\n//\n4 5 6\n", "a.asc");
     EXPECT_EQ(cloud->size(), 2u);
     EXPECT_EQ(cloud->frame.unit, LengthUnit::millimetre);
-    EXPECT_THAT(refusal_of("1 2 /3\n", "a.asc"), HasSubstr("line 1: '/3' is no number"));
-    EXPECT_THAT(refusal_of("1 2 3\n/\n", "a.asc"), HasSubstr("line 2: '/' is no number"));
+    EXPECT_THAT(refusal_of("1 2 /3\n", "a.asc"), HasSubstr("line 1: '/3' is not a number"));
+    EXPECT_THAT(refusal_of("1 2 3\n/\n", "a.asc"), HasSubstr("line 2: '/' is not a number"));
 }
 
 TEST(TextRows_Width, ThatChanges_IsRefusedWithItsLine) {
@@ -54,9 +54,9 @@ TEST(TextRows, CountAndNames_ComeInEitherOrder) {
 }
 
 TEST(TextRows, Count_OfManyPoints_TakesNoMemoryForThem) {
-    Told told;
-    EXPECT_EQ(points_in("1099511627776\n1 2 3\n", "a.pts", &told)->size(), 1u);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("line 1 declares 1099511627776 points; 1 follows")));
+    Warnings warnings;
+    EXPECT_EQ(points_in("1099511627776\n1 2 3\n", "a.pts", &warnings)->size(), 1u);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("line 1 declares 1099511627776 points; 1 follows")));
 }
 
 TEST(PtsLayout, FourColumns_AreIntensity_SevenWithColour) {
@@ -67,11 +67,11 @@ TEST(PtsLayout, FourColumns_AreIntensity_SevenWithColour) {
     EXPECT_THAT(numbers_of<u8>(seven->columns.find("colour")), ElementsAre(10, 20, 30));
 }
 
-TEST(PtsLayout, SevenColumnsWithoutBytes_KeepTheirNumbers_Told) {
-    Told told;
-    const auto cloud = points_in("1\n1 2 3 0.5 10 20 300\n", "a.pts", &told);
+TEST(PtsLayout, SevenColumnsWithoutBytes_KeepTheirNumbers_Reported) {
+    Warnings warnings;
+    const auto cloud = points_in("1\n1 2 3 0.5 10 20 300\n", "a.pts", &warnings);
     EXPECT_THAT(numbers_of<double>(cloud->columns.find("c7")), ElementsAre(300));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("c5, c6, c7 are no colours")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("c5, c6, c7 are not colours")));
 }
 
 TEST(PtsLayout, SixColumns_AreNormalsWhenUnit_ElseColours) {
@@ -84,21 +84,21 @@ TEST(PtsLayout, InAnotherFile_IsNumbered) {
     EXPECT_NE(points_in("1\n1 2 3 4\n", "a.txt")->columns.find("c4"), nullptr);
 }
 
-TEST(TextBlocks, OfSeveralScans_AreOneCloud_WithAColumn_Told) {
-    Told told;
-    const auto cloud = points_in("2\n1 2 3 9\n4 5 6 9\n0\n1\n7 8 9 8\n", "a.pts", &told);
+TEST(TextBlocks, OfSeveralScans_AreOneCloud_WithAColumn_Reported) {
+    Warnings warnings;
+    const auto cloud = points_in("2\n1 2 3 9\n4 5 6 9\n0\n1\n7 8 9 8\n", "a.pts", &warnings);
     EXPECT_EQ(cloud->size(), 3u);
     EXPECT_THAT(numbers_of<u32>(cloud->columns.find("scan")), ElementsAre(0, 0, 2));
     EXPECT_THAT(numbers_of<double>(cloud->columns.find("intensity")), ElementsAre(9, 9, 8));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("3 scans were read as one cloud")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("3 scans were read as one cloud")));
 }
 
 TEST(TextBlocks, OfAnotherLengthThanTheirCount_AreReadWithAWarningThatGivesBoth) {
     for (const auto& [text, warning] : {std::pair("2\n1 2 3\n1\n4 5 6\n", "line 1 declares 2 points; 1 follows"),
                                         std::pair("1\n1 2 3\n2\n4 5 6\n", "line 3 declares 2 points; 1 follows")}) {
-        Told told;
-        EXPECT_EQ(points_in(text, "a.pts", &told)->size(), 2u);
-        EXPECT_THAT(told.sentences, testing::Contains(HasSubstr(warning)));
+        Warnings warnings;
+        EXPECT_EQ(points_in(text, "a.pts", &warnings)->size(), 2u);
+        EXPECT_THAT(warnings.sentences, testing::Contains(HasSubstr(warning)));
     }
     EXPECT_THAT(refusal_of("1\n1 2 3\n1.5\n4 5 6\n", "a.pts"), HasSubstr("line 3: found 1 column"));
 }
@@ -109,29 +109,29 @@ TEST(PwnLayout, PointsThenNormals_AreJoined) {
     EXPECT_THAT(numbers_of<double>(cloud->columns.find("normal")), ElementsAre(0, 0, 1, 0.6, 0.8, 0));
 }
 
-TEST(PwnLayout, NormalsOfOtherLengths_AreTold_AndInAnotherFileAWrongCount) {
-    Told told;
-    EXPECT_EQ(points_in("1\n1 2 3\n0 0 5\n", "a.pwn", &told)->size(), 1u);
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("not all normals have unit length")));
-    Told count;
+TEST(PwnLayout, NormalsOfOtherLengths_AreReported_AndInAnotherFileAWrongCount) {
+    Warnings warnings;
+    EXPECT_EQ(points_in("1\n1 2 3\n0 0 5\n", "a.pwn", &warnings)->size(), 1u);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("not all normals (nx, ny, nz) have unit length")));
+    Warnings count;
     EXPECT_EQ(points_in("1\n1 2 3\n0 0 5\n", "a.xyz", &count)->size(), 2u);
     EXPECT_THAT(count.sentences, ElementsAre(HasSubstr("line 1 declares 1 point; 2 follow")));
     EXPECT_THAT(refusal_of("2\n1 2 3\n4 5 6\n0 0 1\n", "a.pwn"), HasSubstr("line 1 declares 2 points; 3 rows follow"));
 }
 
-TEST(TaggedPoints, RowsOfP_AreThePoints_OthersAreTold) {
-    Told told;
-    const auto cloud = points_in("# by hand\nd 0 0 0\ng 1 0 0\np 1 2 3\np 4 5 6\n", "a.pts", &told);
+TEST(TaggedPoints, RowsOfP_AreThePoints_OthersAreReported) {
+    Warnings warnings;
+    const auto cloud = points_in("# by hand\nd 0 0 0\ng 1 0 0\np 1 2 3\np 4 5 6\n", "a.pts", &warnings);
     EXPECT_THAT(rows_of(cloud->positions), ElementsAre(Vec3(1, 2, 3), Vec3(4, 5, 6)));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("2 rows are not of points (d, g) and left out")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("2 rows are not of points (d, g) and left out")));
 }
 
 TEST(TaggedPoints, Refusals_SayTheLine) {
     EXPECT_THAT(refusal_of("p 1 2 3\np 1 2\n", "a.pts"), HasSubstr("line 2: a point has three numbers, here are 2"));
     EXPECT_THAT(refusal_of("p 1 2 3\np 1 2 3 4\n", "a.pts"),
                 HasSubstr("line 2: a point has three numbers, here are 4"));
-    EXPECT_THAT(refusal_of("p 1 2 3\np 1 2 x\n", "a.pts"), HasSubstr("line 2: 'x' is no number"));
-    EXPECT_THAT(refusal_of("p 1 2 3\n1 2 3\n", "a.pts"), HasSubstr("line 2: '1' is no letter"));
+    EXPECT_THAT(refusal_of("p 1 2 3\np 1 2 x\n", "a.pts"), HasSubstr("line 2: 'x' is not a number"));
+    EXPECT_THAT(refusal_of("p 1 2 3\n1 2 3\n", "a.pts"), HasSubstr("line 2: '1' is not a letter"));
     EXPECT_THAT(refusal_of("d 1 2 3\n", "a.pts"), HasSubstr("no row begins with p"));
 }
 

@@ -40,15 +40,15 @@ TEST(XyzReader_ByteOrderMark, IsPassedOver) {
               "XYZ");
 }
 
-TEST(XyzReader_SixColumns, AreNormalsWhenUnit_ElseTheyAreKeptAndTold) {
-    Told told;
-    const auto with = points_in("0 0 0 0.6 0.8 0\n1 1 1 0 0 0\n", "a.xyz", &told);
+TEST(XyzReader_SixColumns, AreNormalsWhenUnit_ElseTheyAreKeptAndReported) {
+    Warnings warnings;
+    const auto with = points_in("0 0 0 0.6 0.8 0\n1 1 1 0 0 0\n", "a.xyz", &warnings);
     EXPECT_THAT(numbers_of<double>(with->columns.find("normal")), ElementsAre(0.6, 0.8, 0, 0, 0, 0));
-    EXPECT_THAT(told.sentences, IsEmpty());
-    const auto without = points_in("0 0 0 0.6 0.8 0\n1 1 1 117 73 49\n", "a.xyz", &told);
+    EXPECT_THAT(warnings.sentences, IsEmpty());
+    const auto without = points_in("0 0 0 0.6 0.8 0\n1 1 1 117 73 49\n", "a.xyz", &warnings);
     EXPECT_EQ(without->columns.find("normal"), nullptr);
     EXPECT_THAT(numbers_of<double>(without->columns.find("c5")), ElementsAre(0.8, 73));
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("no unit normals")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("not unit normals")));
 }
 
 TEST(XyzReader_OtherColumns, AreNumberedFromFour) {
@@ -66,9 +66,9 @@ TEST(XyzReader_Names, InTheFirstLine_NameTheColumns) {
 
 TEST(XyzReader_Count, InTheFirstLine_IsChecked) {
     EXPECT_EQ(points_in("2\n1 2 3\n4 5 6\n", "a.pts")->size(), 2u);
-    Told told;
-    EXPECT_EQ(points_in("1\n1 2 3\n4 5 6\n", "a.pts", &told)->size(), 2u);
-    EXPECT_THAT(told.sentences, testing::ElementsAre(HasSubstr("declares 1 point; 2 follow")));
+    Warnings warnings;
+    EXPECT_EQ(points_in("1\n1 2 3\n4 5 6\n", "a.pts", &warnings)->size(), 2u);
+    EXPECT_THAT(warnings.sentences, testing::ElementsAre(HasSubstr("declares 1 point; 2 follow")));
 }
 
 TEST(XyzReader_Invalid, NanAndInfinity_AreRead) {
@@ -90,25 +90,25 @@ TEST(XyzReader_Content, OfUnknownExtension_IsATableWhenItLooksLikeOne) {
 
 TEST(XyzWriter_Points, WithNormals_ComeBackExactly_WithUnitAndName) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     PointCloud cloud;
     cloud.frame = {LengthUnit::metre, Vec3(8388608, -4194304, 0), "site"};
     cloud.positions = {Vec3(0.1, 1e-9, 1.0 / 3), Vec3(0.2, -0.25, 0)};
     cloud.columns.add(Column("normal", 3, Buffer<double>{0.6, 0.8, 0, 1.0 / 3, 2.0 / 3, 2.0 / 3}));
-    write_file(folder / "a.xyz", std::make_shared<const PointCloud>(cloud), told.writing());
+    write_file(folder / "a.xyz", std::make_shared<const PointCloud>(cloud), warnings.writing());
     expect_same_points(*read_points(folder / "a.xyz"), cloud);
-    EXPECT_THAT(told.sentences, IsEmpty());
+    EXPECT_THAT(warnings.sentences, IsEmpty());
 }
 
-TEST(XyzWriter_File, IsThisForOnePoint_OtherColumnsAreTold) {
+TEST(XyzWriter_File, IsThisForOnePoint_OtherColumnsAreReported) {
     const TemporaryFolder folder;
-    Told told;
+    Warnings warnings;
     PointCloud cloud{{LengthUnit::inch, Vec3(1, 0, 0), "a\rb"}, {Vec3(0.5, 0.1, -3)}, {}};
     cloud.columns.add(Column("weight", 1, Buffer<float>{2}));
     cloud.columns.add(Column("normal", 3, Buffer<float>{0.1f, 0, 1}));
-    write_file(folder / "a.xyz", std::make_shared<const PointCloud>(cloud), told.writing());
+    write_file(folder / "a.xyz", std::make_shared<const PointCloud>(cloud), warnings.writing());
     EXPECT_EQ(content_of(folder / "a.xyz"), "# unit in\n# frame a b\n1.5 0.1 -3 0.1 0 1\n");
-    EXPECT_THAT(told.sentences, ElementsAre(HasSubstr("1 column of the points (weight)")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 column of the points (weight)")));
 }
 
 TEST(XyzReader_Numbers, OfMicrosoftsLibraries_AreInfinityAndNan) {
@@ -123,16 +123,16 @@ TEST(XyzReader_Numbers, OfMicrosoftsLibraries_AreInfinityAndNan) {
     EXPECT_THAT(refusal_of("0 0 2.#INF\n", "a.xyz"), testing::HasSubstr("'2.#INF'"));
 }
 
-TEST(Reader_Units, ThatContradictEachOther_AreTold) {
-    Told told;
-    EXPECT_EQ(points_in("# unit mm\n# unit in\n0 0 0\n", "a.xyz", &told)->frame.unit, LengthUnit::inch);
-    EXPECT_THAT(told.sentences, testing::ElementsAre(testing::HasSubstr("both 'unit mm' and 'unit in'")));
-    told.sentences.clear();
-    ReadOptions asked = told.reading();
+TEST(Reader_Units, ThatContradictEachOther_AreReported) {
+    Warnings warnings;
+    EXPECT_EQ(points_in("# unit mm\n# unit in\n0 0 0\n", "a.xyz", &warnings)->frame.unit, LengthUnit::inch);
+    EXPECT_THAT(warnings.sentences, testing::ElementsAre(testing::HasSubstr("both 'unit mm' and 'unit in'")));
+    warnings.sentences.clear();
+    ReadOptions asked = warnings.reading();
     asked.unit = LengthUnit::metre;
     read_bytes("# unit mm\n0 0 0\n", "a.xyz", asked);
-    EXPECT_THAT(told.sentences,
-                testing::ElementsAre(testing::HasSubstr("says 'unit mm'; it was taken to be in m, as was asked for")));
+    EXPECT_THAT(warnings.sentences,
+                testing::ElementsAre(testing::HasSubstr("declares 'unit mm'; it was read in m, as requested")));
 }
 
 }  // namespace

@@ -1,40 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/formats/ply/detail/ply_header.hpp"
-
 #include <algorithm>
 #include <charconv>
 
-#include "scanmill/base/error.hpp"
-#include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/ply/detail/ply_elements.hpp"
 
 namespace scanmill {
 
 namespace {
-
-struct TypeName {
-    std::string_view name;
-    ScalarType type;
-};
-constexpr std::array<TypeName, 18> type_names{{
-    {"char", ScalarType::int8},
-    {"int8", ScalarType::int8},
-    {"uchar", ScalarType::uint8},
-    {"uint8", ScalarType::uint8},
-    {"short", ScalarType::int16},
-    {"int16", ScalarType::int16},
-    {"ushort", ScalarType::uint16},
-    {"uint16", ScalarType::uint16},
-    {"int", ScalarType::int32},
-    {"int32", ScalarType::int32},
-    {"uint", ScalarType::uint32},
-    {"uint32", ScalarType::uint32},
-    {"int64", ScalarType::int64},
-    {"uint64", ScalarType::uint64},
-    {"float", ScalarType::float32},
-    {"float32", ScalarType::float32},
-    {"double", ScalarType::float64},
-    {"float64", ScalarType::float64},
-}};
 
 std::string_view word(std::string_view& line) {
     const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -83,12 +55,6 @@ private:
         return file.substr(first, 2) == "\r\n" ? "\n" : "\r";  // a CR before LF is a blank
     }
 
-    static std::string_view trimmed(std::string_view text) {
-        while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-        while (!text.empty() && (text.back() == '\r' || text.back() == ' ')) text.remove_suffix(1);
-        return text;
-    }
-
     std::string_view next_line() {
         const std::size_t end = file_.find(line_end_, at_);
         // A header that ends the file needs no line end after its last word.
@@ -133,25 +99,24 @@ private:
     }
 
     ScalarType parse_type(std::string_view name) const {
-        const auto found = std::ranges::find(type_names, name, &TypeName::name);
-        if (found == type_names.end())
-            throw Error(
-                "line {}: the property type {} is unknown; PLY has char, uchar, short, ushort, int, uint, "
-                "float, double, and list",
-                header_.lines, quote(name));
-        return found->type;
+        for (std::size_t i = 0; i < ply_type_names.size(); ++i)
+            if (const auto type = static_cast<ScalarType>(i); name == ply_type_names[i] || name == name_of(type))
+                return type;
+        throw Error(
+            "line {}: the property type {} is unknown; PLY has char, uchar, short, ushort, int, uint, float, double, "
+            "and list",
+            header_.lines, quote(name));
     }
 
     void parse_property(std::string_view line) {
         constexpr std::size_t most_properties = 1000;
-        if (header_.elements.empty())
-            throw Error("line {}: a property before the first element; it belongs to nothing", header_.lines);
+        if (header_.elements.empty()) throw Error("line {}: a property before the first element", header_.lines);
         PlyElement& element = header_.elements.back();
         PlyProperty property;
         std::string_view type = word(line);
         if (type == "list") {
             property.count_type = parse_type(word(line));
-            if (*property.count_type == ScalarType::float32 || *property.count_type == ScalarType::float64)
+            if (is_floating(*property.count_type))
                 throw Error("line {}: the length of a list must be of an integer type", header_.lines);
             type = word(line);
         }
@@ -174,15 +139,6 @@ private:
     PlyHeader header_;
 };
 
-/// Bytes that a row takes at the least: in binary exactly its scalars and the lengths of empty lists, in ascii a digit
-/// and a separator for each.
-u64 least_row(const PlyElement& element, PlyEncoding encoding) {
-    u64 bytes = 0;
-    for (const PlyProperty& property : element.properties)
-        bytes += encoding == PlyEncoding::ascii ? 2 : size_of(property.count_type.value_or(property.type));
-    return bytes;
-}
-
 }  // namespace
 
 const PlyProperty* PlyElement::find(std::string_view property) const {
@@ -190,20 +146,30 @@ const PlyProperty* PlyElement::find(std::string_view property) const {
     return found == properties.end() ? nullptr : &*found;
 }
 
+std::size_t PlyElement::row_size() const {
+    std::size_t size = 0;
+    for (const PlyProperty& property : properties) size += size_of(property.type);
+    return size;
+}
+
 bool PlyElement::has_lists() const { return std::ranges::any_of(properties, &PlyProperty::is_list); }
 
 PlyHeader parse_ply_header(std::string_view file) { return HeaderParser(file).parse(); }
 
 void require_room(const PlyElement& element, PlyEncoding encoding, std::size_t left) {
-    const u64 row = least_row(element, encoding);
+    const bool is_text = encoding == PlyEncoding::ascii;
+    // In binary the scalars and the lengths of empty lists, in text a digit and a separator for each.
+    u64 row = 0;
+    for (const PlyProperty& property : element.properties)
+        row += is_text ? 2 : size_of(property.count_type.value_or(property.type));
     if (row == 0) return;
     // The last row of a text needs no line end.
-    const u64 fitting = (left + (encoding == PlyEncoding::ascii ? 1 : 0)) / row;
+    const u64 fitting = (left + (is_text ? 1 : 0)) / row;
     if (element.count > fitting)
         throw Error("the header promises {} of element {}, each at least {} long; the {} that follow hold at most {}",
                     count_text(element.count, "row", "rows"), quote(element.name), count_text(row, "byte", "bytes"),
                     count_text(left, "byte", "bytes"), fitting)
-            .hint("the file is truncated or its header is wrong: fetch or export it again");
+            .hint(truncated_hint);
 }
 
 }  // namespace scanmill

@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source: ASPRS, LAS specification 1.4 revision 15; its earlier versions 1.0 to 1.3.
 #include "scanmill/formats/las/detail/las_header.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-
-#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 
 namespace {
 
 constexpr std::array<std::size_t, 11> point_sizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-constexpr std::string_view truncated_hint = "the file is truncated or its header is wrong: fetch or export it again";
 
-/// Text of a fixed width: up to the first zero, printable.
+/// A text field of fixed width: up to the first zero, without trailing blanks, unprintable characters as '?'.
 std::string text_at(std::string_view bytes, std::size_t begin, std::size_t width) {
     std::string text;
     for (const char c : bytes.substr(begin, width)) {
@@ -33,23 +29,46 @@ Vec3 vector_at(const char* source) {
 
 std::size_t least_header(u32 minor_version) { return minor_version < 3 ? 227 : minor_version == 3 ? 235 : 375; }
 
-void require_sense(const LasHeader& header, std::string_view bytes) {
+void require_valid(const LasHeader& header, std::string_view bytes) {
     if (header.point_format >= point_sizes.size())
-        throw Error("has points of format {}; LAS knows 0 to {}", header.point_format, point_sizes.size() - 1);
+        throw Error("has points of format {}; LAS has 0 to {}", header.point_format, point_sizes.size() - 1);
     if (header.points_begin < header.size || header.points_begin > bytes.size())
         throw Error("the points begin at byte {}, by the header of {}; the file has {}", header.points_begin,
                     count_text(header.size, "byte", "bytes"), count_text(bytes.size(), "byte", "bytes"))
-            .hint(std::string(truncated_hint));
-    if (header.is_compressed) return;  // the sizes of points are another's business
-    if (header.point_size < las_point_size(header.point_format))
-        throw Error("points of format {} take {} bytes or more; the header says {}", header.point_format,
-                    las_point_size(header.point_format), header.point_size)
-            .hint(std::string(truncated_hint));
+            .hint(truncated_hint);
+    if (header.is_compressed) return;  // refused later, with a hint
+    if (header.point_size < point_sizes[header.point_format])
+        throw Error("points of format {} take {} bytes or more; the header declares {}", header.point_format,
+                    point_sizes[header.point_format], header.point_size)
+            .hint(truncated_hint);
     for (int axis = 0; axis < 3; ++axis)
         if (!std::isfinite(header.scale[axis]) || header.scale[axis] == 0 || !std::isfinite(header.offset[axis]))
-            throw Error("the scale {} and the offset {} of {} make no coordinates", header.scale[axis],
-                        header.offset[axis], "xyz"[axis])
-                .hint(std::string(truncated_hint));
+            throw Error("the scale {} and the offset {} of {} are invalid", header.scale[axis], header.offset[axis],
+                        "xyz"[axis])
+                .hint(truncated_hint);
+}
+
+constexpr std::size_t description_size = 192;
+
+/// Types 1 to 10 of LAS; 11 to 20 are two of each, 21 to 30 three.
+constexpr std::array<ScalarType, 10> types{
+    ScalarType::uint8, ScalarType::int8,   ScalarType::uint16, ScalarType::int16,   ScalarType::uint32,
+    ScalarType::int32, ScalarType::uint64, ScalarType::int64,  ScalarType::float32, ScalarType::float64};
+
+/// Pre: the type is one of the thirty.
+LasExtra described(std::string_view description, u32 type) {
+    constexpr u32 scale_bit = 8, shift_bit = 16;
+    LasExtra extra;
+    extra.name = text_at(description, 4, 32);
+    extra.type = types[(type - 1) % types.size()];
+    extra.components = static_cast<u32>((type - 1) / types.size() + 1);
+    const u32 options = little_endian<u8>(description.data() + 3);
+    extra.is_scaled = (options & (scale_bit | shift_bit)) != 0;
+    for (std::size_t i = 0; i < extra.components; ++i) {
+        if (options & scale_bit) extra.scale[i] = little_endian<double>(description.data() + 112 + 8 * i);
+        if (options & shift_bit) extra.shift[i] = little_endian<double>(description.data() + 136 + 8 * i);
+    }
+    return extra;
 }
 
 }  // namespace
@@ -63,8 +82,6 @@ bool LasHeader::has_wave_packets() const {
     constexpr std::array<u32, 4> formats{4, 5, 9, 10};
     return std::ranges::find(formats, point_format) != formats.end();
 }
-
-std::size_t las_point_size(u32 point_format) { return point_sizes.at(point_format); }
 
 LasHeader read_las_header(std::string_view bytes) {
     constexpr std::size_t versions_end = 96;
@@ -80,9 +97,9 @@ LasHeader read_las_header(std::string_view bytes) {
     header.size = little_endian<std::uint16_t>(at + 94);
     const std::size_t least = least_header(header.minor_version);
     if (header.size < least || header.size > bytes.size())
-        throw Error("the header of LAS 1.{} takes {} bytes or more; it says {}, and the file has {}",
+        throw Error("the header of LAS 1.{} takes {} bytes or more; it declares {}, and the file has {}",
                     header.minor_version, least, header.size, bytes.size())
-            .hint(std::string(truncated_hint));
+            .hint(truncated_hint);
 
     header.system = text_at(bytes, 26, 32);
     header.software = text_at(bytes, 58, 32);
@@ -98,22 +115,22 @@ LasHeader read_las_header(std::string_view bytes) {
     header.offset = vector_at(at + 155);
     if (header.minor_version >= 4) {
         header.extended_records = little_endian<u32>(at + 243);
-        // Files of many points leave the old field of 32 bits zero; some writers fill only the old one.
+        // With many points the old field of 32 bits is zero; some programs write only the old field.
         if (const u64 points = little_endian<u64>(at + 247); points > 0) header.points = points;
     }
-    require_sense(header, bytes);
+    require_valid(header, bytes);
     return header;
 }
 
 void require_las_points(const LasHeader& header, std::string_view bytes) {
     const std::size_t room = bytes.size() - header.points_begin;
     if (header.points == 0)
-        throw Error("holds no points: its header says 0, and {} follow it", count_text(room, "byte", "bytes"));
+        throw Error("holds no points: its header declares 0, and {} follow it", count_text(room, "byte", "bytes"));
     if (header.points > room / header.point_size)
         throw Error("promises {} of {} bytes; the {} from byte {} on hold {}",
                     count_text(header.points, "point", "points"), header.point_size, count_text(room, "byte", "bytes"),
                     header.points_begin, room / header.point_size)
-            .hint(std::string(truncated_hint));
+            .hint(truncated_hint);
     require_countable(header.points, "points");
 }
 
@@ -126,7 +143,7 @@ std::vector<LasRecord> read_las_records(const LasHeader& header, std::string_vie
         const std::size_t length = room < record_header ? 0 : little_endian<std::uint16_t>(bytes.data() + at + 20);
         if (room < record_header || length > room - record_header) {
             warn(options.on_warning,
-                 "variable length record {} of {} runs into the points; it and those behind it were left out", i + 1,
+                 "variable length record {} of {} runs into the points; it and those after it were left out", i + 1,
                  header.records);
             break;
         }
@@ -175,6 +192,46 @@ LengthUnit las_unit(const std::vector<LasRecord>& records, const ReadOptions& op
          "the unit {} of the GeoTIFF keys is neither metre ({}) nor foot ({}); the unit stays unknown", unit, metre,
          foot);
     return LengthUnit::unknown;
+}
+
+bool describes_extra_bytes(const LasRecord& record) {
+    constexpr u32 extra_bytes = 4;
+    return record.user == "LASF_Spec" && record.id == extra_bytes;
+}
+
+std::vector<LasExtra> read_las_extra(const LasHeader& header, const std::vector<LasRecord>& records,
+                                     const ReadOptions& options) {
+    std::vector<LasExtra> extras;
+    std::size_t at = point_sizes[header.point_format];
+    std::size_t described_bytes = 0;
+    for (const LasRecord& record : records) {
+        if (!describes_extra_bytes(record)) continue;
+        for (std::size_t i = 0; i + description_size <= record.content.size(); i += description_size) {
+            const std::string_view description = record.content.substr(i, description_size);
+            const u32 type = little_endian<u8>(description.data() + 2);
+            if (type == 0 || type > 3 * types.size()) {
+                at += little_endian<u8>(description.data() + 3);  // the number of undescribed bytes
+                continue;
+            }
+            LasExtra extra = described(description, type);
+            extra.offset = at;
+            const std::size_t size = extra.components * size_of(extra.type);
+            if (at + size > header.point_size) {
+                warn(options.on_warning,
+                     "the extra bytes {} would lie beyond the {} bytes of a point; they were left out",
+                     quote(extra.name), header.point_size);
+                return extras;
+            }
+            at += size;
+            described_bytes += size;
+            extras.push_back(std::move(extra));
+        }
+    }
+    const std::size_t rest = header.point_size - point_sizes[header.point_format] - described_bytes;
+    if (rest > 0)
+        warn(options.on_warning, "{} of each point {} without a described type and left out",
+             count_text(rest, "extra byte", "extra bytes"), by_count(rest, "is", "are"));
+    return extras;
 }
 
 }  // namespace scanmill

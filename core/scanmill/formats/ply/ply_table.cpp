@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/formats/ply/detail/ply_table.hpp"
+#include "scanmill/formats/ply/detail/ply_elements.hpp"
 
 #include <algorithm>
-
-#include "scanmill/formats/common/reading.hpp"
-#include "scanmill/formats/common/text_cursor.hpp"
 
 namespace scanmill {
 
@@ -39,36 +36,24 @@ std::optional<std::pair<std::string, u32>> declared_components(std::string_view 
     return std::pair(name, components);
 }
 
-}  // namespace
+struct Group {
+    std::string name;
+    std::vector<std::string> properties;
+};
 
-std::vector<std::string> ply_component_names(const Column& column) {
-    const bool floating = column.type() == ScalarType::float32 || column.type() == ScalarType::float64;
-    if (column.components() <= 1) return {column.name()};
-    if (column.name() == "normal" && column.components() == 3 && floating) return {"nx", "ny", "nz"};
-    if (column.name() == "colour" && column.type() == ScalarType::uint8) {
-        if (column.components() == 3) return {"red", "green", "blue"};
-        if (column.components() == 4) return {"red", "green", "blue", "alpha"};
-    }
-    return numbered(column.name(), column.components());
-}
-
-std::vector<PlyTable::Group> PlyTable::groups_in(const PlyElement& element, const std::vector<std::string>& comments) {
+/// The properties that become one column, with its name.
+std::vector<Group> groups_in(const PlyElement& element, const std::vector<std::string>& comments) {
     std::vector<Group> groups;
     const auto add = [&](std::string name, std::vector<std::string> properties) {
         if (has_all(element, properties) && !element.find(name))
             groups.push_back({std::move(name), std::move(properties)});
     };
-    if (const PlyProperty* nx = element.find("nx");
-        nx && (nx->type == ScalarType::float32 || nx->type == ScalarType::float64))
-        add("normal", {"nx", "ny", "nz"});
+    if (const PlyProperty* nx = element.find("nx"); nx && is_floating(nx->type)) add("normal", {"nx", "ny", "nz"});
     if (const PlyProperty* red = element.find("red"); red && red->type == ScalarType::uint8) {
-        const PlyProperty* alpha = element.find("alpha");
-        if (alpha && !alpha->is_list() && alpha->type == ScalarType::uint8)
-            add("colour", {"red", "green", "blue", "alpha"});
-        else
-            add("colour", {"red", "green", "blue"});
+        add("colour", {"red", "green", "blue", "alpha"});
+        if (groups.empty() || groups.back().name != "colour") add("colour", {"red", "green", "blue"});
     }
-    // A header may hold millions of such comments: looking for the properties of each would take hours.
+    // A header may have millions of such comments: searching the properties of each would take hours.
     std::size_t declarations = 0;
     for (const std::string& comment : comments) {
         const auto declared = declared_components(comment);
@@ -77,6 +62,18 @@ std::vector<PlyTable::Group> PlyTable::groups_in(const PlyElement& element, cons
             add(declared->first, numbered(declared->first, declared->second));
     }
     return groups;
+}
+
+}  // namespace
+
+std::vector<std::string> ply_component_names(const Column& column) {
+    if (column.components() <= 1) return {column.name()};
+    if (column.name() == "normal" && column.components() == 3 && is_floating(column.type())) return {"nx", "ny", "nz"};
+    if (column.name() == "colour" && column.type() == ScalarType::uint8) {
+        if (column.components() == 3) return {"red", "green", "blue"};
+        if (column.components() == 4) return {"red", "green", "blue", "alpha"};
+    }
+    return numbered(column.name(), column.components());
 }
 
 PlyTable::PlyTable(const PlyElement& element, const std::vector<std::string>& comments,
@@ -110,7 +107,7 @@ PlyTable::PlyTable(const PlyElement& element, const std::vector<std::string>& co
             slot.lists = &column->lists;
         } else if (element.count > 0) {  // without rows there is no memory to point into
             const std::size_t width = size_of(property.type);
-            slot.place = column->data.data() + component * width;
+            slot.destination = column->data.data() + component * width;
             slot.stride = components * width;
         }
     }

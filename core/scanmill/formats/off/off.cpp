@@ -1,33 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-
-#include "scanmill/base/error.hpp"
+#include "scanmill/formats/common/built_in.hpp"
 #include "scanmill/formats/common/colours.hpp"
 #include "scanmill/formats/common/polygons.hpp"
-#include "scanmill/formats/common/reading.hpp"
-#include "scanmill/formats/common/text_cursor.hpp"
-#include "scanmill/formats/off/off.hpp"
+#include "scanmill/formats/common/writing.hpp"
 
 namespace scanmill {
 
 namespace {
 
-/// What the keyword promises for each vertex beside its coordinates.
+/// The data of each vertex, besides its coordinates, that the keyword declares.
 struct Keyword {
     bool texture = false, colour = false, normal = false;
 };
 
-/// "STCNOFF" → its prefixes; nothing when the word is no OFF keyword. Some writers glue the counts to it: "OFF8".
+/// The prefixes of a keyword such as "STCNOFF"; empty for another word.
 std::optional<Keyword> keyword_of(std::string_view word) {
     Keyword keyword;
-    const auto pass = [&word](std::string_view prefix) {
+    const auto remove = [&word](std::string_view prefix) {
         const bool found = word.starts_with(prefix);
         if (found) word.remove_prefix(prefix.size());
         return found;
     };
-    keyword.texture = pass("ST");
-    keyword.colour = pass("C");
-    keyword.normal = pass("N");
+    keyword.texture = remove("ST");
+    keyword.colour = remove("C");
+    keyword.normal = remove("N");
     if (word == "OFF") return keyword;
     return std::nullopt;
 }
@@ -37,7 +33,7 @@ bool is_refused_keyword(std::string_view word) {
            word.find_first_not_of("STCN4nOF") == std::string_view::npos;
 }
 
-/// "OFF8 6 12" → 3: the keyword's length when a count is glued to it.
+/// "OFF8 6 12" → 3: the keyword's length when a count follows without a blank, as some programs write it; else 0.
 std::size_t glued_keyword(std::string_view word) {
     return word.starts_with("OFF") && word.size() > 3 && word[3] >= '0' && word[3] <= '9' ? 3 : 0;
 }
@@ -55,13 +51,13 @@ public:
         read_vertices();
         read_faces();
         if (text_.next_row())
-            warn(options_.on_warning, "the text from line {} on belongs to no face and was passed over", text_.line());
-        return assembled();
+            warn(options_.on_warning, "the text from line {} on belongs to no face and was ignored", text_.line());
+        return loaded_file("OFF", "ascii", text_.comments().texts(), std::move(positions_), std::move(mesh_), options_);
     }
 
 private:
     void read_keyword() {
-        if (!text_.next_row()) throw Error("holds no points: nothing but blanks and comments");
+        if (!text_.next_row()) throw Error("holds no points: only blanks and comments");
         const std::string_view word = text_.token();
         if (const auto keyword = keyword_of(word)) {
             keyword_ = *keyword;
@@ -69,7 +65,7 @@ private:
             if (ahead.more() && ahead.token() == "BINARY")
                 throw Error("line {}: binary OFF is not read", text_.line()).hint("convert it to text OFF or PLY");
         } else if (is_refused_keyword(word)) {
-            throw Error("line {}: {} holds points of other than three dimensions; OFF, COFF, NOFF and STOFF are read",
+            throw Error("line {}: {} does not hold points of three dimensions; OFF, COFF, NOFF and STOFF are read",
                         text_.line(), quote(word));
         } else if (const std::size_t length = glued_keyword(word)) {
             text_.put_back(word.substr(length));
@@ -80,16 +76,14 @@ private:
 
     void read_counts() {
         if (!text_.more() && !text_.next_row()) throw Error("the text ends before the numbers of vertices and faces");
-        std::array<u64, 2> counts{};
-        for (u64& count : counts) {
+        for (u64* count : {&vertices_, &faces_}) {
             if (!text_.more())
                 throw Error("line {}: expected the numbers of vertices, faces and edges, found less", text_.line());
-            if (!text_.number(count))
+            if (!text_.number(*count))
                 throw Error("line {}: expected the keyword OFF or the numbers of vertices, faces and edges, found {}",
                             text_.line(), quote(text_.last_token()));
         }
-        std::tie(vertices_, faces_) = std::pair(counts[0], counts[1]);
-        if (vertices_ == 0) throw Error("holds no points: line {} says 0 vertices", text_.line());
+        if (vertices_ == 0) throw Error("holds no points: line {} declares 0 vertices", text_.line());
         require_countable(vertices_, "vertices");
         // A vertex takes at least "0 0 0" and a line end, a face "3 0 0 0"; a face of one corner is "1 0".
         constexpr u64 least_vertex = 6, least_face = 2;
@@ -97,22 +91,11 @@ private:
             throw Error("line {} promises {} and {}; the file has only {}", text_.line(),
                         count_text(vertices_, "vertex", "vertices"), count_text(faces_, "face", "faces"),
                         count_text(bytes_.size(), "byte", "bytes"))
-                .hint("the file is truncated or its header is wrong: fetch or export it again");
+                .hint(truncated_hint);
     }
 
-    void next_row(u64 row, u64 rows, std::string_view element) {
-        if (!text_.next_row())
-            throw Error("line {}: the text ends after {} of {} {}", text_.line(), row, rows, element)
-                .hint("the file is truncated or its header is wrong: fetch or export it again");
-    }
-
-    double number(u64 row, std::string_view what) {
-        double value = 0;
-        if (!text_.more()) throw Error("line {}: vertex {} ends before its {}", text_.line(), row, what);
-        if (!text_.number(value))
-            throw Error("line {}: {} is no number for the {} of vertex {}", text_.line(), quote(text_.last_token()),
-                        what, row);
-        return value;
+    void read_numbers(double* numbers, int size, u64 row, std::string_view what) {
+        for (int i = 0; i < size; ++i) numbers[i] = next_number(text_, "the {} of vertex {}", what, row);
     }
 
     void read_vertices() {
@@ -121,18 +104,16 @@ private:
         Array<double> texture(keyword_.texture ? 2 * vertices_ : 0);
         RowColours colours;
         for (u64 row = 0; row < vertices_; ++row) {
-            next_row(row, vertices_, "vertices");
-            for (int axis = 0; axis < 3; ++axis) positions_[row][axis] = number(row, "coordinates");
-            for (std::size_t axis = 0; axis < 3 && keyword_.normal; ++axis)
-                normals[3 * row + axis] = number(row, "normal");
-            // Texture coordinates come last, behind a colour of unsaid length.
+            require_row(text_, row, vertices_, "vertices");
+            read_numbers(positions_[row].data(), 3, row, "coordinates");
+            if (keyword_.normal) read_numbers(&normals[3 * row], 3, row, "normal");
+            // Texture coordinates come last, after a colour of undeclared length.
             colours.read_row(text_, keyword_.texture ? 2 : 0);
-            for (std::size_t i = 0; i < 2 && keyword_.texture; ++i)
-                texture[2 * row + i] = number(row, "texture coordinates");
+            if (keyword_.texture) read_numbers(&texture[2 * row], 2, row, "texture coordinates");
         }
-        if (keyword_.normal) vertex_columns_.add(Column("normal", 3, Buffer(std::move(normals))));
-        colours.add_columns(vertex_columns_, "vertices", options_.on_warning);
-        if (keyword_.texture) vertex_columns_.add(Column("texture", 2, Buffer(std::move(texture))));
+        if (keyword_.normal) mesh_.vertex_columns.add(Column("normal", 3, Buffer(std::move(normals))));
+        colours.add_columns(mesh_.vertex_columns, "vertices", options_.on_warning);
+        if (keyword_.texture) mesh_.vertex_columns.add(Column("texture", 2, Buffer(std::move(texture))));
     }
 
     void read_faces() {
@@ -144,11 +125,8 @@ private:
         offsets.push_back(0);
         RowColours colours;
         for (u64 row = 0; row < faces_; ++row) {
-            next_row(row, faces_, "faces");
-            u64 length = 0;
-            if (!text_.number(length))
-                throw Error("line {}: {} is no number of corners for face {}", text_.line(), quote(text_.last_token()),
-                            row);
+            require_row(text_, row, faces_, "faces");
+            const u64 length = next_number<u64>(text_, "the corners of face {}", row);
             for (u64 i = 0; i < length; ++i) {
                 u64 vertex = 0;
                 if (!text_.more())
@@ -164,28 +142,10 @@ private:
             offsets.push_back(corners.size());
             colours.read_row(text_);
         }
-        colours.add_columns(face_columns_, "faces", options_.on_warning);
-        fans_ = triangulated(Column("corners", Buffer(std::move(offsets)), Buffer(std::move(corners))), vertices_);
-    }
-
-    LoadedFile assembled() {
-        LoadedFile loaded;
-        loaded.format = "OFF";
-        loaded.encoding = "ascii";
-        loaded.comments = text_.comments().texts();
-        TriangleMesh mesh;
-        mesh.frame = declared_frame(loaded.comments, options_);
-        move_near_origin(positions_, bounding_box(positions_), mesh.frame);
-        put_faces(mesh, std::move(fans_), face_columns_, options_.on_warning);
-        if (mesh.triangles.empty()) {
-            loaded.value = std::make_shared<const PointCloud>(
-                PointCloud{mesh.frame, std::move(positions_), std::move(vertex_columns_)});
-        } else {
-            mesh.positions = std::move(positions_);
-            mesh.vertex_columns = std::move(vertex_columns_);
-            loaded.value = std::make_shared<const TriangleMesh>(std::move(mesh));
-        }
-        return loaded;
+        ColumnTable columns;
+        colours.add_columns(columns, "faces", options_.on_warning);
+        put_faces(mesh_, Column("corners", Buffer(std::move(offsets)), Buffer(std::move(corners))), vertices_, columns,
+                  options_.on_warning);
     }
 
     std::string_view bytes_;
@@ -194,13 +154,10 @@ private:
     Keyword keyword_;
     u64 vertices_ = 0, faces_ = 0;
     Array<Vec3> positions_;
-    ColumnTable vertex_columns_, face_columns_;
-    Fans fans_;
+    TriangleMesh mesh_;
 };
 
-}  // namespace
-
-Recognition recognise_off(std::string_view head, u64) {
+Recognition recognise(std::string_view head, u64) {
     TextCursor text(head, {.comment = '#'});
     if (!text.next_row()) return Recognition::no;
     const std::string_view word = text.token();
@@ -208,6 +165,39 @@ Recognition recognise_off(std::string_view head, u64) {
     return Recognition::no;
 }
 
-LoadedFile read_off(const FileBytes& file, const ReadOptions& options) { return OffReader(file, options).read(); }
+LoadedFile read(const FileBytes& file, const ReadOptions& options) { return OffReader(file, options).read(); }
+
+void write(const Value& value, OutputBuffer& out, const WriteOptions& options) {
+    const TriangleMesh& mesh = *value.get<TriangleMesh>();
+    const TextColumns of_vertices(mesh.vertex_columns);
+    const Column* const face_colour = TextColumns(mesh.face_columns).colour;
+    warn_lost_precision(mesh.frame, mesh.positions.span(), false, "OFF", options);
+    std::vector<std::string_view> of_faces;
+    if (face_colour) of_faces.push_back(face_colour->name());
+    warn_bare_triangles(mesh, "OFF", options, of_vertices.names(), of_faces);
+
+    out.text(fmt::format("{}{}{}OFF\n{}{} {} 0\n", of_vertices.texture ? "ST" : "", of_vertices.colour ? "C" : "",
+                         of_vertices.normal ? "N" : "", comment_lines(mesh.frame), mesh.positions.size(),
+                         mesh.triangles.size()));
+    for (std::size_t row = 0; row < mesh.positions.size(); ++row) {
+        put_position(mesh.frame, mesh.positions[row], out);
+        for (const Column* column : {of_vertices.normal, of_vertices.colour, of_vertices.texture})
+            if (column) put_row_text(*column, row, out);
+        out.text("\n");
+    }
+    for (std::size_t row = 0; row < mesh.triangles.size(); ++row) {
+        out.text("3");
+        for (u32 vertex : mesh.triangles[row]) {
+            out.text(" ");
+            out.number(vertex);
+        }
+        if (face_colour) put_row_text(*face_colour, row, out);
+        out.text("\n");
+    }
+}
+
+}  // namespace
+
+Format off_format() { return {"OFF", {"off"}, recognise, read, {{kind_of<TriangleMesh>(), write}}}; }
 
 }  // namespace scanmill

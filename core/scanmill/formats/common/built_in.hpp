@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The formats that the core library reads and writes without modules: what each keeps of a file, and what it writes.
+///
+/// Everything that a reader or writer leaves out or changes is reported with a warning that has its number. Comments
+/// "unit mm" and "frame NAME" declare the frame wherever a format has comments, and are written there. Faces with more
+/// than three corners are cut into fans of triangles. A mesh file without triangles is a point cloud.
+
+#include "scanmill/formats/common/format.hpp"
+
+namespace scanmill {
+
+/// PLY, the Stanford polygon format.
+///
+/// Read: ascii and both binary byte orders, any elements and properties. `vertex` with x, y, z (of any type, kept as
+/// double) and columns (see ply_elements.hpp); `face` with a list vertex_indices or vertex_index; `tristrips`; `edge`
+/// with vertex1, vertex2 and columns; `sharp_edge` with vertex1, vertex2, which only scanmill writes. Other elements
+/// are left out. Coordinates in text keep all their digits, whatever type the header declares.
+/// Written: binary little-endian; coordinates as float when every one is exactly a float, else double. 64-bit integers
+/// become double, because PLY has none. Reading a written file gives everything else back unchanged.
+/// Streamed: binary files whose first element is `vertex` without lists and whose other elements are empty, without
+/// trailing bytes except line ends.
+/// Source: G. Turk, The PLY polygon file format, 1994.
+Format ply_format();
+
+/// STL: triangles without connectivity, in single precision.
+///
+/// Read: binary and ascii, also several solids (a face column `solid` then numbers them from 0). A file is binary when
+/// its size is exactly what its triangle count requires, even if it begins with "solid". Corners with equal bits become
+/// one vertex, after -0 became +0. Stored normals are not kept. Attribute bytes become the face column `attribute`
+/// (uint16) when one is not zero. Degenerate facets are kept and counted in a warning.
+/// Written: binary. Facet normals have unit length, computed in double from the positions, zero for degenerate
+/// triangles. Unit and frame name are in the 80 bytes of the header, which never begins with "solid".
+/// Source: StereoLithography Interface Specification, 3D Systems, 1989.
+Format stl_format();
+
+/// OFF, the object file format of Geomview, as text.
+///
+/// Read: the keyword OFF (optional when the extension is .off) with the prefixes ST, C and N in any combination, the
+/// counts on its line or the next, one vertex and one face per line, `#` comments, blank lines. Prefixed vertices give
+/// the columns `normal` (float64), colours and `texture` (2, float64); numbers after a plain vertex's coordinates are
+/// its colour, numbers after a face's indices the face's colour (see RowColours). The number of edges is not used.
+/// 4OFF, nOFF and OFF BINARY are refused.
+/// Written: double precision, the vertices' columns `normal` (3 floats), `colour` (3 or 4 × uint8) and `texture` (2
+/// floats) under the prefixes N, C and ST, and the faces' `colour`.
+/// Source: Geomview manual, section 4.1 (OFF files).
+Format off_format();
+
+/// OBJ, the object file format of Wavefront, as text.
+///
+/// Read: `v` x y z with a weight, or with a colour of three or four numbers (see RowColours; some programs write
+/// fractions of 1, others whole numbers up to 255); `f` and `fo` with v, v/vt, v//vn or v/vt/vn for each corner,
+/// numbered from 1, or backwards from the latest when negative; vertices may follow the faces that refer to them. `vn`
+/// becomes the vertex column `normal` (3, float64) and `vt` the column `texture` (2, float64) when all corners at a
+/// vertex refer to equal values, or when no face refers to any and there are as many as vertices (see CornerValues). A
+/// backslash at a line's end continues the line, `#` begins a comment. A vertex that is missing or numbered 0 is an
+/// Error. Left out: weights other than 1, faces of fewer than three corners, lines, points, free-form curves and
+/// surfaces, groups, objects, materials and smoothing groups when there is more than one, material libraries, rows with
+/// an unknown keyword.
+/// Written: triangles with double precision, the columns `normal` (3 floats), `texture` (2 floats) and `colour`
+/// (3 × uint8, as fractions of 1).
+/// Source: Wavefront Advanced Visualizer manual, appendix B1, object files.
+Format obj_format();
+
+/// XYZ and similar texts (.xyz, .txt; .csv, .pts, .pwn, .asc are read only): one point per line, numbers in columns.
+///
+/// Read: columns separated by blanks, tabs, commas, semicolons or bars, of one kind in each row; `#` and `//` begin
+/// comments. A line of names (X,Y,Z,Intensity; also in a comment) names the columns, in any order; without one the
+/// first three are x, y, z. text_columns() describes how the others become columns. Every line must have as many
+/// numbers as the first.
+///
+/// A first line with a single whole number is the number of points. When further such lines follow, each after as many
+/// points as the one before declares, the blocks are scans: one cloud with a column `scan` (uint32) from 0. A count N
+/// before 2 N rows of three numbers means N points and then their normals.
+///
+/// In Hoppe's text of points, rows begin with a letter: "p 0.1 0.2 0.3" is a point. Rows with other letters, such as d,
+/// s and g for its colours, are left out.
+///
+/// Written: x y z, and the normals when there are some, as the shortest decimals that read back equal.
+/// Streamed: three columns, in lines that end with LF.
+std::vector<Format> text_formats();
+
+/// PTX: scans by Leica's programs, each a grid of cells in the scanner's coordinates, and the matrix that places it.
+///
+/// Read: for each scan the numbers of columns and rows, the scanner's position and axes, four rows of four numbers that
+/// map a row vector (x y z 1) to the world, and one line per cell: x y z intensity, optionally red green blue. The
+/// result is one cloud of the placed points with `intensity` (float64) and, when every scan has colours, `colour` (see
+/// text_columns()); several scans are numbered by a column `scan` (uint32) from 0. Cells at 0 0 0 are not points: they
+/// are left out and counted. The grid and the scanner's position are left out. A matrix that scales, shears or mirrors
+/// is applied with a warning; one that is singular, not finite or not affine is an Error.
+Format ptx_format();
+
+/// LAS, the exchange format of airborne and terrestrial lidar: versions 1.0 to 1.4, point formats 0 to 10.
+///
+/// Positions are the stored integers times the file's scale plus its offset, summed near frame.origin, so that steps
+/// too small for a double of the full coordinate are kept. Columns: `intensity` (uint16), `return_number`,
+/// `number_of_returns`, `classification`, `user_data` (uint8), `scan_angle` (float32, degrees), `point_source_id`
+/// (uint16); depending on the point format `gps_time` (float64), `nir` (uint16) and colours: `colour` (3, uint8) when
+/// all are bytes, stored as they are or times 256 or 257, else `colour16` (3, uint16). Flags (`synthetic`, `key_point`,
+/// `withheld`, `overlap`, `scan_direction`, `edge_of_flight_line`) and `scanner_channel` are columns (uint8) when any
+/// point has one set. Described extra bytes become columns with the described names and types, float64 when they have a
+/// scale or an offset. The unit is metre or foot when the GeoTIFF keys declare it.
+///
+/// Left out: variable length records, wave packets, undescribed extra bytes, bytes after the last point. LAZ, the
+/// compressed form, and COPC are recognised and refused, with a hint how to convert them.
+/// Source: ASPRS, LAS specification 1.4 revision 15; its earlier versions 1.0 to 1.3.
+Format las_format();
+
+/// JSON: values of every kind with a JSON form (see kinds/kind.hpp), recognised by the kind's own member.
+Format json_format();
+
+}  // namespace scanmill

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Dense>
+
+#include "scanmill/formats/common/built_in.hpp"
+#include "scanmill/formats/common/text_columns.hpp"
+
+namespace scanmill {
+
+namespace {
+
+class PtxReader {
+public:
+    PtxReader(std::string_view text, const ReadOptions& options) : text_(text), size_(text.size()), options_(options) {}
+
+    LoadedFile read() {
+        for (; text_.next_row(); ++scans_) read_scan();
+        if (scans_ == 0) throw Error("holds no points: only blanks");
+        if (positions_.empty())
+            throw Error("holds no points: {} without a return", count_text(empty_, "cell", "cells"));
+        require_countable(positions_.size(), "points");
+        if (empty_ > 0)
+            warn(options_.on_warning, "{} of {} cells without a return (0 0 0) left out", empty_,
+                 empty_ + positions_.size());
+        if (scans_ > 1)
+            warn(options_.on_warning, "{} scans were read as one cloud; the column 'scan' has their numbers", scans_);
+        warn(options_.on_warning,
+             "the order of the cells in columns and rows and the scanner's position were left out");
+        TriangleMesh vertices;
+        vertices.vertex_columns = columns();
+        return loaded_file("PTX", "ascii", {}, std::move(positions_), std::move(vertices), options_);
+    }
+
+private:
+    /// A row with `size` numbers of `what`. Pre: the cursor is in it.
+    template <int size>
+    Eigen::RowVector<double, size> read_numbers(std::string_view what) {
+        if (const std::size_t found = text_.count_tokens(); found != size)
+            throw Error("line {}: the {} of scan {} has {} in a row; {} are needed", text_.line(), what, scans_,
+                        count_text(found, "number", "numbers"), size);
+        Eigen::RowVector<double, size> numbers;
+        for (double& number : numbers) number = next_number(text_, "the {} of scan {}", what, scans_);
+        return numbers;
+    }
+
+    u64 read_count(std::string_view what) {
+        u64 count = 0;
+        if (!text_.number(count) || text_.more())
+            throw Error("line {}: expected the number of {} of scan {}", text_.line(), what, scans_)
+                .hint("after the ten lines of its header, a scan has one line for each cell of its grid");
+        return count;
+    }
+
+    void read_scan() {
+        u64 lines = 1;
+        const std::string header = fmt::format("lines of the header of scan {}", scans_);
+        const auto next_header_line = [&] { require_row(text_, lines++, 10, header); };
+        const std::size_t first_line = text_.line();
+        const u64 columns = read_count("columns");
+        next_header_line();
+        const u64 rows = read_count("rows");
+        constexpr u64 least_cell = 8;  // "0 0 0 0" and a line end
+        if (rows > 0 && columns > (size_ / least_cell + 1) / rows)
+            throw Error("line {}: scan {} promises {} x {} cells; the file has only {}", first_line, scans_, columns,
+                        rows, count_text(size_, "byte", "bytes"))
+                .hint(truncated_hint);
+        for (const std::string_view what : {"position", "x axis", "y axis", "z axis"}) {
+            next_header_line();
+            read_numbers<3>(what);
+        }
+        Eigen::Matrix4d matrix;
+        for (int row = 0; row < 4; ++row) {
+            next_header_line();
+            matrix.row(row) = read_numbers<4>("matrix");
+        }
+        require_placement(matrix);
+
+        has_colours_.reset();
+        const std::string cells = fmt::format("cells of scan {}", scans_);
+        for (u64 cell = 0; cell < columns * rows; ++cell) {
+            require_row(text_, cell, columns * rows, cells);
+            read_cell(matrix);
+        }
+    }
+
+    void require_placement(const Eigen::Matrix4d& matrix) const {
+        constexpr double singular = 1e-9, rigid = 1e-3;
+        if (!matrix.allFinite())
+            throw Error("line {}: the matrix of scan {} has a NaN or an infinity", text_.line(), scans_);
+        if (matrix.col(3) != Eigen::Vector4d(0, 0, 0, 1))
+            throw Error(
+                "line {}: the last numbers in the matrix rows of scan {} are {}, {}, {}, {}; 0, 0, 0, 1 are needed",
+                text_.line(), scans_, matrix(0, 3), matrix(1, 3), matrix(2, 3), matrix(3, 3))
+                .hint("PTX has the translation in the last row; a program that wrote it in the last column is wrong");
+        const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>();
+        const Eigen::Vector3d lengths = linear.rowwise().norm();
+        const double volume = linear.determinant();
+        if (!(std::abs(volume) > singular * lengths.prod()))
+            throw Error("line {}: the matrix of scan {} is singular (determinant {})", text_.line(), scans_, volume)
+                .hint("it would flatten the scan: export the file again");
+        if (!(linear * linear.transpose()).isIdentity(rigid))
+            warn(options_.on_warning,
+                 "the matrix of scan {} is not a rigid motion, its axes are {:.4g}, {:.4g} and {:.4g} long; it was "
+                 "applied as it is",
+                 scans_, lengths[0], lengths[1], lengths[2]);
+        if (volume < 0) warn(options_.on_warning, "the matrix of scan {} mirrors; it was applied as it is", scans_);
+    }
+
+    double number() {
+        if (!text_.more()) throw_width();
+        return next_number(text_, "a cell of scan {}", scans_);
+    }
+
+    void read_cell(const Eigen::Matrix4d& matrix) {
+        Vec3 local;
+        for (double& coordinate : local) coordinate = number();
+        const double intensity = number();
+        const bool is_coloured = text_.more();
+        if (local == Vec3::Zero()) {
+            ++empty_;
+            return;
+        }
+        if (is_coloured)
+            for (std::size_t channel = 1; channel < 4; ++channel) values_[channel].push_back(number());
+        if (text_.more()) throw_width();
+        if (has_colours_.value_or(is_coloured) != is_coloured)
+            throw Error("line {}: a cell {} red, green and blue; those before in scan {} {}", text_.line(),
+                        is_coloured ? "has" : "lacks", scans_, is_coloured ? "have none" : "have them");
+        has_colours_ = is_coloured;
+        values_[0].push_back(intensity);
+        scan_of_.push_back(static_cast<u32>(scans_));
+        // Points are row vectors. The identity must not change the bits of a zero or an infinite coordinate.
+        const bool moves = matrix != Eigen::Matrix4d::Identity();
+        const auto placed = [&]() -> Vec3 {
+            return (local.transpose() * matrix.topLeftCorner<3, 3>() + matrix.bottomLeftCorner<1, 3>()).transpose();
+        };
+        positions_.push_back(moves ? placed() : local);
+    }
+
+    [[noreturn]] void throw_width() const {
+        throw Error("line {}: a cell of scan {} has neither 4 numbers (x y z intensity) nor 7 (also red green blue)",
+                    text_.line(), scans_);
+    }
+
+    ColumnTable columns() {
+        const std::size_t coloured = values_[1].size();
+        if (coloured > 0 && coloured < positions_.size())
+            warn(options_.on_warning, "the colours of {} of {} points were left out: not every scan has them", coloured,
+                 positions_.size());
+        std::vector<std::string> names{"intensity", "red", "green", "blue"};
+        const std::size_t kept = coloured == positions_.size() ? 4 : 1;
+        names.resize(kept);
+        values_.resize(kept);
+        ColumnTable table = text_columns(std::move(names), std::move(values_), false, options_.on_warning);
+        if (scans_ > 1) table.add(Column("scan", 1, Buffer(std::move(scan_of_))));
+        return table;
+    }
+
+    TextCursor text_;
+    std::size_t size_;
+    const ReadOptions& options_;
+    std::size_t scans_ = 0;
+    u64 empty_ = 0;
+    std::optional<bool> has_colours_;  // of this scan
+    Array<Vec3> positions_;
+    std::vector<Array<double>> values_{4};  // intensity, red, green, blue
+    Array<u32> scan_of_;
+};
+
+Recognition recognise(std::string_view head, u64) {
+    TextCursor text(without_byte_order_mark(head));
+    for (const std::size_t width : {1, 1, 3, 3, 3, 3, 4, 4, 4, 4})
+        if (!text.next_row() || text.count_tokens() != width || !is_row_of_numbers(text)) return Recognition::no;
+    return Recognition::certain;
+}
+
+LoadedFile read(const FileBytes& file, const ReadOptions& options) {
+    return PtxReader(without_byte_order_mark(file.bytes), options).read();
+}
+
+}  // namespace
+
+Format ptx_format() { return {"PTX", {"ptx"}, recognise, read, {}}; }
+
+}  // namespace scanmill

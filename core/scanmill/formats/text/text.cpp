@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <stdexcept>
+
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/formats/common/built_in.hpp"
+#include "scanmill/formats/common/text_columns.hpp"
+#include "scanmill/formats/common/writing.hpp"
+
+namespace scanmill {
+
+namespace {
+
+// Hoppe's points: rows that begin with a letter.
+
+constexpr TextRules tagged_rules{.comment = '#'};
+
+bool is_tag(std::string_view word) { return word.size() == 1 && std::isalpha(static_cast<unsigned char>(word[0])); }
+
+/// Whether the text's first row is one of p, d, s or g and three numbers.
+bool has_tagged_points(std::string_view text) {
+    TextCursor cursor(text, tagged_rules);
+    if (!cursor.next_row()) return false;
+    const std::string_view tag = cursor.token();
+    return is_tag(tag) && std::string_view("pdsg").find(tag) != std::string_view::npos && cursor.count_tokens() == 3 &&
+           is_row_of_numbers(cursor);
+}
+
+/// Throws Error with the line for a row that is not a single letter and numbers, or a point without three numbers.
+LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options) {
+    TextCursor cursor(text, tagged_rules);
+    Array<Vec3> positions;
+    u64 others = 0;
+    std::set<char> tags;
+    while (cursor.next_row()) {
+        const std::string_view tag = cursor.token();
+        if (!is_tag(tag))
+            throw Error("line {}: {} is not a letter for the row's content, such as p for a point", cursor.line(),
+                        quote(tag));
+        if (tag != "p") {
+            ++others;
+            tags.insert(tag[0]);
+            continue;
+        }
+        if (const std::size_t found = cursor.count_tokens(); found != 3)
+            throw Error("line {}: a point has three numbers, here are {}", cursor.line(), found);
+        Vec3& p = positions.emplace_back();
+        for (double& coordinate : p) coordinate = next_number(cursor, "a point");
+    }
+    if (positions.empty()) throw Error("holds no points: no row begins with p");
+    require_countable(positions.size(), "points");
+    if (others > 0)
+        warn(options.on_warning, "{} not of points ({}) and left out", count_text(others, "row is", "rows are"),
+             fmt::join(tags, ", "));
+    return loaded_file("XYZ", "ascii", cursor.comments().texts(), std::move(positions), {}, options);
+}
+
+class XyzReader {
+public:
+    XyzReader(const FileBytes& file, std::string_view text, const ReadOptions& options)
+        : text_(text, text_rules),
+          size_(text.size()),
+          extension_(plain_extension(file.path.extension().string())),
+          options_(options) {}
+
+    LoadedFile read() {
+        layout_ = read_text_layout(text_);
+        if (!layout_.ignored_names.empty())
+            warn(options_.on_warning, "the comment {} was ignored: it does not name x, y, z and then the rest of {}",
+                 quote(layout_.ignored_names), count_text(layout_.width, "column", "columns"));
+        if (layout_.unread_comments > 0)
+            warn(options_.on_warning,
+                 "{} before the numbers, after the first {}, {} not searched for the names of columns",
+                 count_text(layout_.unread_comments, "comment", "comments"), KeptComments::most,
+                 by_count(layout_.unread_comments, "was", "were"));
+        read_rows();
+        std::vector<Array<double>> normals = normals_after_points();
+        if (normals.empty()) check_count();
+        require_countable(positions_.size(), "points");
+        TriangleMesh vertices;
+        vertices.vertex_columns =
+            normals.empty() ? columns()
+                            : text_columns({"nx", "ny", "nz"}, std::move(normals), false, options_.on_warning);
+        return loaded_file("XYZ", "ascii", text_.comments().texts(), std::move(positions_), std::move(vertices),
+                           options_);
+    }
+
+private:
+    /// Points after a line with their number.
+    struct Block {
+        u64 declared;
+        std::size_t line;
+        std::size_t first_point;
+    };
+
+    void read_rows() {
+        if (layout_.declared_points) blocks_.push_back({*layout_.declared_points, layout_.declared_in_line, 0});
+        // A row takes at least two bytes per number: the file's size bounds the reserved memory.
+        constexpr std::size_t usual_number_text = 8;
+        const std::size_t guess = size_ / (usual_number_text * layout_.width) + 1;
+        positions_.reserve(guess);
+        for (std::size_t i = 0; i < layout_.width; ++i)
+            if (std::ranges::find(layout_.axes, i) == layout_.axes.end()) further_columns_.push_back(i);
+        further_.resize(further_columns_.size());
+        for (Array<double>& column : further_) column.reserve(guess);
+        row_.resize(layout_.width);
+        do {
+            if (!read_row()) continue;
+            const auto [x, y, z] = layout_.axes;
+            positions_.push_back({row_[x], row_[y], row_[z]});
+            for (std::size_t i = 0; i < further_.size(); ++i) further_[i].push_back(row_[further_columns_[i]]);
+        } while (text_.next_row());
+    }
+
+    /// Fills row_; false when the row is the count of another block.
+    bool read_row() {
+        const std::size_t width = row_.size();
+        double* const numbers = row_.data();
+        for (std::size_t i = 0; i < width; ++i) {
+            if (!text_.more()) {
+                if (i == 1 && begins_block(numbers[0])) return false;
+                require_equal_separators();
+                throw_width(i);
+            }
+            if (!text_.number(numbers[i]) && !quoted_number(numbers[i]))
+                throw Error("line {}: {} is not a number", text_.line(), quote(text_.last_token()));
+        }
+        if (text_.more()) throw_width(width + text_.count_tokens());
+        require_equal_separators();
+        return true;
+    }
+
+    [[noreturn]] void throw_width(std::size_t found) const {
+        throw Error("line {}: found {}; the rows before have {}", text_.line(), count_text(found, "column", "columns"),
+                    layout_.width);
+    }
+
+    bool begins_block(double number) {
+        constexpr double most = 1e15;  // whole, and within 64 bits
+        if (blocks_.empty() || !(number >= 0 && number <= most) || number != std::trunc(number)) return false;
+        check_count();
+        blocks_.push_back({static_cast<u64>(number), text_.line(), positions_.size()});
+        return true;
+    }
+
+    /// Some programs put numbers in quotes.
+    bool quoted_number(double& value) const {
+        const std::string_view token = text_.last_token();
+        return token.size() > 2 && token.front() == '"' && token.back() == '"' &&
+               parse_number(token.substr(1, token.size() - 2), value);
+    }
+
+    /// Checks the row as far as it was read.
+    void require_equal_separators() const {
+        if (text_.has_empty_field())
+            throw Error("line {}: a field is empty; every point needs a number in every column", text_.line());
+        if (text_.mixes_separators())
+            throw Error("line {}: {} separate some numbers and {} others", text_.line(), text_.mixed_separators().first,
+                        text_.mixed_separators().second)
+                .hint("if the commas are decimal commas, write points instead");
+    }
+
+    /// Warns when the last block is not as long as its count declares. A PWN file is refused: its count separates
+    /// points from normals.
+    void check_count() const {
+        if (blocks_.empty()) return;
+        const Block& block = blocks_.back();
+        const std::size_t found = positions_.size() - block.first_point;
+        if (found == block.declared) return;
+        if (extension_ == "pwn")
+            throw Error("line {} declares {}; {} {}", block.line, count_text(block.declared, "point", "points"), found,
+                        by_count(found, "row follows", "rows follow"))
+                .hint("the file is truncated or its count is wrong: correct that line");
+        warn(options_.on_warning, "line {} declares {}; {} {}: the count is wrong, or the file is incomplete",
+             block.line, count_text(block.declared, "point", "points"), found, by_count(found, "follows", "follow"));
+    }
+
+    /// When the only count is half the number of rows of three numbers: the second half, removed from the positions.
+    std::vector<Array<double>> normals_after_points() {
+        if (blocks_.size() != 1 || !further_.empty()) return {};
+        const std::size_t points = blocks_[0].declared;
+        if (points == 0 || positions_.size() % 2 != 0 || positions_.size() / 2 != points) return {};
+        std::vector<Array<double>> normals(3);
+        for (std::size_t row = points; row < 2 * points; ++row)
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                normals[axis].push_back(positions_[row][static_cast<Eigen::Index>(axis)]);
+        if (!are_unit_normals(normals[0], normals[1], normals[2]) && extension_ != "pwn") return {};
+        positions_.resize(points);
+        return normals;
+    }
+
+    ColumnTable columns() {
+        std::vector<std::string> names;
+        for (const std::size_t column : further_columns_)
+            if (!layout_.names.empty()) names.push_back(layout_.names[column]);
+        ColumnTable table =
+            text_columns(std::move(names), std::move(further_), extension_ == "pts", options_.on_warning);
+        if (blocks_.size() < 2) return table;
+        warn(options_.on_warning, "{} scans were read as one cloud; the column 'scan' has their numbers",
+             blocks_.size());
+        Array<u32> scans(positions_.size());
+        for (std::size_t i = 0; i < blocks_.size(); ++i) {
+            const std::size_t end = i + 1 < blocks_.size() ? blocks_[i + 1].first_point : scans.size();
+            for (std::size_t row = blocks_[i].first_point; row < end; ++row) scans[row] = static_cast<u32>(i);
+        }
+        table.add(Column("scan", 1, Buffer(std::move(scans))));
+        return table;
+    }
+
+    TextCursor text_;
+    std::size_t size_;
+    std::string extension_;
+    const ReadOptions& options_;
+    TextLayout layout_;
+    std::vector<Block> blocks_;
+    Array<double> row_;
+    Array<Vec3> positions_;
+    std::vector<std::size_t> further_columns_;  // of a row: all except x, y and z
+    std::vector<Array<double>> further_;
+};
+
+Recognition recognise(std::string_view head, u64) {
+    const std::string_view text = without_byte_order_mark(head);
+    if (has_tagged_points(text)) return Recognition::plausible;
+    try {
+        TextCursor cursor(text, text_rules);
+        read_text_layout(cursor);
+        return is_row_of_numbers(cursor) ? Recognition::plausible : Recognition::no;
+    } catch (const Error&) {
+        return Recognition::no;
+    }
+}
+
+LoadedFile read(const FileBytes& file, const ReadOptions& options) {
+    const std::string_view text = without_byte_order_mark(file.bytes);
+    return has_tagged_points(text) ? read_tagged_points(text, options) : XyzReader(file, text, options).read();
+}
+
+/// No row is shorter than three digits with separators and a line end.
+constexpr std::size_t most_rows = std::size_t(1) << 16, shortest_row = std::string_view("1 2 3\n").size();
+constexpr std::size_t piece_size = std::size_t(1) << 18;
+/// Longer pieces have no LF: the text is not streamed.
+constexpr std::size_t longest_piece = most_rows * shortest_row;
+
+/// Thrown and caught in this file, for content that the reader of whole files refuses or warns about.
+struct NotStreamable {};
+
+/// The point of the cursor's row. Throws NotStreamable unless the row is three numbers with equal separators.
+Vec3 parse_row(TextCursor& text, const std::array<std::size_t, 3>& axes) {
+    std::array<double, 3> row;
+    for (double& number : row)
+        if (!text.more() || !text.number(number)) throw NotStreamable{};
+    if (text.more() || text.has_empty_field() || text.mixes_separators()) throw NotStreamable{};
+    return {row[axes[0]], row[axes[1]], row[axes[2]]};
+}
+
+/// Whether the columns are x, y and z only, without a reason for a warning.
+bool is_streamed(const TextLayout& layout) {
+    return layout.width == 3 && !layout.declared_points && layout.ignored_names.empty() && layout.unread_comments == 0;
+}
+
+class TextStream : public PointStream {
+public:
+    explicit TextStream(std::unique_ptr<MappedFile> file) : file_(std::move(file)) {}
+
+    bool open(const ReadOptions& options, unsigned threads, const OnWorldPositions& on_positions) {
+        const std::string_view text = without_byte_order_mark(file_->bytes());
+        TextCursor cursor(text, text_rules);
+        const TextLayout layout = read_text_layout(cursor);
+        if (!is_streamed(layout)) return false;
+        axes_ = layout.axes;
+        comments_ = cursor.comments();
+        std::size_t first_row = static_cast<std::size_t>(TextCursor(cursor).token().data() - text.data());
+        while (first_row > 0 && text[first_row - 1] != '\n' && text[first_row - 1] != '\r') --first_row;
+        if (!cut(text.substr(first_row))) return false;
+        if (!read_all(threads, on_positions)) return false;
+        frame_ = declared_frame(comments_.texts(), options);
+        choose_origin();
+        return true;
+    }
+
+    Column read_column(std::size_t, std::string_view name) const override {
+        throw std::logic_error("no column in a streamed text: " + std::string(name));
+    }
+
+private:
+    /// Divides the text into pieces. False when a line is too long.
+    bool cut(std::string_view text) {
+        while (!text.empty()) {
+            const std::size_t line_end = text.size() > piece_size ? text.find('\n', piece_size) : text.npos;
+            const std::size_t size = line_end == text.npos ? text.size() : line_end + 1;
+            if (size > longest_piece) return false;
+            texts_.push_back(text.substr(0, size));
+            file_->release(texts_.back());  // the search for a line end may have mapped megabytes around it
+            text.remove_prefix(size);
+        }
+        return true;
+    }
+
+    /// Finds pieces_ and world_. False when a coordinate is not finite, or there are too many rows.
+    bool read_all(unsigned threads, const OnWorldPositions& on_positions) {
+        struct Room {
+            Array<Vec3> positions;
+            FiniteBounds bounds;
+            KeptComments comments;
+        };
+        std::size_t rows = 0;
+        for_each_in_order<Room>(
+            threads, texts_.size(),
+            [&](std::size_t piece, Room& room) {
+                room.comments = parse(piece, room.positions).comments();
+                room.bounds = finite_bounds(room.positions);
+            },
+            [&](std::size_t, Room& room) {
+                world_.add(room.bounds);
+                pieces_.push_back(rows);
+                rows += room.positions.size();
+                comments_.append(room.comments);
+                if (on_positions) on_positions(room.positions);
+            });
+        pieces_.push_back(rows);
+        return world_.finite && rows <= ~u32(0);
+    }
+
+    /// Calls `read` on content that was streamable when the file was opened.
+    template <class Read>
+    static void reread(Read&& read) {
+        try {
+            read();
+        } catch (const NotStreamable&) {
+            throw_changed();
+        }
+    }
+
+    TextCursor parse(std::size_t piece, Array<Vec3>& room) const {
+        room.clear();
+        file_->fetch(texts_[piece]);
+        TextCursor cursor(texts_[piece], text_rules);
+        while (cursor.next_row()) room.push_back(parse_row(cursor, axes_));
+        file_->release(texts_[piece]);
+        return cursor;
+    }
+
+    FiniteBounds read_world(std::size_t piece, Array<Vec3>& room) const override {
+        reread([&] { parse(piece, room); });
+        return finite_bounds(room);
+    }
+
+    PointCloud gather_world(std::span<const u32> rows, unsigned threads) const override {
+        Array<Vec3> positions(rows.size());
+        for_each_chunk(threads, texts_.size(), 1, [&](std::size_t piece, std::size_t) {
+            const auto begin = std::ranges::lower_bound(rows, pieces_[piece]);
+            const auto end = std::ranges::lower_bound(rows, pieces_[piece + 1]);
+            if (begin == end) return;
+            file_->fetch(texts_[piece]);
+            TextCursor cursor(texts_[piece], text_rules);
+            std::size_t row = pieces_[piece];
+            reread([&] {
+                for (auto kept = begin; kept != end; ++row) {
+                    cursor.next_row();
+                    if (*kept == row)
+                        positions[static_cast<std::size_t>(kept++ - rows.begin())] = parse_row(cursor, axes_);
+                }
+            });
+            file_->release(texts_[piece]);
+        });
+        PointCloud cloud;
+        cloud.positions = std::move(positions);
+        return cloud;
+    }
+
+    std::unique_ptr<MappedFile> file_;
+    std::array<std::size_t, 3> axes_{0, 1, 2};
+    std::vector<std::string_view> texts_;  // of the pieces
+    KeptComments comments_;
+};
+
+bool may_stream(std::string_view file) {
+    TextCursor cursor(without_byte_order_mark(file), text_rules);
+    return is_streamed(read_text_layout(cursor));
+}
+
+std::unique_ptr<PointStream> open_stream(std::unique_ptr<MappedFile> file, const ReadOptions& options, unsigned threads,
+                                         const OnWorldPositions& on_positions) {
+    try {
+        auto stream = std::make_unique<TextStream>(std::move(file));
+        if (stream->open(options, threads, on_positions)) return stream;
+    } catch (const NotStreamable&) {
+    }
+    return nullptr;
+}
+
+void write(const Value& value, OutputBuffer& out, const WriteOptions& options) {
+    const PointCloud& cloud = *value.get<PointCloud>();
+    const Column* const normal = TextColumns(cloud.columns).normal;
+    warn_lost_precision(cloud.frame, cloud.positions.span(), false, "XYZ", options);
+    std::vector<std::string_view> kept;
+    if (normal) kept.push_back(normal->name());
+    warn_left_out(cloud.columns, "points", "XYZ", options, kept);
+
+    out.text(comment_lines(cloud.frame));
+    for (std::size_t row = 0; row < cloud.size(); ++row) {
+        put_position(cloud.frame, cloud.positions[row], out);
+        if (normal) put_row_text(*normal, row, out);
+        out.text("\n");
+    }
+}
+
+}  // namespace
+
+std::vector<Format> text_formats() {
+    Format xyz{"XYZ", {"xyz", "txt"}, recognise, read, {{kind_of<PointCloud>(), write}}};
+    xyz.may_stream = may_stream;
+    xyz.open_stream = open_stream;
+    // Not written: other programs expect commas, a count or normals in them.
+    Format csv = xyz;
+    csv.name = "CSV";
+    csv.extensions = {"csv", "pts", "pwn", "asc"};
+    csv.writers.clear();
+    return {xyz, csv};
+}
+
+}  // namespace scanmill
