@@ -21,7 +21,7 @@ bool lower(const Vec3& a, const Vec3& b) {
 Vec3 normal_of(const TriangleMesh& mesh, const Triangle& triangle) {
     std::array<const Vec3*, 3> p;
     for (std::size_t i = 0; i < 3; ++i) p[i] = &mesh.positions[triangle[i]];
-    // From the lowest corner on: rounding must not depend on which one is named first.
+    // Starts at the lowest corner: rounding must not depend on the triangle's first corner.
     const auto lowest = std::ranges::min_element(p, [](const Vec3* a, const Vec3* b) { return lower(*a, *b); });
     std::ranges::rotate(p, lowest);
     Vec3 u = *p[1] - *p[0], v = *p[2] - *p[0], w = *p[2] - *p[1];
@@ -40,7 +40,7 @@ double squared_length(const TriangleMesh& mesh, u32 half_edge) {
         .squaredNorm();
 }
 
-/// Gives normals to the triangles that have none, from the border of the proper ones inwards, all of a round at once.
+/// Assigns normals to the triangles without area, in rounds that start beside proper triangles.
 class ThinTriangles {
 public:
     ThinTriangles(const TriangleMesh& mesh, std::span<const u32> opposite, Array<Vec3>& normals)
@@ -49,15 +49,15 @@ public:
           normals_(normals) {}
 
     void fill(std::vector<u32> waiting) {
-        std::vector<Vec3> given;
+        std::vector<Vec3> found;
         while (!waiting.empty()) {
-            given.clear();
-            for (const u32 triangle : waiting) given.push_back(neighbours_normal(triangle));
+            found.clear();
+            for (const u32 triangle : waiting) found.push_back(neighbours_normal(triangle));
             std::vector<u32> next;
             for (std::size_t i = 0; i < waiting.size(); ++i)
-                if (given[i] != Vec3::Zero()) normals_[waiting[i]] = given[i];
+                if (found[i] != Vec3::Zero()) normals_[waiting[i]] = found[i];
             for (std::size_t i = 0; i < waiting.size(); ++i)
-                if (given[i] != Vec3::Zero()) add_waiting_neighbours(waiting[i], next);
+                if (found[i] != Vec3::Zero()) add_waiting_neighbours(waiting[i], next);
             std::ranges::sort(next);
             next.erase(std::ranges::unique(next).begin(), next.end());
             waiting = std::move(next);
@@ -102,8 +102,7 @@ FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> opposi
     for_each_chunk(threads, mesh.triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const Triangle& triangle = mesh.triangles[t];
-            result.unit[t] =
-                half_edges::names_a_vertex_twice(triangle) ? Vec3(Vec3::Zero()) : normal_of(mesh, triangle);
+            result.unit[t] = half_edges::has_repeated_vertex(triangle) ? Vec3(Vec3::Zero()) : normal_of(mesh, triangle);
         }
     });
     std::vector<u32> thin;

@@ -61,13 +61,13 @@ double point_spacing(std::span<const Vec3> positions) {
     if (points.size() < 2) return 0;
 
     const PointTree tree(points);
-    std::vector<u32> rows_at(tree.places().size(), 0);
-    for (const u32 place : tree.place_of_row()) ++rows_at[place];
+    std::vector<u32> rows_at(tree.positions().size(), 0);
+    for (const u32 index : tree.index_of_row()) ++rows_at[index];
     std::vector<double> distances;
     NeighbourBuffer buffer;
     for (const u32 row : sampled_rows(points)) {
-        const u32 place = tree.place_of_row()[row];
-        distances.push_back(rows_at[place] > 1 ? 0 : std::sqrt(tree.nearest(place, 1, buffer).front().squared));
+        const u32 index = tree.index_of_row()[row];
+        distances.push_back(rows_at[index] > 1 ? 0 : std::sqrt(tree.nearest(index, 1, buffer).front().squared));
     }
     return median(distances);
 }
