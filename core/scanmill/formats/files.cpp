@@ -2,7 +2,7 @@
 #include "scanmill/formats/files.hpp"
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/data/conversions.hpp"
+#include "scanmill/data/mesh.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/registry.hpp"
 #include "scanmill/io/atomic_file.hpp"

@@ -4,15 +4,13 @@
 #include <cmath>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/data/points.hpp"
-#include "scanmill/data/transform.hpp"
-#include "scanmill/kinds/field_visitor.hpp"
+#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
 namespace {
 
-class Reframe : public FieldChange {
+class Reframe : public FieldVisitor {
 public:
     explicit Reframe(const Frame& frame) : frame_(frame) {}
     void frame(const char*, Frame& frame) override {
@@ -28,7 +26,7 @@ private:
     Vec3 shift_ = Vec3::Zero();
 };
 
-class ConvertUnit : public FieldChange {
+class ConvertUnit : public FieldVisitor {
 public:
     explicit ConvertUnit(LengthUnit to) : to_(to) {}
     void frame(const char*, Frame& frame) override {
@@ -41,7 +39,7 @@ public:
         for (std::size_t i = 0; i < scaled.size(); ++i) {
             scaled[i] = converted(positions[i]);
             if (positions[i].allFinite() && !scaled[i].allFinite())
-                throw Error("point {} has a coordinate beyond what a number can hold in {}", i, symbol(to_));
+                throw Error("point {} has a coordinate outside the range of a number in {}", i, symbol(to_));
         }
         positions = std::move(scaled);
     }
@@ -69,8 +67,8 @@ Buffer<Vec3> rotated(const Buffer<Vec3>& vectors, const Eigen::Matrix3d& rotatio
     return turned;
 }
 
-/// Without a rotation nothing but the frame changes: multiplied with the identity, a -0 would become 0.
-class Move : public FieldChange {
+/// Without a rotation only the frame changes: multiplication by the identity would change -0 to 0.
+class Move : public FieldVisitor {
 public:
     explicit Move(const RigidTransform& pose) : pose_(pose), turns_(!pose.rotation.isIdentity(0)) {}
     void frame(const char*, Frame& frame) override {
@@ -78,7 +76,7 @@ public:
         if (turns_) frame.origin = pose_.rotation * frame.origin;
         frame.origin += translation;
         if (!frame.origin.allFinite())
-            throw Error("the pose moves the scan's origin to ({}, {}, {}), which no coordinate can hold",
+            throw Error("the pose moves the scan's origin to ({}, {}, {}), which is outside the range of a coordinate",
                         frame.origin.x(), frame.origin.y(), frame.origin.z());
         if (!pose_.to.empty()) frame.name = pose_.to;
     }
@@ -100,7 +98,7 @@ private:
     bool turns_;
 };
 
-class ReadGeometry : public FieldChange {
+class ReadGeometry : public FieldVisitor {
 public:
     void frame(const char*, Frame& frame) override { found_frame = frame; }
     void positions(const char*, Buffer<Vec3>& positions) override { found_positions = positions; }

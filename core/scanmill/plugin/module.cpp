@@ -10,6 +10,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 #include <vector>
 
 #include "scanmill/base/error.hpp"
@@ -21,8 +23,8 @@ namespace {
 
 constexpr std::string_view module_prefix = "scanmill-";
 
-/// The module that is being loaded. A static object in it may crash or end this process: then its name is the last
-/// thing that this process writes to stderr. Signal handlers reach no other state.
+/// The module that is being loaded. If a static object in it crashes or ends this process, the process last writes this
+/// name to stderr. The only state that signal handlers use.
 std::atomic<const char*> module_being_loaded = nullptr;
 constexpr std::array fatal_signals{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV};
 
@@ -69,29 +71,25 @@ void* open_library(const std::filesystem::path& module) noexcept {
 
 std::string abi_text() { return SCANMILL_ABI_TEXT; }
 
-const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleKind kind,
-                                    const std::string& expected_name) {
+void load_declaration(const std::filesystem::path& module, std::string_view magic, std::string_view noun,
+                      const std::string& expected_name, void* declaration) {
     void* handle = open_library(module);
     if (!handle) throw Error("module '{}' cannot be loaded: {}", module.string(), ::dlerror());
     const auto* descriptor = static_cast<const PluginDescriptor*>(::dlsym(handle, plugin_symbol));
-    if (!descriptor) throw Error("module '{}' is no {}: it exports no {}", module.string(), kind.what, plugin_symbol);
-    if (const std::string_view magic(descriptor->magic, ::strnlen(descriptor->magic, sizeof descriptor->magic));
-        magic != kind.magic)
-        throw Error("module '{}' is no {}: its {} begins with '{}'; expected '{}'", module.string(), kind.what,
-                    plugin_symbol, magic, kind.magic);
+    if (!descriptor) throw Error("module '{}' is not a {}: it exports no {}", module.string(), noun, plugin_symbol);
+    if (const std::string_view found(descriptor->magic, ::strnlen(descriptor->magic, sizeof descriptor->magic));
+        found != magic)
+        throw Error("module '{}' is not a {}: its {} begins with '{}'; expected '{}'", module.string(), noun,
+                    plugin_symbol, found, magic);
     if (descriptor->abi != abi_text())
         throw Error("module '{}' was built for another program: it needs '{}', this is '{}'", module.string(),
                     descriptor->abi, abi_text())
             .hint("build the module again with this program's headers and compiler");
     if (descriptor->name != expected_name)
-        throw Error("module '{}' holds the {} '{}', not '{}'", module.string(), kind.what, descriptor->name,
+        throw Error("module '{}' contains the {} '{}', not '{}'", module.string(), noun, descriptor->name,
                     expected_name);
-    return *descriptor;
-}
-
-void declare(const PluginDescriptor& descriptor, const std::filesystem::path& module, void* declaration) {
     try {
-        descriptor.declare(declaration);
+        descriptor->declare(declaration);
     } catch (const std::exception& error) {
         throw Error("module '{}' fails while it declares itself: {}", module.string(), error.what());
     } catch (...) {
@@ -101,12 +99,17 @@ void declare(const PluginDescriptor& descriptor, const std::filesystem::path& mo
 
 FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name) {
     FilterDeclaration declaration;
-    declare(open_module(module, {filter_magic, "filter"}, expected_name), module, &declaration);
+    load_declaration(module, "scanmill-filter", "filter", expected_name, &declaration);
     if (declaration.spec.name != expected_name)
         throw Error("module '{}' declares the filter '{}', not '{}'", module.string(), declaration.spec.name,
                     expected_name);
     if (!declaration.run) throw Error("module '{}' declares nothing to run", module.string());
     return declaration;
+}
+
+void throw_manifest_differs(const std::filesystem::path& module) {
+    throw Error("module '{}' differs from the manifest beside it", module.string())
+        .hint("build or install the module again; this also writes its manifest");
 }
 
 std::vector<std::filesystem::path> module_manifests(const std::filesystem::path& folder) {
@@ -117,6 +120,21 @@ std::vector<std::filesystem::path> module_manifests(const std::filesystem::path&
             manifests.push_back(file.path());
     std::ranges::sort(manifests);
     return manifests;
+}
+
+std::string manifest_text(const std::filesystem::path& manifest) {
+    std::ifstream stream(manifest, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (!stream) throw Error("cannot be read");
+    return text.str();
+}
+
+std::filesystem::path module_beside(const std::filesystem::path& manifest, const std::string& abi) {
+    if (abi != abi_text()) throw Error("was built for another program: it needs '{}', this is '{}'", abi, abi_text());
+    std::filesystem::path module = std::filesystem::path(manifest).replace_extension(".so");
+    if (!std::filesystem::exists(module)) throw Error("has no module beside it");
+    return module;
 }
 
 std::string module_name(const std::filesystem::path& file) { return file.stem().string().substr(module_prefix.size()); }

@@ -73,16 +73,9 @@ u32 reject_outliers(std::span<const QuadricSample> samples, Inclination inclinat
 
 /// Reusable memory of a fit.
 struct Fit {
-    Array<Vec3> offsets;  // from the point, which is the first
+    Array<Vec3> neighbours, offsets;
     Array<QuadricSample> samples, kept;
 };
-
-template <class PositionOf>
-void take_offsets(const Vec3& point, std::size_t count, PositionOf&& position_of, Array<Vec3>& offsets) {
-    offsets.resize(count + 1);
-    offsets[0] = Vec3::Zero();
-    for (std::size_t i = 0; i < count; ++i) offsets[i + 1] = position_of(i) - point;
-}
 
 std::size_t nearest_to(const Vec3& centre, std::span<const Vec3> points) {
     std::size_t best = 0;
@@ -91,7 +84,9 @@ std::size_t nearest_to(const Vec3& centre, std::span<const Vec3> points) {
     return best;
 }
 
-LocalSurface fitted(Fit& fit, LocalSurfaceParams::Origin origin) {
+LocalSurface fitted(const Vec3& point, std::span<const Vec3> neighbours, LocalSurfaceParams::Origin origin, Fit& fit) {
+    fit.offsets.assign(1, Vec3::Zero());
+    for (const Vec3& neighbour : neighbours) fit.offsets.push_back(neighbour - point);
     const Scatter scatter = scatter_of(fit.offsets);
     LocalSurface surface;
     surface.normal = scatter.normal;
@@ -121,9 +116,7 @@ LocalSurface fitted(Fit& fit, LocalSurfaceParams::Origin origin) {
 
 LocalSurface local_surface(const Vec3& point, std::span<const Vec3> neighbours, LocalSurfaceParams::Origin origin) {
     Fit fit;
-    take_offsets(
-        point, neighbours.size(), [&](std::size_t i) { return neighbours[i]; }, fit.offsets);
-    return fitted(fit, origin);
+    return fitted(point, neighbours, origin, fit);
 }
 
 Array<LocalSurface> local_surfaces(const PointTree& tree, const LocalSurfaceParams& params,
@@ -134,12 +127,10 @@ Array<LocalSurface> local_surfaces(const PointTree& tree, const LocalSurfacePara
         execution.check_cancelled();
         Fit fit;
         for (std::size_t i = 0; i < batch.indices.size(); ++i) {
-            const std::span<const Neighbour> neighbours = batch.of(i);
             const u32 index = batch.indices[i];
-            take_offsets(
-                positions[index], neighbours.size(), [&](std::size_t n) { return positions[neighbours[n].index]; },
-                fit.offsets);
-            surfaces[index] = fitted(fit, params.origin);
+            fit.neighbours.clear();
+            for (const Neighbour& neighbour : batch.of(i)) fit.neighbours.push_back(positions[neighbour.index]);
+            surfaces[index] = fitted(positions[index], fit.neighbours, params.origin, fit);
         }
     });
     return surfaces;

@@ -11,22 +11,6 @@ namespace scanmill::half_edges {
 
 namespace {
 
-/// By edge, then by number. Pre: sorted by number; all have the same smaller vertex.
-void sort_by_edge(std::span<VertexHalfEdge> half_edges) {
-    constexpr std::size_t few = 32;
-    if (half_edges.size() > few) {
-        std::ranges::stable_sort(half_edges, {}, &VertexHalfEdge::other);
-        return;
-    }
-    for (std::size_t i = 1; i < half_edges.size(); ++i) {
-        const VertexHalfEdge half_edge = half_edges[i];
-        std::size_t slot = i;
-        for (; slot > 0 && half_edges[slot - 1].other > half_edge.other; --slot)
-            half_edges[slot] = half_edges[slot - 1];
-        half_edges[slot] = half_edge;
-    }
-}
-
 std::string vertex_text(const TriangleMesh& mesh, u32 vertex) {
     const Vec3 world = mesh.frame.origin + mesh.positions[vertex];
     return fmt::format("vertex {} ({:.9g}, {:.9g}, {:.9g})", vertex, world.x(), world.y(), world.z());
@@ -85,8 +69,11 @@ ByVertex by_smaller_vertex(const TriangleMesh& mesh) {
     for_each_half_edge([&](u32 half_edge, u32 a, u32 b) {
         result.half_edges[next[std::min(a, b)]++] = {std::max(a, b), half_edge};
     });
-    for (std::size_t vertex = 0; vertex + 1 < begin.size(); ++vertex)
-        sort_by_edge({result.half_edges.data() + begin[vertex], result.half_edges.data() + begin[vertex + 1]});
+    const auto at = [&](u32 group) { return result.half_edges.begin() + begin[group]; };
+    for (u32 vertex = 0; vertex + 1 < begin.size(); ++vertex)
+        std::sort(at(vertex), at(vertex + 1), [](const VertexHalfEdge& a, const VertexHalfEdge& b) {
+            return a.other != b.other ? a.other < b.other : a.number < b.number;
+        });
     return result;
 }
 

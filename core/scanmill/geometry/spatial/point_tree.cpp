@@ -42,7 +42,24 @@ public:
         u32 index;
     };
 
-    BoxTree(std::span<const Vec3> positions, unsigned threads);
+    BoxTree(std::span<const Vec3> positions, unsigned threads) : points_(positions.size()) {
+        // Smaller leaves cost more boxes, larger ones more distances to points that are too far.
+        constexpr std::size_t most_in_leaf = 8;
+        constexpr std::size_t chunk = 1 << 12;
+        assert(!positions.empty() && positions.size() <= ~u32(0));
+        for (u32 index = 0; index < positions.size(); ++index) points_[index] = {positions[index], index};
+        while (positions.size() >> depth_ > most_in_leaf) ++depth_;
+        boxes_.resize(2 * leaves());
+        const auto for_level = [&](u64 first, auto&& action) {
+            const std::size_t nodes_per_chunk = std::max<std::size_t>(1, chunk * first / positions.size());
+            for_each_chunk(threads, first, nodes_per_chunk, [&](std::size_t begin, std::size_t end) {
+                for (u64 node = first + begin; node < first + end; ++node) action(node);
+            });
+        };
+        // Every level computes its boxes from the points: it costs less than the selection beside it.
+        for (u64 first = 1; first < leaves(); first *= 2) for_level(first, [&](u64 node) { bound(node), split(node); });
+        for_level(leaves(), [&](u64 node) { bound(node); });
+    }
 
     std::span<const Point> points() const { return points_; }
     std::span<const Point> points_of(u64 node) const {
@@ -85,52 +102,27 @@ private:
         const int level = static_cast<int>(std::bit_width(node)) - 1;
         return (node - (u64(1) << level) + later) * points_.size() >> level;
     }
-    void split(u64 node);
-    void bound(u64 node);
+    void bound(u64 node) {
+        BoundingBox box;
+        for (const Point& point : points_of(node)) box.add(point.position);
+        boxes_[node] = box;
+    }
+
+    void split(u64 node) {
+        int axis;
+        (boxes_[node].high - boxes_[node].low).maxCoeff(&axis);
+        const auto at = [&](std::size_t slot) { return points_.begin() + static_cast<std::ptrdiff_t>(slot); };
+        std::nth_element(at(begin_of(node, 0)), at(begin_of(2 * node, 1)), at(begin_of(node, 1)),
+                         [axis](const Point& a, const Point& b) {
+                             const double x = a.position[axis], y = b.position[axis];
+                             return x != y ? x < y : a.index < b.index;
+                         });
+    }
 
     unsigned depth_ = 0;
     Array<Point> points_;
     Array<BoundingBox> boxes_;
 };
-
-BoxTree::BoxTree(std::span<const Vec3> positions, unsigned threads) : points_(positions.size()) {
-    // Smaller leaves cost more boxes, larger ones more distances to points that are too far.
-    constexpr std::size_t most_in_leaf = 8;
-    constexpr std::size_t chunk = 1 << 12;
-    assert(!positions.empty() && positions.size() <= ~u32(0));
-    for (u32 index = 0; index < positions.size(); ++index) points_[index] = {positions[index], index};
-    while (positions.size() >> depth_ > most_in_leaf) ++depth_;
-    boxes_.resize(2 * leaves());
-    const auto for_level = [&](u64 first, auto&& action) {
-        const std::size_t nodes_per_chunk = std::max<std::size_t>(1, chunk * first / positions.size());
-        for_each_chunk(threads, first, nodes_per_chunk, [&](std::size_t begin, std::size_t end) {
-            for (u64 node = first + begin; node < first + end; ++node) action(node);
-        });
-    };
-    // Every level computes its boxes from the points: it costs less than the selection beside it.
-    for (u64 first = 1; first < leaves(); first *= 2) for_level(first, [&](u64 node) { bound(node), split(node); });
-    for_level(leaves(), [&](u64 node) { bound(node); });
-}
-
-void BoxTree::bound(u64 node) {
-    BoundingBox box;
-    for (const Point& point : points_of(node)) {
-        box.low = box.low.cwiseMin(point.position);
-        box.high = box.high.cwiseMax(point.position);
-    }
-    boxes_[node] = box;
-}
-
-void BoxTree::split(u64 node) {
-    int axis;
-    (boxes_[node].high - boxes_[node].low).maxCoeff(&axis);
-    const auto at = [&](std::size_t slot) { return points_.begin() + static_cast<std::ptrdiff_t>(slot); };
-    std::nth_element(at(begin_of(node, 0)), at(begin_of(2 * node, 1)), at(begin_of(node, 1)),
-                     [axis](const Point& a, const Point& b) {
-                         const double x = a.position[axis], y = b.position[axis];
-                         return x != y ? x < y : a.index < b.index;
-                     });
-}
 
 /// The order of neighbours; a type, so that sorting inlines it.
 struct ComesBefore {
@@ -153,16 +145,128 @@ public:
           buffer_(buffer) {}
 
     /// Writes the #count neighbours of points()[slot] to `out`.
-    void nearest(std::size_t slot, Neighbour* out);
+    void nearest(std::size_t slot, Neighbour* out) {
+        const BoxTree::Point& from = tree_.points()[slot];
+        const double squared = enough_around(from.position, tree_.leaf_of(slot));
+        collect({from.position, from.position}, squared);
+        [[maybe_unused]] const bool enough = choose(from, squared, out);
+        assert(enough);
+    }
+
     /// Writes the neighbours of all points of a leaf to `out`, #points × count.
-    void nearest_of_leaf(u64 leaf, Neighbour* out);
+    void nearest_of_leaf(u64 leaf, Neighbour* out) {
+        const std::span<const BoxTree::Point> points = tree_.points_of(leaf);
+        const double squared = radius_for_leaf(leaf);
+        collect(tree_.box(leaf), squared);
+        double needed = 0;
+        u64 failed = 0;  // a bit for each point
+        assert(points.size() <= 64);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (choose(points[i], squared, out + i * count_))
+                needed = std::max(needed, out[(i + 1) * count_ - 1].squared);
+            else
+                failed |= u64(1) << i;
+        }
+        const auto first = static_cast<std::size_t>(points.data() - tree_.points().data());
+        for (; failed; failed &= failed - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(failed));
+            nearest(first + i, out + i * count_);
+            needed = std::max(needed, out[(i + 1) * count_ - 1].squared);
+        }
+        last_squared_ = needed;
+    }
 
 private:
-    double enough_around(const Vec3& position, u64 leaf);
-    double radius_for_leaf(u64 leaf);
-    void collect(const BoundingBox& box, double squared);
-    bool choose(const BoxTree::Point& from, double squared, Neighbour* out);
-    void choose_sorted(std::span<Neighbour> found, double squared, Neighbour* out);
+    /// The square of a radius that contains enough points around every point of the leaf, or around most of them.
+    double radius_for_leaf(u64 leaf) {
+        constexpr double widening = 1.25;  // wider costs candidates, narrower second searches
+        const BoundingBox& box = tree_.box(leaf);
+        // From the middle of the box to count + 1 points, and from every point to the middle.
+        const double around =
+            std::sqrt(enough_around((box.low + box.high) / 2, leaf)) + (box.high - box.low).norm() / 2;
+        return std::min(around * around, last_squared_ * widening);
+    }
+
+    /// A squared radius around `position` that contains at least count + 1 points, including one at `position`.
+    double enough_around(const Vec3& position, u64 leaf) {
+        const std::span<const BoxTree::Point> points = tree_.points_of(tree_.ancestor_with(count_ + 1, leaf));
+        if (points.size() > buffer_.x.size()) buffer_.reserve(2 * points.size());
+        const std::span<double> squares = std::span(buffer_.squares).first(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) squares[i] = squared_distance(points[i].position, position);
+        const auto last = squares.begin() + static_cast<std::ptrdiff_t>(count_);
+        std::nth_element(squares.begin(), last, squares.end());
+        return *last;
+    }
+
+    /// Makes candidates of the points whose squared distance to the box is at most `squared`.
+    void collect(const BoundingBox& box, double squared) {
+        std::size_t size = 0;
+        tree_.near(box, squared, [&](std::span<const BoxTree::Point> points) {
+            if (size + points.size() > buffer_.x.size()) buffer_.reserve(2 * (size + points.size()));
+            for (const BoxTree::Point& point : points) {
+                buffer_.x[size] = point.position.x();
+                buffer_.y[size] = point.position.y();
+                buffer_.z[size] = point.position.z();
+                buffer_.indices[size] = point.index;
+                // No branch: it could not be predicted.
+                size += squared_distance(box, BoundingBox{point.position, point.position}) <= squared;
+            }
+        });
+        buffer_.candidates = size;
+    }
+
+    /// False if fewer than count other candidates are within. Pre: all points within are candidates.
+    bool choose(const BoxTree::Point& from, double squared, Neighbour* out) {
+        const std::size_t size = buffer_.candidates;
+        for (std::size_t i = 0; i < size; ++i) {
+            const double x = buffer_.x[i] - from.position.x(), y = buffer_.y[i] - from.position.y(),
+                         z = buffer_.z[i] - from.position.z();
+            buffer_.squares[i] = (x * x + y * y) + z * z;
+        }
+        std::size_t found = 0;
+        for (std::size_t i = 0; i < size; ++i) {
+            buffer_.found[found] = {buffer_.squares[i], buffer_.indices[i]};
+            found += unsigned{buffer_.squares[i] <= squared} & unsigned{buffer_.indices[i] != from.index};
+        }
+        if (found < count_) return false;
+        choose_sorted(std::span(buffer_.found).first(found), squared, out);
+        return true;
+    }
+
+    /// Writes the #count nearest of the found ones to `out`, in order. On a surface squared distances are spread
+    /// evenly, so a bucket sort nearly sorts them; an insertion sort finishes.
+    void choose_sorted(std::span<Neighbour> found, double squared, Neighbour* out) {
+        constexpr u32 last_bucket = 63, most_in_bucket = 12;
+        const double buckets_per_square = last_bucket / squared;
+        std::array<u32, last_bucket + 2> begin{};
+        u32 fullest = most_in_bucket + 1;
+        if (buckets_per_square > 0 && std::isfinite(buckets_per_square)) {
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                buffer_.buckets[i] = static_cast<u32>(found[i].squared * buckets_per_square);
+                ++begin[buffer_.buckets[i] + 1];
+            }
+            fullest = *std::ranges::max_element(begin);
+        }
+        if (fullest > most_in_bucket) {
+            const auto end = found.begin() + static_cast<std::ptrdiff_t>(count_);
+            std::nth_element(found.begin(), end - 1, found.end(), ComesBefore());
+            std::sort(found.begin(), end, ComesBefore());
+            std::copy_n(found.begin(), count_, out);
+            return;
+        }
+        std::partial_sum(begin.begin(), begin.end(), begin.begin());
+        for (std::size_t i = 0; i < found.size(); ++i) buffer_.sorted[begin[buffer_.buckets[i]]++] = found[i];
+        // No element moves farther than the size of its bucket.
+        const std::size_t last = std::min(found.size(), count_ + most_in_bucket);
+        for (std::size_t i = 1; i < last; ++i) {
+            const Neighbour moving = buffer_.sorted[i];
+            std::size_t slot = i;
+            for (; slot > 0 && ComesBefore()(moving, buffer_.sorted[slot - 1]); --slot)
+                buffer_.sorted[slot] = buffer_.sorted[slot - 1];
+            buffer_.sorted[slot] = moving;
+        }
+        std::copy_n(buffer_.sorted.begin(), count_, out);
+    }
 
     const BoxTree& tree_;
     std::size_t count_;
@@ -170,126 +274,6 @@ private:
     /// The squared radius that the last leaf needed.
     double last_squared_ = std::numeric_limits<double>::infinity();
 };
-
-void NeighbourSearch::nearest(std::size_t slot, Neighbour* out) {
-    const BoxTree::Point& from = tree_.points()[slot];
-    const double squared = enough_around(from.position, tree_.leaf_of(slot));
-    collect({from.position, from.position}, squared);
-    [[maybe_unused]] const bool enough = choose(from, squared, out);
-    assert(enough);
-}
-
-void NeighbourSearch::nearest_of_leaf(u64 leaf, Neighbour* out) {
-    const std::span<const BoxTree::Point> points = tree_.points_of(leaf);
-    const double squared = radius_for_leaf(leaf);
-    collect(tree_.box(leaf), squared);
-    double needed = 0;
-    u64 failed = 0;  // a bit for each point
-    assert(points.size() <= 64);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (choose(points[i], squared, out + i * count_))
-            needed = std::max(needed, out[(i + 1) * count_ - 1].squared);
-        else
-            failed |= u64(1) << i;
-    }
-    const auto first = static_cast<std::size_t>(points.data() - tree_.points().data());
-    for (; failed; failed &= failed - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(failed));
-        nearest(first + i, out + i * count_);
-        needed = std::max(needed, out[(i + 1) * count_ - 1].squared);
-    }
-    last_squared_ = needed;
-}
-
-/// The square of a radius that contains enough points around every point of the leaf, or around most of them.
-double NeighbourSearch::radius_for_leaf(u64 leaf) {
-    constexpr double widening = 1.25;  // wider costs candidates, narrower second searches
-    const BoundingBox& box = tree_.box(leaf);
-    // From the middle of the box to count + 1 points, and from every point to the middle.
-    const double around = std::sqrt(enough_around((box.low + box.high) / 2, leaf)) + (box.high - box.low).norm() / 2;
-    return std::min(around * around, last_squared_ * widening);
-}
-
-/// A squared radius around `position` that contains at least count + 1 points, including one at `position`.
-double NeighbourSearch::enough_around(const Vec3& position, u64 leaf) {
-    const std::span<const BoxTree::Point> points = tree_.points_of(tree_.ancestor_with(count_ + 1, leaf));
-    if (points.size() > buffer_.x.size()) buffer_.reserve(2 * points.size());
-    const std::span<double> squares = std::span(buffer_.squares).first(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) squares[i] = squared_distance(points[i].position, position);
-    const auto last = squares.begin() + static_cast<std::ptrdiff_t>(count_);
-    std::nth_element(squares.begin(), last, squares.end());
-    return *last;
-}
-
-/// Makes candidates of the points whose squared distance to the box is at most `squared`.
-void NeighbourSearch::collect(const BoundingBox& box, double squared) {
-    std::size_t size = 0;
-    tree_.near(box, squared, [&](std::span<const BoxTree::Point> points) {
-        if (size + points.size() > buffer_.x.size()) buffer_.reserve(2 * (size + points.size()));
-        for (const BoxTree::Point& point : points) {
-            buffer_.x[size] = point.position.x();
-            buffer_.y[size] = point.position.y();
-            buffer_.z[size] = point.position.z();
-            buffer_.indices[size] = point.index;
-            // No branch: it could not be predicted.
-            size += squared_distance(box, BoundingBox{point.position, point.position}) <= squared;
-        }
-    });
-    buffer_.candidates = size;
-}
-
-/// False if fewer than count other candidates are within. Pre: all points within are candidates.
-bool NeighbourSearch::choose(const BoxTree::Point& from, double squared, Neighbour* out) {
-    const std::size_t size = buffer_.candidates;
-    for (std::size_t i = 0; i < size; ++i) {
-        const double x = buffer_.x[i] - from.position.x(), y = buffer_.y[i] - from.position.y(),
-                     z = buffer_.z[i] - from.position.z();
-        buffer_.squares[i] = (x * x + y * y) + z * z;
-    }
-    std::size_t found = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-        buffer_.found[found] = {buffer_.squares[i], buffer_.indices[i]};
-        found += unsigned{buffer_.squares[i] <= squared} & unsigned{buffer_.indices[i] != from.index};
-    }
-    if (found < count_) return false;
-    choose_sorted(std::span(buffer_.found).first(found), squared, out);
-    return true;
-}
-
-/// Writes the #count nearest of the found ones to `out`, in order. On a surface squared distances are spread evenly, so
-/// a bucket sort nearly sorts them; an insertion sort finishes.
-void NeighbourSearch::choose_sorted(std::span<Neighbour> found, double squared, Neighbour* out) {
-    constexpr u32 last_bucket = 63, most_in_bucket = 12;
-    const double buckets_per_square = last_bucket / squared;
-    std::array<u32, last_bucket + 2> begin{};
-    u32 fullest = most_in_bucket + 1;
-    if (buckets_per_square > 0 && std::isfinite(buckets_per_square)) {
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            buffer_.buckets[i] = static_cast<u32>(found[i].squared * buckets_per_square);
-            ++begin[buffer_.buckets[i] + 1];
-        }
-        fullest = *std::ranges::max_element(begin);
-    }
-    if (fullest > most_in_bucket) {
-        const auto end = found.begin() + static_cast<std::ptrdiff_t>(count_);
-        std::nth_element(found.begin(), end - 1, found.end(), ComesBefore());
-        std::sort(found.begin(), end, ComesBefore());
-        std::copy_n(found.begin(), count_, out);
-        return;
-    }
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    for (std::size_t i = 0; i < found.size(); ++i) buffer_.sorted[begin[buffer_.buckets[i]]++] = found[i];
-    // No element moves farther than the size of its bucket.
-    const std::size_t last = std::min(found.size(), count_ + most_in_bucket);
-    for (std::size_t i = 1; i < last; ++i) {
-        const Neighbour moving = buffer_.sorted[i];
-        std::size_t slot = i;
-        for (; slot > 0 && ComesBefore()(moving, buffer_.sorted[slot - 1]); --slot)
-            buffer_.sorted[slot] = buffer_.sorted[slot - 1];
-        buffer_.sorted[slot] = moving;
-    }
-    std::copy_n(buffer_.sorted.begin(), count_, out);
-}
 
 struct Row {
     double x;

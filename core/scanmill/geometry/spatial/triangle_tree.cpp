@@ -23,25 +23,28 @@ float rounded_down(double value) {
 }
 float rounded_up(double value) { return -rounded_down(-value); }
 
+using Float3 = Eigen::Array3f;
+
+Float3 rounded_down(const Vec3& point) {
+    return {rounded_down(point.x()), rounded_down(point.y()), rounded_down(point.z())};
+}
+Float3 rounded_up(const Vec3& point) { return -rounded_down(Vec3(-point)); }
+
 struct Centroid {
-    float at[3];
+    Float3 at;
     u32 row;
 };
 
 /// Moves the `middle - first` smallest along the longest axis to the front; equal ones by row.
 void split(Centroid* first, Centroid* middle, Centroid* last) {
     if (middle == first || middle == last) return;
-    float low[3], high[3];
-    std::copy_n(first->at, 3, low);
-    std::copy_n(first->at, 3, high);
-    for (const Centroid* c = first; c != last; ++c)
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], c->at[axis]);
-            high[axis] = std::max(high[axis], c->at[axis]);
-        }
+    Float3 low = first->at, high = first->at;
+    for (const Centroid* c = first; c != last; ++c) {
+        low = low.min(c->at);
+        high = high.max(c->at);
+    }
     int longest = 0;
-    for (int axis = 1; axis < 3; ++axis)
-        if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
+    (high - low).maxCoeff(&longest);
     std::nth_element(first, middle, last, [longest](const Centroid& a, const Centroid& b) {
         return a.at[longest] != b.at[longest] ? a.at[longest] < b.at[longest] : a.row < b.row;
     });
@@ -53,10 +56,7 @@ TriangleTree::TriangleTree(std::span<const Vec3> positions, std::span<const Tria
     assert(!triangles.empty() && triangles.size() < ~u32(0));
     BoundingBox box;
     for (const Triangle& triangle : triangles)
-        for (u32 vertex : triangle) {
-            box.low = box.low.cwiseMin(positions[vertex]);
-            box.high = box.high.cwiseMax(positions[vertex]);
-        }
+        for (u32 vertex : triangle) box.add(positions[vertex]);
     centre_ = box.low + (box.high - box.low) / 2;
     if (const double extent = (box.high - box.low).maxCoeff(); extent > 0)
         scale_ = std::ldexp(1.0, -std::ilogb(extent));
@@ -75,9 +75,8 @@ void TriangleTree::sort_triangles(std::span<const Vec3> positions, std::span<con
     for_each_chunk(threads, count, chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             const auto& [a, b, c] = triangles[row];
-            const Vec3 third = scaled(positions[a]) + scaled(positions[b]) + scaled(positions[c]);
-            for (int axis = 0; axis < 3; ++axis) centroids[row].at[axis] = static_cast<float>(third[axis]);
-            centroids[row].row = static_cast<u32>(row);
+            const Vec3 sum = scaled(positions[a]) + scaled(positions[b]) + scaled(positions[c]);
+            centroids[row] = {sum.cast<float>().array(), static_cast<u32>(row)};
         }
     });
     rows_.resize(count);
@@ -117,7 +116,7 @@ void TriangleTree::bound_nodes(unsigned threads) {
 void TriangleTree::bound_node(std::size_t node) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < arity; ++i) {
-        float low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
+        Float3 low = Float3::Constant(infinity), high = -low;
         const std::size_t child = arity * node + 1 + i;
         if (child < nodes_.size()) {
             for (int axis = 0; axis < 3; ++axis) {
@@ -127,13 +126,10 @@ void TriangleTree::bound_node(std::size_t node) {
         } else {
             const std::size_t leaf = child - nodes_.size();
             for (std::size_t slot = begin_of(leaf, depth_); slot < begin_of(leaf + 1, depth_); ++slot) {
-                const Corners& corners = corners_[slot];
-                for (const Vec3& corner : {corners.a, corners.b, corners.c})
-                    for (int axis = 0; axis < 3; ++axis) {
-                        const double at = scaled(corner)[axis];
-                        low[axis] = std::min(low[axis], rounded_down(at - widening));
-                        high[axis] = std::max(high[axis], rounded_up(at + widening));
-                    }
+                for (const Vec3& corner : corners_[slot]) {
+                    low = low.min(rounded_down(Vec3(scaled(corner).array() - widening)));
+                    high = high.max(rounded_up(Vec3(scaled(corner).array() + widening)));
+                }
             }
         }
         for (int axis = 0; axis < 3; ++axis) {
@@ -190,8 +186,8 @@ float reach(double squared, double scale) {
 }  // namespace
 
 Vec3 TriangleTree::nearest_point(const Vec3& point, u32 slot) const {
-    const Corners& corners = corners_[slot];
-    return nearest_on_triangle(point, corners.a, corners.b, corners.c);
+    const auto& [a, b, c] = corners_[slot];
+    return nearest_on_triangle(point, a, b, c);
 }
 
 NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
@@ -239,11 +235,7 @@ NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
 }
 
 void TriangleTree::meeting(const BoundingBox& box, Array<u32>& rows) const {
-    float low[3], high[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = rounded_down(scaled(box.low)[axis]);
-        high[axis] = rounded_up(scaled(box.high)[axis]);
-    }
+    const Float3 low = rounded_down(scaled(box.low)), high = rounded_up(scaled(box.high));
     std::array<u32, (arity - 1) * deepest + 1> stack;
     std::size_t waiting = 0;
     stack[waiting++] = 0;
@@ -260,8 +252,8 @@ void TriangleTree::meeting(const BoundingBox& box, Array<u32>& rows) const {
         }
         const std::size_t leaf = node - nodes_.size();
         for (std::size_t slot = begin_of(leaf, depth_); slot < begin_of(leaf + 1, depth_); ++slot) {
-            const Corners& at = corners_[slot];
-            const Vec3 least = at.a.cwiseMin(at.b).cwiseMin(at.c), most = at.a.cwiseMax(at.b).cwiseMax(at.c);
+            const auto& [a, b, c] = corners_[slot];
+            const Vec3 least = a.cwiseMin(b).cwiseMin(c), most = a.cwiseMax(b).cwiseMax(c);
             if ((least.array() <= box.high.array()).all() && (most.array() >= box.low.array()).all())
                 rows.push_back(rows_[slot]);
         }

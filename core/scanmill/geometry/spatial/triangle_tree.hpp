@@ -47,7 +47,7 @@ public:
     }
 
     /// The corners of triangle `slot`.
-    std::array<Vec3, 3> corners(u32 slot) const { return {corners_[slot].a, corners_[slot].b, corners_[slot].c}; }
+    const std::array<Vec3, 3>& corners(u32 slot) const { return corners_[slot]; }
 
     /// Appends the rows of all triangles whose bounding boxes meet `box` (borders included), in the tree's order.
     void meeting(const BoundingBox& box, Array<u32>& rows) const;
@@ -58,9 +58,6 @@ private:
     struct Node {
         /// Of the four children: low.x, low.y, low.z, high.x, high.y, high.z. Empty ones: low infinite, high minus it.
         alignas(16) float bounds[6][arity];
-    };
-    struct Corners {
-        Vec3 a, b, c;
     };
 
     std::size_t begin_of(std::size_t node_in_level, unsigned level) const {
@@ -77,7 +74,7 @@ private:
     unsigned depth_ = 0;
     /// Level by level: the children of node i are 4 i + 1 … 4 i + 4; numbers from nodes_.size() on are leaves.
     Array<Node> nodes_;
-    Array<Corners> corners_;
+    Array<std::array<Vec3, 3>> corners_;
     Array<u32> rows_;
 };
 
