@@ -34,7 +34,7 @@ constexpr std::size_t most_enumerated = 40;
 
 }  // namespace
 
-std::string closest(std::string_view word, std::span<const std::string> candidates) {
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
     if (word.size() > longest_word) return {};
     std::size_t allowed = std::max<std::size_t>(word.size() >= 4 ? 2 : 1, word.size() / 3);
     std::string best;
@@ -44,12 +44,7 @@ std::string closest(std::string_view word, std::span<const std::string> candidat
         if (best.empty() || distance < allowed) best = candidate;
         allowed = std::min(allowed, distance);
     }
-    return best;
-}
-
-std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
-    const std::string candidate = closest(word, candidates);
-    return candidate.empty() ? "" : "; did you mean '" + candidate + "'?";
+    return best.empty() ? "" : "; did you mean '" + best + "'?";
 }
 
 std::string enumerated(std::span<const std::string> names) {

@@ -20,11 +20,9 @@ inline std::string count_text(std::uint64_t count, std::string_view singular, st
     return std::to_string(count).append(" ").append(by_count(count, singular, plural));
 }
 
-/// The candidate with the fewest edits (insert, delete, replace, swap neighbours); ties: the earlier one. Empty if none
-/// is within a third of the word's length (at least 1 edit; 2 from four letters on).
-std::string closest(std::string_view word, std::span<const std::string> candidates);
-
-/// "; did you mean 'x'?" or nothing.
+/// "; did you mean 'x'?" with the candidate that needs the fewest edits (insert, delete, replace, swap neighbours);
+/// ties: the earlier one. Empty if none is within a third of the word's length (at least 1 edit; 2 from four letters
+/// on).
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
 
 /// "a, b and c", for messages; of more than forty names the first 39 and the number of the others.

@@ -57,21 +57,17 @@ double Length::value() const {
 }
 
 Length Length::resolved(const LengthScale& scale) const {
-    const auto finite = [&](double length) {
-        if (!std::isfinite(length))
-            throw Error("{} comes to more than the largest number, {:.3g} u", text(),
-                        std::numeric_limits<double>::max())
-                .hint("give a shorter length");
-        if (length == 0 && amount_ != 0)
-            throw Error("{} comes to less than the smallest number", text()).hint("give a longer length");
+    const auto in_range = [&](double length) {
+        if (!std::isfinite(length) || (length == 0 && amount_ != 0))
+            throw Error("{} is outside the range of a length: it is {} u", text(), length);
         return Length(length);
     };
     const auto times = [&](const std::function<double()>& reference, double factor, std::string_view what) {
         const double length = reference ? reference() : 0;
-        if (!(length > 0) || !std::isfinite(length))
+        if (!(length > 0 && std::isfinite(length)))
             throw Error("{} cannot be resolved: the scan's {} is {}", text(), what, length)
                 .hint("give the length in the scan's unit, as 0.5 u");
-        return finite(amount_ * factor * length);
+        return in_range(amount_ * factor * length);
     };
     if (in_ == In::scan_unit) return *this;
     if (in_ == In::percent_of_diagonal) return times(scale.diagonal, 0.01, "bounding-box diagonal");
@@ -83,7 +79,7 @@ Length Length::resolved(const LengthScale& scale) const {
             .hint(
                 "say `--unit mm`, or `inputs: {scan: {kind: points, unit: mm}}` in the workflow, or write the length "
                 "in the scan's own unit, as 0.5 u");
-    return finite(in_unit(amount_, unit, scale.unit));
+    return in_range(in_unit(amount_, unit, scale.unit));
 }
 
 std::string Length::text() const {

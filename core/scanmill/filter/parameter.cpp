@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <span>
-#include <type_traits>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"

@@ -2,6 +2,7 @@
 #include "scanmill/filter/spec.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "scanmill/base/error.hpp"
@@ -10,9 +11,9 @@ namespace scanmill {
 
 namespace {
 
-template <class Items>
-auto find_named(const Items& items, std::string_view name) -> const typename Items::value_type* {
-    const auto found = std::ranges::find(items, name, [](const auto& item) -> std::string_view { return item.name; });
+template <class Item>
+const Item* find_named(const std::vector<Item>& items, std::string_view name) {
+    const auto found = std::ranges::find(items, name, &Item::name);
     return found == items.end() ? nullptr : &*found;
 }
 
@@ -25,10 +26,8 @@ bool is_name(std::string_view name) {
 /// The letters and digits of `words` in lower case.
 std::string letters(std::string_view words) {
     std::string kept;
-    for (char c : words) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-        if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) kept += c;
-    }
+    for (const unsigned char c : words)
+        if (std::isalnum(c)) kept += static_cast<char>(std::tolower(c));
     return kept;
 }
 

@@ -61,7 +61,7 @@ Buffer<Vec3> positions_of(const Value& value);
 Value reframed(const Value& value, const Frame& frame);
 
 /// The same geometry in another unit: positions, the frame's origin, other lengths, and columns by their length
-/// exponent. Throws Error if a finite coordinate would become infinite. Pre: neither unit is unknown.
+/// exponent. Pre: neither unit is unknown.
 Value in_unit(const Value& value, LengthUnit unit);
 
 std::vector<PropertySpec> property_specs(Kind kind);

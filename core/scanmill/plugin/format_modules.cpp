@@ -79,9 +79,8 @@ Format unusable_row(const std::string& name, const std::filesystem::path& manife
 FormatDeclaration load_format_module(const std::filesystem::path& module, const std::string& name) {
     FormatDeclaration declaration;
     load_declaration(module, "scanmill-format", "file format", name, &declaration);
-    std::vector<Kind> written;
-    for (const auto& [kind, write] : declaration.writers) written.push_back(kind);
-    if (bool(declaration.read) != declaration.spec.reads || written != declaration.spec.writes)
+    if (bool(declaration.read) != declaration.spec.reads ||
+        !std::ranges::equal(declaration.writers, declaration.spec.writes, {}, &std::pair<Kind, Format::Write>::first))
         throw Error("module '{}' declares other readers or writers than it contains", module.string());
     return declaration;
 }

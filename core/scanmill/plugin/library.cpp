@@ -3,6 +3,7 @@
 
 #include <cassert>
 #include <cstdlib>
+#include <ranges>
 #include <sstream>
 
 #include "scanmill/base/error.hpp"
@@ -51,9 +52,8 @@ const FilterSpec* FilterLibrary::find(std::string_view name) const {
 }
 
 std::vector<std::string> FilterLibrary::names() const {
-    std::vector<std::string> names;
-    for (const auto& [name, entry] : entries_) names.push_back(name);
-    return names;
+    const auto names = entries_ | std::views::keys;
+    return {names.begin(), names.end()};
 }
 
 FilterLibrary::Entry& FilterLibrary::entry(std::string_view name) {

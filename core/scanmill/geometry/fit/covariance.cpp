@@ -69,8 +69,7 @@ Vec3 direction_of(const Moments& m, double eigenvalue) {
 
 Vec3 with_positive_sign(const Vec3& v) {
     int axis = 0;
-    for (int other : {1, 2})
-        if (std::abs(v[other]) > std::abs(v[axis])) axis = other;
+    v.cwiseAbs().maxCoeff(&axis);
     return v[axis] < 0 ? Vec3(-v) : v;
 }
 

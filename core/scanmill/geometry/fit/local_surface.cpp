@@ -2,7 +2,6 @@
 #include "scanmill/geometry/fit/local_surface.hpp"
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 #include <utility>
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <span>
 
 #include "scanmill/base/error.hpp"
 
@@ -31,24 +30,6 @@ struct Offenders {
     }
 };
 
-void require_two_at_most(const TriangleMesh& mesh, const Offenders& crowded) {
-    if (crowded.edges == 0) return;
-    throw Error(
-        "{} is in {} triangles, {}, {} and {} among them; a surface has at most 2 at an edge (edges with more: {})",
-        crowded.edge_text(mesh), crowded.first.size(), crowded.first[0].number / 3, crowded.first[1].number / 3,
-        crowded.first[2].number / 3, crowded.edges)
-        .hint(
-            "remove triangles until at most two are left at every edge, or cut the mesh there: give each sheet its own "
-            "vertices");
-}
-
-void require_orientation(const TriangleMesh& mesh, const Offenders& alike) {
-    if (alike.edges == 0) return;
-    throw Error("triangles {} and {} pass {} in the same direction; neighbours must be oriented alike (such edges: {})",
-                alike.first[0].number / 3, alike.first[1].number / 3, alike.edge_text(mesh), alike.edges)
-        .hint("reverse the triangles that face the other way; a one-sided surface (a Moebius band) must be cut open");
-}
-
 }  // namespace
 
 ByVertex by_smaller_vertex(const TriangleMesh& mesh) {
@@ -70,10 +51,7 @@ ByVertex by_smaller_vertex(const TriangleMesh& mesh) {
         result.half_edges[next[std::min(a, b)]++] = {std::max(a, b), half_edge};
     });
     const auto at = [&](u32 group) { return result.half_edges.begin() + begin[group]; };
-    for (u32 vertex = 0; vertex + 1 < begin.size(); ++vertex)
-        std::sort(at(vertex), at(vertex + 1), [](const VertexHalfEdge& a, const VertexHalfEdge& b) {
-            return a.other != b.other ? a.other < b.other : a.number < b.number;
-        });
+    for (u32 vertex = 0; vertex + 1 < begin.size(); ++vertex) std::sort(at(vertex), at(vertex + 1));
     return result;
 }
 
@@ -96,8 +74,20 @@ Array<u32> opposites(const TriangleMesh& mesh) {
             opposite[edge[1].number] = edge[0].number;
         }
     });
-    require_two_at_most(mesh, crowded);
-    require_orientation(mesh, alike);
+    if (crowded.edges > 0)
+        throw Error(
+            "{} is in {} triangles, {}, {} and {} among them; a surface has at most 2 at an edge (edges with more: {})",
+            crowded.edge_text(mesh), crowded.first.size(), crowded.first[0].number / 3, crowded.first[1].number / 3,
+            crowded.first[2].number / 3, crowded.edges)
+            .hint(
+                "remove triangles until at most two are left at every edge, or cut the mesh there: give each sheet its "
+                "own vertices");
+    if (alike.edges > 0)
+        throw Error(
+            "triangles {} and {} pass {} in the same direction; neighbours must be oriented alike (such edges: {})",
+            alike.first[0].number / 3, alike.first[1].number / 3, alike.edge_text(mesh), alike.edges)
+            .hint(
+                "reverse the triangles that face the other way; a one-sided surface (a Moebius band) must be cut open");
     return opposite;
 }
 

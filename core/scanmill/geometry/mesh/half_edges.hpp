@@ -5,6 +5,7 @@
 /// Half-edge 3 t + i goes from corner i of triangle t to the next corner; corner i has the same number. Triangles with
 /// a repeated vertex have no half-edges.
 
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,7 @@ inline bool has_repeated_vertex(const Triangle& t) { return t[0] == t[1] || t[1]
 struct VertexHalfEdge {
     u32 other;  ///< the edge's larger vertex
     u32 number;
+    auto operator<=>(const VertexHalfEdge&) const = default;
 };
 
 /// Half-edges grouped by the smaller vertex of their edges.

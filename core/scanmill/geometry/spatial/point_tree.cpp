@@ -332,10 +332,7 @@ struct PointTree::Tree {
 };
 
 PointTree::PointTree(std::span<const Vec3> positions, unsigned threads)
-    : tree_(std::make_unique<Tree>(positions, threads)) {}
-PointTree::~PointTree() = default;
-PointTree::PointTree(PointTree&&) noexcept = default;
-PointTree& PointTree::operator=(PointTree&&) noexcept = default;
+    : tree_(std::make_shared<const Tree>(positions, threads)) {}
 
 std::span<const Vec3> PointTree::positions() const { return tree_->positions; }
 std::span<const u32> PointTree::index_of_row() const { return tree_->index_of_row; }

@@ -48,9 +48,6 @@ class PointTree {
 public:
     /// Pre: finite positions, at least one, fewer than 2^32. Cost: O(n log n) time, about 75 bytes per point.
     explicit PointTree(std::span<const Vec3> positions, unsigned threads = 1);
-    ~PointTree();
-    PointTree(PointTree&&) noexcept;
-    PointTree& operator=(PointTree&&) noexcept;
 
     /// The distinct positions, ascending by x, then y, then z.
     std::span<const Vec3> positions() const;
@@ -69,7 +66,7 @@ public:
 
 private:
     struct Tree;
-    std::unique_ptr<Tree> tree_;
+    std::shared_ptr<const Tree> tree_;
 };
 
 }  // namespace scanmill

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/spatial/spatial_order.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cassert>
 
 #include "scanmill/data/points.hpp"
@@ -50,13 +48,9 @@ Array<u32> spatial_order(std::span<const Vec3> positions) {
         }
         entries[row] = {code, static_cast<u32>(row)};
     }
-    if (positions.size() < 1 << 14) {
-        std::ranges::sort(entries, {}, [](const Entry& entry) { return std::pair(entry.code, entry.row); });
-    } else {
-        for (int shift = 0; shift < 64; shift += 16) {
-            sort_by_digit(entries, other, shift);
-            entries.swap(other);
-        }
+    for (int shift = 0; shift < 64; shift += 16) {
+        sort_by_digit(entries, other, shift);
+        entries.swap(other);
     }
     Array<u32> rows(entries.size());
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = entries[i].row;

@@ -2,7 +2,6 @@
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 
