@@ -81,7 +81,7 @@ void ask(const TriangleTree& tree, std::span<const Vec3> queries, Array<double>&
         for (std::size_t i = begin; i < end; ++i) {
             const NearestTriangle found = tree.nearest(queries[i], hint);
             squared[i] = found.squared_distance;
-            hint = found.place;
+            hint = found.slot;
         }
     });
 }

@@ -8,24 +8,19 @@
 #include <vector>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/filter/manifest.hpp"
 #include "scanmill/plugin/format_modules.hpp"
+#include "scanmill/plugin/manifest.hpp"
 #include "scanmill/plugin/module.hpp"
 
-namespace {
+using namespace scanmill;
 
-std::string filter_manifest(const std::filesystem::path& module, const std::string& name) {
-    const scanmill::FilterDeclaration declaration = scanmill::load_module(module, name);
-    scanmill::require_sound(declaration.spec);
-    return to_json_text(scanmill::Manifest{scanmill::abi_text(), declaration.spec});
+static std::string manifest_of(const std::filesystem::path& module, bool is_format) {
+    const std::string name = module_name(module);
+    if (is_format) return to_json_text(FormatManifest{abi_text(), load_format_module(module, name).spec});
+    const FilterDeclaration declaration = load_module(module, name);
+    require_sound(declaration.spec);
+    return to_json_text(Manifest{abi_text(), declaration.spec});
 }
-
-std::string format_manifest(const std::filesystem::path& module, const std::string& name) {
-    return to_json_text(
-        scanmill::FormatManifest{scanmill::abi_text(), scanmill::load_format_module(module, name).spec});
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
     std::vector<std::string> arguments(argv + 1, argv + argc);
@@ -35,14 +30,12 @@ int main(int argc, char** argv) {
         std::fputs("usage: scanmill-manifest [--format] MODULE MANIFEST\n", stderr);
         return 2;
     }
-    const std::filesystem::path module = std::filesystem::absolute(arguments[0]);
     try {
-        const std::string name = scanmill::module_name(module);
-        const std::string text = is_format ? format_manifest(module, name) : filter_manifest(module, name);
+        const std::string text = manifest_of(std::filesystem::absolute(arguments[0]), is_format);
         std::ofstream file(arguments[1], std::ios::binary | std::ios::trunc);
         file << text;
         file.close();
-        if (!file) throw scanmill::Error("'{}' cannot be written", arguments[1]);
+        if (!file) throw Error("'{}' cannot be written", arguments[1]);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "error: %s\n", error.what());
         return 1;

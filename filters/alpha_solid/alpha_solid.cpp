@@ -11,7 +11,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/geometry/tets/hidden_vertices.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill {
 

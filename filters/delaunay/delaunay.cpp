@@ -8,7 +8,7 @@
 #include "delaunay/point_weights.hpp"
 #include "delaunay/triangulate.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/geometry/tets/hidden_vertices.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill {
 

@@ -80,10 +80,10 @@ constexpr std::size_t chunk = 1 << 12;
 /// Of d²: at 1 a point may lie exactly on the border of its own power cell.
 constexpr double most_of_distance = 0.9;
 
-double mean_distance(const std::vector<double>& squares) {
+double mean_distance(std::span<const Neighbour> neighbours) {
     double sum = 0;
-    for (double square : squares) sum += std::sqrt(square);
-    return sum / static_cast<double>(squares.size());
+    for (const Neighbour& neighbour : neighbours) sum += std::sqrt(neighbour.squared);
+    return sum / static_cast<double>(neighbours.size());
 }
 
 /// Per distinct point, the others that may limit its weight.
@@ -153,19 +153,21 @@ Array<double> column_weights(const PointCloud& cloud, const std::string& name, d
 
 Array<double> spacing_weights(std::span<const Vec3> positions, double factor, Context& context) {
     const PointTree tree(positions);
-    const std::span<const Vec3> points = tree.places();
+    const std::span<const Vec3> points = tree.positions();
     context.progress(0.05);
 
     Array<double> weights(points.size());
     Pairs pairs(points.size());
     for_each_chunk(context.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
+        NeighbourBuffer buffer;
         for (std::size_t i = begin; i < end; ++i) {
             const u32 point = static_cast<u32>(i);
-            const double spacing = mean_distance(tree.nearest(point, spacing_neighbours));
+            const double spacing = mean_distance(tree.nearest(point, spacing_neighbours, buffer));
             weights[point] = factor * (spacing * spacing);
             // Points farther away do not limit it, because no weight is below 0.
-            pairs[point] = tree.within(point, weights[point] / most_of_distance);
+            for (const Neighbour& other : tree.within(point, weights[point] / most_of_distance, buffer))
+                pairs[point].push_back(other.index);
         }
     });
     context.progress(0.2);
@@ -179,7 +181,7 @@ Array<double> spacing_weights(std::span<const Vec3> positions, double factor, Co
     context.progress(0.25);
 
     Array<double> per_row(positions.size());
-    for (std::size_t row = 0; row < per_row.size(); ++row) per_row[row] = weights[tree.place_of_row()[row]];
+    for (std::size_t row = 0; row < per_row.size(); ++row) per_row[row] = weights[tree.index_of_row()[row]];
     return per_row;
 }
 

@@ -24,17 +24,17 @@ constexpr double harmless_of_distance = 0.05;
 constexpr double harmless_of_size = 1e-3;
 
 /// The distance to one triangle is convex: nowhere on the part is it larger than at one of the corners.
-void try_triangle(TrianglePart& part, u32 place) {
-    if (place == NearestTriangle::none) return;
+void try_triangle(TrianglePart& part, u32 slot) {
+    if (slot == NearestTriangle::none) return;
     const double least = part.upper * part.upper;
     double farthest = 0;
     for (const PartCorner& corner : part.corners) {
-        farthest = std::max(farthest, part.other->squared_distance(corner.position, place));
+        farthest = std::max(farthest, part.other->squared_distance(corner.position, slot));
         if (farthest > least) return;
     }
     if (std::sqrt(farthest) >= part.upper) return;
     part.upper = std::sqrt(farthest);
-    part.bounding = place;
+    part.bounding = slot;
 }
 
 Vec3 centre_of(const TrianglePart& part) {
@@ -118,9 +118,9 @@ Cut cut_across_longest_edge(const TrianglePart& part) {
 }  // namespace
 
 void bound_by_known(TrianglePart& part, double enough) {
-    for (const u32 place :
+    for (const u32 slot :
          {part.below, part.bounding, part.corners[0].nearest, part.corners[1].nearest, part.corners[2].nearest}) {
-        try_triangle(part, place);
+        try_triangle(part, slot);
         if (part.upper <= enough) return;
     }
 }
@@ -135,12 +135,12 @@ void bound(TrianglePart& part, double enough) {
     const double distance = std::sqrt(at_centre.squared_distance);
     part.seen = std::max(part.seen, distance);
     part.upper = std::min(part.upper, distance + radius);
-    part.below = at_centre.place;
+    part.below = at_centre.slot;
     try_triangle(part, part.below);
     for (PartCorner& corner : part.corners) {
         if (corner.nearest != NearestTriangle::none || part.upper <= enough) continue;
         const NearestTriangle found = part.other->nearest(corner.position, part.below);
-        corner.nearest = found.place;
+        corner.nearest = found.slot;
         part.seen = std::max(part.seen, std::sqrt(found.squared_distance));
         try_triangle(part, corner.nearest);
     }
@@ -283,7 +283,7 @@ void add_triangles(const CertifiedSurface& surface, const TriangleTree& other, S
                 TrianglePart part;
                 for (std::size_t i = 0; i < 3; ++i) {
                     const u32 vertex = surface.triangles[row][i];
-                    part.corners[i] = {surface.positions[vertex], surface.vertices.places[vertex]};
+                    part.corners[i] = {surface.positions[vertex], surface.vertices.slots[vertex]};
                 }
                 part.other = &other;
                 part.seen = largest[row];
@@ -340,7 +340,7 @@ Extent extent_of(const CertifiedSurface& one, const CertifiedSurface& other) {
     double largest = 0;
     for (const CertifiedSurface* surface : {&one, &other})
         for (std::size_t vertex = 0; vertex < surface->positions.size(); ++vertex)
-            if (surface->vertices.places[vertex] != NearestTriangle::none) {
+            if (surface->vertices.slots[vertex] != NearestTriangle::none) {
                 const Vec3& position = surface->positions[vertex];
                 box.low = box.low.cwiseMin(position);
                 box.high = box.high.cwiseMax(position);

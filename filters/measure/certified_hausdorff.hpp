@@ -73,7 +73,7 @@ namespace measuring {
 /// The distance below which positions near `largest_coordinate` cannot be distinguished.
 constexpr double rounding_of(double largest_coordinate) { return 0x1p-46 * largest_coordinate; }
 
-/// A corner with its nearest triangle of the other surface, as NearestTriangle::place; `none` until it is computed.
+/// A corner with its nearest triangle of the other surface, as NearestTriangle::slot; `none` until it is computed.
 struct PartCorner {
     Vec3 position;
     u32 nearest = NearestTriangle::none;

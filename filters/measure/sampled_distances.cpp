@@ -99,7 +99,7 @@ NearestDistances nearest_distances(std::span<const Vec3> points, const TriangleT
     NearestDistances result;
     result.distances.resize(points.size());
     result.triangles.resize(points.size());
-    result.places.resize(points.size());
+    result.slots.resize(points.size());
     for_each_chunk(context.threads(), order.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
         u32 hint = NearestTriangle::none;
@@ -108,7 +108,7 @@ NearestDistances nearest_distances(std::span<const Vec3> points, const TriangleT
             const double distance = std::sqrt(found.squared_distance);
             result.distances[order[i]] = distance > rounding ? distance : 0;
             result.triangles[order[i]] = found.triangle;
-            result.places[order[i]] = hint = found.place;
+            result.slots[order[i]] = hint = found.slot;
         }
     });
     return result;
@@ -133,7 +133,7 @@ NearestDistances nearest_of_vertices(std::span<const Vec3> positions, std::span<
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         result.distances[vertices[i]] = found.distances[i];
         result.triangles[vertices[i]] = found.triangles[i];
-        result.places[vertices[i]] = found.places[i];
+        result.slots[vertices[i]] = found.slots[i];
     }
     return result;
 }
@@ -146,7 +146,7 @@ std::size_t leave_out_borders(NearestDistances& nearest, std::span<const Vec3> p
         if (is_on_border(borders, mesh, points[i], nearest.triangles[i], rounding)) continue;
         nearest.distances[kept] = nearest.distances[i];
         nearest.triangles[kept] = nearest.triangles[i];
-        nearest.places[kept] = nearest.places[i];
+        nearest.slots[kept] = nearest.slots[i];
         ++kept;
     }
     if (kept == 0)
@@ -156,7 +156,7 @@ std::size_t leave_out_borders(NearestDistances& nearest, std::span<const Vec3> p
             .hint("set borders: include");
     nearest.distances.resize(kept);
     nearest.triangles.resize(kept);
-    nearest.places.resize(kept);
+    nearest.slots.resize(kept);
     return points.size() - kept;
 }
 

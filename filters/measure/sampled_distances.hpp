@@ -28,8 +28,8 @@ struct NearestDistances {
     Array<double> distances;
     /// Rows of the nearest triangles; of equally near ones the smallest.
     Array<u32> triangles;
-    /// The same triangles as NearestTriangle::place in the tree.
-    Array<u32> places;
+    /// The same triangles as NearestTriangle::slot in the tree.
+    Array<u32> slots;
 };
 
 /// Visits the points along a space-filling curve and starts each search at the previous result. Pre: finite points.

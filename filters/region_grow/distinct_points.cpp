@@ -69,22 +69,22 @@ Neighbourhoods::Neighbourhoods(const DistinctPoints& points, unsigned threads)
       point_of_tree_index_(points.size()),
       nearest_(points.size() * count_),
       squared_reach_(points.size()) {
-    const auto tree_indices = tree_.place_of_row();
+    const auto tree_indices = tree_.index_of_row();
     for (u32 point = 0; point < tree_indices.size(); ++point) point_of_tree_index_[tree_indices[point]] = point;
     const bool all = count_ + 1 == points.size();
     tree_.for_each_nearest(count_, threads, [&](const NeighbourBatch& batch) {
-        for (std::size_t i = 0; i < batch.places.size(); ++i) {
-            const u32 point = point_of_tree_index_[batch.places[i]];
+        for (std::size_t i = 0; i < batch.indices.size(); ++i) {
+            const u32 point = point_of_tree_index_[batch.indices[i]];
             u32* nearest = nearest_.data() + point * count_;
-            for (const Neighbour& neighbour : batch.of(i)) *nearest++ = point_of_tree_index_[neighbour.place];
+            for (const Neighbour& neighbour : batch.of(i)) *nearest++ = point_of_tree_index_[neighbour.index];
             squared_reach_[point] = all ? std::numeric_limits<double>::infinity() : batch.of(i).back().squared;
         }
     });
 }
 
 void Neighbourhoods::within(u32 point, double squared, NeighbourBuffer& buffer, std::vector<u32>& found) const {
-    for (const Neighbour& neighbour : tree_.within(tree_.place_of_row()[point], squared, buffer))
-        found.push_back(point_of_tree_index_[neighbour.place]);
+    for (const Neighbour& neighbour : tree_.within(tree_.index_of_row()[point], squared, buffer))
+        found.push_back(point_of_tree_index_[neighbour.index]);
 }
 
 }  // namespace scanmill::growing

@@ -140,7 +140,7 @@ PointNormals principal_normals(const DistinctPoints& points, const Neighbourhood
         for (std::size_t point = begin; point < end; ++point) {
             const Scatter scatter = scatter_at(points, neighbourhoods, static_cast<u32>(point));
             normals.directions[point] = scatter.normal;
-            normals.variation[point] = static_cast<float>(scatter.roughness);
+            normals.variation[point] = static_cast<float>(scatter.surface_variation);
         }
     });
     return normals;

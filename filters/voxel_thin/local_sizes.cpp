@@ -89,11 +89,11 @@ LocalSizes local_sizes(std::span<const Vec3> positions, const BoundingBox& box, 
                        Context& context) {
     require_valid(box, params);
     const PointTree tree(positions, context.threads());
-    require_enough(tree.places().size(), params.neighbours);
+    require_enough(tree.positions().size(), params.neighbours);
     context.progress(0.2);
 
     LocalSizes local;
-    local.point_of_row.assign(tree.place_of_row().begin(), tree.place_of_row().end());
+    local.point_of_row.assign(tree.index_of_row().begin(), tree.index_of_row().end());
     local.surfaces = local_surfaces(tree, {params.neighbours, params.origin}, context);
     const double extent = (box.high - box.low).maxCoeff();
     const LocalSurface& closest = *std::ranges::min_element(local.surfaces, {}, &LocalSurface::spacing);

@@ -7,7 +7,7 @@
 #include "output/printable.hpp"
 #include "output/stderr_text.hpp"
 #include "scanmill/base/error.hpp"
-#include "scanmill/data/conversions.hpp"
+#include "scanmill/data/mesh.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/value.hpp"

@@ -14,7 +14,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/kinds/metrics.hpp"
+#include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
 #include "scanmill/worker/step_runner.hpp"
 
@@ -87,7 +87,7 @@ std::string report_text(const Metrics& metrics) {
 
 std::string report_json(const Options& options, const Metrics& metrics, const std::vector<std::string>& warnings) {
     nlohmann::ordered_json json;
-    KindTraits<Metrics>::to_json(metrics, json);
+    kind_of<Metrics>().info().to_json(&metrics, json);
     json["mesh"] = options.mesh;
     json["truth"] = options.truth;
     json["warnings"] = warnings;

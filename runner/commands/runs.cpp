@@ -8,7 +8,7 @@
 #include "output/printable.hpp"
 #include "output/table.hpp"
 #include "scanmill/base/error.hpp"
-#include "scanmill/kinds/metrics.hpp"
+#include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
 #include "scanmill/records/run_records.hpp"
 

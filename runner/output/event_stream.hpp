@@ -9,7 +9,7 @@
 #include <map>
 #include <mutex>
 
-#include "scanmill/kinds/metrics.hpp"
+#include "scanmill/kinds/document.hpp"
 #include "scanmill/run/run.hpp"
 
 namespace scanmill::runner {

@@ -9,7 +9,7 @@
 #include "output/failure_json.hpp"
 #include "output/table.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/kinds/metrics.hpp"
+#include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill::runner {

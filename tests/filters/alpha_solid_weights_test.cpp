@@ -8,7 +8,7 @@
 
 #include "filters/weighted_cases.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/geometry/tets/hidden_vertices.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
 #include "support/real_data.hpp"
 
 namespace scanmill {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fuzz/targets.hpp"
 #include "scanmill/base/error.hpp"
-#include "scanmill/filter/manifest.hpp"
-#include "scanmill/plugin/format_manifest.hpp"
+#include "scanmill/plugin/manifest.hpp"
 
 namespace scanmill::test {
 

@@ -194,7 +194,7 @@ TEST_F(MeasureCommand, Expectations_AreComparedAfreshWhenTheNumbersAreCached) {
                 AllOf(HasSubstr("expected mean < 0.1 %diag"), HasSubstr("expected f-score@2 > 99 %")));
     EXPECT_THAT(scanmill({"runs", "out", "show", "2"}).out, HasSubstr("cached"));
     folder_.write("w.yaml", workflow("mean: < 1 spacing"));
-    EXPECT_THAT(run().err, HasSubstr("spacing means nothing beside metrics"));
+    EXPECT_THAT(run().err, HasSubstr("spacing is not defined for metrics"));
 }
 
 TEST_F(MeasureCommand, TruthIsNeverGuessed) {

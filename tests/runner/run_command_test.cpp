@@ -65,7 +65,7 @@ TEST(RunCommand, OnePoint_IsThinnedByABinSizeThatNeedsNoTolerance) {
     const ProgramResult refused = scanmill_program(derived, {.folder = folder.path()});
     EXPECT_EQ(refused.exit_code, 1);
     EXPECT_THAT(refused.err,
-                HasSubstr("%diag means nothing here: the diagonal is 0, as the only point is at one place"));
+                HasSubstr("%diag is not defined here: the diagonal is 0, because the only point is at one position"));
     EXPECT_THAT(refused.err, HasSubstr("in the parameter 'tolerance'"));
 }
 

@@ -90,18 +90,18 @@ Json curvature(Held& held, const Json& request) {
     params.neighbours = request.at("neighbours").get<u32>();
     Context context = context_for(request);
     Array<LocalSurface> surfaces;
-    std::vector<u32> place_of_row;
+    std::vector<u32> index_of_row;
     const double seconds = peers::seconds_of([&] {
         const PointTree tree(held.cloud.positions.span(), context.threads());
         surfaces = local_surfaces(tree, params, context);
-        place_of_row.assign(tree.place_of_row().begin(), tree.place_of_row().end());
+        index_of_row.assign(tree.index_of_row().begin(), tree.index_of_row().end());
     });
     std::size_t along_x = 0;
-    for (const u32 place : place_of_row) {
-        const Vec3 n = surfaces[place].normal.cwiseAbs();
+    for (const u32 index : index_of_row) {
+        const Vec3 n = surfaces[index].normal.cwiseAbs();
         along_x += n.x() > n.y() && n.x() > n.z();
     }
-    return {{"seconds", seconds}, {"along_x", static_cast<double>(along_x) / static_cast<double>(place_of_row.size())}};
+    return {{"seconds", seconds}, {"along_x", static_cast<double>(along_x) / static_cast<double>(index_of_row.size())}};
 }
 
 Json tetrahedralise(Held& held, const Json& request) {

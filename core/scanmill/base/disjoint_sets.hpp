@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Disjoint sets of 0 … n − 1 with path halving; near-constant time per operation. The smaller number represents a set.
+/// Disjoint sets of 0 … n − 1 with path halving; near-constant time per operation. The smallest member of a set
+/// represents it.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +19,7 @@ public:
         while (parent_[element] != element) element = parent_[element] = parent_[parent_[element]];
         return element;
     }
-    /// False when they were together already.
+    /// False if they were in one set already.
     bool unite(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What long-running code may ask of its caller: report progress, be cancelled, use threads.
+/// The link between long-running code and its caller: progress, cancellation, threads.
 
 #include <algorithm>
 #include <functional>
@@ -28,20 +28,20 @@ public:
     Execution& operator=(const Execution&) = delete;
 
     unsigned threads() const { return options_.threads; }
-    /// `fraction` in [0, 1]; NaN, the progress of no work, counts as 0. Callable from any thread.
+    /// `fraction` in [0, 1]; NaN (0 of 0 items) counts as 0. Callable from any thread.
     void progress(double fraction) {
         if (!options_.on_progress) return;
         const std::scoped_lock lock(mutex_);
         options_.on_progress(fraction > 0 ? std::min(fraction, 1.0) : 0.0);
     }
     bool cancelled() const { return options_.is_cancelled && options_.is_cancelled(); }
-    /// Throws Cancelled when the caller asked to stop. Cheap enough for every chunk of work.
+    /// Throws Cancelled if the caller cancelled. Cheap enough for every chunk of work.
     void check_cancelled() const {
         if (cancelled()) throw Cancelled{};
     }
 
 protected:
-    std::mutex mutex_;  ///< every call of a callback holds it
+    std::mutex mutex_;  ///< locked during every call of a callback
 
 private:
     ExecutionOptions options_;

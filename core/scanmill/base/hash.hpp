@@ -8,8 +8,8 @@
 
 namespace scanmill {
 
-/// The hash of a sequence of fields. Each field is hashed as name length, name, value length, value, so two different
-/// sequences never hash the same bytes.
+/// The hash of a sequence of fields. Each field is hashed as name length, name, value length, value, so different
+/// sequences are different bytes.
 class KeyBuilder {
 public:
     KeyBuilder& field(std::string_view name, std::string_view value);
@@ -19,7 +19,7 @@ private:
     std::string bytes_;
 };
 
-/// The hash of a file's bytes. Throws Error when the file cannot be read. Cost: one pass over the file.
+/// The hash of a file's bytes. Throws Error if the file cannot be read. Cost: one pass over the file.
 std::string content_hash(const std::filesystem::path& file);
 
 }  // namespace scanmill

@@ -20,8 +20,8 @@ namespace scanmill {
 #ifdef __SANITIZE_THREAD__
 namespace {
 
-/// ThreadSanitizer does not see what orders the tasks inside oneTBB's own library and would report every one of them;
-/// threads of our own it understands.
+/// ThreadSanitizer does not see the synchronisation inside oneTBB's library and would report every task; it understands
+/// plain threads.
 void on_plain_threads(unsigned threads, std::size_t chunks, const std::function<void(std::size_t)>& run) {
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;
@@ -68,7 +68,7 @@ void within_thread_budget(unsigned threads, const std::function<void()>& body) {
 #ifdef __SANITIZE_THREAD__
     threads = 1;  // as above
 #endif
-    // More threads than the machine has would only make the library complain.
+    // The library warns about more threads than the machine has.
     tbb::task_arena arena(std::clamp(static_cast<int>(threads), 1, tbb::info::default_concurrency()));
     arena.execute(body);
 }

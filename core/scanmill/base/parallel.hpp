@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Parallel loops within a thread budget, cut into chunks whose borders do not depend on the number of threads.
+/// Parallel loops within a thread budget, in chunks whose limits do not depend on the number of threads.
 ///
-/// Work that merges per-chunk results in chunk order gives the same bytes for any budget. With a budget of 1 everything
-/// runs in the calling thread. Exceptions of the body reach the caller.
+/// Code that merges per-chunk results in chunk order produces the same bytes for any budget. With a budget of 1
+/// everything runs in the calling thread. Exceptions of the body are rethrown to the caller.
 
 #include <algorithm>
 #include <cstddef>
@@ -21,20 +21,17 @@ void for_each_chunk(unsigned threads, std::size_t count, std::size_t chunk,
 /// themselves.
 void within_thread_budget(unsigned threads, const std::function<void()>& body);
 
-// Pieces that are made on several threads and taken one by one, in order: for results that depend on the order, as a
-// hash does, or that only have room for a few pieces at a time.
-
-/// Calls make(piece, room) for 0 … count - 1, on up to `threads` threads, and take(piece, room) in this thread, in
-/// order, with what was made. Rooms are used again: four for each thread, with one thread a single one. An exception
-/// of either ends it and reaches the caller.
-template <class Room, class Make, class Take>
-void for_each_in_order(unsigned threads, std::size_t count, Make&& make, Take&& take) {
-    constexpr std::size_t rooms_of_a_thread = 4;
-    std::vector<Room> rooms(std::min(count, threads > 1 ? threads * rooms_of_a_thread : 1));
-    for (std::size_t first = 0; first < count; first += rooms.size()) {
-        const std::size_t pieces = std::min(rooms.size(), count - first);
-        for_each_chunk(threads, pieces, 1, [&](std::size_t i, std::size_t) { make(first + i, rooms[i]); });
-        for (std::size_t i = 0; i < pieces; ++i) take(first + i, rooms[i]);
+/// Produces items in parallel and consumes them in order, with a few buffers: for results that depend on the order,
+/// such as a hash, or are too large to exist all at once. Calls produce(i, buffer) for 0 … count - 1 on up to `threads`
+/// threads, and consume(i, buffer) in this thread in order. Exceptions of both are rethrown to the caller.
+template <class Item, class Produce, class Consume>
+void for_each_in_order(unsigned threads, std::size_t count, Produce&& produce, Consume&& consume) {
+    constexpr std::size_t buffers_per_thread = 4;
+    std::vector<Item> buffers(std::min(count, threads > 1 ? threads * buffers_per_thread : 1));
+    for (std::size_t first = 0; first < count; first += buffers.size()) {
+        const std::size_t items = std::min(buffers.size(), count - first);
+        for_each_chunk(threads, items, 1, [&](std::size_t i, std::size_t) { produce(first + i, buffers[i]); });
+        for (std::size_t i = 0; i < items; ++i) consume(first + i, buffers[i]);
     }
 }
 

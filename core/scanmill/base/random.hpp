@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A small seeded generator whose numbers are the same on every machine and for any number of threads: streams are
-/// cheap to make, so parallel work takes one per chunk or per item (random.stream(i)) instead of sharing a state.
-/// SplitMix64 (Steele, Lea, Flood 2014).
+/// A small seeded generator with the same numbers on every machine and for any number of threads: parallel work takes a
+/// cheap stream per chunk or per item (random.stream(i)) and shares no state. SplitMix64 (Steele, Lea, Flood 2014).
 
 #include <cmath>
 #include <cstdint>
@@ -38,8 +37,8 @@ public:
     }
 
 private:
-    /// The C library's log, sin and cos take other roundings on processors with fused multiply-add; this takes none.
-    /// Pre: value > 0. Series of the inverse hyperbolic tangent, error below 1e-15 of the result or 1e-16.
+    /// The C library's log rounds differently on processors with fused multiply-add; this does not.
+    /// Pre: value > 0. Series of the inverse hyperbolic tangent; error below 1e-15 of the result or 1e-16.
     static double logarithm(double value) {
         int exponent = 0;
         double mantissa = std::frexp(value, &exponent);

@@ -29,12 +29,12 @@ std::size_t edits(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
-constexpr std::size_t longest_word = 100;  // nobody's typing error; keeps hostile input cheap
+constexpr std::size_t longest_word = 100;  // longer words are not typing errors
 constexpr std::size_t most_enumerated = 40;
 
 }  // namespace
 
-std::string closest(std::string_view word, std::span<const std::string> candidates) {
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
     if (word.size() > longest_word) return {};
     std::size_t allowed = std::max<std::size_t>(word.size() >= 4 ? 2 : 1, word.size() / 3);
     std::string best;
@@ -44,12 +44,7 @@ std::string closest(std::string_view word, std::span<const std::string> candidat
         if (best.empty() || distance < allowed) best = candidate;
         allowed = std::min(allowed, distance);
     }
-    return best;
-}
-
-std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
-    const std::string candidate = closest(word, candidates);
-    return candidate.empty() ? "" : "; did you mean '" + candidate + "'?";
+    return best.empty() ? "" : "; did you mean '" + best + "'?";
 }
 
 std::string enumerated(std::span<const std::string> names) {
@@ -65,7 +60,7 @@ std::string enumerated(std::span<const std::string> names) {
 
 namespace {
 
-/// Whether an unsigned decimal number that no double holds is too small for one, not too large.
+/// Whether an unsigned decimal number outside the range of double is too small, not too large.
 bool is_too_small(std::string_view number) {
     const std::size_t mantissa_end = std::min(number.find_first_of("eE"), number.size());
     const std::string_view mantissa = number.substr(0, mantissa_end);
@@ -76,11 +71,12 @@ bool is_too_small(std::string_view number) {
     if (mantissa_end < number.size()) {
         std::string_view digits = number.substr(mantissa_end + 1);
         if (digits.front() == '+') digits.remove_prefix(1);
-        // An exponent that no integer holds decides alone: no text has as many digits.
+        // An exponent beyond the range of an integer decides alone: no text has as many digits.
         if (std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
             return digits.front() == '-';
     }
-    // The first significant digit stands for about 10^(point - first_digit): hundreds of orders decide, not one.
+    // The value of the first significant digit is about 10^(point - first_digit); the result is hundreds of orders
+// off 1.
     return exponent < first_digit - point;
 }
 
@@ -100,7 +96,7 @@ bool parse_number(std::string_view text, double& value) {
     if (rest != end || begin == end) return false;
     if (error == std::errc()) return true;
     if (error != std::errc::result_out_of_range) return false;
-    // Beyond double's range: what every other reader of numbers makes of it.
+    // Outside the range of double: 0 or infinity, as other readers of numbers do.
     const bool negative = *begin == '-';
     value = is_too_small({begin + (negative ? 1 : 0), end}) ? 0.0 : std::numeric_limits<double>::infinity();
     if (negative) value = -value;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t huge_page = std::size_t(2) << 20;
 constexpr std::align_val_t small_alignment{64};
-/// What no process has room for.
+/// More than any process can address.
 constexpr std::size_t most_addressable = std::size_t(1) << 56;
 
 /// A multiple of every page size that kernels use.
@@ -26,8 +26,8 @@ void unmap(void* begin, std::size_t bytes) {
     assert(result == 0);
 }
 
-/// From the kernel, where it begins on a huge page. The heap would keep large blocks that were given back, in pieces
-/// that no later one fits into.
+/// A block from the kernel, aligned to a huge page. The heap would keep freed large blocks, split into parts too small
+/// for later ones.
 void* map_block(std::size_t bytes) {
     const std::size_t size = whole_pages(bytes), mapped = size + huge_page;
     void* const all = ::mmap(nullptr, mapped, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -37,7 +37,7 @@ void* map_block(std::size_t bytes) {
     char* const block = static_cast<char*>(all) + before;
     if (before > 0) unmap(all, before);
     unmap(block + size, huge_page - before);
-    // Advice only: where the kernel refuses, ordinary pages serve.
+    // Advice only: if the kernel refuses, ordinary pages are used.
     ::madvise(block, size, MADV_HUGEPAGE);
     return block;
 }

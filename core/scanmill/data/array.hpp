@@ -2,11 +2,10 @@
 #pragma once
 /// Memory for columns of scan data.
 ///
-/// Array<T>   a growing std::vector whose elements start uninitialised and whose large blocks sit on huge pages:
-/// filling
-///            10^7 positions must not cost a second pass of zeros nor a page fault per 4 KiB.
-/// Buffer<T>  what a finished value holds: read-only, shared, either owning its memory or viewing somebody else's (a
-///            mapped file). Copying a Buffer copies no elements.
+/// Array<T>   a std::vector whose new elements are uninitialised and whose large blocks use huge pages: filling 10^7
+///            positions then needs no pass of zeros and no page fault per 4 KiB.
+/// Buffer<T>  the read-only, shared memory of a finished value: owned, or a view of other memory (a mapped file).
+///            Copying a Buffer copies no elements.
 
 #include <cstddef>
 #include <cstdint>
@@ -41,12 +40,12 @@ struct UninitialisedAllocator {
     void deallocate(T* block, std::size_t count) noexcept { free_block(block, count * sizeof(T)); }
 
     template <class U>
-    void construct(U* place) noexcept {
-        ::new (static_cast<void*>(place)) U;  // no parentheses: leaves plain types uninitialised
+    void construct(U* element) noexcept {
+        ::new (static_cast<void*>(element)) U;  // no parentheses: leaves plain types uninitialised
     }
     template <class U, class... Arguments>
-    void construct(U* place, Arguments&&... arguments) {
-        ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+    void construct(U* element, Arguments&&... arguments) {
+        ::new (static_cast<void*>(element)) U(std::forward<Arguments>(arguments)...);
     }
     template <class U>
     bool operator==(const UninitialisedAllocator<U>&) const noexcept {
@@ -89,7 +88,7 @@ private:
     std::size_t size_ = 0;
 };
 
-/// The elements of `source` named by `rows`, in that order.
+/// The elements of `source` at `rows`, in that order.
 template <class T>
 Buffer<T> gather(const Buffer<T>& source, std::span<const u32> rows) {
     Array<T> picked(rows.size());
@@ -97,8 +96,7 @@ Buffer<T> gather(const Buffer<T>& source, std::span<const u32> rows) {
     return picked;
 }
 
-// Whether this build watches memory with AddressSanitizer. It sees blocks of the heap alone, so what otherwise takes
-// memory by other ways takes it from there then.
+// Whether AddressSanitizer watches memory in this build. It sees only the heap, so all memory is then taken from there.
 
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr bool watched_memory = true;

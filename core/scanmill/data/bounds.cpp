@@ -10,8 +10,8 @@ namespace scanmill {
 
 namespace {
 
-/// The smallest power of two that is not below `value`, a positive number. Exact, unlike the C library's log2, whose
-/// last bit depends on the processor.
+/// The smallest power of two not below `value`. Pre: value > 0. Exact, unlike the C library's log2, whose last bit
+/// depends on the processor.
 double power_of_two_from(double value) {
     int exponent = 0;
     const double fraction = std::frexp(value, &exponent);
@@ -23,9 +23,7 @@ double power_of_two_from(double value) {
 BoundingBox bounding_box(std::span<const Vec3> positions) {
     BoundingBox box;
     for (const Vec3& p : positions) {
-        if (!p.allFinite()) continue;
-        box.low = box.low.cwiseMin(p);
-        box.high = box.high.cwiseMax(p);
+        if (p.allFinite()) box.add(p);
     }
     return box;
 }
@@ -45,13 +43,13 @@ Vec3 distant_origin(const BoundingBox& box) {
     Vec3 origin = Vec3::Zero();
     const double diagonal = box.diagonal();
     if (box.empty() || !box.low.allFinite() || !box.high.allFinite() || !std::isfinite(diagonal)) return origin;
-    constexpr double far = 16;  // diagonals away from zero; nearer, doubles have bits to spare
+    constexpr double far = 16;  // diagonals from zero; nearer, doubles have bits to spare
     for (int axis = 0; axis < 3; ++axis) {
         const double middle = 0.5 * box.low[axis] + 0.5 * box.high[axis];
         if (!(std::abs(middle) > far * diagonal)) continue;
         // A multiple of a power of two at least as coarse as any coordinate's last bit: the difference of two such
-        // numbers that lie this close together has a short mantissa, so no bit is lost.
-        // Not below the normal numbers: a step of zero would make the origin NaN.
+        // numbers this close together has a short mantissa, so no bit is lost.
+        // Not below the normal numbers: a step of 0 would make the origin NaN.
         const double last_bit = std::max(std::ldexp(std::abs(middle), -50), std::numeric_limits<double>::min());
         const double step = power_of_two_from(std::max(diagonal, last_bit));
         origin[axis] = std::round(middle / step) * step;
@@ -73,8 +71,7 @@ FiniteBounds finite_bounds(std::span<const Vec3> positions) {
     FiniteBounds bounds;
     Vec3 zero = Vec3::Zero();  // unless some x * 0 is NaN
     for (const Vec3& p : positions) {
-        bounds.box.low = bounds.box.low.cwiseMin(p);
-        bounds.box.high = bounds.box.high.cwiseMax(p);
+        bounds.box.add(p);
         zero += p * 0.0;
     }
     bounds.finite = zero == Vec3::Zero();

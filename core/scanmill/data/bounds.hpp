@@ -9,21 +9,26 @@
 
 namespace scanmill {
 
-/// Componentwise bounds of the finite positions; empty() when there are none.
+/// Componentwise bounds of positions; empty() without any.
 struct BoundingBox {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
 
+    void add(const Vec3& position) {
+        low = low.cwiseMin(position);
+        high = high.cwiseMax(position);
+    }
     bool empty() const { return !(low.array() <= high.array()).all(); }
-    /// Length of the diagonal; 0 when empty.
+    /// Length of the diagonal; 0 if empty.
     double diagonal() const { return empty() ? 0 : (high - low).stableNorm(); }
 };
+/// Of the finite positions.
 BoundingBox bounding_box(std::span<const Vec3> positions);
 
-/// Sides of the box of a scan, in its own unit, for which squares and cubes of all lengths in it have all their digits.
+/// Sides of a scan's box, in its own unit, for which squares and cubes of all its lengths keep all their digits.
 inline constexpr double least_side = 1e-9, largest_side = 1e9;
-/// Throws Error with the box's range when its longest side is above largest_side, or above 0 and below least_side.
-/// Scans are checked once, where they are read; algorithms rely on it.
+/// Throws Error with the box's range if its longest side is above largest_side, or above 0 and below least_side.
+/// Scans are checked once, when they are read; algorithms rely on it.
 void require_supported_range(const BoundingBox& box);
 
 /// A good origin for world positions inside `box`: along every axis whose coordinates are large against the diagonal, a
@@ -32,17 +37,17 @@ void require_supported_range(const BoundingBox& box);
 Vec3 distant_origin(const BoundingBox& box);
 
 struct FiniteBounds {
-    /// Means something only when all are finite; empty without positions.
+    /// Unspecified unless all are finite; empty without positions.
     BoundingBox box;
     bool finite = true;
 
-    /// These positions as well.
+    /// Extends the bounds to those of more positions.
     void add(const FiniteBounds& more);
     /// Whether all are finite and in the box.
     bool are_within(const BoundingBox& outer) const;
 };
 
-/// O(n), about as fast as memory is read.
+/// Cost: O(n), about as fast as memory is read.
 FiniteBounds finite_bounds(std::span<const Vec3> positions);
 
 }  // namespace scanmill

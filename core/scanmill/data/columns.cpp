@@ -112,16 +112,15 @@ const Column* ColumnTable::find(std::string_view name) const {
 }
 
 ColumnTable ColumnTable::gather(std::span<const u32> rows) const {
-    ColumnTable picked;
-    picked.columns_.reserve(columns_.size());
-    for (const Column& column : columns_) picked.columns_.push_back(column.gather(rows));
-    return picked;
+    ColumnTable table = *this;
+    for (Column& column : table.columns_) column = column.gather(rows);
+    return table;
 }
 
 ColumnTable ColumnTable::scaled(double factor) const {
-    ColumnTable all;
-    for (const Column& column : columns_) all.add(column.scaled(factor));
-    return all;
+    ColumnTable table = *this;
+    for (Column& column : table.columns_) column = column.scaled(factor);
+    return table;
 }
 
 }  // namespace scanmill

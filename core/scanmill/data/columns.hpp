@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Named per-element columns: what a scan carries beside its positions.
+/// Named per-element columns: the data of a scan beside its positions.
 ///
 /// A Column is #rows × components numbers of one scalar type, or #rows lists of varying length. Well-known names:
 /// `normal` (3 × float32 or float64, unit length), `colour` (3 or 4 × uint8, red green blue alpha), `weight` (1).
-/// Everything else keeps the name and type it had in its file. Columns are values: copying shares the memory, gather()
-/// makes a new one.
+/// Other columns keep the name and type of their file. Columns are values: copying shares the memory, gather() creates
+/// a new one.
 
 #include <array>
 #include <optional>
@@ -24,7 +24,7 @@ std::size_t size_of(ScalarType type);
 /// "int8" … "float64".
 std::string_view name_of(ScalarType type);
 
-/// The ScalarType that names the C++ type T.
+/// The ScalarType of the C++ type T.
 template <class T>
 consteval ScalarType scalar_type_of() {
     using std::is_same_v;
@@ -35,7 +35,7 @@ consteval ScalarType scalar_type_of() {
     return static_cast<ScalarType>(width + (std::is_unsigned_v<T> ? 1 : 0));
 }
 
-/// Calls `action` with a value-initialised number of the C++ type that `type` names.
+/// Calls `action` with a value-initialised number of the C++ type of `type`.
 template <class Action>
 decltype(auto) visit_scalar(ScalarType type, Action&& action) {
     switch (type) {
@@ -73,8 +73,8 @@ public:
     /// Numbers per row; 0 for lists.
     u32 components() const { return components_; }
     std::size_t rows() const { return rows_; }
-    /// 1 for lengths in the frame's unit, -1 for what is per length (curvatures), else 0: how the numbers change with
-    /// the unit.
+    /// How numbers change with the unit: 1 for lengths in the frame's unit, -1 for numbers per length (curvatures),
+    /// else 0.
     int length_exponent() const { return length_exponent_; }
     const Buffer<u64>& offsets() const { return offsets_; }
     const Buffer<std::byte>& bytes() const { return data_; }
@@ -91,7 +91,7 @@ public:
     Column gather(std::span<const u32> rows) const;
     Column renamed(std::string name) const;
     Column with_length_exponent(int exponent) const;
-    /// In a unit in which lengths are `factor` times as many: numbers become float64 unless the exponent is 0.
+    /// Converted to a unit that is `factor` times as small: numbers become float64 unless the exponent is 0.
     Column scaled(double factor) const;
     bool operator==(const Column& other) const;
 
@@ -114,7 +114,7 @@ private:
 /// Columns of one element (points, faces …), in file order, names unique.
 class ColumnTable {
 public:
-    /// Throws Error when the name is taken or the number of rows differs from the table's.
+    /// Throws Error if the name is taken or the number of rows differs from the table's.
     void add(Column column);
     const Column* find(std::string_view name) const;
     ColumnTable gather(std::span<const u32> rows) const;

@@ -13,7 +13,7 @@ enum class FeatureType : u8 { outer_boundary, hole, crease };
 
 struct FeaturePolyline {
     FeatureType type;
-    /// A closed polyline does not repeat its first vertex; its last segment leads back to it.
+    /// A closed polyline does not repeat its first vertex; its last segment returns to it.
     bool closed;
     /// The polyline is vertices[begin] … vertices[end - 1] of the graph.
     u32 begin, end;
@@ -26,8 +26,8 @@ struct FeatureGraph {
     std::vector<FeaturePolyline> polylines;
     /// Indices into positions, polyline after polyline.
     Buffer<u32> vertices;
-    /// One row per entry of `vertices`: the unit normals left and right of the segment that starts there; zero where
-    /// there is no surface (beyond a boundary) or no segment (the last vertex of an open polyline).
+    /// One row per entry of `vertices`: the unit normals left and right of the segment that starts there; zero if there
+    /// is no surface (beyond a boundary) or no segment (the last vertex of an open polyline).
     Buffer<Vec3> left_normals, right_normals;
     /// Indices into positions, ascending.
     Buffer<u32> corners;

@@ -10,29 +10,22 @@ namespace scanmill {
 
 namespace {
 struct UnitRow {
-    LengthUnit unit;
     std::string_view symbol;
-    std::int64_t micrometres;  // whole numbers, so that ratios of units are exact
+    std::int64_t micrometres;  // integers, so that ratios of units are exact
 };
-constexpr std::array<UnitRow, 7> units{{
-    {LengthUnit::unknown, "u", 0},
-    {LengthUnit::micrometre, "um", 1},
-    {LengthUnit::millimetre, "mm", 1'000},
-    {LengthUnit::centimetre, "cm", 10'000},
-    {LengthUnit::metre, "m", 1'000'000},
-    {LengthUnit::inch, "in", 25'400},
-    {LengthUnit::foot, "ft", 304'800},
-}};
+/// By LengthUnit.
+constexpr std::array<UnitRow, 7> units{
+    {{"u", 0}, {"um", 1}, {"mm", 1'000}, {"cm", 10'000}, {"m", 1'000'000}, {"in", 25'400}, {"ft", 304'800}}};
 
-std::int64_t micrometres(LengthUnit unit) { return units[static_cast<std::size_t>(unit)].micrometres; }
+const UnitRow& row_of(LengthUnit unit) { return units[static_cast<std::size_t>(unit)]; }
 
 }  // namespace
 
-std::string_view symbol(LengthUnit unit) { return units[static_cast<std::size_t>(unit)].symbol; }
+std::string_view symbol(LengthUnit unit) { return row_of(unit).symbol; }
 
 std::optional<LengthUnit> length_unit(std::string_view symbol) {
-    for (const UnitRow& row : units)
-        if (row.symbol == symbol && row.unit != LengthUnit::unknown) return row.unit;
+    for (std::size_t i = 1; i < units.size(); ++i)
+        if (units[i].symbol == symbol) return static_cast<LengthUnit>(i);
     return std::nullopt;
 }
 
@@ -40,7 +33,7 @@ std::string_view length_unit_symbols() { return "um, mm, cm, m, in, ft"; }
 
 double in_unit(double length, LengthUnit from, LengthUnit to) {
     assert(from != LengthUnit::unknown && to != LengthUnit::unknown);
-    const std::int64_t numerator = micrometres(from), denominator = micrometres(to);
+    const std::int64_t numerator = row_of(from).micrometres, denominator = row_of(to).micrometres;
     const std::int64_t common = std::gcd(numerator, denominator);
     return length * static_cast<double>(numerator / common) / static_cast<double>(denominator / common);
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The frame that travels with every geometric value: in which unit its numbers are, which origin they are relative to,
-/// and what the coordinate system is called.
+/// The frame of a geometric value: the unit of its numbers, the origin they are relative to, and the name of the
+/// coordinate system.
 ///
-/// A position p of a value stands for the world position frame.origin + p. Readers choose the origin so that the
-/// subtraction is exact (see distant_origin() in points.hpp), the engine rebases the inputs of a step to one origin,
-/// writers add it back: coordinates of 10^6 m keep their micrometres.
+/// The world position of a position p is frame.origin + p. Readers choose an origin for which the subtraction is exact
+/// (distant_origin() in bounds.hpp), the engine moves the inputs of a step to one origin, writers add it back:
+/// coordinates of 10^6 m keep their micrometres.
 
 #include <Eigen/Core>
 #include <optional>

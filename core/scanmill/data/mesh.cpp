@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/data/mesh.hpp"
 
+#include <algorithm>
+
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 
 namespace scanmill {
 
 namespace {
-
-constexpr u32 unused = ~u32(0);
 
 void require_rows(const ColumnTable& columns, std::size_t rows, std::string_view element) {
     for (const Column& column : columns)
@@ -24,16 +24,36 @@ void require_in_range(const Buffer<Simplex>& simplices, std::size_t vertices, st
             if (vertex >= vertices) throw Error("{} {} names vertex {}; there are {}", what, i, vertex, vertices);
 }
 
-/// The simplices whose vertices all survive, renumbered; `kept` receives their rows.
-Buffer<Edge> renumbered(const Buffer<Edge>& edges, const Array<u32>& new_index, Array<u32>& kept) {
-    Array<Edge> result;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        const auto [a, b] = edges[i];
-        if (new_index[a] == unused || new_index[b] == unused) continue;
-        result.push_back({new_index[a], new_index[b]});
-        kept.push_back(static_cast<u32>(i));
+constexpr u32 removed = ~u32(0);
+
+/// The simplices whose vertices all remain, renumbered, and their columns (if any).
+template <class Simplex>
+Buffer<Simplex> renumbered(const Buffer<Simplex>& simplices, const Array<u32>& new_index, ColumnTable* columns) {
+    Array<Simplex> result;
+    Array<u32> kept;
+    result.reserve(simplices.size());
+    kept.reserve(simplices.size());
+    for (u32 row = 0; row < simplices.size(); ++row) {
+        Simplex simplex = simplices[row];
+        for (u32& vertex : simplex) vertex = new_index[vertex];
+        if (std::ranges::find(simplex, removed) != simplex.end()) continue;
+        result.push_back(simplex);
+        kept.push_back(row);
     }
+    if (columns && kept.size() < simplices.size()) *columns = columns->gather(kept);
     return result;
+}
+
+/// The mesh with these vertices alone. Pre: `vertices` ascend.
+TriangleMesh with_vertices(TriangleMesh mesh, const Array<u32>& vertices) {
+    Array<u32> new_index(mesh.positions.size(), removed);
+    for (u32 i = 0; i < vertices.size(); ++i) new_index[vertices[i]] = i;
+    mesh.positions = gather(mesh.positions, vertices);
+    mesh.vertex_columns = mesh.vertex_columns.gather(vertices);
+    mesh.triangles = renumbered(mesh.triangles, new_index, &mesh.face_columns);
+    mesh.edges = renumbered(mesh.edges, new_index, &mesh.edge_columns);
+    mesh.sharp_edges = renumbered(mesh.sharp_edges, new_index, nullptr);
+    return mesh;
 }
 
 }  // namespace
@@ -49,32 +69,23 @@ void require_consistent(const TriangleMesh& mesh) {
 }
 
 TriangleMesh without_unused_vertices(const TriangleMesh& mesh) {
-    Array<u32> new_index(mesh.positions.size());
-    std::fill(new_index.begin(), new_index.end(), unused);
+    std::vector<bool> is_used(mesh.positions.size());
     for (const Triangle& triangle : mesh.triangles)
-        for (u32 vertex : triangle) new_index[vertex] = 0;
+        for (u32 vertex : triangle) is_used[vertex] = true;
     Array<u32> used;
-    for (u32 vertex = 0; vertex < new_index.size(); ++vertex)
-        if (new_index[vertex] != unused) {
-            new_index[vertex] = static_cast<u32>(used.size());
-            used.push_back(vertex);
-        }
+    for (u32 vertex = 0; vertex < is_used.size(); ++vertex)
+        if (is_used[vertex]) used.push_back(vertex);
+    return with_vertices(mesh, used);
+}
 
-    TriangleMesh result;
-    result.frame = mesh.frame;
-    result.positions = gather(mesh.positions, used);
-    result.vertex_columns = mesh.vertex_columns.gather(used);
-    result.face_columns = mesh.face_columns;
-    Array<Triangle> triangles(mesh.triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-        for (int corner = 0; corner < 3; ++corner) triangles[i][corner] = new_index[mesh.triangles[i][corner]];
-    result.triangles = std::move(triangles);
+PointCloud points_of(const TriangleMesh& mesh) { return {mesh.frame, mesh.positions, mesh.vertex_columns}; }
 
-    Array<u32> kept_edges, kept_sharp_edges;
-    result.edges = renumbered(mesh.edges, new_index, kept_edges);
-    result.edge_columns = mesh.edge_columns.gather(kept_edges);
-    result.sharp_edges = renumbered(mesh.sharp_edges, new_index, kept_sharp_edges);
-    return result;
+Cleaned<TriangleMesh> without_invalid_points(const TriangleMesh& mesh) {
+    const Array<u32> rows = finite_rows(mesh.positions.span());
+    if (rows.size() == mesh.positions.size()) return {mesh, 0, 0};
+    TriangleMesh clean = with_vertices(mesh, rows);
+    const std::size_t triangles = mesh.triangles.size() - clean.triangles.size();
+    return {std::move(clean), mesh.positions.size() - rows.size(), triangles};
 }
 
 BoundingBox surface_box(const TriangleMesh& mesh) {
@@ -82,9 +93,7 @@ BoundingBox surface_box(const TriangleMesh& mesh) {
     for (const Triangle& triangle : mesh.triangles)
         for (const u32 vertex : triangle) {
             const Vec3& position = mesh.positions[vertex];
-            if (!position.allFinite()) continue;
-            box.low = box.low.cwiseMin(position);
-            box.high = box.high.cwiseMax(position);
+            if (position.allFinite()) box.add(position);
         }
     return box;
 }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// `mesh`: an indexed triangle mesh. Nothing is promised about manifoldness: see geometry/topology.hpp for the facts.
+/// `mesh`: an indexed triangle mesh. It need not be a manifold: geometry/mesh/topology.hpp computes what it is.
 
 #include <array>
 
-#include "scanmill/data/bounds.hpp"
-#include "scanmill/data/columns.hpp"
-#include "scanmill/data/frame.hpp"
+#include "scanmill/data/points.hpp"
 
 namespace scanmill {
 
@@ -32,15 +30,21 @@ struct TriangleMesh {
     Buffer<Edge> sharp_edges;
 };
 
-/// Throws Error when an index is out of range or a column has another number of rows than its element.
+/// Throws Error if an index is out of range or a column has a wrong number of rows.
 void require_consistent(const TriangleMesh& mesh);
 
-/// The triangles over only those vertices that they use, in vertex order, columns carried; the mesh's edges and sharp
-/// edges keep those between used vertices.
+/// The mesh without the vertices that are in no triangle, and without edges and sharp edges at such vertices; all
+/// columns, vertices in order.
 TriangleMesh without_unused_vertices(const TriangleMesh& mesh);
 
-/// Of the vertices that triangles use: one that no triangle names is no part of the surface, wherever it lies.
-/// Non-finite vertices are passed over; empty without triangles.
+/// The mesh's vertices with their columns and frame, in order; shares their memory.
+PointCloud points_of(const TriangleMesh& mesh);
+
+/// The mesh without vertices that have a NaN or infinite coordinate, and without triangles, edges and sharp edges at
+/// such vertices; all columns, in order. Unused vertices remain.
+Cleaned<TriangleMesh> without_invalid_points(const TriangleMesh& mesh);
+
+/// The box of the finite vertices that are in a triangle; empty without triangles.
 BoundingBox surface_box(const TriangleMesh& mesh);
 
 }  // namespace scanmill

@@ -2,7 +2,7 @@
 #pragma once
 /// `metrics`: named numbers with units, in the order they were reported.
 ///
-/// A set of them that is about something of a size holds that size as `diagonal`: what `%diag` means beside it.
+/// Metrics of an object with a size contain the metric `diagonal`, which `%diag` refers to.
 
 #include <optional>
 #include <string>
@@ -28,7 +28,7 @@ struct Metric {
 
 struct Metrics {
     std::vector<Metric> values;
-    LengthUnit unit = LengthUnit::unknown;  ///< that lengths are in, areas and volumes in its powers
+    LengthUnit unit = LengthUnit::unknown;  ///< of lengths; areas and volumes are in its powers
 
     /// Replaces an earlier metric of the same name.
     void set(std::string_view name, double value, Unit kind);

@@ -7,11 +7,11 @@ namespace scanmill {
 
 PointStream::~PointStream() = default;
 
-void PointStream::read(std::size_t piece, Array<Vec3>& room) const {
-    const FiniteBounds world = read_world(piece, room);
-    if (room.size() != pieces_[piece + 1] - pieces_[piece] || !world.are_within(world_.box)) throw_changed();
+void PointStream::read(std::size_t piece, Array<Vec3>& positions) const {
+    const FiniteBounds world = read_world(piece, positions);
+    if (positions.size() != pieces_[piece + 1] - pieces_[piece] || !world.are_within(world_.box)) throw_changed();
     if (frame_.origin == Vec3::Zero()) return;
-    for (Vec3& p : room) p -= frame_.origin;
+    for (Vec3& p : positions) p -= frame_.origin;
 }
 
 PointCloud PointStream::gather(std::span<const u32> rows, unsigned threads) const {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A point file that is read piece by piece, as often as needed, for what looks at every point and keeps few: the scan
-/// never is in memory as a whole.
+/// A point file that is read piece by piece, as often as needed, for code that visits every point and keeps few: the
+/// scan is never in memory as a whole.
 ///
-/// What comes out is, bit for bit, what read_points() gives: the same frame, the same positions relative to it, the
-/// same columns. Binary PLY and texts of three columns can be read so; open_point_stream() says which.
+/// Frame, positions and columns equal those of read_points(), bit for bit. open_point_stream() decides which files can
+/// be streamed: binary PLY and texts of three columns.
 
 #include <functional>
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace scanmill {
 
-/// Told the positions of a piece as the file has them: frame().origin is not subtracted.
+/// Called with the positions of a piece as in the file: frame().origin is not subtracted.
 using OnWorldPositions = std::function<void(std::span<const Vec3>)>;
 
 class PointStream {
@@ -27,35 +27,34 @@ public:
     const Frame& frame() const { return frame_; }
     /// Of all points, relative to frame().origin.
     const BoundingBox& bounds() const { return bounds_; }
-    /// Where the pieces begin, and one more: the number of points. A piece may be empty, and has at most 2^16 points.
+    /// The first point of every piece, and the number of points. A piece has at most 2^16 points and may be empty.
     const std::vector<std::size_t>& pieces() const { return pieces_; }
     std::size_t size() const { return pieces_.back(); }
 
-    /// The positions of a piece, in `room`. From several threads at once, each with room of its own. Throws Error when
-    /// the file no longer holds what it held when it was opened, as far as that shows: other rows, or coordinates
-    /// outside bounds().
-    void read(std::size_t piece, Array<Vec3>& room) const;
-    /// One column's rows of a piece. Of what there are, gather() tells. From several threads at once. Cost: one pass
-    /// over the piece, whatever other columns there are. Pre: there is a column of this name.
+    /// Reads the positions of a piece. Callable from several threads. Throws Error if the file has visibly changed
+    /// since it was opened: another number of rows, or coordinates outside bounds().
+    void read(std::size_t piece, Array<Vec3>& positions) const;
+    /// A column's rows of a piece; gather() of no rows lists the columns. Callable from several threads. Cost: one pass
+    /// over the piece. Pre: there is a column of this name.
     virtual Column read_column(std::size_t piece, std::string_view name) const = 0;
     /// These points with all their columns. Pre: `rows` ascending. Throws Error as read().
     PointCloud gather(std::span<const u32> rows, unsigned threads) const;
 
-    /// Calls the frame otherwise than the file does.
+    /// Sets another frame name than that of the file.
     void rename_frame(std::string name) { frame_.name = std::move(name); }
 
 protected:
     PointStream() = default;
     /// Throws the Error of a file that changed.
     [[noreturn]] static void throw_changed();
-    /// World positions of a piece, `room` sized to fit what the file has now, and their bounds.
-    virtual FiniteBounds read_world(std::size_t piece, Array<Vec3>& room) const = 0;
+    /// Reads the world positions of a piece, as many as the file has now; returns their bounds.
+    virtual FiniteBounds read_world(std::size_t piece, Array<Vec3>& positions) const = 0;
     virtual PointCloud gather_world(std::span<const u32> rows, unsigned threads) const = 0;
-    /// Sets the frame's origin to what readers choose, and the bounds relative to it. Pre: world_ bounds all pieces.
+    /// Sets the frame's origin as readers do, and the bounds relative to it. Pre: world_ bounds all pieces.
     void choose_origin();
 
     Frame frame_;
-    FiniteBounds world_;  ///< of the pieces that were looked over, as the file has them
+    FiniteBounds world_;  ///< of the pieces read so far, as in the file
     BoundingBox bounds_;
     std::vector<std::size_t> pieces_;
 };

@@ -25,6 +25,20 @@ void require_finite(std::span<const Vec3> positions, std::string_view what) {
         .hint("'scanmill convert --drop-invalid IN OUT' writes a copy without them");
 }
 
+Array<u32> finite_rows(std::span<const Vec3> positions) {
+    Array<u32> rows;
+    rows.reserve(positions.size());
+    for (u32 row = 0; row < positions.size(); ++row)
+        if (positions[row].allFinite()) rows.push_back(row);
+    return rows;
+}
+
+Cleaned<PointCloud> without_invalid_points(const PointCloud& cloud) {
+    const Array<u32> rows = finite_rows(cloud.positions.span());
+    if (rows.size() == cloud.size()) return {cloud, 0, 0};
+    return {gather(cloud, rows), cloud.size() - rows.size(), 0};
+}
+
 Buffer<Vec3> translated(const Buffer<Vec3>& positions, const Vec3& shift) {
     Array<Vec3> moved(positions.size());
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = positions[i] + shift;

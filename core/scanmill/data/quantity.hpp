@@ -2,10 +2,10 @@
 #pragma once
 /// Numbers with dimensions, as people write them: lengths, angles, ratios.
 ///
-/// A Length may be relative (`0.1 %diag`, `3 spacing`) or in a unit of the world (`0.2 mm`); it becomes a plain number
-/// in the scan's own unit through resolved(). Algorithms read lengths with value(), which demands a resolved one: the
-/// engine resolves every length once before a filter runs, a C++ caller writes `params.tolerance = 0.2` (scan units) or
-/// resolves against length_scale(cloud).
+/// A Length is relative (`0.1 %diag`, `3 spacing`), absolute (`0.2 mm`) or in the scan's own unit (`0.5 u`); resolved()
+/// converts it to the scan's unit. Algorithms read lengths by value(), which requires a resolved one: the engine
+/// resolves all lengths before a filter runs; a C++ caller writes `params.tolerance = 0.2` (scan units) or resolves
+/// with length_scale(cloud).
 
 #include <functional>
 #include <string>
@@ -16,12 +16,17 @@
 
 namespace scanmill {
 
-/// What relative and absolute lengths are measured against: one scan.
+/// The lengths of a scan that relative and absolute lengths are resolved with.
 struct LengthScale {
     LengthUnit unit = LengthUnit::unknown;
-    /// Called only when a length needs them; both in the scan's unit.
+    /// In the scan's unit; called only if a length needs them.
     std::function<double()> diagonal, spacing;
 };
+
+/// How quantities are written, for messages.
+inline constexpr std::string_view length_examples = "0.2 mm, 0.1 %diag, 3 spacing or 0.5 u";
+inline constexpr std::string_view angle_examples = "40 deg or 0.7 rad";
+inline constexpr std::string_view ratio_examples = "5 % or 0.05";
 
 class Length {
 public:
@@ -37,14 +42,14 @@ public:
     constexpr double amount() const { return amount_; }
     constexpr In in() const { return in_; }
 
-    /// In the scan's unit. Throws Error when the length still is relative or in a unit of the world.
+    /// In the scan's unit. Throws Error if the length is not resolved.
     double value() const;
-    /// The same length in the scan's unit. Throws Error: an absolute length on a scan of unknown unit (saying how to
-    /// declare it), a relative one when the scale is zero.
+    /// The same length in the scan's unit. Throws Error for an absolute length on a scan of unknown unit (with how to
+    /// declare it) and for a relative one if the reference is zero.
     Length resolved(const LengthScale& scale) const;
     /// "0.1 %diag", shortest digits that read back equal.
     std::string text() const;
-    /// Throws Error with what was expected: a number, a space or none, and a unit.
+    /// A number, an optional space and a unit. Throws Error with what was expected.
     static Length parse(std::string_view text);
     bool operator==(const Length&) const = default;
 
@@ -52,9 +57,6 @@ private:
     double amount_ = 0;
     In in_ = In::scan_unit;
 };
-
-/// "0.2 mm, 0.1 %diag, 3 spacing or 0.5 u": how a length is written, for messages.
-std::string_view length_examples();
 
 class Angle {
 public:
@@ -77,7 +79,7 @@ private:
 class Ratio {
 public:
     constexpr Ratio() = default;
-    /// 0.05 and percent(5) are the same ratio, written differently.
+    /// fraction(0.05) and percent(5) are the same ratio, written differently.
     static constexpr Ratio fraction(double amount) { return Ratio(amount, false); }
     static constexpr Ratio percent(double amount) { return Ratio(amount, true); }
 

@@ -14,24 +14,24 @@ namespace scanmill {
 using Tetrahedron = std::array<u32, 4>;
 
 struct TetMesh {
-    /// In `neighbours`: nothing but the unbounded outside lies across this facet.
+    /// In `neighbours`: the facet is on the convex hull.
     static constexpr u32 outside_hull = ~u32(0);
 
     Frame frame;
     /// #vertices, relative to frame.origin: the distinct input points, in input order.
     Buffer<Vec3> positions;
     ColumnTable vertex_columns;
-    /// #vertices, squared lengths in frame.unit, finite and not negative; empty when the points have no weights, which
-    /// is the same as all equal. Cells are then those of the regular triangulation: no vertex p has a negative power
-    /// |c - p|² - w_p - r² with regard to the sphere (c, r²) orthogonal to a cell's corners. Some vertices may be
-    /// hidden, that is in no cell.
+    /// #vertices, squared lengths in frame.unit, finite and not negative; empty if the points have no weights, which is
+    /// equivalent to equal weights. With weights, the cells are those of the regular triangulation: no vertex p has a
+    /// negative power |c - p|² - w_p - r² with regard to the sphere (c, r²) orthogonal to a cell's corners. Some
+    /// vertices may be hidden, that is in no cell.
     Buffer<double> weights;
     /// #cells finite cells in canonical order: each cell begins with its smallest index and is the lexicographically
     /// smallest even permutation of itself; cells ascend lexicographically.
     Buffer<Tetrahedron> cells;
     /// #cells: neighbours[c][i] is the cell across the facet opposite to cells[c][i], or outside_hull.
     Buffer<std::array<u32, 4>> neighbours;
-    /// #cells, 1 inside and 0 outside the solid; empty when nothing was labelled yet.
+    /// #cells, 1 inside and 0 outside the solid; empty without labels.
     Buffer<u8> inside;
 };
 

@@ -18,9 +18,6 @@ struct RigidTransform {
     std::string from, to;
 
     Vec3 apply(const Vec3& world) const { return rotation * world + translation; }
-    RigidTransform inverse() const {
-        return {rotation.transpose(), -(rotation.transpose() * translation), unit, to, from};
-    }
 };
 
 }  // namespace scanmill

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What a running filter may ask of its surroundings: what every Execution offers, and warnings, metrics, random
-/// numbers and a scratch folder. There are no globals; a C++ program that calls an algorithm directly makes a `Context
-/// context;`.
+/// The surroundings of a running filter: an Execution, and warnings, metrics, random numbers and a scratch folder. A
+/// C++ program that calls an algorithm directly creates a `Context context;`.
 
 #include <filesystem>
 #include <functional>
@@ -18,7 +17,7 @@ namespace scanmill {
 
 struct ContextOptions : ExecutionOptions {
     std::uint64_t seed = 0;
-    /// Exists while the algorithm runs; empty: none was given.
+    /// Exists while the algorithm runs; empty: there is none.
     std::filesystem::path scratch;
     /// Called from any thread, one call at a time.
     std::function<void(std::string_view text)> on_warning;
@@ -28,8 +27,8 @@ class Context : public Execution {
 public:
     explicit Context(ContextOptions options = {});
 
-    /// One sentence about something the user should know although the result is valid; callable from any thread. After
-    /// most_warnings of them, one sentence reports that there were more.
+    /// Reports one sentence about a valid but remarkable result; callable from any thread. After most_warnings
+    /// sentences, one more reports that there were more.
     void warn(std::string text);
     void metric(std::string_view name, double value, Unit unit = Unit::count);
     /// A generator for this run's seed; every call returns the same state, so split it with stream().

@@ -2,23 +2,24 @@
 #pragma once
 /// How a filter declares itself, in one expression (see filters/voxel_thin/plugin.cpp).
 ///
-/// A parameter's type follows from the member of the params struct that it binds, its default from that member's
-/// initialiser: each fact stands once. Constraints come after the help text, in any order:
+/// A parameter is bound to a field of the params struct: the field's type determines the parameter's type, its
+/// initialiser the default. Constraints follow the help text, in any order:
 ///
 ///     .param("bin-size", &P::bin_size, "Edge of a voxel.", above(0), word("auto"))
 ///
-/// Members: bool, integers, double, std::string, std::filesystem::path, Length, Angle, Ratio, std::vector of these, and
-/// std::optional of any of these for a parameter that may be left out or replaced by its word (then nullopt).
+/// Field types: bool, integers, double, std::string, std::filesystem::path, Length, Angle, Ratio, std::vector of these,
+/// and std::optional of any of these for a parameter that may be omitted or replaced by its word (then nullopt).
 
 #include <concepts>
+#include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "scanmill/filter/constraint.hpp"
+#include "scanmill/base/error.hpp"
 #include "scanmill/filter/context.hpp"
-#include "scanmill/filter/member.hpp"
 #include "scanmill/filter/ports.hpp"
 #include "scanmill/filter/spec.hpp"
 
@@ -26,14 +27,120 @@ namespace scanmill {
 
 class PointStream;
 
-/// A filter as the engine sees it.
+/// A filter as the engine uses it.
 struct FilterDeclaration {
     FilterSpec spec;
     /// Pre: every declared parameter has a value (resolved, in range) and every non-optional input is wired.
     std::function<Outputs(const Inputs&, const ParameterSet&, Context&)> run;
-    /// The same for an input that comes as a stream. Pre: spec.streams; the parameters that it asks for have values.
+    /// The same for a streamed input. Pre: spec.streams, and its parameters have values.
     std::function<Outputs(const PointStream&, const ParameterSet&, Context&)> run_streamed;
 };
+
+/// Bounds of a parameter. Lengths are compared as written, whatever their unit, so their bounds should be 0; angles in
+/// degrees, ratios as fractions.
+inline auto bound(std::optional<Bound> ParameterSpec::*side, double value, bool inclusive) {
+    return [=](ParameterSpec& spec) { spec.*side = Bound{value, inclusive}; };
+}
+inline auto above(double value) { return bound(&ParameterSpec::low, value, false); }
+inline auto at_least(double value) { return bound(&ParameterSpec::low, value, true); }
+inline auto below(double value) { return bound(&ParameterSpec::high, value, false); }
+inline auto at_most(double value) { return bound(&ParameterSpec::high, value, true); }
+/// A word accepted in place of a value, and the default. Pre: the field is a std::optional, empty by default.
+inline auto word(std::string text) {
+    return [text = std::move(text)](ParameterSpec& spec) {
+        spec.word = text;
+        spec.default_value = ParameterScalar(Word{text});
+    };
+}
+/// There is no sensible default: the workflow must contain a value.
+inline constexpr auto required = [](ParameterSpec& spec) {
+    spec.required = true;
+    spec.default_value = std::monostate{};
+};
+/// A list of exactly this many values.
+inline auto size(std::size_t count) {
+    return [count](ParameterSpec& spec) { spec.size = count; };
+}
+
+namespace detail {
+
+/// The parameter type of a field of type T.
+template <class T>
+consteval ParameterType parameter_type_of() {
+    using std::same_as;
+    if constexpr (same_as<T, bool>) return ParameterType::boolean;
+    if constexpr (std::integral<T> && !same_as<T, bool>) return ParameterType::integer;
+    if constexpr (same_as<T, double>) return ParameterType::number;
+    if constexpr (same_as<T, std::string>) return ParameterType::text;
+    if constexpr (same_as<T, std::filesystem::path>) return ParameterType::path;
+    if constexpr (same_as<T, Length>) return ParameterType::length;
+    if constexpr (same_as<T, Angle>) return ParameterType::angle;
+    if constexpr (same_as<T, Ratio>) return ParameterType::ratio;
+}
+/// The alternative of ParameterScalar that holds the value of a field of type T.
+template <class T>
+using Stored = std::conditional_t<parameter_type_of<T>() == ParameterType::integer, std::int64_t,
+                                  std::conditional_t<std::same_as<T, std::filesystem::path>, std::string, T>>;
+
+/// Sets type, list, bounds and default of the parameter for a field whose initial value is `field`.
+template <class T>
+void describe(ParameterSpec& spec, const T& field) {
+    spec.type = parameter_type_of<T>();
+    spec.default_value = ParameterScalar(Stored<T>(field));
+    if constexpr (parameter_type_of<T>() == ParameterType::integer) {  // the range of the C++ type
+        if (std::is_unsigned_v<T>) spec.low = Bound{0, true};
+        if constexpr (sizeof(T) < sizeof(std::int64_t)) {
+            spec.low = Bound{static_cast<double>(std::numeric_limits<T>::min()), true};
+            spec.high = Bound{static_cast<double>(std::numeric_limits<T>::max()), true};
+        }
+    }
+}
+template <class T>
+void describe(ParameterSpec& spec, const std::vector<T>& field) {
+    describe(spec, T{});
+    spec.list = true;
+    std::vector<ParameterScalar> items;
+    for (const T& item : field) items.emplace_back(Stored<T>(item));
+    spec.default_value = std::move(items);
+}
+template <class T>
+void describe(ParameterSpec& spec, const std::optional<T>& field) {
+    describe(spec, field.value_or(T{}));
+    if (!field) spec.default_value = std::monostate{};
+}
+
+/// Sets the field to a parameter's value.
+template <class T>
+void assign(T& field, const ParameterScalar& value) {
+    const auto& stored = std::get<Stored<T>>(value);
+    if constexpr (parameter_type_of<T>() == ParameterType::integer)  // a C++ caller may pass unchecked values
+        if (!std::in_range<T>(stored))
+            throw Error("{} is out of range; expected a whole number from {} to {}", stored,
+                        std::numeric_limits<T>::min(), std::numeric_limits<T>::max());
+    field = static_cast<T>(stored);
+}
+template <class T>
+void assign(T& field, const ParameterValue& value) {
+    assign(field, std::get<ParameterScalar>(value));
+}
+template <class T>
+void assign(std::vector<T>& field, const ParameterValue& value) {
+    field.clear();
+    for (const ParameterScalar& item : std::get<std::vector<ParameterScalar>>(value)) {
+        T converted;
+        assign(converted, item);
+        field.push_back(std::move(converted));
+    }
+}
+template <class T>
+void assign(std::optional<T>& field, const ParameterValue& value) {
+    field.reset();
+    const auto* one = std::get_if<ParameterScalar>(&value);
+    if (std::holds_alternative<std::monostate>(value) || (one && std::holds_alternative<Word>(*one))) return;
+    assign(field.emplace(), value);
+}
+
+}  // namespace detail
 
 /// Port options, none, one or both: `.in<TriangleMesh>("mesh", "…", optional)`, `.in<PointCloud>("points", "…", list)`.
 /// A port that takes one kind or another: `.in<TriangleMesh, PointCloud>("truth", "…")`.
@@ -41,7 +148,7 @@ enum class PortOption { optional, list };
 inline constexpr PortOption optional = PortOption::optional;
 inline constexpr PortOption list = PortOption::list;
 
-/// At the end of .metric(…), none, one or both: a column in a run's summary; told for each of several things.
+/// Metric options, none, one or both: a column in a run's summary; reported once per item (NAME, NAME@2, …).
 enum class MetricOption { headline, numbered };
 inline constexpr MetricOption headline = MetricOption::headline;
 inline constexpr MetricOption numbered = MetricOption::numbered;
@@ -62,24 +169,12 @@ public:
         declaration_.spec.version = version;
     }
 
-    Declare& summary(std::string text) {
-        declaration_.spec.summary = std::move(text);
-        return *this;
-    }
-    Declare& source(std::string text) {
-        declaration_.spec.source = std::move(text);
-        return *this;
-    }
-    /// What decides between equals: needed by every filter that takes something.
-    Declare& ties(std::string text) {
-        declaration_.spec.ties = std::move(text);
-        return *this;
-    }
-    /// What becomes of NaN and infinite coordinates: needed by every filter that takes points or meshes.
-    Declare& not_finite(std::string text) {
-        declaration_.spec.not_finite = std::move(text);
-        return *this;
-    }
+    Declare& summary(std::string text) { return set(&FilterSpec::summary, std::move(text)); }
+    Declare& source(std::string text) { return set(&FilterSpec::source, std::move(text)); }
+    /// The rule for ties; required of every filter with inputs.
+    Declare& ties(std::string text) { return set(&FilterSpec::ties, std::move(text)); }
+    /// The handling of NaN and infinite coordinates; required of every filter that takes points or meshes.
+    Declare& not_finite(std::string text) { return set(&FilterSpec::not_finite, std::move(text)); }
     template <class T, class... Others, std::same_as<PortOption>... Options>
     Declare& in(std::string port, std::string help, Options... options) {
         declaration_.spec.inputs.push_back({std::move(port),
@@ -90,7 +185,7 @@ public:
                                             {kind_of<Others>()...}});
         return *this;
     }
-    /// The filter that the value of the input declared last usually comes from: examples begin with it.
+    /// The filter that usually produces the value of the last declared input: examples start with it.
     Declare& made_by(std::string filter) {
         declaration_.spec.inputs.back().maker = std::move(filter);
         return *this;
@@ -109,33 +204,32 @@ public:
         declaration_.spec.outputs.push_back(std::move(spec));
         return *this;
     }
-    /// The member may be one that the params struct inherits.
+    /// The field may be inherited.
     template <class T, class Owner, class... Constraints>
         requires std::derived_from<Params, Owner>
-    Declare& param(std::string name, T Owner::*member, std::string help, const Constraints&... constraints) {
+    Declare& param(std::string name, T Owner::*field, std::string help, const Constraints&... constraints) {
         ParameterSpec spec;
-        detail::Convert<T>::describe(spec, Params{}.*member);
-        (constraints.apply(spec), ...);
-        bind(std::move(spec), std::move(name), std::move(help), [member](Params& params, const ParameterValue& value) {
-            params.*member = detail::Convert<T>::from(value);
-        });
+        detail::describe(spec, Params{}.*field);
+        (constraints(spec), ...);
+        bind(std::move(spec), std::move(name), std::move(help),
+             [field](Params& params, const ParameterValue& value) { detail::assign(params.*field, value); });
         return *this;
     }
     template <class Enum, class Owner>
         requires std::derived_from<Params, Owner>
-    Declare& choice(std::string name, Enum Owner::*member,
+    Declare& choice(std::string name, Enum Owner::*field,
                     std::vector<Alternative<std::type_identity_t<Enum>>> alternatives, std::string help) {
         ParameterSpec spec;
         spec.type = ParameterType::choice;
         for (const auto& alternative : alternatives) {
             spec.choices.push_back({alternative.name, alternative.help});
-            if (alternative.value == Params{}.*member) spec.default_value = ParameterScalar(alternative.name);
+            if (alternative.value == Params{}.*field) spec.default_value = ParameterScalar(alternative.name);
         }
         bind(std::move(spec), std::move(name), std::move(help),
-             [member, alternatives](Params& params, const ParameterValue& value) {
+             [field, alternatives](Params& params, const ParameterValue& value) {
                  const auto& chosen = std::get<std::string>(std::get<ParameterScalar>(value));
                  for (const auto& alternative : alternatives)
-                     if (alternative.name == chosen) params.*member = alternative.value;
+                     if (alternative.name == chosen) params.*field = alternative.value;
              });
         return *this;
     }
@@ -156,9 +250,9 @@ public:
         };
         return *this;
     }
-    /// `body(scan, params, context)` returns what run() would, byte for byte, of a scan file that is read piece by
-    /// piece (scanmill/data/point_stream.hpp): called instead of run() when all parameters of `given` have a value,
-    /// and nobody else needs the scan in memory. For filters with one input.
+    /// `body(scan, params, context)` returns the same bytes as run(), from a scan file that is read piece by piece
+    /// (scanmill/data/point_stream.hpp). Called instead of run() if all parameters in `given` have a value and no other
+    /// step needs the scan in memory. For filters with one input.
     template <class Body>
         requires std::is_invocable_r_v<Outputs, Body, const PointStream&, const Params&, Context&>
     Declare& run_streamed(std::vector<std::string> given, Body body) {
@@ -180,6 +274,11 @@ private:
         for (const auto& [name, set] : setters)
             if (const ParameterValue* value = values.find(name)) set(params, *value);
         return params;
+    }
+
+    Declare& set(std::string FilterSpec::*remark, std::string text) {
+        declaration_.spec.*remark = std::move(text);
+        return *this;
     }
 
     void bind(ParameterSpec spec, std::string name, std::string help, Setter setter) {

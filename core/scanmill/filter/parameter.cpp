@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/filter/parameter.hpp"
-#include "scanmill/base/text.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <span>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill {
 
 namespace {
-
-constexpr std::array<std::string_view, 9> type_names{"boolean", "integer", "number", "choice", "text",
-                                                     "path",    "length",  "angle",  "ratio"};
 
 template <class... Actions>
 struct Overloaded : Actions... {
     using Actions::operator()...;
 };
 template <class... Actions>
-Overloaded(Actions...) -> Overloaded<Actions...>;  // clang 16 needs it said
+Overloaded(Actions...) -> Overloaded<Actions...>;  // clang 16 needs the deduction guide
 
 std::string range_text(const ParameterSpec& spec) {
     const std::string unit = spec.type == ParameterType::angle ? " deg" : "";
@@ -40,29 +39,25 @@ std::vector<std::string> choice_names(const ParameterSpec& spec) {
     return names;
 }
 
-std::string one_value_expectation(const ParameterSpec& spec) {
-    switch (spec.type) {
-        case ParameterType::boolean: return "true or false";
-        case ParameterType::integer: return "a whole number" + range_text(spec);
-        case ParameterType::number: return "a number" + range_text(spec);
-        case ParameterType::choice: return "one of " + enumerated(choice_names(spec));
-        case ParameterType::text: return "a text";
-        case ParameterType::path: return "a path";
-        case ParameterType::length: return "a length" + range_text(spec) + ", as " + std::string(length_examples());
-        case ParameterType::angle: return "an angle" + range_text(spec) + ", as 40 deg or 0.7 rad";
-        case ParameterType::ratio: return "a ratio" + range_text(spec) + ", as 5 % or 0.05";
-    }
-    return "";
+/// What messages and parsing need of a type.
+struct TypeRow {
+    std::string_view name, noun, example;
+    ParameterScalar (*parse)(const ParameterSpec& spec, const std::string& text);
+};
+
+ParameterScalar parse_boolean(const ParameterSpec&, const std::string& text) {
+    if (text != "true" && text != "false") throw Error("'{}' is neither true nor false", text);
+    return text == "true";
 }
 
-ParameterScalar parse_integer(std::string_view text) {
+ParameterScalar parse_integer(const ParameterSpec&, const std::string& text) {
     std::int64_t value = 0;
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || rest != text.data() + text.size()) throw Error("'{}' is not a whole number", text);
     return value;
 }
 
-ParameterScalar parse_plain_number(std::string_view text) {
+ParameterScalar parse_plain_number(const ParameterSpec&, const std::string& text) {
     double value = 0;
     if (!parse_number(text, value) || !std::isfinite(value)) throw Error("'{}' is not a number", text);
     return value;
@@ -75,23 +70,27 @@ ParameterScalar parse_choice(const ParameterSpec& spec, const std::string& text)
     return text;
 }
 
-ParameterScalar parse_one(const ParameterSpec& spec, const std::string& text) {
-    switch (spec.type) {
-        case ParameterType::boolean:
-            if (text == "true") return true;
-            if (text == "false") return false;
-            throw Error("'{}' is neither true nor false", text);
-        case ParameterType::integer: return parse_integer(text);
-        case ParameterType::number: return parse_plain_number(text);
-        case ParameterType::choice: return parse_choice(spec, text);
-        case ParameterType::text:
-        case ParameterType::path: return text;
-        case ParameterType::length: return Length::parse(text);
-        case ParameterType::angle: return Angle::parse(text);
-        case ParameterType::ratio: return Ratio::parse(text);
-    }
-    return text;
+ParameterScalar parse_text(const ParameterSpec&, const std::string& text) { return text; }
+
+template <class Quantity>
+ParameterScalar parse_quantity(const ParameterSpec&, const std::string& text) {
+    return Quantity::parse(text);
 }
+
+/// By ParameterType.
+constexpr std::array<TypeRow, 9> types{{
+    {"boolean", "true or false", "", parse_boolean},
+    {"integer", "a whole number", "", parse_integer},
+    {"number", "a number", "", parse_plain_number},
+    {"choice", "one of ", "", parse_choice},
+    {"text", "a text", "", parse_text},
+    {"path", "a path", "", parse_text},
+    {"length", "a length", length_examples, parse_quantity<Length>},
+    {"angle", "an angle", angle_examples, parse_quantity<Angle>},
+    {"ratio", "a ratio", ratio_examples, parse_quantity<Ratio>},
+}};
+
+const TypeRow& row_of(ParameterType type) { return types[static_cast<std::size_t>(type)]; }
 
 /// The number that a bound compares; nothing for types without an order.
 std::optional<double> amount(const ParameterScalar& value) {
@@ -127,14 +126,22 @@ std::string canonical_scalar(const ParameterScalar& value) {
                       value);
 }
 
+/// No item, one or several. `Value` is ParameterValue or const ParameterValue.
+template <class Value>
+auto items_of(Value& value) {
+    using Item = std::conditional_t<std::is_const_v<Value>, const ParameterScalar, ParameterScalar>;
+    if (auto* list = std::get_if<std::vector<ParameterScalar>>(&value)) return std::span<Item>(*list);
+    auto* one = std::get_if<ParameterScalar>(&value);
+    return std::span<Item>(one, one ? 1 : 0);
+}
+
+bool is_list(const ParameterValue& value) { return std::holds_alternative<std::vector<ParameterScalar>>(value); }
+
 template <class ScalarText>
 std::string joined(const ParameterValue& value, ScalarText&& scalar) {
-    if (const auto* one = std::get_if<ParameterScalar>(&value)) return scalar(*one);
-    const auto* list = std::get_if<std::vector<ParameterScalar>>(&value);
-    if (!list) return {};
-    std::string text = "[";
-    for (const ParameterScalar& item : *list) text += (text.size() > 1 ? ", " : "") + scalar(item);
-    return text + "]";
+    std::string text;
+    for (const ParameterScalar& item : items_of(value)) text += (text.empty() ? "" : ", ") + scalar(item);
+    return is_list(value) ? "[" + text + "]" : text;
 }
 
 void require_item_in_range(const ParameterSpec& spec, const ParameterScalar& item) {
@@ -148,16 +155,19 @@ void require_item_in_range(const ParameterSpec& spec, const ParameterScalar& ite
 
 }  // namespace
 
-std::string_view name_of(ParameterType type) { return type_names[static_cast<std::size_t>(type)]; }
+std::string_view name_of(ParameterType type) { return row_of(type).name; }
 
 std::optional<ParameterType> parameter_type_named(std::string_view name) {
-    const auto found = std::ranges::find(type_names, name);
-    if (found == type_names.end()) return std::nullopt;
-    return static_cast<ParameterType>(found - type_names.begin());
+    const auto found = std::ranges::find(types, name, &TypeRow::name);
+    if (found == types.end()) return std::nullopt;
+    return static_cast<ParameterType>(found - types.begin());
 }
 
 std::string expectation(const ParameterSpec& spec) {
-    std::string expected = one_value_expectation(spec);
+    const TypeRow& type = row_of(spec.type);
+    std::string expected(type.noun);
+    expected.append(enumerated(choice_names(spec))).append(range_text(spec));
+    if (!type.example.empty()) expected.append(", as ").append(type.example);
     if (spec.list)
         expected =
             "a list of " + (spec.size ? std::to_string(*spec.size) + " values" : "values") + ", each " + expected;
@@ -169,10 +179,10 @@ ParameterValue parse(const ParameterSpec& spec, const WrittenParameter& written)
     if (!written.list && !spec.word.empty() && written.items.front() == spec.word)
         return ParameterScalar(Word{spec.word});
     if (written.list && !spec.list) throw Error("is a list; expected {}", expectation(spec));
-    // A single value in a list's place is the list of that value, unless the list must have another length.
+    // A single value in place of a list is a list of one.
     const auto item = [&](const std::string& text) {
         try {
-            const ParameterScalar value = parse_one(spec, text);
+            const ParameterScalar value = row_of(spec.type).parse(spec, text);
             require_item_in_range(spec, value);
             return value;
         } catch (Error& error) {
@@ -195,44 +205,29 @@ ParameterValue parse(const ParameterSpec& spec, const WrittenParameter& written)
 }
 
 void require_in_range(const ParameterSpec& spec, const ParameterValue& value) {
-    if (const auto* one = std::get_if<ParameterScalar>(&value)) require_item_in_range(spec, *one);
-    if (const auto* list = std::get_if<std::vector<ParameterScalar>>(&value))
-        for (const ParameterScalar& item : *list) require_item_in_range(spec, item);
+    for (const ParameterScalar& item : items_of(value)) require_item_in_range(spec, item);
 }
 
 std::string text(const ParameterValue& value) { return joined(value, scalar_text); }
 
 std::string canonical_text(const ParameterValue& value) {
-    if (!std::holds_alternative<std::vector<ParameterScalar>>(value)) return joined(value, canonical_scalar);
-    // With its length before it, a text that holds ", " is not taken for two.
-    return joined(value, [](const ParameterScalar& item) {
+    // A text in a list is preceded by its length: a text that contains ", " must not equal two texts.
+    return joined(value, [&](const ParameterScalar& item) {
         const std::string one = canonical_scalar(item);
-        return std::holds_alternative<std::string>(item) ? std::to_string(one.size()) + ":" + one : one;
+        const bool is_text = std::holds_alternative<std::string>(item);
+        return is_list(value) && is_text ? std::to_string(one.size()) + ":" + one : one;
     });
 }
 
 WrittenParameter written(const ParameterValue& value) {
-    WrittenParameter result;
-    if (const auto* list = std::get_if<std::vector<ParameterScalar>>(&value)) {
-        result.list = true;
-        for (const ParameterScalar& item : *list) result.items.push_back(scalar_text(item));
-    } else {
-        result.items.push_back(scalar_text(std::get<ParameterScalar>(value)));
-    }
+    WrittenParameter result{{}, is_list(value)};
+    for (const ParameterScalar& item : items_of(value)) result.items.push_back(scalar_text(item));
     return result;
 }
 
-ParameterValue resolved(const ParameterValue& value, const LengthScale& scale) {
-    const auto resolve = [&](const ParameterScalar& item) -> ParameterScalar {
-        if (const auto* length = std::get_if<Length>(&item)) return length->resolved(scale);
-        return item;
-    };
-    if (const auto* one = std::get_if<ParameterScalar>(&value)) return resolve(*one);
-    if (const auto* list = std::get_if<std::vector<ParameterScalar>>(&value)) {
-        std::vector<ParameterScalar> items;
-        for (const ParameterScalar& item : *list) items.push_back(resolve(item));
-        return items;
-    }
+ParameterValue resolved(ParameterValue value, const LengthScale& scale) {
+    for (ParameterScalar& item : items_of(value))
+        if (auto* length = std::get_if<Length>(&item)) *length = length->resolved(scale);
     return value;
 }
 

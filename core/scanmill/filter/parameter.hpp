@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Parameters as data: what one is called, of which type and range it is, and how its written form becomes a value.
+/// Parameters as data: name, type and range, and the conversion between the written form and the value.
 ///
-/// The specification of a parameter comes from the filter's declaration (declare.hpp) or, without loading any code,
-/// from its manifest. Both check a workflow the same way.
+/// The specification of a parameter comes from the filter's declaration (declare.hpp) or, without loading code, from
+/// its manifest.
 
 #include <cstdint>
 #include <optional>
@@ -21,7 +21,7 @@ enum class ParameterType { boolean, integer, number, choice, text, path, length,
 std::string_view name_of(ParameterType type);
 std::optional<ParameterType> parameter_type_named(std::string_view name);
 
-/// A word that stands for a value: `auto`, `none`.
+/// A word in place of a value: `auto`, `none`.
 struct Word {
     std::string text;
     bool operator==(const Word&) const = default;
@@ -29,7 +29,7 @@ struct Word {
 
 /// Choices, texts and paths are strings.
 using ParameterScalar = std::variant<bool, std::int64_t, double, std::string, Length, Angle, Ratio, Word>;
-/// Nothing (an optional parameter that was left out), one value, or a list.
+/// Nothing (an omitted optional parameter), one value, or a list.
 using ParameterValue = std::variant<std::monostate, ParameterScalar, std::vector<ParameterScalar>>;
 
 struct Bound {
@@ -49,7 +49,7 @@ struct ParameterSpec {
     ParameterType type = ParameterType::number;
     bool list = false;
     std::optional<std::size_t> size;  ///< exact length of a list
-    bool required = false;            ///< has no default and must be given
+    bool required = false;            ///< has no default
     std::string word;                 ///< accepted in place of a value; empty: none
     std::optional<Bound> low, high;   ///< of the amount as written; for angles in degrees, for ratios the fraction
     std::vector<Choice> choices;
@@ -58,7 +58,7 @@ struct ParameterSpec {
     bool operator==(const ParameterSpec&) const = default;
 };
 
-/// A value as somebody wrote it, in YAML or after --set: texts not yet interpreted.
+/// A value as the user wrote it: texts that are not interpreted yet.
 struct WrittenParameter {
     std::vector<std::string> items;
     bool list = false;
@@ -67,7 +67,7 @@ struct WrittenParameter {
 /// "a length above 0, as 0.2 mm, 0.1 %diag, 3 spacing or 0.5 u; or `auto`".
 std::string expectation(const ParameterSpec& spec);
 
-/// The value that `written` stands for. Throws Error "… is wrong; expected …; did you mean …".
+/// The value of the written form. Throws Error "… is wrong; expected …; did you mean …".
 ParameterValue parse(const ParameterSpec& spec, const WrittenParameter& written);
 
 /// Throws Error when the value is out of the declared range.
@@ -75,13 +75,13 @@ void require_in_range(const ParameterSpec& spec, const ParameterValue& value);
 
 /// As people write it: "0.1 %diag", "[0, 1]"; empty for nothing.
 std::string text(const ParameterValue& value);
-/// One text per meaning, for cache keys: 40 deg and 0.698… rad give the same.
+/// The same text for equal values, for cache keys: 40 deg and 0.698… rad have one text.
 std::string canonical_text(const ParameterValue& value);
 /// The text(s) that parse() reads back to the same value. Pre: not nothing.
 WrittenParameter written(const ParameterValue& value);
 
-/// Every length in the value in the scan's own unit.
-ParameterValue resolved(const ParameterValue& value, const LengthScale& scale);
+/// The value with all lengths in the scan's own unit.
+ParameterValue resolved(ParameterValue value, const LengthScale& scale);
 
 /// Named values, in declaration order.
 struct ParameterSet {

@@ -17,14 +17,14 @@ class Inputs {
 public:
     void add(std::string port, Value value) { values_[std::move(port)].push_back(std::move(value)); }
 
-    /// The value wired to `port`. Pre: it is wired and of kind T: the engine saw to both.
+    /// The value wired to `port`. Pre: it is wired and of kind T; the engine checks both.
     template <class T>
     const T& get(std::string_view port) const {
         const T* object = find<T>(port);
         assert(object);
         return *object;
     }
-    /// nullptr when nothing is wired, or a value of another kind that the port takes as well.
+    /// nullptr if nothing is wired, or a value of another accepted kind.
     template <class T>
     const T* find(std::string_view port) const {
         const auto found = values_.find(port);
@@ -55,7 +55,7 @@ public:
         values_.emplace_back(std::move(port), std::move(value));
         return *this;
     }
-    /// nullptr when the filter gave nothing for `port`.
+    /// nullptr if the filter set no value for `port`.
     const Value* find(std::string_view port) const {
         for (const auto& [name, value] : values_)
             if (name == port) return &value;

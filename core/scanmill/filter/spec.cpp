@@ -2,6 +2,7 @@
 #include "scanmill/filter/spec.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "scanmill/base/error.hpp"
@@ -10,9 +11,9 @@ namespace scanmill {
 
 namespace {
 
-template <class Items>
-auto find_named(const Items& items, std::string_view name) -> const typename Items::value_type* {
-    const auto found = std::ranges::find(items, name, [](const auto& item) -> std::string_view { return item.name; });
+template <class Item>
+const Item* find_named(const std::vector<Item>& items, std::string_view name) {
+    const auto found = std::ranges::find(items, name, &Item::name);
     return found == items.end() ? nullptr : &*found;
 }
 
@@ -22,51 +23,49 @@ bool is_name(std::string_view name) {
            std::ranges::all_of(name, plain);
 }
 
-/// Its letters and digits in lower case.
+/// The letters and digits of `words` in lower case.
 std::string letters(std::string_view words) {
     std::string kept;
-    for (char c : words) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-        if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) kept += c;
-    }
+    for (const unsigned char c : words)
+        if (std::isalnum(c)) kept += static_cast<char>(std::tolower(c));
     return kept;
 }
 
 void require_sentence(std::string_view filter, std::string_view what, std::string_view name, std::string_view help) {
     if (help.size() < 8 || help.back() != '.' || help.find(' ') == std::string_view::npos)
-        throw Error("filter {}: the help of {} '{}' is no sentence: '{}'", filter, what, name, help);
+        throw Error("filter {}: the help of {} '{}' is not a sentence: '{}'", filter, what, name, help);
     if (letters(help) == letters(name))
         throw Error("filter {}: the help of {} '{}' only repeats the name: '{}'", filter, what, name, help);
 }
 
 template <class Items>
 void require_names(std::string_view filter, std::string_view what, const Items& items) {
-    std::set<std::string_view> seen;
+    std::set<std::string_view> names;
     for (const auto& item : items) {
         if (!is_name(item.name))
             throw Error("filter {}: {} '{}' is not lower-case-with-hyphens", filter, what, item.name);
-        if (!seen.insert(item.name).second)
+        if (!names.insert(item.name).second)
             throw Error("filter {}: {} '{}' is declared twice", filter, what, item.name);
         require_sentence(filter, what, item.name, item.help);
         if (item.name.find("neighbours") != std::string::npos && item.help.find("itself") == std::string::npos)
-            throw Error("filter {}: the help of {} '{}' leaves open whether the point itself is counted: '{}'", filter,
-                        what, item.name, item.help);
+            throw Error("filter {}: the help of {} '{}' does not state whether the point itself is counted: '{}'",
+                        filter, what, item.name, item.help);
     }
 }
 
-/// What must be said once for the whole filter.
-void require_said(std::string_view filter, std::string_view subject, std::string_view said) {
-    if (said.empty()) throw Error("filter {}: nothing is said of {}", filter, subject);
-    require_sentence(filter, "remark on", subject, said);
+/// A remark that the whole filter must have.
+void require_remark(std::string_view filter, std::string_view subject, std::string_view remark) {
+    if (remark.empty()) throw Error("filter {}: the remark on {} is missing", filter, subject);
+    require_sentence(filter, "remark on", subject, remark);
 }
 
 void require_sound_parameter(std::string_view filter, const ParameterSpec& parameter) {
     if (parameter.type == ParameterType::choice && parameter.choices.size() < 2)
         throw Error("filter {}: parameter '{}' has fewer than two choices", filter, parameter.name);
-    std::set<std::string_view> seen;
+    std::set<std::string_view> names;
     for (const Choice& choice : parameter.choices) {
         require_sentence(filter, fmt::format("choice of '{}':", parameter.name), choice.name, choice.help);
-        if (!seen.insert(choice.name).second)
+        if (!names.insert(choice.name).second)
             throw Error("filter {}: parameter '{}' has the choice '{}' twice", filter, parameter.name, choice.name);
     }
     const bool has_default = !std::holds_alternative<std::monostate>(parameter.default_value);
@@ -83,13 +82,13 @@ void require_sound_parameter(std::string_view filter, const ParameterSpec& param
 void require_sound_stream(const FilterSpec& spec) {
     if (spec.inputs.size() != 1 || spec.inputs.front().kind != kind_of<PointCloud>() || spec.inputs.front().list ||
         !spec.inputs.front().also.empty())
-        throw Error("filter {}: only a filter whose one input is a cloud of points can take it as a stream", spec.name);
+        throw Error("filter {}: only a filter with one input, a cloud of points, can be streamed", spec.name);
     for (const std::string& name : spec.streams->given) {
         const ParameterSpec* parameter = spec.parameter(name);
-        if (!parameter) throw Error("filter {}: its stream asks for '{}', which is no parameter", spec.name, name);
+        if (!parameter) throw Error("filter {}: its stream needs '{}', which is not a parameter", spec.name, name);
         if (parameter->required ||
             (parameter->word.empty() && !std::holds_alternative<std::monostate>(parameter->default_value)))
-            throw Error("filter {}: its stream asks for '{}', which always has a value", spec.name, name);
+            throw Error("filter {}: its stream needs '{}', which always has a value", spec.name, name);
     }
 }
 
@@ -128,13 +127,13 @@ void require_sound(const FilterSpec& spec) {
     for (const PortSpec& output : spec.outputs)
         if (const PortSpec* input = output.like.empty() ? nullptr : spec.input(output.like);
             !output.like.empty() && (!input || input->optional || input->kind != output.kind))
-            throw Error("filter {}: the output '{}' follows '{}', which must be a required input", spec.name,
+            throw Error("filter {}: the output '{}' has the kind of '{}', which must be a required input", spec.name,
                         output.name, output.like);
-    if (!spec.inputs.empty()) require_said(spec.name, "ties", spec.ties);
+    if (!spec.inputs.empty()) require_remark(spec.name, "ties", spec.ties);
     const auto has_coordinates = [](const PortSpec& port) {
         return port.takes(kind_of<PointCloud>()) || port.takes(kind_of<TriangleMesh>());
     };
-    if (std::ranges::any_of(spec.inputs, has_coordinates)) require_said(spec.name, "NaN", spec.not_finite);
+    if (std::ranges::any_of(spec.inputs, has_coordinates)) require_remark(spec.name, "NaN", spec.not_finite);
     for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec.name, parameter);
     if (spec.streams) require_sound_stream(spec);
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/files.hpp"
 
-#include "scanmill/data/conversions.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/data/mesh.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/io/atomic_file.hpp"
 #include "scanmill/io/output_buffer.hpp"

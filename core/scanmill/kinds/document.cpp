@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/kinds/document.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 
@@ -13,8 +11,7 @@ namespace scanmill {
 
 namespace {
 
-/// nlohmann's parser accepts a key twice in one object and keeps one of them, and nests as deep as the text does, which
-/// may be too deep for what walks through the result.
+/// Refuses repeated keys, of which nlohmann's parser would keep one, and nesting too deep for recursive readers.
 class StrictStructure {
 public:
     bool operator()(int depth, Json::parse_event_t event, Json& value) {

@@ -1,21 +1,101 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The table of kinds, and the kinds points, mesh and tets.
 #include "scanmill/kinds/kind.hpp"
 
 #include <algorithm>
 #include <mutex>
 
-#include "scanmill/kinds/all_kinds.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
+#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
+
+template <>
+struct KindTraits<PointCloud> : KindDefaults<PointCloud> {
+    static constexpr std::string_view name = "points";
+    static void visit(FieldVisitor& visitor, PointCloud& cloud) {
+        visitor.frame("frame", cloud.frame);
+        visitor.positions("positions", cloud.positions);
+        visitor.columns("columns", cloud.columns);
+    }
+    static std::vector<PropertySpec> property_specs() { return {{"points", Unit::count, "Points."}}; }
+    static std::vector<std::optional<double>> property_values(const PointCloud& cloud) { return {cloud.size()}; }
+    static void require_usable(const PointCloud& cloud) {
+        if (cloud.size() == 0) throw Error("the result has no points");
+    }
+};
+
+template <>
+struct KindTraits<TriangleMesh> : KindDefaults<TriangleMesh> {
+    static constexpr std::string_view name = "mesh";
+    static void visit(FieldVisitor& visitor, TriangleMesh& mesh) {
+        visitor.frame("frame", mesh.frame);
+        visitor.positions("positions", mesh.positions);
+        visitor.plain("triangles", mesh.triangles);
+        visitor.columns("vertex-columns", mesh.vertex_columns);
+        visitor.columns("face-columns", mesh.face_columns);
+        visitor.plain("edges", mesh.edges);
+        visitor.columns("edge-columns", mesh.edge_columns);
+        visitor.plain("sharp-edges", mesh.sharp_edges);
+    }
+    static BoundingBox box(const TriangleMesh& mesh) {
+        return mesh.triangles.empty() ? bounding_box(mesh.positions.span()) : surface_box(mesh);
+    }
+    static double spacing(const TriangleMesh& mesh) {
+        return mesh.triangles.empty() ? point_spacing(mesh.positions.span()) : edge_spacing(mesh);
+    }
+    static std::vector<PropertySpec> property_specs() {
+        return {{"closed", Unit::boolean, "A closed, oriented manifold: no boundary, one fan at every vertex."},
+                {"components", Unit::count, "Edge-connected components."},
+                {"genus", Unit::count, "Handles, summed over the components, holes counted as filled."},
+                {"boundary-loops", Unit::count, "Boundary loops."},
+                {"triangles", Unit::count, "Triangles."},
+                {"points", Unit::count, "Vertices."}};
+    }
+    static std::vector<std::optional<double>> property_values(const TriangleMesh& mesh) {
+        const MeshTopology found = topology(mesh);
+        return {found.closed,         found.components, found.genus,
+                found.boundary_loops, found.triangles,  mesh.positions.size()};
+    }
+    static void require_usable(const TriangleMesh& mesh) {
+        require_consistent(mesh);
+        if (mesh.triangles.empty()) throw Error("the result has no triangles");
+    }
+};
+
+template <>
+struct KindTraits<TetMesh> : KindDefaults<TetMesh> {
+    static constexpr std::string_view name = "tets";
+    static void visit(FieldVisitor& visitor, TetMesh& tets) {
+        visitor.frame("frame", tets.frame);
+        visitor.positions("positions", tets.positions);
+        visitor.columns("vertex-columns", tets.vertex_columns);
+        visitor.lengths("weights", tets.weights, 2);
+        visitor.plain("cells", tets.cells);
+        visitor.plain("neighbours", tets.neighbours);
+        visitor.plain("inside", tets.inside);
+    }
+    static std::vector<PropertySpec> property_specs() {
+        return {{"points", Unit::count, "Vertices."}, {"cells", Unit::count, "Tetrahedra."}};
+    }
+    static std::vector<std::optional<double>> property_values(const TetMesh& tets) {
+        return {tets.positions.size(), tets.cells.size()};
+    }
+};
+
+template Kind kind_of<PointCloud>();
+template Kind kind_of<TriangleMesh>();
+template Kind kind_of<TetMesh>();
 
 namespace {
 
 struct KindTable {
     std::mutex mutex;
-    std::vector<Kind> kinds;
+    std::vector<Kind> kinds{kind_of<PointCloud>(),   kind_of<TriangleMesh>(),   kind_of<TetMesh>(),
+                            kind_of<FeatureGraph>(), kind_of<RigidTransform>(), kind_of<Metrics>()};
 };
 
-/// Filled while libraries are loaded: by this one, then by a module that brings a kind of its own.
 KindTable& kind_table() {
     static KindTable table;
     return table;
@@ -38,16 +118,22 @@ std::vector<Kind> all_kinds() {
 }
 
 std::optional<Kind> kind_named(std::string_view name) {
-    const std::vector<Kind> kinds = all_kinds();
-    const auto found = std::ranges::find(kinds, name, &Kind::name);
-    if (found == kinds.end()) return std::nullopt;
-    return *found;
+    for (const Kind kind : all_kinds())
+        if (kind.name() == name) return kind;
+    return std::nullopt;
 }
 
 std::string kind_names() {
     std::string names;
     for (const Kind kind : all_kinds()) names.append(names.empty() ? "" : ", ").append(kind.name());
     return names;
+}
+
+Metrics metrics_from(const std::vector<PropertySpec>& specs, const std::vector<std::optional<double>>& values) {
+    Metrics metrics;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (values[i]) metrics.set(specs[i].name, *values[i], specs[i].unit);
+    return metrics;
 }
 
 }  // namespace scanmill

@@ -11,11 +11,11 @@ namespace scanmill {
 
 namespace {
 
-/// The diagonal of `box`, which `points` finite ones lie in. Throws Error for one that no length is a share of.
+/// The diagonal of `box`, the box of `points` points. Throws Error if it is 0.
 double usable_diagonal(const BoundingBox& box, std::size_t points) {
     const double diagonal = box.diagonal();
     if (!(diagonal > 0))
-        throw Error("%diag means nothing here: the diagonal is 0, as {} at one place",
+        throw Error("%diag is not defined here: the diagonal is 0, because {} at one position",
                     points == 1 ? "the only point is" : fmt::format("all {} points are", points))
             .hint("give a length instead, as 0.5 u");
     return diagonal;
@@ -35,7 +35,7 @@ double spacing_of(const Value& value) {
     return spacing;
 }
 
-/// Computes at most once, however often it is copied or asked.
+/// Computes at most once, also if it is copied.
 std::function<double()> memoised(std::function<double()> compute) {
     return [memo = std::make_shared<std::optional<double>>(), compute = std::move(compute)] {
         if (!*memo) *memo = compute();
@@ -48,12 +48,12 @@ LengthScale scale_beside(const std::shared_ptr<const Metrics>& metrics) {
             [metrics] {
                 const Metric* diagonal = metrics->find("diagonal");
                 if (!diagonal)
-                    throw Error("%diag means nothing here: no metric `diagonal` says how large the object is")
+                    throw Error("%diag is not defined here: there is no metric `diagonal` with the size of the object")
                         .hint("give the length in a unit, or in u");
                 return diagonal->value;
             },
             []() -> double {
-                throw Error("spacing means nothing beside metrics").hint("give the length in a unit, in u or in %diag");
+                throw Error("spacing is not defined for metrics").hint("give the length in a unit, in u or in %diag");
             }};
 }
 
@@ -61,7 +61,7 @@ LengthScale scale_beside(const std::shared_ptr<const Metrics>& metrics) {
 
 LengthScale length_scale(const PointStream& scan) {
     return {scan.frame().unit, [box = scan.bounds(), points = scan.size()] { return usable_diagonal(box, points); },
-            []() -> double { throw Error("spacing takes all points to measure, which a stream never has"); }};
+            []() -> double { throw Error("spacing needs all points at once, which a stream does not have"); }};
 }
 
 LengthScale length_scale(const Value& value) {

@@ -8,14 +8,13 @@
 
 namespace scanmill {
 
-/// What `%diag` and `spacing` mean for this value. The diagonal is that of all its positions, of a mesh those that its
-/// triangles use; the spacing of points is by point_spacing, of meshes by edge_spacing, of everything else by its
-/// positions. Both are computed at most once, on demand. `%diag` throws Error when all positions are equal. Metrics
-/// have the diagonal that they report, and no spacing.
+/// The lengths that `%diag` and `spacing` refer to for this value: KindTraits::box() and spacing(), each computed at
+/// most once, on demand. `%diag` throws Error if all positions are equal. For metrics, `%diag` is their metric
+/// `diagonal`, and `spacing` throws Error.
 LengthScale length_scale(const Value& value);
 
 class PointStream;
-/// The same of a scan that is streamed. Its spacing would take all points: whoever asks gets an Error.
+/// The same for a streamed scan; `spacing` throws Error, because it needs all points at once.
 LengthScale length_scale(const PointStream& scan);
 
 }  // namespace scanmill

@@ -10,14 +10,15 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/field_visitor.hpp"
+#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
 namespace {
 
 void require_rotation(const Eigen::Matrix3d& matrix, std::string_view place) {
-    constexpr double most = 1e-6;  // of what is left when it is multiplied with its transpose: digits cut off
+    constexpr double most =
+        1e-6;  // of an entry of the product with its transpose, minus the identity: covers truncated digits
     const double off = (matrix * matrix.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
     if (const double determinant = matrix.determinant(); off <= most && determinant < 0)
         throw Error("{}: the matrix is a reflection: its determinant is {:.6g}; a rotation's is 1", place, determinant)
@@ -28,12 +29,12 @@ void require_rotation(const Eigen::Matrix3d& matrix, std::string_view place) {
     if ((unscaled * unscaled.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <= most)
         throw Error("{}: the matrix scales by {:.6g}; a rotation's axes have the length 1", place, scale)
             .hint("convert the scan's unit instead, or write the rows divided by it");
-    throw Error("{}: the matrix is no rotation: its axes are up to {:.3g} off the length 1 or a right angle", place,
+    throw Error("{}: the matrix is not a rotation: its axes are up to {:.3g} off the length 1 or a right angle", place,
                 off)
         .hint("write it with seven digits or more");
 }
 
-/// The nearest rotation of a matrix that nearly is one: Björck and Bowie 1971, whose every step squares the error.
+/// The rotation nearest to a matrix that is almost one: Björck and Bowie 1971; every step squares the error.
 Eigen::Matrix3d orthonormal(Eigen::Matrix3d matrix) {
     for (int step = 0; step < 2; ++step)
         matrix = 0.5 * (matrix * (3 * Eigen::Matrix3d::Identity() - matrix.transpose() * matrix)).eval();
@@ -104,7 +105,7 @@ std::vector<ScanPose> poses_from_json(const Json& document, const OnWarning& war
     const LengthUnit unit = unit_member(document);
     const std::string frame = text_member(document, "frame", "the document");
     const Json& list = member(document, "poses");
-    if (!list.is_array() || list.empty()) throw Error("contains no pose; expected \"poses\" to be a list of them");
+    if (!list.is_array() || list.empty()) throw Error("contains no pose; expected \"poses\" to be a list of poses");
 
     std::vector<ScanPose> poses;
     for (const Json& item : list) {
@@ -121,34 +122,42 @@ std::vector<ScanPose> poses_from_json(const Json& document, const OnWarning& war
     return poses;
 }
 
-void KindTraits<RigidTransform>::visit(FieldVisitor& visitor, RigidTransform& transform) {
-    visitor.small("rotation", transform.rotation);
-    visitor.small("translation", transform.translation);
-    visitor.small("unit", transform.unit);
-    visitor.small("from", transform.from);
-    visitor.small("to", transform.to);
-}
+template <>
+struct KindTraits<RigidTransform> : KindDefaults<RigidTransform> {
+    static constexpr std::string_view name = "transform";
+    static void visit(FieldVisitor& visitor, RigidTransform& transform) {
+        std::array<Vec3, 3> rows;
+        for (int row = 0; row < 3; ++row) rows[row] = transform.rotation.row(row);
+        visitor.small("rotation", rows);
+        for (int row = 0; row < 3; ++row) transform.rotation.row(row) = rows[row];
+        visitor.small("translation", transform.translation);
+        visitor.small("unit", transform.unit);
+        visitor.small("from", transform.from);
+        visitor.small("to", transform.to);
+    }
+    static constexpr std::string_view json_member = "poses";
+    static void to_json(const RigidTransform& transform, Json& document) {
+        Json pose = Json::object(), rows = Json::array();
+        if (!transform.from.empty()) pose["scan"] = transform.from;
+        for (int row = 0; row < 3; ++row)
+            rows.push_back({transform.rotation(row, 0), transform.rotation(row, 1), transform.rotation(row, 2),
+                            transform.translation[row]});
+        rows.push_back({0, 0, 0, 1});
+        pose["matrix"] = std::move(rows);
+        document = {{"scanmill", 1}};
+        if (transform.unit != LengthUnit::unknown) document["unit"] = symbol(transform.unit);
+        if (!transform.to.empty()) document["frame"] = transform.to;
+        document["poses"] = Json::array({std::move(pose)});
+    }
+    static RigidTransform from_json(const Json& document, const OnWarning& warn) {
+        const std::vector<ScanPose> poses = poses_from_json(document, warn);
+        if (poses.size() > 1) throw Error("contains {} poses; a transform is one", poses.size());
+        RigidTransform transform = poses.front().transform;
+        transform.from = poses.front().scan;
+        return transform;
+    }
+};
 
-void KindTraits<RigidTransform>::to_json(const RigidTransform& transform, Json& document) {
-    Json pose = Json::object(), rows = Json::array();
-    if (!transform.from.empty()) pose["scan"] = transform.from;
-    for (int row = 0; row < 3; ++row)
-        rows.push_back({transform.rotation(row, 0), transform.rotation(row, 1), transform.rotation(row, 2),
-                        transform.translation[row]});
-    rows.push_back({0, 0, 0, 1});
-    pose["matrix"] = std::move(rows);
-    document = {{"scanmill", 1}};
-    if (transform.unit != LengthUnit::unknown) document["unit"] = symbol(transform.unit);
-    if (!transform.to.empty()) document["frame"] = transform.to;
-    document["poses"] = Json::array({std::move(pose)});
-}
-
-RigidTransform KindTraits<RigidTransform>::from_json(const Json& document, const OnWarning& warn) {
-    const std::vector<ScanPose> poses = poses_from_json(document, warn);
-    if (poses.size() > 1) throw Error("contains {} poses; a transform is one", poses.size());
-    RigidTransform transform = poses.front().transform;
-    transform.from = poses.front().scan;
-    return transform;
-}
+template Kind kind_of<RigidTransform>();
 
 }  // namespace scanmill

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/kinds/value.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/data/points.hpp"
-#include "scanmill/data/transform.hpp"
-#include "scanmill/kinds/field_visitor.hpp"
+#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
 namespace {
 
-class Reframe : public FieldChange {
+class Reframe : public FieldVisitor {
 public:
     explicit Reframe(const Frame& frame) : frame_(frame) {}
     void frame(const char*, Frame& frame) override {
@@ -28,7 +26,13 @@ private:
     Vec3 shift_ = Vec3::Zero();
 };
 
-class ConvertUnit : public FieldChange {
+Buffer<Vec3> mapped(const Buffer<Vec3>& vectors, auto&& map) {
+    Array<Vec3> result(vectors.size());
+    std::ranges::transform(vectors, result.begin(), map);
+    return result;
+}
+
+class ConvertUnit : public FieldVisitor {
 public:
     explicit ConvertUnit(LengthUnit to) : to_(to) {}
     void frame(const char*, Frame& frame) override {
@@ -37,13 +41,7 @@ public:
         frame.unit = to_;
     }
     void positions(const char*, Buffer<Vec3>& positions) override {
-        Array<Vec3> scaled(positions.size());
-        for (std::size_t i = 0; i < scaled.size(); ++i) {
-            scaled[i] = converted(positions[i]);
-            if (positions[i].allFinite() && !scaled[i].allFinite())
-                throw Error("point {} has a coordinate beyond what a number can hold in {}", i, symbol(to_));
-        }
-        positions = std::move(scaled);
+        positions = mapped(positions, [&](const Vec3& p) { return converted(p); });
     }
     void lengths(const char*, Buffer<double>& lengths, int exponent) override {
         Array<double> scaled(lengths.begin(), lengths.end());
@@ -63,14 +61,8 @@ private:
     LengthUnit from_ = LengthUnit::unknown, to_;
 };
 
-Buffer<Vec3> rotated(const Buffer<Vec3>& vectors, const Eigen::Matrix3d& rotation) {
-    Array<Vec3> turned(vectors.size());
-    for (std::size_t i = 0; i < turned.size(); ++i) turned[i] = rotation * vectors[i];
-    return turned;
-}
-
-/// Without a rotation nothing but the frame changes: multiplied with the identity, a -0 would become 0.
-class Move : public FieldChange {
+/// Without a rotation only the frame changes: multiplication by the identity would change -0 to 0.
+class Move : public FieldVisitor {
 public:
     explicit Move(const RigidTransform& pose) : pose_(pose), turns_(!pose.rotation.isIdentity(0)) {}
     void frame(const char*, Frame& frame) override {
@@ -78,16 +70,14 @@ public:
         if (turns_) frame.origin = pose_.rotation * frame.origin;
         frame.origin += translation;
         if (!frame.origin.allFinite())
-            throw Error("the pose moves the scan's origin to ({}, {}, {}), which no coordinate can hold",
+            throw Error("the pose moves the scan's origin to ({}, {}, {}), which is outside the range of a coordinate",
                         frame.origin.x(), frame.origin.y(), frame.origin.z());
         if (!pose_.to.empty()) frame.name = pose_.to;
     }
     void positions(const char*, Buffer<Vec3>& positions) override {
-        if (turns_) positions = rotated(positions, pose_.rotation);
+        if (turns_) positions = mapped(positions, [&](const Vec3& p) { return Vec3(pose_.rotation * p); });
     }
-    void directions(const char*, Buffer<Vec3>& directions) override {
-        if (turns_) directions = rotated(directions, pose_.rotation);
-    }
+    void directions(const char* name, Buffer<Vec3>& directions) override { positions(name, directions); }
     void columns(const char*, ColumnTable& columns) override {
         if (!turns_) return;
         ColumnTable all;
@@ -100,13 +90,18 @@ private:
     bool turns_;
 };
 
-class ReadGeometry : public FieldChange {
-public:
+struct ReadGeometry : FieldVisitor {
     void frame(const char*, Frame& frame) override { found_frame = frame; }
     void positions(const char*, Buffer<Vec3>& positions) override { found_positions = positions; }
-    Frame found_frame;
+    std::optional<Frame> found_frame;
     Buffer<Vec3> found_positions;
 };
+
+ReadGeometry geometry_of(const Value& value) {
+    ReadGeometry read;
+    visited(value, read);
+    return read;
+}
 
 template <class Number>
 Column turned_to(const Column& normals, const Eigen::Matrix3d& rotation) {
@@ -127,19 +122,9 @@ Value visited(const Value& value, FieldVisitor& visitor) {
     return Value(value.kind(), copy);
 }
 
-std::optional<Frame> frame_of(const Value& value) {
-    if (!is_geometric(value.kind())) return std::nullopt;
-    ReadGeometry read;
-    visited(value, read);
-    return read.found_frame;
-}
+std::optional<Frame> frame_of(const Value& value) { return geometry_of(value).found_frame; }
 
-Buffer<Vec3> positions_of(const Value& value) {
-    if (!is_geometric(value.kind())) return {};
-    ReadGeometry read;
-    visited(value, read);
-    return read.found_positions;
-}
+Buffer<Vec3> positions_of(const Value& value) { return geometry_of(value).found_positions; }
 
 Value reframed(const Value& value, const Frame& frame) {
     const std::optional<Frame> before = frame_of(value);

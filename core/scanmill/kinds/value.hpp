@@ -6,11 +6,14 @@
 #include <memory>
 #include <utility>
 
-#include "scanmill/kinds/all_kinds.hpp"
+#include "scanmill/data/features.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/data/tets.hpp"
+#include "scanmill/data/transform.hpp"
+#include "scanmill/kinds/kind.hpp"
 
 namespace scanmill {
-
-struct RigidTransform;
 
 class Value {
 public:
@@ -28,13 +31,13 @@ public:
         assert(kind_ == kind_of<T>());
         return std::static_pointer_cast<const T>(object_);
     }
-    /// Null when the value is of another kind.
+    /// Null if the value is of another kind.
     template <class T>
     const T* find() const {
         return kind_ == kind_of<T>() ? static_cast<const T*>(object_.get()) : nullptr;
     }
     const void* object() const { return object_.get(); }
-    /// Whether both hold the same object.
+    /// Whether both have the same object.
     bool operator==(const Value& other) const { return object_ == other.object_; }
 
 private:
@@ -45,40 +48,39 @@ private:
 inline Kind kind_of(const Value& value) { return value.kind(); }
 inline bool is_geometric(Kind kind) { return kind.info().is_geometric; }
 
-/// Hands a copy of the value's object, which shares its arrays, to the visitor, and returns that copy.
+/// Copies the value's object (arrays are shared), visits the copy and returns it.
 Value visited(const Value& value, FieldVisitor& visitor);
 
-/// The frame; nothing for kinds that are not geometric.
+/// The frame; empty for kinds that are not geometric.
 std::optional<Frame> frame_of(const Value& value);
 /// All positions, relative to the frame's origin; none for kinds that are not geometric.
 Buffer<Vec3> positions_of(const Value& value);
 
-/// The same geometry in another frame: `frame.origin` moves and positions move against it; unit and name are set, not
-/// converted. Values without positions come back as they are.
+/// The same geometry in another frame: positions are shifted to the new origin; unit and name are set, not converted.
+/// Values without positions are returned unchanged.
 Value reframed(const Value& value, const Frame& frame);
 
 /// The same geometry in another unit: positions, the frame's origin, other lengths, and columns by their length
-/// exponent. Throws Error when a finite coordinate would become infinite. Pre: neither unit is unknown.
+/// exponent. Pre: neither unit is unknown.
 Value in_unit(const Value& value, LengthUnit unit);
 
 std::vector<PropertySpec> property_specs(Kind kind);
-/// In the order of property_specs(); one that is not defined (the genus of a mesh that is not a manifold) is left out.
+/// In the order of property_specs(), without undefined ones (the genus of a mesh that is not a manifold).
 Metrics properties_of(const Value& value);
 
-/// The value with its world positions moved by the pose. Positions are only rotated; frame.origin takes the motion, so
-/// large numbers never meet small ones: coordinates of 10^6 m keep their micrometres. Directions and columns `normal`
-/// of three numbers turn too; integers among them become float64. The frame is called `pose.to` unless that is empty;
-/// its unit stays, the translation is converted to it. The identity changes no bit of a position. Throws Error for a
-/// pose in a known unit when that of the value is not, for an origin that double cannot hold, and for kinds without
-/// positions.
+/// The value with its world positions moved by the pose. Positions are only rotated and frame.origin is translated, so
+/// coordinates of 10^6 m keep their micrometres. Directions and columns `normal` of three numbers are rotated too;
+/// integer columns become float64. The frame gets the name `pose.to` unless that is empty; its unit stays, and the
+/// translation is converted to it. The identity changes no bit of a position. Throws Error if the pose has a unit and
+/// the value has none, for an origin outside the range of double, and for kinds without positions.
 Value placed(const Value& value, const RigidTransform& pose);
 
-/// The translation in another unit; unchanged when the pose has none. Throws Error when the pose has a unit and `unit`
-/// is unknown, saying how to declare it.
+/// The translation in another unit; unchanged if the pose has no unit. Throws Error with how to declare the unit if the
+/// pose has one and `unit` is unknown.
 Vec3 translation_in(LengthUnit unit, const RigidTransform& pose);
 
-/// A column of directions (`normal`, three numbers per row) turned: float32 stays float32, everything else becomes
-/// float64. Any other column comes back unchanged.
+/// A column of directions (`normal`, three numbers per row) rotated: float32 stays float32, other types become float64.
+/// Any other column is returned unchanged.
 Column turned(const Column& column, const Eigen::Matrix3d& rotation);
 
 }  // namespace scanmill

@@ -2,10 +2,8 @@
 #include "scanmill/plugin/format_modules.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <mutex>
 #include <optional>
-#include <sstream>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/plugin/module.hpp"
@@ -14,59 +12,29 @@ namespace scanmill {
 
 namespace {
 
-/// A module that is loaded once, by whichever thread needs it first.
-class LazyModule {
-public:
-    LazyModule(std::filesystem::path module, std::string name, FormatSpec spec)
-        : module_(std::move(module)),
-          name_(std::move(name)),
-          spec_(std::move(spec)) {}
-
+/// A module that is loaded by the first thread that needs it.
+struct LazyModule {
     const FormatDeclaration& declaration() {
-        const std::scoped_lock alone(mutex_);
-        if (!loaded_) {
-            FormatDeclaration found = load_format_module(module_, name_);
-            if (!(found.spec == spec_))
-                throw Error("the module '{}' differs from the manifest beside it", module_.string())
-                    .hint("build or install the module again; its manifest is written then");
-            loaded_ = std::move(found);
+        const std::scoped_lock lock(mutex);
+        if (!loaded) {
+            FormatDeclaration found = load_format_module(file, name);
+            if (found.spec != spec) throw_manifest_differs(file);
+            loaded = std::move(found);
         }
-        return *loaded_;
-    }
-    Format::Write writer(Kind kind) {
-        const auto& writers = declaration().writers;
-        return std::ranges::find(writers, kind, &std::pair<Kind, Format::Write>::first)->second;
+        return *loaded;
     }
 
-private:
-    std::mutex mutex_;
-    std::filesystem::path module_;
-    std::string name_;
-    FormatSpec spec_;
-    std::optional<FormatDeclaration> loaded_;
+    std::filesystem::path file;
+    std::string name;
+    FormatSpec spec;
+    std::mutex mutex{};
+    std::optional<FormatDeclaration> loaded{};
 };
 
-std::string text_of(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (!stream) throw Error("cannot be read");
-    return text.str();
-}
-
-LoadedFile refuse_to_read(const std::string& format) {
-    throw Error("{} is written for other programs, and not read", format)
-        .hint("read the file that it was made from; PLY keeps everything and is read");
-}
-
 Format row_of(const std::filesystem::path& manifest_file, const std::string& name) {
-    const FormatManifest manifest = parse_format_manifest(text_of(manifest_file));
-    if (manifest.abi != abi_text())
-        throw Error("was built for another program: it needs '{}', this is '{}'", manifest.abi, abi_text());
-    const std::filesystem::path module_file = std::filesystem::path(manifest_file).replace_extension(".so");
-    if (!std::filesystem::exists(module_file)) throw Error("has no module beside it");
+    const FormatManifest manifest = parse_format_manifest(manifest_text(manifest_file));
     const FormatSpec& spec = manifest.spec;
-    const auto module = std::make_shared<LazyModule>(module_file, name, spec);
+    const std::shared_ptr<LazyModule> module(new LazyModule{module_beside(manifest_file, manifest.abi), name, spec});
     Format row;
     row.name = spec.name;
     row.extensions = spec.extensions;
@@ -81,17 +49,18 @@ Format row_of(const std::filesystem::path& manifest_file, const std::string& nam
         };
     else
         row.read = [format = spec.name](const FileBytes&, const ReadOptions&) -> LoadedFile {
-            return refuse_to_read(format);
+            throw Error("{} is written for other programs, and not read", format)
+                .hint("read the file that it was made from; PLY keeps everything and is read");
         };
-    for (const Kind kind : spec.writes)
-        row.writers.emplace_back(kind,
-                                 [module, kind](const Value& value, OutputBuffer& out, const WriteOptions& options) {
-                                     module->writer(kind)(value, out, options);
+    for (std::size_t i = 0; i < spec.writes.size(); ++i)
+        row.writers.emplace_back(spec.writes[i],
+                                 [module, i](const Value& value, OutputBuffer& out, const WriteOptions& options) {
+                                     module->declaration().writers[i].second(value, out, options);
                                  });
     return row;
 }
 
-/// Stands for a module that cannot be used: whoever needs it hears why.
+/// The row of an unusable module: reading a file of the format throws the reason.
 Format unusable_row(const std::string& name, const std::filesystem::path& manifest, const std::string& reason) {
     Format row;
     row.name = name;
@@ -109,12 +78,10 @@ Format unusable_row(const std::string& name, const std::filesystem::path& manife
 
 FormatDeclaration load_format_module(const std::filesystem::path& module, const std::string& name) {
     FormatDeclaration declaration;
-    declare(open_module(module, {format_magic, "file format"}, name), module, &declaration);
-    std::vector<Kind> written;
-    for (const auto& [kind, write] : declaration.writers) written.push_back(kind);
-    if (bool(declaration.read) != declaration.spec.reads || written != declaration.spec.writes)
-        throw Error("module '{}' lacks a reader or a writer that it announces, or has one that it does not",
-                    module.string());
+    load_declaration(module, "scanmill-format", "file format", name, &declaration);
+    if (bool(declaration.read) != declaration.spec.reads ||
+        !std::ranges::equal(declaration.writers, declaration.spec.writes, {}, &std::pair<Kind, Format::Write>::first))
+        throw Error("module '{}' declares other readers or writers than it contains", module.string());
     return declaration;
 }
 

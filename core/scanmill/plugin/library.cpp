@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/plugin/library.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <cstdlib>
-#include <fstream>
+#include <ranges>
 #include <sstream>
 
 #include "scanmill/base/error.hpp"
@@ -12,23 +11,6 @@
 #include "scanmill/plugin/module.hpp"
 
 namespace scanmill {
-
-namespace {
-
-Manifest read_manifest(const std::filesystem::path& file, const std::string& name) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (!stream) throw Error("cannot be read");
-    Manifest manifest = parse_manifest(text.str());
-    require_sound(manifest.spec);
-    if (manifest.spec.name != name) throw Error("describes the filter '{}'", manifest.spec.name);
-    if (manifest.abi != abi_text())
-        throw Error("was built for another program: it needs '{}', this is '{}'", manifest.abi, abi_text());
-    return manifest;
-}
-
-}  // namespace
 
 std::vector<std::filesystem::path> plugin_folders(std::vector<std::string>* ignored) {
     std::vector<std::filesystem::path> folders{installed_plugin_folder()};
@@ -53,9 +35,10 @@ void FilterLibrary::read_folder(const std::filesystem::path& folder) {
         if (entries_.contains(name)) continue;
         try {
             Entry entry;
-            entry.manifest = read_manifest(file, name);
-            entry.module = std::filesystem::path(file).replace_extension(".so");
-            if (!std::filesystem::exists(entry.module)) throw Error("has no module beside it");
+            entry.manifest = parse_manifest(manifest_text(file));
+            require_sound(entry.manifest.spec);
+            if (entry.manifest.spec.name != name) throw Error("describes the filter '{}'", entry.manifest.spec.name);
+            entry.module = module_beside(file, entry.manifest.abi);
             entries_.emplace(name, std::move(entry));
         } catch (const Error& error) {
             unusable_.push_back({name, file, error.sentence()});
@@ -69,9 +52,8 @@ const FilterSpec* FilterLibrary::find(std::string_view name) const {
 }
 
 std::vector<std::string> FilterLibrary::names() const {
-    std::vector<std::string> names;
-    for (const auto& [name, entry] : entries_) names.push_back(name);
-    return names;
+    const auto names = entries_ | std::views::keys;
+    return {names.begin(), names.end()};
 }
 
 FilterLibrary::Entry& FilterLibrary::entry(std::string_view name) {
@@ -96,9 +78,7 @@ const FilterDeclaration& FilterLibrary::load(std::string_view name) {
     Entry& found = entry(name);
     if (!found.declaration.run) {
         FilterDeclaration declaration = load_module(found.module, std::string(name));
-        if (!(declaration.spec == found.manifest.spec))
-            throw Error("module '{}' differs from the manifest beside it", found.module.string())
-                .hint("build or install the module again; its manifest is written then");
+        if (declaration.spec != found.manifest.spec) throw_manifest_differs(found.module);
         found.declaration = std::move(declaration);
     }
     return found.declaration;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The filters that are at hand: manifests read from the module folders, modules loaded when first used.
+/// The available filters: manifests read from the module folders, modules loaded on first use.
 ///
-/// Folders are searched in order and the first module of a name counts. A manifest that cannot be read is remembered
-/// with its reason; it is an error only for who asks for that filter. Not thread-safe.
+/// Folders are searched in order; the first module of a name is used. An unusable manifest is kept with the reason; it
+/// is an error only for a workflow that uses the filter. Not thread-safe.
 
 #include <filesystem>
 #include <map>
@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "scanmill/filter/declare.hpp"
-#include "scanmill/filter/manifest.hpp"
+#include "scanmill/plugin/manifest.hpp"
 #include "scanmill/plugin/module.hpp"
 
 namespace scanmill {
 
 /// The installed modules' folder, then those of SCANMILL_PLUGIN_PATH (separated by colons). Entries that are not
-/// absolute are passed over: they would depend on the working folder. `ignored` receives them.
+/// absolute are ignored, because they depend on the working folder; `ignored` receives them.
 std::vector<std::filesystem::path> plugin_folders(std::vector<std::string>* ignored = nullptr);
 
 struct UnusableModule {
@@ -30,7 +30,7 @@ class FilterLibrary {
 public:
     explicit FilterLibrary(const std::vector<std::filesystem::path>& folders);
 
-    /// nullptr when there is no usable filter of that name.
+    /// nullptr if there is no usable filter of that name.
     const FilterSpec* find(std::string_view name) const;
     /// Sorted.
     std::vector<std::string> names() const;
@@ -39,7 +39,7 @@ public:
     const std::filesystem::path& module_file(std::string_view name) const;
     /// Content hash of the module, computed once. Pre: find(name).
     const std::string& build_id(std::string_view name);
-    /// Loads the module on first use. Throws Error when it cannot be loaded or differs from its manifest.
+    /// Loads the module on first use. Throws Error if it cannot be loaded or differs from its manifest.
     /// Pre: find(name).
     const FilterDeclaration& load(std::string_view name);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Loading one module. A loaded module stays loaded: values it made may outlive everything else.
+/// Loads one module. A loaded module is never unloaded: values it created may outlive everything else.
 
 #include <filesystem>
 
@@ -9,33 +9,31 @@
 
 namespace scanmill {
 
-/// What kind of module is expected: the descriptor's magic, and the word for it in messages.
-struct ModuleKind {
-    const char* magic;
-    std::string_view what;  ///< "filter"
-};
+/// Loads the module and writes its declaration to `declaration`, whose type follows from `magic`. `noun` is the word
+/// for such a module in messages: "filter". Throws Error naming the file: not a module, another magic, another ABI
+/// (both texts), another name, any exception while it declares itself. A module may crash or end the process while it
+/// is loaded: only workers load the modules of a run.
+void load_declaration(const std::filesystem::path& module, std::string_view magic, std::string_view noun,
+                      const std::string& expected_name, void* declaration);
 
-/// Loads the module and returns its descriptor, whose declare() may then be called. Throws Error naming the file: not a
-/// module, of another kind, of another ABI (both texts), of another name. A module may crash or end the process while
-/// it is loaded; then the process writes the module's name to stderr first. Only workers load the modules of a run.
-const PluginDescriptor& open_module(const std::filesystem::path& module, ModuleKind kind,
-                                    const std::string& expected_name);
-
-/// Calls the descriptor's declare(). Whatever it throws becomes an Error that names the module.
-void declare(const PluginDescriptor& descriptor, const std::filesystem::path& module, void* declaration);
-
-/// Loads a filter's module and returns what it declares. Throws Error as open_module() and declare().
+/// The declaration of a filter's module. Throws Error as load_declaration().
 FilterDeclaration load_module(const std::filesystem::path& module, const std::string& expected_name);
+/// Throws Error with how to repair it: the module at this path and its manifest differ.
+[[noreturn]] void throw_manifest_differs(const std::filesystem::path& module);
 
-/// The manifests in a folder of modules, scanmill-<name>.json, sorted; none when the folder is not there.
+/// The manifests in a folder of modules, scanmill-<name>.json, sorted; none if there is no such folder.
 std::vector<std::filesystem::path> module_manifests(const std::filesystem::path& folder);
+std::string manifest_text(const std::filesystem::path& manifest);
+/// The module beside a manifest. Throws Error if the manifest's ABI text is not that of this program, or if there is no
+/// module.
+std::filesystem::path module_beside(const std::filesystem::path& manifest, const std::string& abi);
 /// The <name> of scanmill-<name>.json or scanmill-<name>.so.
 std::string module_name(const std::filesystem::path& file);
 
 /// The ABI text that this program was built with.
 std::string abi_text();
 
-/// The file that holds this library's code, and the folders of modules that belong to it.
+/// The file of this library, and the module folders installed with it.
 std::filesystem::path core_library_file();
 std::filesystem::path installed_plugin_folder();
 std::filesystem::path installed_format_folder();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What every module exports, whether it holds a filter or a file format: plain C data that is compared before anything
-/// in the module is called.
+/// What every module exports, of filters and of file formats: plain C data, compared before the module is called.
 
 #include <Eigen/Core>
 #include <string>
@@ -20,8 +19,9 @@
 #else
 #define SCANMILL_ABI_DEBUG ""
 #endif
-/// Everything that must agree for C++ objects to cross the border. SCANMILL_HEADERS, a hash of all headers of this
-/// library, comes from the build: with Scanmill::core of the installed package, or from scanmill_add_filter().
+/// Everything that must be equal in program and module for C++ objects to pass between them. SCANMILL_HEADERS, a hash
+/// of all headers of this library, comes from the build: with Scanmill::core of the installed package, or from
+/// scanmill_add_filter().
 #define SCANMILL_ABI_TEXT                                                                                         \
     "scanmill " SCANMILL_VERSION ", compiler abi " SCANMILL_TEXT(__GXX_ABI_VERSION) ", libstdc++ " SCANMILL_TEXT( \
         _GLIBCXX_RELEASE) " strings " SCANMILL_TEXT(_GLIBCXX_USE_CXX11_ABI) SCANMILL_ABI_DEBUG                    \
@@ -38,8 +38,17 @@ struct PluginDescriptor {
     char magic[16];
     const char* abi;
     const char* name;
-    /// Writes into *declaration, whose type the magic says. Called only when magic, abi and name are right.
+    /// Assigns to *declaration, whose type follows from magic. Called only if magic, abi and name match.
     void (*declare)(void* declaration);
 };
 
 }  // namespace scanmill
+
+/// Defines the descriptor; the body after it returns the Declaration.
+#define SCANMILL_MODULE(magic, name, Declaration)                                                       \
+    static Declaration scanmill_declaration();                                                          \
+    extern "C" __attribute__((visibility("default"))) const scanmill::PluginDescriptor scanmill_plugin; \
+    constinit const scanmill::PluginDescriptor scanmill_plugin{                                         \
+        magic, SCANMILL_ABI_TEXT, name,                                                                 \
+        [](void* declaration) { *static_cast<Declaration*>(declaration) = scanmill_declaration(); }};   \
+    static Declaration scanmill_declaration()

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/kinds/field_visitor.hpp"
+#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 

@@ -5,7 +5,7 @@
 
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/field_visitor.hpp"
+#include "scanmill/kinds/kind_traits.hpp"
 #include "scanmill/kinds/length_scale.hpp"
 
 namespace scanmill {
@@ -13,7 +13,7 @@ namespace scanmill {
 namespace {
 
 /// The columns of every table, by the table's name.
-class ListColumns : public FieldChange {
+class ListColumns : public FieldVisitor {
 public:
     explicit ListColumns(Json& json) : json_(json) {}
     void columns(const char* name, ColumnTable& table) override {

@@ -8,7 +8,12 @@
 namespace scanmill::test {
 namespace {
 
-std::string closest_of(std::string_view word, std::vector<std::string> candidates) { return closest(word, candidates); }
+/// The candidate that did_you_mean() names.
+std::string closest_of(std::string_view word, std::vector<std::string> candidates) {
+    const std::string text = did_you_mean(word, candidates);
+    const std::size_t begin = text.find('\'') + 1;
+    return text.empty() ? "" : text.substr(begin, text.rfind('\'') - begin);
+}
 
 TEST(Closest, EachKindOfTypingError_IsOneEdit) {
     // A three-letter word is allowed one edit, so each of these must count as one.

@@ -62,11 +62,12 @@ TEST(Length, NumberAlone_IsRefusedForItsMissingUnit) {
 }
 
 TEST(Length, BarePercent_IsAskedOfWhat) {
-    EXPECT_EQ(length_refusal("5 %"), "'5 %' does not say of what; expected 5 %diag, of the bounding box's diagonal");
+    EXPECT_EQ(length_refusal("5 %"),
+              "'5 %' has no reference; expected 5 %diag, a share of the bounding box's diagonal");
 }
 
 TEST(Length, UnknownUnit_IsRefusedWithTheKnownOnes) {
-    const std::string expected = " is no unit of length; expected u, %diag, spacing, um, mm, cm, m, in, ft";
+    const std::string expected = " is not a unit of length; expected u, %diag, spacing, um, mm, cm, m, in, ft";
     EXPECT_EQ(length_refusal("5 km"), "'km'" + expected);
     EXPECT_EQ(length_refusal("5 MM"), "'MM'" + expected);
     EXPECT_EQ(length_refusal("5 mm "), "'mm '" + expected);
@@ -125,8 +126,8 @@ TEST(Angle, EveryRefusal_SaysWhatWasExpected) {
     EXPECT_EQ(angle_refusal("wide"), "'wide' is not an angle; expected 40 deg or 0.7 rad");
     EXPECT_EQ(angle_refusal("inf deg"), "'inf deg' is not an angle; expected 40 deg or 0.7 rad");
     EXPECT_EQ(angle_refusal("40"), "'40' has no unit; expected 40 deg or 0.7 rad");
-    EXPECT_EQ(angle_refusal("40 mm"), "'mm' is no unit of angle; expected deg or rad");
-    EXPECT_EQ(angle_refusal("40 °"), "'°' is no unit of angle; expected deg or rad");
+    EXPECT_EQ(angle_refusal("40 mm"), "'mm' is not a unit of angle; expected deg or rad");
+    EXPECT_EQ(angle_refusal("40 °"), "'°' is not a unit of angle; expected deg or rad");
 }
 
 TEST(Ratio, PercentAndFraction_AreTheSameRatioWrittenDifferently) {

@@ -55,7 +55,7 @@ TEST(RequireSound, FilterName_IsLowerCaseWithHyphens) {
 TEST(RequireSound, Summary_IsASentence) {
     for (const std::string summary : {"", "Thins", "Thins points", "Thinning.", "A b."})
         EXPECT_EQ(verdict([&](FilterSpec& spec) { spec.summary = summary; }),
-                  "filter voxel-thin: the help of filter 'voxel-thin' is no sentence: '" + summary + "'");
+                  "filter voxel-thin: the help of filter 'voxel-thin' is not a sentence: '" + summary + "'");
 }
 
 TEST(RequireSound, Version_IsAtLeastOne) {
@@ -97,7 +97,7 @@ TEST(RequireSound, InputAndOutputOfOneName_AreTwoThings) {
 }
 
 TEST(RequireSound, HelpOfEveryPart_IsASentence) {
-    const std::string tail = " is no sentence: 'size'";
+    const std::string tail = " is not a sentence: 'size'";
     EXPECT_EQ(verdict([](FilterSpec& spec) { spec.inputs[0].help = "size"; }),
               "filter voxel-thin: the help of input 'points'" + tail);
     EXPECT_EQ(verdict([](FilterSpec& spec) { spec.outputs[0].help = "size"; }),
@@ -119,10 +119,11 @@ TEST(RequireSound, HelpThatOnlyRepeatsTheName_IsRefused) {
 }
 
 TEST(RequireSound, TiesAndNan_AreSpokenOfWhereTheyCanCome) {
-    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.ties = ""; }), "filter voxel-thin: nothing is said of ties");
-    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.not_finite = ""; }), "filter voxel-thin: nothing is said of NaN");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.ties = ""; }), "filter voxel-thin: the remark on ties is missing");
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.not_finite = ""; }),
+              "filter voxel-thin: the remark on NaN is missing");
     EXPECT_EQ(verdict([](FilterSpec& spec) { spec.ties = "lowest"; }),
-              "filter voxel-thin: the help of remark on 'ties' is no sentence: 'lowest'");
+              "filter voxel-thin: the help of remark on 'ties' is not a sentence: 'lowest'");
     FilterSpec spec = sound_spec();
     spec.inputs.clear();
     spec.ties = spec.not_finite = "";
@@ -133,12 +134,13 @@ TEST(RequireSound, TiesAndNan_AreSpokenOfWhereTheyCanCome) {
 }
 
 TEST(RequireSound, NumberOfNeighbours_SaysWhetherThePointItselfIsOne) {
-    EXPECT_EQ(verdict([](FilterSpec& spec) {
-                  spec.parameters[0].name = "neighbours";
-                  spec.parameters[0].help = "How many points are looked at.";
-              }),
-              "filter voxel-thin: the help of parameter 'neighbours' leaves open whether the point itself is counted: "
-              "'How many points are looked at.'");
+    EXPECT_EQ(
+        verdict([](FilterSpec& spec) {
+            spec.parameters[0].name = "neighbours";
+            spec.parameters[0].help = "How many points are looked at.";
+        }),
+        "filter voxel-thin: the help of parameter 'neighbours' does not state whether the point itself is counted: "
+        "'How many points are looked at.'");
     EXPECT_NO_THROW([] {
         FilterSpec spec = sound_spec();
         spec.parameters[0].name = "neighbours";
@@ -206,13 +208,11 @@ TEST(RequireSound, Stream_IsOfOneCloudAndAsksForParametersThatMayLackAValue) {
         add_stream(spec, given);
         EXPECT_NO_THROW(require_sound(spec));
     }
-    EXPECT_EQ(with_stream({"size"}, nothing), "filter voxel-thin: its stream asks for 'size', which is no parameter");
-    EXPECT_EQ(with_stream({"k2"}, nothing), "filter voxel-thin: its stream asks for 'k2', which always has a value");
+    EXPECT_EQ(with_stream({"size"}, nothing), "filter voxel-thin: its stream needs 'size', which is not a parameter");
+    EXPECT_EQ(with_stream({"k2"}, nothing), "filter voxel-thin: its stream needs 'k2', which always has a value");
     EXPECT_EQ(with_stream({"empty"}, [](FilterSpec& spec) { spec.parameters.back().required = true; }),
-              "filter voxel-thin: its stream asks for 'empty', which always has a value");
-    const std::string other =
-        "filter voxel-thin: only a filter whose one input is a cloud of points can take it as a "
-        "stream";
+              "filter voxel-thin: its stream needs 'empty', which always has a value");
+    const std::string other = "filter voxel-thin: only a filter with one input, a cloud of points, can be streamed";
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.clear(); }), other);
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().kind = kind_of<TriangleMesh>(); }), other);
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().list = true; }), other);

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/formats/support.hpp"
-#include "scanmill/data/conversions.hpp"
+#include "scanmill/data/mesh.hpp"
 #include "scanmill/formats/common/format.hpp"
 
 namespace scanmill::test {

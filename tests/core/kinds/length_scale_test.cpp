@@ -59,10 +59,11 @@ std::string refusal(const auto& ask) {
 }
 
 TEST(LengthScale, OnePlace_HasNoDiagonalToTakeAShareOf) {
-    EXPECT_THAT(refusal(length_scale(value_of(cloud_of({{1, 2, 3}}))).diagonal),
-                AllOf(HasSubstr("%diag means nothing here"), HasSubstr("the diagonal is 0, as the only point is at")));
+    EXPECT_THAT(
+        refusal(length_scale(value_of(cloud_of({{1, 2, 3}}))).diagonal),
+        AllOf(HasSubstr("%diag is not defined here"), HasSubstr("the diagonal is 0, because the only point is at")));
     EXPECT_THAT(refusal(length_scale(value_of(cloud_of({{1, 2, 3}, {1, 2, 3}}))).diagonal),
-                HasSubstr("all 2 points are at one place"));
+                HasSubstr("all 2 points are at one position"));
 }
 
 TEST(LengthScale, Scale_OutlivesWhoMadeTheValue) {

@@ -145,7 +145,7 @@ TEST(Placed, PoseOutOfThisWorld_IsRefused) {
     EXPECT_THAT(sentence_of([&] {
                     placed(points({{1, 2, 3}}, {LengthUnit::unknown, Vec3(1.5e308, 0, 0), ""}), pose);
                 }),
-                HasSubstr("which no coordinate can hold"));
+                HasSubstr("which is outside the range of a coordinate"));
 }
 
 TEST(Placed, OtherKinds_AreRefused) {

@@ -38,7 +38,7 @@ TEST(FormatManifest, FormatsThatAreOnlyWritten_ComeBackTheSame) {
 }
 
 TEST(FormatManifest, WhatIsNone_IsRefused) {
-    EXPECT_THAT(sentence_of([] { parse_format_manifest("{"); }), HasSubstr("is no manifest"));
+    EXPECT_THAT(sentence_of([] { parse_format_manifest("{"); }), HasSubstr("is not a manifest"));
     EXPECT_THAT(sentence_of([] { parse_format_manifest("{\"scanmill-format\": 2}"); }), HasSubstr("of version 2"));
     FormatManifest nameless = manifest;
     nameless.spec.extensions.clear();
@@ -85,14 +85,15 @@ TEST(FormatModules, OnesThatCannotBeUsed_SayWhyToWhomNeedsThem) {
     EXPECT_THAT(refusal(rows[0]), AllOf(HasSubstr("ALONE cannot be read"), HasSubstr("no module beside it")));
     EXPECT_THAT(rows[0].unusable, AllOf(HasSubstr("scanmill-alone.json"), HasSubstr("no module beside it")));
     EXPECT_THAT(refusal(rows[1]), AllOf(HasSubstr("'another compiler'"), HasSubstr(abi_text())));
-    EXPECT_THAT(refusal(rows[2]), HasSubstr("is no manifest"));
+    EXPECT_THAT(refusal(rows[2]), HasSubstr("is not a manifest"));
     EXPECT_TRUE(rows[2].has_extension("torn"));
 }
 
 TEST(FormatModules, ModuleOfAFilter_IsNoFormat) {
     const std::filesystem::path filter = std::filesystem::path(SCANMILL_TEST_PLUGIN_DIR) / "scanmill-test-step.so";
-    EXPECT_THAT(sentence_of([&] { load_format_module(filter, "test-step"); }),
-                AllOf(HasSubstr("is no file format"), HasSubstr("'scanmill-filter'"), HasSubstr("'scanmill-format'")));
+    EXPECT_THAT(
+        sentence_of([&] { load_format_module(filter, "test-step"); }),
+        AllOf(HasSubstr("is not a file format"), HasSubstr("'scanmill-filter'"), HasSubstr("'scanmill-format'")));
 }
 
 TEST(FormatModules, MissingFolder_IsNone) { EXPECT_TRUE(format_modules("/no/such/folder").empty()); }

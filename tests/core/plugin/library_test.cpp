@@ -120,11 +120,11 @@ TEST(FilterLibrary, UnusableManifests_AreRememberedWithTheirReasonAndHarmlessToO
         EXPECT_EQ(library.find(name), nullptr);
         return module->reason;
     };
-    EXPECT_THAT(reason("garbage"), testing::StartsWith("is no manifest: "));
+    EXPECT_THAT(reason("garbage"), testing::StartsWith("is not a manifest: "));
     EXPECT_EQ(reason("renamed"), "describes the filter 'original'");
     EXPECT_EQ(reason("stale"),
               "was built for another program: it needs 'scanmill 0.0.1', this is '" + abi_text() + "'");
-    EXPECT_THAT(reason("unsound"), HasSubstr("is no sentence"));
+    EXPECT_THAT(reason("unsound"), HasSubstr("is not a sentence"));
     EXPECT_EQ(reason("alone"), "has no module beside it");
     EXPECT_EQ(reason("dangling"), "cannot be read");
 }

@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scanmill/geometry/spatial/spacing.hpp"
 #include "scanmill/kinds/document.hpp"
-#include "scanmill/kinds/field_visitor.hpp"
-#include "scanmill/kinds/kind.hpp"
+#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
@@ -19,23 +17,15 @@ struct Markers {
 };
 
 template <>
-struct KindTraits<Markers> {
+struct KindTraits<Markers> : KindDefaults<Markers> {
     static constexpr std::string_view name = "markers";
-    static constexpr bool is_geometric = true;
     static void visit(FieldVisitor& visitor, Markers& markers) {
         visitor.frame("frame", markers.frame);
         visitor.positions("positions", markers.positions);
         visitor.small("names", markers.names);
     }
-    static BoundingBox box(const Markers& markers) { return bounding_box(markers.positions.span()); }
-    static double spacing(const Markers& markers) { return point_spacing(markers.positions.span()); }
     static std::vector<PropertySpec> property_specs() { return {{"markers", Unit::count, "Markers."}}; }
-    static Metrics properties(const Markers& markers) {
-        Metrics properties;
-        properties.set("markers", static_cast<double>(markers.names.size()), Unit::count);
-        return properties;
-    }
-    static void require_usable(const Markers&) {}
+    static std::vector<std::optional<double>> property_values(const Markers& markers) { return {markers.names.size()}; }
     static constexpr std::string_view json_member = "markers";
     static void to_json(const Markers& markers, Json& document) {
         document = {{"scanmill", 1}, {"unit", unit_json(markers.frame.unit)}, {"markers", Json::array()}};
@@ -55,6 +45,6 @@ struct KindTraits<Markers> {
         return markers;
     }
 };
-inline const KindRegistration<Markers> markers_kind;
+inline const bool markers_registered = (register_kind(kind_of<Markers>()), true);
 
 }  // namespace scanmill

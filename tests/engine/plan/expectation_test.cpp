@@ -63,7 +63,8 @@ TEST(Expectation, VolumesAndAreas_AreNeverBare) {
     EXPECT_THAT(faults("volume", "12 mm2"), ElementsAre(HasSubstr("'12 mm2' is not a volume; expected 12 mm3")));
     EXPECT_THAT(faults("volume", "12 mm"), ElementsAre(HasSubstr("'12 mm' is not a volume")));
     EXPECT_THAT(faults("skin", "12 mm3"), ElementsAre(HasSubstr("'12 mm3' is not an area; expected 12 mm2")));
-    EXPECT_THAT(faults("volume", "12 ell3"), ElementsAre(HasSubstr("'ell' is no unit of length; expected u, %diag")));
+    EXPECT_THAT(faults("volume", "12 ell3"),
+                ElementsAre(HasSubstr("'ell' is not a unit of length; expected u, %diag")));
     EXPECT_THAT(faults("volume", "much"), ElementsAre(HasSubstr("'much' is not a volume")));
     EXPECT_THAT(faults("volume", "3"), ElementsAre(HasSubstr("has no unit")));
     EXPECT_THAT(faults("volume", ""), ElementsAre(HasSubstr("'' is not a volume")));

@@ -34,8 +34,8 @@ Moments moments_about(const Vec3& centroid, std::span<const Vec3> points) {
     return m;
 }
 
-/// The characteristic polynomial is convex left of its least root, where Newton's steps from 0 never overshoot. Where
-/// two roots are near each other steps become short; then any direction between theirs will do.
+/// Newton's method from 0. It never overshoots, because the characteristic polynomial is concave left of its least
+/// root. Steps become short where two roots are close; then any direction between their eigenvectors is good enough.
 double least_eigenvalue(const Moments& m) {
     const double trace = m.trace(), minors = m.sum_of_minors(), determinant = m.determinant();
     double root = 0;
@@ -49,13 +49,13 @@ double least_eigenvalue(const Moments& m) {
     return root;
 }
 
-/// Across the rows of the matrix less the eigenvalue: the longest of their cross products.
+/// The longest cross product of two rows of the matrix minus the eigenvalue.
 Vec3 direction_of(const Moments& m, double eigenvalue) {
     const Vec3 x(m.xx - eigenvalue, m.xy, m.xz), y(m.xy, m.yy - eigenvalue, m.yz), z(m.xz, m.yz, m.zz - eigenvalue);
     Vec3 best = x.cross(y);
     for (const Vec3& other : {Vec3(x.cross(z)), Vec3(y.cross(z))})
         if (other.squaredNorm() > best.squaredNorm()) best = other;
-    // Of points on a line all products vanish but for rounding.
+    // For points on a line all products are 0 apart from rounding.
     const double size = m.trace() * m.trace();
     if (best.squaredNorm() > 1e-24 * size * size) return best.normalized();
     Vec3 along = x;
@@ -69,8 +69,7 @@ Vec3 direction_of(const Moments& m, double eigenvalue) {
 
 Vec3 with_positive_sign(const Vec3& v) {
     int axis = 0;
-    for (int other : {1, 2})
-        if (std::abs(v[other]) > std::abs(v[axis])) axis = other;
+    v.cwiseAbs().maxCoeff(&axis);
     return v[axis] < 0 ? Vec3(-v) : v;
 }
 
@@ -84,7 +83,7 @@ Scatter scatter_of(std::span<const Vec3> points) {
     scatter.normal = with_positive_sign(direction_of(moments, least));
     const double others = moments.trace() - least;
     scatter.flatness = others > 0 ? std::max(0.0, moments.sum_of_minors() - least * others) / (others * others) : 0;
-    scatter.roughness = moments.trace() > 0 ? least / moments.trace() : 0;
+    scatter.surface_variation = moments.trace() > 0 ? least / moments.trace() : 0;
     return scatter;
 }
 

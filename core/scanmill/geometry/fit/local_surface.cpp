@@ -2,7 +2,6 @@
 #include "scanmill/geometry/fit/local_surface.hpp"
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -15,16 +14,16 @@ namespace {
 
 constexpr std::size_t fewest_samples = 6;
 constexpr double most_deviations = 3;
-/// A neighbourhood whose width is less than about a thirtieth of its length shows a curve, not a surface.
-constexpr double least_width = 1e-3;  // squared
+/// Of the squared width over the squared length: a neighbourhood narrower than about 1/30 shows a curve, not a surface.
+constexpr double least_flatness = 1e-3;
 
-/// Two unit vectors across a unit normal and each other.
+/// Two unit vectors, perpendicular to a unit normal and to each other.
 std::pair<Vec3, Vec3> directions_across(const Vec3& normal) {
     const Vec3 u = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
     return {u, normal.cross(u)};
 }
 
-/// Turns samples about the point at `origin` around in the frame of the plane.
+/// Expresses the offsets from the point `origin` in the frame of the plane.
 void take_samples(std::span<const Vec3> offsets, std::size_t origin, const Vec3& normal,
                   Array<QuadricSample>& samples) {
     const auto [along, across] = directions_across(normal);
@@ -51,7 +50,7 @@ double mean_error(std::span<const QuadricSample> samples, const Quadric& quadric
     return sum / static_cast<double>(samples.size());
 }
 
-/// Fits again without those that are too far off; tells how many that are.
+/// Repeats the fit without outliers; returns their number.
 u32 reject_outliers(std::span<const QuadricSample> samples, Inclination inclination, Array<QuadricSample>& kept,
                     Quadric& quadric) {
     double squares = 0;
@@ -71,34 +70,11 @@ u32 reject_outliers(std::span<const QuadricSample> samples, Inclination inclinat
     return static_cast<u32>(samples.size() - kept.size());
 }
 
-/// The memory of a fit, to be used again by the next one.
+/// Reusable memory of a fit.
 struct Fit {
-    Array<Vec3> offsets;  // from the point, which is the first; at most 1 in size
+    Array<Vec3> neighbours, offsets;
     Array<QuadricSample> samples, kept;
 };
-
-/// Scales the neighbours around `point` by a power of two so that the largest coordinate is between 1/2 and 1.
-/// Returns its exponent.
-template <class PositionOf>
-int take_offsets(const Vec3& point, std::size_t count, PositionOf&& position_of, Array<Vec3>& offsets) {
-    offsets.resize(count + 1);
-    offsets[0] = Vec3::Zero();
-    double largest = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        offsets[i + 1] = position_of(i) - point;
-        largest = std::max(largest, offsets[i + 1].cwiseAbs().maxCoeff());
-    }
-    int exponent = 0;
-    std::frexp(largest, &exponent);
-    if (std::abs(exponent) < 1000) {
-        const double scale = std::ldexp(1.0, -exponent);
-        for (Vec3& offset : offsets) offset *= scale;
-    } else {
-        for (Vec3& offset : offsets)
-            for (int axis = 0; axis < 3; ++axis) offset[axis] = std::ldexp(offset[axis], -exponent);
-    }
-    return exponent;
-}
 
 std::size_t nearest_to(const Vec3& centre, std::span<const Vec3> points) {
     std::size_t best = 0;
@@ -107,7 +83,9 @@ std::size_t nearest_to(const Vec3& centre, std::span<const Vec3> points) {
     return best;
 }
 
-LocalSurface fitted(Fit& fit, int exponent, LocalSurfaceParams::Origin origin) {
+LocalSurface fitted(const Vec3& point, std::span<const Vec3> neighbours, LocalSurfaceParams::Origin origin, Fit& fit) {
+    fit.offsets.assign(1, Vec3::Zero());
+    for (const Vec3& neighbour : neighbours) fit.offsets.push_back(neighbour - point);
     const Scatter scatter = scatter_of(fit.offsets);
     LocalSurface surface;
     surface.normal = scatter.normal;
@@ -116,7 +94,7 @@ LocalSurface fitted(Fit& fit, int exponent, LocalSurfaceParams::Origin origin) {
     const Inclination inclination = at_point ? Inclination::none : Inclination::free;
     take_samples(fit.offsets, from, scatter.normal, fit.samples);
     Quadric quadric;
-    if (fit.samples.size() >= fewest_samples && scatter.flatness > least_width)
+    if (fit.samples.size() >= fewest_samples && scatter.flatness > least_flatness)
         if (const std::optional<Quadric> first = fit_quadric(fit.samples, inclination)) {
             surface.is_curved = true;
             quadric = *first;
@@ -125,11 +103,11 @@ LocalSurface fitted(Fit& fit, int exponent, LocalSurfaceParams::Origin origin) {
             surface.normal = with_positive_sign((scatter.normal - quadric.d * along - quadric.e * across).normalized());
             const PrincipalCurvatures curvatures = principal_curvatures(quadric);
             const double sign = surface.normal.dot(scatter.normal) < 0 ? -1 : 1;
-            surface.first_curvature = sign * std::ldexp(curvatures.first, -exponent);
-            surface.second_curvature = sign * std::ldexp(curvatures.second, -exponent);
+            surface.first_curvature = sign * curvatures.first;
+            surface.second_curvature = sign * curvatures.second;
         }
-    if (fit.offsets.size() > 1) surface.spacing = std::ldexp(std::sqrt(fit.offsets[1].squaredNorm()), exponent);
-    if (!fit.samples.empty()) surface.fit_error = std::ldexp(mean_error(fit.samples, quadric), exponent);
+    if (fit.offsets.size() > 1) surface.spacing = std::sqrt(fit.offsets[1].squaredNorm());
+    if (!fit.samples.empty()) surface.fit_error = mean_error(fit.samples, quadric);
     return surface;
 }
 
@@ -137,25 +115,21 @@ LocalSurface fitted(Fit& fit, int exponent, LocalSurfaceParams::Origin origin) {
 
 LocalSurface local_surface(const Vec3& point, std::span<const Vec3> neighbours, LocalSurfaceParams::Origin origin) {
     Fit fit;
-    const int exponent = take_offsets(
-        point, neighbours.size(), [&](std::size_t i) { return neighbours[i]; }, fit.offsets);
-    return fitted(fit, exponent, origin);
+    return fitted(point, neighbours, origin, fit);
 }
 
 Array<LocalSurface> local_surfaces(const PointTree& tree, const LocalSurfaceParams& params,
                                    const Execution& execution) {
-    const std::span<const Vec3> places = tree.places();
-    Array<LocalSurface> surfaces(places.size());
+    const std::span<const Vec3> positions = tree.positions();
+    Array<LocalSurface> surfaces(positions.size());
     tree.for_each_nearest(params.neighbours, execution.threads(), [&](const NeighbourBatch& batch) {
         execution.check_cancelled();
         Fit fit;
-        for (std::size_t i = 0; i < batch.places.size(); ++i) {
-            const std::span<const Neighbour> neighbours = batch.of(i);
-            const u32 place = batch.places[i];
-            const int exponent = take_offsets(
-                places[place], neighbours.size(), [&](std::size_t n) { return places[neighbours[n].place]; },
-                fit.offsets);
-            surfaces[place] = fitted(fit, exponent, params.origin);
+        for (std::size_t i = 0; i < batch.indices.size(); ++i) {
+            const u32 index = batch.indices[i];
+            fit.neighbours.clear();
+            for (const Neighbour& neighbour : batch.of(i)) fit.neighbours.push_back(positions[neighbour.index]);
+            surfaces[index] = fitted(positions[index], fit.neighbours, params.origin, fit);
         }
     });
     return surfaces;

@@ -10,16 +10,17 @@ namespace scanmill {
 namespace {
 
 constexpr int most_unknowns = 5;
-/// What elimination must leave of a diagonal entry: the square of a sine between a column and those before it.
+/// The least share of a diagonal entry that elimination may leave: the squared sine of the angle between a column and
+/// the columns before it.
 constexpr double least_pivot = 1e-9;
 
-/// Normal equations: the lower half, row by row, with the right side behind.
+/// Normal equations: the lower half, row by row, and the right-hand side.
 struct Equations {
     std::array<std::array<double, most_unknowns>, most_unknowns> left{};
     std::array<double, most_unknowns> right{};
 };
 
-/// Sums of weight * u^i v^j, of which the entries are made: every product is summed once.
+/// The entries are sums of weight * u^i v^j; every product is summed once.
 Equations equations_of(std::span<const QuadricSample> samples) {
     double uuuu = 0, uuuv = 0, uuvv = 0, uvvv = 0, vvvv = 0, uuu = 0, uuv = 0, uvv = 0, vvv = 0, uu = 0, uv = 0, vv = 0;
     std::array<double, most_unknowns> right{};
@@ -54,7 +55,7 @@ Equations equations_of(std::span<const QuadricSample> samples) {
     return equations;
 }
 
-/// The first so many of them, by Cholesky's factors without roots, in place; false when a pivot vanishes.
+/// Solves the first `unknowns` equations in place by an LDLᵀ factorisation. False if a pivot vanishes.
 bool solve(Equations& equations, int unknowns) {
     auto& [left, right] = equations;
     for (int i = 0; i < unknowns; ++i) {
@@ -62,7 +63,7 @@ bool solve(Equations& equations, int unknowns) {
         for (int j = 0; j < i; ++j) {
             double entry = left[i][j];
             for (int k = 0; k < j; ++k) entry -= left[i][k] * left[j][k];
-            left[i][j] = entry;  // still times the pivot of j
+            left[i][j] = entry;  // not yet divided by the pivot of j
         }
         for (int j = 0; j < i; ++j) {
             const double entry = left[i][j] / left[j][j];
@@ -99,7 +100,8 @@ PrincipalCurvatures principal_curvatures(const Quadric& quadric) {
         a = along;
         c = across;
     }
-    // In that direction lengths grow by `stretch`; so this is the shape operator in orthonormal directions.
+    // The map from the plane to the surface stretches the gradient's direction by `stretch`; uu, uv and vv are the
+    // shape operator in orthonormal directions.
     const double stretch = std::sqrt(1 + squared_slope);
     const double uu = 2 * a / (stretch * stretch * stretch), uv = b / (stretch * stretch), vv = 2 * c / stretch;
     const double mean = (uu + vv) / 2, half = (uu - vv) / 2, spread = std::sqrt(half * half + uv * uv);

@@ -14,10 +14,10 @@ namespace scanmill {
 namespace {
 
 constexpr double least_mean_normal = 0.1, least_area = 1e-3;
-/// Two equal rims are passed in opposite directions, so their lengths are rounded differently.
+/// Two equal loops are summed in opposite directions, so their lengths are rounded differently.
 constexpr double longer_by = 1 + 1e-9;
 
-/// The boundary side that leaves the vertex where this one arrives, in the same fan of triangles.
+/// The boundary half-edge that starts where this one ends, in the same fan of triangles.
 u32 next_along_boundary(u32 half_edge, std::span<const u32> opposite) {
     u32 next = half_edges::after(half_edge);
     while (opposite[next] != half_edges::boundary) next = half_edges::after(opposite[next]);
@@ -28,12 +28,12 @@ u32 next_along_boundary(u32 half_edge, std::span<const u32> opposite) {
 
 std::vector<Array<u32>> boundary_loops(const TriangleMesh& mesh, std::span<const u32> opposite) {
     std::vector<Array<u32>> loops;
-    std::vector<bool> seen(opposite.size(), false);
+    std::vector<bool> visited(opposite.size(), false);
     for (u32 first = 0; first < 3 * mesh.triangles.size(); ++first) {
-        if (opposite[first] != half_edges::boundary || seen[first]) continue;
+        if (opposite[first] != half_edges::boundary || visited[first]) continue;
         Array<u32>& loop = loops.emplace_back();
-        for (u32 half_edge = first; !seen[half_edge]; half_edge = next_along_boundary(half_edge, opposite)) {
-            seen[half_edge] = true;
+        for (u32 half_edge = first; !visited[half_edge]; half_edge = next_along_boundary(half_edge, opposite)) {
+            visited[half_edge] = true;
             loop.push_back(half_edge);
         }
     }
@@ -65,16 +65,16 @@ std::vector<bool> outer_loops(std::span<const std::span<const u32>> loops, std::
     for (std::size_t i = 0; i < loops.size(); ++i) outer[i] = shapes[i].clear && shapes[i].area > 0;
     if (std::ranges::all_of(shapes, &LoopShape::clear)) return outer;
 
-    DisjointSets pieces(opposite.size() / 3);
+    DisjointSets components(opposite.size() / 3);
     for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge)
-        if (opposite[half_edge] < half_edges::no_half_edge) pieces.unite(half_edge / 3, opposite[half_edge] / 3);
-    std::unordered_map<u32, std::size_t> longest;  // loop of every piece; looked up only
+        if (opposite[half_edge] < half_edges::no_half_edge) components.unite(half_edge / 3, opposite[half_edge] / 3);
+    std::unordered_map<u32, std::size_t> longest;  // loop of every component; never iterated over
     for (std::size_t i = 0; i < loops.size(); ++i) {
-        const auto [best, is_new] = longest.try_emplace(pieces.find(loops[i][0] / 3), i);
+        const auto [best, is_new] = longest.try_emplace(components.find(loops[i][0] / 3), i);
         if (shapes[i].length > longer_by * shapes[best->second].length) best->second = i;
     }
     for (std::size_t i = 0; i < loops.size(); ++i)
-        if (!shapes[i].clear) outer[i] = longest.at(pieces.find(loops[i][0] / 3)) == i;
+        if (!shapes[i].clear) outer[i] = longest.at(components.find(loops[i][0] / 3)) == i;
     return outer;
 }
 

@@ -1,34 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Unit normals of a mesh's triangles, those without area included, and the angle between two of them.
+/// Unit normals of a mesh's triangles, including those without area.
 
 #include <span>
 
 #include "scanmill/data/mesh.hpp"
-#include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill {
 
 struct FacetNormals {
-    /// One per triangle. Zero for a triangle that names a vertex twice, and where a piece of the mesh has no area.
+    /// One per triangle. Zero for a triangle with a repeated vertex, and in a connected component without area.
     Array<Vec3> unit;
-    /// Triangles that name a vertex twice or are thinner than a billionth of their longest side: they have no normal of
-    /// their own.
+    /// Triangles with a repeated vertex or a height below a billionth of their longest edge.
     std::size_t without_area = 0;
 };
 
-/// A triangle without area takes the normal of the neighbour across its longest side that has one (of equally long
-/// sides the one whose neighbour's normal is lower, by x, y, z), those beside proper triangles first. So a flat piece
-/// that was triangulated with needles stays flat, and of a needle in a sharp edge the long side is smooth, the short
-/// ones are sharp.
+/// A triangle without area takes the normal of a neighbour: across the longest edge whose neighbour has a normal (of
+/// equally long edges, the lower normal by x, y, z). Triangles beside proper ones come first, then their neighbours.
+/// So a flat region triangulated with needles stays flat; the long edge of a needle at a crease is smooth, its short
+/// edges are sharp.
 ///
-/// Pre: finite positions whose differences are numbers; `opposite` by half_edges::opposites.
-/// Post: no bit depends on the order of the triangles or vertices, nor on which corner a triangle names first.
+/// Pre: finite positions; `opposite` by half_edges::opposites().
+/// Post: no bit depends on the order of the triangles or vertices, nor on a triangle's first corner.
 /// Cost: linear, 24 bytes per triangle.
 FacetNormals facet_normals(const TriangleMesh& mesh, std::span<const u32> opposite, unsigned threads);
 
-/// Angles between normals that differ from a limit by no more than this, in radians, count as equal to it: what
-/// rounding does to the sides of a regular prism.
+/// In radians. Angles between normals that differ from a limit by at most this count as equal to it: it covers the
+/// rounding in the facets of a regular prism.
 inline constexpr double angle_tie = 1e-9;
 
 }  // namespace scanmill

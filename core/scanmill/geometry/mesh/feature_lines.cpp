@@ -2,23 +2,172 @@
 #include "scanmill/geometry/mesh/feature_lines.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <tuple>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/mesh.hpp"
-#include "scanmill/data/points.hpp"
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
-#include "scanmill/geometry/mesh/feature_net.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill {
 
 namespace {
+
+/// Half-edges in a row; each starts where the one before ends. If closed, the last ends where the first starts.
+struct FeatureLine {
+    FeatureType type;
+    bool closed;
+    Array<u32> half_edges;
+};
+
+/// The boundary and sharp edges of a mesh as a graph of numbered vertices, and the lines it is divided into.
+class FeatureNet {
+public:
+    /// `sharp`: whether the edge of a half-edge is sharp; equal for opposite half-edges, false on the boundary.
+    FeatureNet(const TriangleMesh& mesh, std::span<const u32> opposite, const std::vector<bool>& sharp,
+               double corner_angle)
+        : mesh_(mesh),
+          opposite_(opposite),
+          loops_(boundary_loops(mesh, opposite)) {
+        number_vertices(sharp);
+        find_creases(sharp);
+        find_corners(corner_angle);
+        for (Array<u32>& loop : loops_) start_at_lowest(loop);
+    }
+
+    /// The mesh's vertex of every number; numbers ascend by position, then by vertex.
+    std::span<const u32> vertices() const { return vertices_; }
+    u32 number_at_start(u32 half_edge) const { return number_[half_edges::start(mesh_, half_edge)]; }
+    u32 number_at_end(u32 half_edge) const { return number_[half_edges::end(mesh_, half_edge)]; }
+    bool is_corner(u32 number) const { return is_corner_[number]; }
+
+    /// The boundary loops (their type is still preliminary: outer boundary), then the creases; each by the numbers of
+    /// the first two vertices.
+    std::vector<FeatureLine> lines() const {
+        std::vector<FeatureLine> lines;
+        for (const Array<u32>& loop : loops_) lines.push_back({FeatureType::outer_boundary, true, loop});
+        std::vector<bool> visited(opposite_.size(), false);
+        for (const bool at_corners : {true, false})  // then closed creases without corners, from their lowest vertex
+            for (u32 number = 0; number < vertices_.size(); ++number) {
+                if (is_corner_[number] != at_corners) continue;
+                for (const Crease& crease : creases_at(number))
+                    if (!visited[crease.half_edge]) lines.push_back(crease_from(crease, visited));
+            }
+        std::ranges::sort(lines, {}, [&](const FeatureLine& line) {
+            return std::tuple(line.type, number_at_start(line.half_edges[0]), number_at_end(line.half_edges[0]));
+        });
+        return lines;
+    }
+
+private:
+    struct Crease {
+        u32 end;  ///< number
+        u32 half_edge;
+    };
+
+    void number_vertices(const std::vector<bool>& sharp) {
+        constexpr u32 none = ~u32(0);
+        number_.assign(mesh_.positions.size(), none);
+        for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge) {
+            if (opposite_[half_edge] != half_edges::boundary && !sharp[half_edge]) continue;
+            for (const u32 vertex : {half_edges::start(mesh_, half_edge), half_edges::end(mesh_, half_edge)}) {
+                if (number_[vertex] == none) vertices_.push_back(vertex);
+                number_[vertex] = 0;
+            }
+        }
+        std::ranges::sort(vertices_, {}, [&](u32 vertex) {
+            const Vec3& p = mesh_.positions[vertex];
+            return std::tuple(p.x(), p.y(), p.z(), vertex);
+        });
+        for (u32 number = 0; number < vertices_.size(); ++number) number_[vertices_[number]] = number;
+    }
+
+    /// Every sharp edge is in the list of both its vertices, each time with the half-edge that starts there.
+    void find_creases(const std::vector<bool>& sharp) {
+        begin_.assign(vertices_.size() + 1, 0);
+        for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge)
+            if (sharp[half_edge]) ++begin_[number_at_start(half_edge)];
+        std::exclusive_scan(begin_.begin(), begin_.end(), begin_.begin(), u32(0));
+        creases_.resize(begin_.back());
+        Array<u32> next(begin_.begin(), begin_.end() - 1);
+        for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge)
+            if (sharp[half_edge]) creases_[next[number_at_start(half_edge)]++] = {number_at_end(half_edge), half_edge};
+        for (std::size_t number = 0; number < vertices_.size(); ++number)
+            std::sort(creases_.begin() + begin_[number], creases_.begin() + begin_[number + 1],
+                      [](const Crease& a, const Crease& b) { return a.end < b.end; });
+    }
+
+    std::span<const Crease> creases_at(u32 number) const {
+        return std::span(creases_).subspan(begin_[number], begin_[number + 1] - begin_[number]);
+    }
+
+    bool turns(u32 before, u32 at, u32 after, double corner_angle) const {
+        const Vec3& here = mesh_.positions[vertices_[at]];
+        const Vec3 arriving = here - mesh_.positions[vertices_[before]],
+                   leaving = mesh_.positions[vertices_[after]] - here;
+        return angle_between(arriving, leaving) > corner_angle;
+    }
+
+    void find_corners(double corner_angle) {
+        Array<u32> boundary_edges(vertices_.size(), 0);
+        for (const Array<u32>& loop : loops_)
+            for (const u32 half_edge : loop) {
+                ++boundary_edges[number_at_start(half_edge)];
+                ++boundary_edges[number_at_end(half_edge)];
+            }
+        is_corner_.assign(vertices_.size(), false);
+        for (u32 number = 0; number < vertices_.size(); ++number) {
+            const std::span<const Crease> creases = creases_at(number);
+            is_corner_[number] = creases.size() + boundary_edges[number] != 2 ||
+                                 (creases.size() == 2 && turns(creases[0].end, number, creases[1].end, corner_angle));
+        }
+        for (const Array<u32>& loop : loops_)
+            for (std::size_t i = 0; i < loop.size(); ++i) {
+                const u32 arriving = loop[i], leaving = loop[i + 1 == loop.size() ? 0 : i + 1];
+                const u32 here = number_at_start(leaving);
+                if (turns(number_at_start(arriving), here, number_at_end(leaving), corner_angle))
+                    is_corner_[here] = true;
+            }
+    }
+
+    void start_at_lowest(Array<u32>& loop) const {
+        const auto rank = [&](u32 half_edge) {
+            const u32 start = number_at_start(half_edge);
+            return std::tuple(!is_corner_[start], start, number_at_end(half_edge));
+        };
+        std::ranges::rotate(loop, std::ranges::min_element(loop, {}, rank));
+    }
+
+    FeatureLine crease_from(const Crease& first, std::vector<bool>& visited) const {
+        FeatureLine line{FeatureType::crease, false, {}};
+        const u32 begin = number_at_start(first.half_edge);
+        for (Crease crease = first;;) {
+            assert(!visited[crease.half_edge]);
+            visited[crease.half_edge] = visited[opposite_[crease.half_edge]] = true;
+            line.half_edges.push_back(crease.half_edge);
+            line.closed = crease.end == begin;
+            if (line.closed || is_corner_[crease.end]) return line;
+            const std::span<const Crease> two = creases_at(crease.end);
+            crease = two[0].half_edge == opposite_[crease.half_edge] ? two[1] : two[0];
+        }
+    }
+
+    const TriangleMesh& mesh_;
+    std::span<const u32> opposite_;
+    Array<u32> vertices_;
+    Array<u32> number_;  // by vertex of the mesh
+    Array<u32> begin_;  // by number, and one more: into creases_
+    Array<Crease> creases_;  // by number of the vertex where they start, then of the vertex where they end
+    std::vector<Array<u32>> loops_;
+    std::vector<bool> is_corner_;
+};
 
 void require_sound(const FeatureParams& params) {
     const auto require_angle = [](const char* name, const Angle& angle) {
@@ -40,46 +189,46 @@ void require_measurable(const TriangleMesh& mesh) {
                     .hint("remove the triangles at such vertices");
 }
 
-/// Marks both sides of the mesh's own sharp edges; those on the boundary are feature lines anyhow.
-void mark_own(const TriangleMesh& mesh, std::span<const u32> opposite, std::vector<bool>& sharp) {
+/// Marks both half-edges of the mesh's declared sharp edges; those on the boundary are feature lines anyway.
+void mark_declared(const TriangleMesh& mesh, std::span<const u32> opposite, std::vector<bool>& sharp) {
     if (mesh.sharp_edges.empty()) return;
-    struct Own {
+    struct Declared {
         Edge edge;
         bool found;
     };
-    std::vector<Own> own;
-    for (const Edge& edge : mesh.sharp_edges) own.push_back({make_edge(edge[0], edge[1]), false});
-    std::ranges::sort(own, {}, &Own::edge);
+    std::vector<Declared> declared;
+    for (const Edge& edge : mesh.sharp_edges) declared.push_back({make_edge(edge[0], edge[1]), false});
+    std::ranges::sort(declared, {}, &Declared::edge);
     for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
         if (opposite[half_edge] == half_edges::no_half_edge) continue;
         const Edge edge = make_edge(half_edges::start(mesh, half_edge), half_edges::end(mesh, half_edge));
-        for (auto it = std::ranges::lower_bound(own, edge, {}, &Own::edge); it != own.end() && it->edge == edge; ++it) {
-            it->found = true;
+        for (Declared& same : std::ranges::equal_range(declared, edge, {}, &Declared::edge)) {
+            same.found = true;
             sharp[half_edge] = opposite[half_edge] != half_edges::boundary;
         }
     }
-    const auto missing = std::ranges::count(own, false, &Own::found);
+    const auto missing = std::ranges::count(declared, false, &Declared::found);
     if (missing == 0) return;
-    const Edge& first = std::ranges::find(own, false, &Own::found)->edge;
+    const Edge& first = std::ranges::find(declared, false, &Declared::found)->edge;
     throw Error("{} of the mesh's {} {} of no triangle; the first is between vertices {} and {}", missing,
-                count_text(own.size(), "sharp edge", "sharp edges"),
+                count_text(declared.size(), "sharp edge", "sharp edges"),
                 by_count(static_cast<std::size_t>(missing), "is an edge", "are edges"), first[0], first[1])
         .hint("write the mesh again with the sharp edges of its own triangles, or without any");
 }
 
 std::vector<bool> sharp_half_edges(const TriangleMesh& mesh, std::span<const u32> opposite,
                                    std::span<const Vec3> normals, double sharp_angle, unsigned threads) {
-    Array<u8> bends(opposite.size());
+    Array<u8> is_sharp(opposite.size());  // bytes, unlike std::vector<bool>, can be written in parallel
     constexpr std::size_t chunk = 3 << 13;
     for_each_chunk(threads, opposite.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t half_edge = begin; half_edge < end; ++half_edge) {
             const u32 other = opposite[half_edge];
-            bends[half_edge] = other < half_edges::no_half_edge &&
-                               angle_between(normals[half_edge / 3], normals[other / 3]) > sharp_angle;
+            is_sharp[half_edge] = other < half_edges::no_half_edge &&
+                                  angle_between(normals[half_edge / 3], normals[other / 3]) > sharp_angle;
         }
     });
-    std::vector<bool> sharp(bends.begin(), bends.end());
-    mark_own(mesh, opposite, sharp);
+    std::vector<bool> sharp(is_sharp.begin(), is_sharp.end());
+    mark_declared(mesh, opposite, sharp);
     return sharp;
 }
 
@@ -104,7 +253,7 @@ std::size_t drop_short(const TriangleMesh& mesh, std::span<const u32> opposite, 
     return dropped;
 }
 
-/// Returns the number of loops whose area does not tell what they are. Pre: the loops come first.
+/// Sets the type of the loops; returns the number of those whose area does not decide it. Pre: the loops come first.
 std::size_t classify_loops(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> normals,
                            std::vector<FeatureLine>& lines) {
     std::vector<std::span<const u32>> loops;
@@ -192,8 +341,8 @@ std::vector<std::string> doubts(const FeatureCounts& counts) {
                             " without area: counted to a neighbour's plane");
     if (counts.ambiguous > 0)
         sentences.push_back(count_text(counts.ambiguous, "boundary loop", "boundary loops") +
-                            " whose area does not tell outer boundaries from holes: the longest of a piece was taken "
-                            "for its outer boundary");
+                            " whose area does not decide between outer boundary and hole: the longest loop of a "
+                            "component counts as its outer boundary");
     return sentences;
 }
 

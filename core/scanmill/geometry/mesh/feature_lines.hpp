@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The feature lines of a mesh: where it ends, where it bends sharply, and where such lines meet or turn.
+/// The feature lines of a mesh: boundary loops, sharp edges, and the corners where such lines meet or turn.
 ///
-/// An edge is *sharp* when the normals of its two triangles differ by more than `sharp_angle`, or when it is one of the
-/// mesh's own sharp edges. A vertex of feature lines is a *corner* when other than two sharp or boundary edges meet in
-/// it, or when the line turns there by more than `corner_angle`. Angles within 1e-9 rad of a limit count as equal to
-/// it, so not as above it: a prism of 36 sides has no crease at 10 degrees, whatever the rounding.
+/// An edge is *sharp* if the normals of its two triangles differ by more than `sharp_angle`, or if it is one of the
+/// mesh's declared sharp edges. A vertex of feature lines is a *corner* if the number of sharp and boundary edges at it
+/// is not two, or if the line turns there by more than `corner_angle`. Angles that exceed a limit by at most 1e-9 rad
+/// count as equal to it: a prism with 36 sides has no crease at 10 degrees, whatever the rounding.
 ///
 /// Sharp edges are chained into creases from corner to corner. Boundary edges are chained into whole loops, across
-/// corners, the surface on their left seen from outside; every loop is an outer boundary or a hole (see
-/// geometry/boundary_loops.hpp for the rule).
+/// corners, with the surface on their left seen from outside. Every loop is an outer boundary or a hole, by
+/// outer_loops() in boundary_loops.hpp.
 
 #include "scanmill/data/features.hpp"
 #include "scanmill/data/mesh.hpp"
@@ -22,7 +22,7 @@ struct FeatureParams {
     Angle sharp_angle = Angle::degrees(40);
     /// 0 to 180 degrees.
     Angle corner_angle = Angle::degrees(35);
-    /// Shorter creases are left out; 0 or more, resolved.
+    /// Shorter creases are omitted; 0 or more, resolved.
     Length min_length;
 };
 
@@ -31,9 +31,9 @@ struct FeatureCounts {
     std::size_t holes = 0;
     std::size_t boundaries = 0;  ///< outer ones
     std::size_t corners = 0;
-    std::size_t ambiguous = 0;  ///< boundary loops whose projected area did not tell what they are
-    std::size_t dropped = 0;  ///< creases left out for their length
-    std::size_t without_area = 0;  ///< triangles, see geometry/facet_normals.hpp for their normals
+    std::size_t ambiguous = 0;  ///< boundary loops whose projected area does not decide their type
+    std::size_t dropped = 0;  ///< creases omitted because of their length
+    std::size_t without_area = 0;  ///< triangles, see FacetNormals
 };
 
 struct FeatureLines {
@@ -42,22 +42,22 @@ struct FeatureLines {
 };
 
 /// Pre: indices in range. Throws Error for a position of a triangle that is not finite, for an edge in three or more
-/// triangles or passed twice in the same direction (naming the first), for a sharp edge of the mesh that no triangle
-/// has, and for parameters out of range. Two fans that touch
-/// in a vertex are allowed: it is a corner, and a loop stays with its fan.
+/// triangles or with two half-edges of the same direction (naming the first), for a declared sharp edge that is in no
+/// triangle, and for parameters out of range. Two fans may touch in a vertex: it is a corner, and a loop stays with its
+/// fan.
 ///
-/// Post: vertices of the graph are numbered by their place (x, then y, then z); only those of polylines are there.
-/// Polylines: outer boundaries, holes, creases; among these by their first vertex, then their second. A closed one
-/// begins at its lowest corner, without corners at its lowest vertex; a closed crease goes to the lower of the two next
-/// ones. An open one begins at its lower end. The same bytes for any number of threads and any order of the input's
-/// vertices and triangles, unless two vertices of feature lines are at one place (then the mesh's order decides).
+/// Post: the graph contains only vertices of polylines, ordered by position (x, then y, then z). Polylines are outer
+/// boundaries, then holes, then creases; each type by the first vertex, then the second. A closed polyline starts at
+/// its lowest corner, without corners at its lowest vertex; a closed crease continues to the lower neighbour. An open
+/// one starts at its lower end. The same bytes for any number of threads and any order of the input's vertices and
+/// triangles, unless two vertices of feature lines have equal positions (then the mesh's order decides).
 ///
-/// When creases are left out, those that met them are chained anew: no crease of the result is shorter than min_length.
-/// Cost: linear, and a sort of the lines' vertices; about 60 bytes per triangle.
-/// Source: Wang 2006, chapter 4, for loops, holes and sharp edges; the tests of area and ties are our own.
+/// After short creases are omitted, the creases that met them are chained again: no crease of the result is shorter
+/// than min_length. Cost: linear, and a sort of the lines' vertices; about 60 bytes per triangle.
+/// Source: Wang 2006, chapter 4, for loops, holes and sharp edges; area test and tie rules are our own.
 FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params, unsigned threads);
 
-/// One sentence for triangles without area, and one for boundary loops that only their length could classify.
+/// One sentence for triangles without area, and one for boundary loops classified by their length.
 std::vector<std::string> doubts(const FeatureCounts& counts);
 
 }  // namespace scanmill

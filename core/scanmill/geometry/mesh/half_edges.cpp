@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <span>
 
 #include "scanmill/base/error.hpp"
 
@@ -11,28 +10,12 @@ namespace scanmill::half_edges {
 
 namespace {
 
-/// By edge, then by number. Pre: they stand by number, and all have one smaller vertex.
-void sort_by_edge(std::span<VertexHalfEdge> half_edges) {
-    constexpr std::size_t few = 32;
-    if (half_edges.size() > few) {
-        std::ranges::stable_sort(half_edges, {}, &VertexHalfEdge::other);
-        return;
-    }
-    for (std::size_t i = 1; i < half_edges.size(); ++i) {
-        const VertexHalfEdge half_edge = half_edges[i];
-        std::size_t place = i;
-        for (; place > 0 && half_edges[place - 1].other > half_edge.other; --place)
-            half_edges[place] = half_edges[place - 1];
-        half_edges[place] = half_edge;
-    }
-}
-
 std::string vertex_text(const TriangleMesh& mesh, u32 vertex) {
-    const Vec3 place = mesh.frame.origin + mesh.positions[vertex];
-    return fmt::format("vertex {} ({:.9g}, {:.9g}, {:.9g})", vertex, place.x(), place.y(), place.z());
+    const Vec3 world = mesh.frame.origin + mesh.positions[vertex];
+    return fmt::format("vertex {} ({:.9g}, {:.9g}, {:.9g})", vertex, world.x(), world.y(), world.z());
 }
 
-/// Edges that no oriented surface has: the first of them as its sides, and their number.
+/// Edges that are not allowed: the half-edges of the first one, and the number of such edges.
 struct Offenders {
     std::vector<VertexHalfEdge> first;
     std::size_t edges = 0;
@@ -47,75 +30,64 @@ struct Offenders {
     }
 };
 
-void require_two_at_most(const TriangleMesh& mesh, const Offenders& crowded) {
-    if (crowded.edges == 0) return;
-    throw Error(
-        "{} is in {} triangles, {}, {} and {} among them; a surface has at most 2 at an edge (edges with more: {})",
-        crowded.edge_text(mesh), crowded.first.size(), crowded.first[0].number / 3, crowded.first[1].number / 3,
-        crowded.first[2].number / 3, crowded.edges)
-        .hint(
-            "take triangles off until two are left at every edge, or cut the mesh there: each sheet with vertices of "
-            "its own");
-}
-
-void require_orientation(const TriangleMesh& mesh, const Offenders& alike) {
-    if (alike.edges == 0) return;
-    throw Error("triangles {} and {} pass {} in the same direction; neighbours must be oriented alike (such edges: {})",
-                alike.first[0].number / 3, alike.first[1].number / 3, alike.edge_text(mesh), alike.edges)
-        .hint("turn the triangles that look the other way; a one-sided surface (a Moebius band) must be cut open");
-}
-
 }  // namespace
 
 ByVertex by_smaller_vertex(const TriangleMesh& mesh) {
     ByVertex result;
     std::vector<u32>& begin = result.begin;
     begin.resize(mesh.positions.size() + 1);
-    const auto for_each_side = [&](auto&& action) {
+    const auto for_each_half_edge = [&](auto&& action) {
         for (u32 t = 0; t < mesh.triangles.size(); ++t) {
             const Triangle& triangle = mesh.triangles[t];
-            if (names_a_vertex_twice(triangle)) continue;
+            if (has_repeated_vertex(triangle)) continue;
             for (u32 i = 0; i < 3; ++i) action(3 * t + i, triangle[i], triangle[i == 2 ? 0 : i + 1]);
         }
     };
-    for_each_side([&](u32, u32 a, u32 b) { ++begin[std::min(a, b)]; });
+    for_each_half_edge([&](u32, u32 a, u32 b) { ++begin[std::min(a, b)]; });
     std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), u32(0));
     result.half_edges.resize(begin.back());
     std::vector<u32> next(begin.begin(), begin.end() - 1);
-    for_each_side([&](u32 half_edge, u32 a, u32 b) {
+    for_each_half_edge([&](u32 half_edge, u32 a, u32 b) {
         result.half_edges[next[std::min(a, b)]++] = {std::max(a, b), half_edge};
     });
-    for (std::size_t vertex = 0; vertex + 1 < begin.size(); ++vertex)
-        sort_by_edge({result.half_edges.data() + begin[vertex], result.half_edges.data() + begin[vertex + 1]});
+    const auto at = [&](u32 group) { return result.half_edges.begin() + begin[group]; };
+    for (u32 vertex = 0; vertex + 1 < begin.size(); ++vertex) std::sort(at(vertex), at(vertex + 1));
     return result;
 }
 
 Array<u32> opposites(const TriangleMesh& mesh) {
     require_consistent(mesh);
-    constexpr std::size_t most = boundary / 3 - 1;  // sides are numbered with 32 bits
+    constexpr std::size_t most = boundary / 3 - 1;  // half-edges are numbered with 32 bits
     if (mesh.triangles.size() > most)
         throw Error("the mesh has {} triangles; at most {} are possible", mesh.triangles.size(), most);
-    const ByVertex by_vertex = by_smaller_vertex(mesh);
-    const std::span<const VertexHalfEdge> all = by_vertex.half_edges;
     Array<u32> opposite(3 * mesh.triangles.size(), no_half_edge);
     Offenders crowded, alike;
-    for (u32 a = 0; a < mesh.positions.size(); ++a)
-        for (u32 first = by_vertex.begin[a], last; first < by_vertex.begin[a + 1]; first = last) {
-            for (last = first + 1; last < by_vertex.begin[a + 1] && all[last].other == all[first].other;) ++last;
-            const std::span<const VertexHalfEdge> edge = all.subspan(first, last - first);
-            if (edge.size() == 1) {
-                opposite[edge[0].number] = boundary;
-            } else if (edge.size() > 2) {
-                crowded.add(edge);
-            } else if (start(mesh, edge[0].number) == start(mesh, edge[1].number)) {
-                alike.add(edge);
-            } else {
-                opposite[edge[0].number] = edge[1].number;
-                opposite[edge[1].number] = edge[0].number;
-            }
+    for_each_edge(by_smaller_vertex(mesh), [&](u32, std::span<const VertexHalfEdge> edge) {
+        if (edge.size() == 1) {
+            opposite[edge[0].number] = boundary;
+        } else if (edge.size() > 2) {
+            crowded.add(edge);
+        } else if (start(mesh, edge[0].number) == start(mesh, edge[1].number)) {
+            alike.add(edge);
+        } else {
+            opposite[edge[0].number] = edge[1].number;
+            opposite[edge[1].number] = edge[0].number;
         }
-    require_two_at_most(mesh, crowded);
-    require_orientation(mesh, alike);
+    });
+    if (crowded.edges > 0)
+        throw Error(
+            "{} is in {} triangles, {}, {} and {} among them; a surface has at most 2 at an edge (edges with more: {})",
+            crowded.edge_text(mesh), crowded.first.size(), crowded.first[0].number / 3, crowded.first[1].number / 3,
+            crowded.first[2].number / 3, crowded.edges)
+            .hint(
+                "remove triangles until at most two are left at every edge, or cut the mesh there: give each sheet its "
+                "own vertices");
+    if (alike.edges > 0)
+        throw Error(
+            "triangles {} and {} pass {} in the same direction; neighbours must be oriented alike (such edges: {})",
+            alike.first[0].number / 3, alike.first[1].number / 3, alike.edge_text(mesh), alike.edges)
+            .hint(
+                "reverse the triangles that face the other way; a one-sided surface (a Moebius band) must be cut open");
     return opposite;
 }
 

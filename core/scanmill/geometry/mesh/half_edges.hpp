@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The sides of a mesh's triangles, and which of them meet at an edge.
+/// The half-edges of a mesh's triangles, and which of them are opposite.
 ///
-/// A side has the number 3 t + i: the one of triangle t from its corner i to the next. So has that corner. Triangles
-/// that name a vertex twice have no sides that count.
+/// Half-edge 3 t + i goes from corner i of triangle t to the next corner; corner i has the same number. Triangles with
+/// a repeated vertex have no half-edges.
 
+#include <compare>
+#include <span>
 #include <vector>
 
 #include "scanmill/data/mesh.hpp"
@@ -16,30 +18,42 @@ inline u32 before(u32 half_edge) { return half_edge % 3 == 0 ? half_edge + 2 : h
 inline u32 start(const TriangleMesh& mesh, u32 half_edge) { return mesh.triangles[half_edge / 3][half_edge % 3]; }
 inline u32 end(const TriangleMesh& mesh, u32 half_edge) { return start(mesh, after(half_edge)); }
 
-inline bool names_a_vertex_twice(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+inline bool has_repeated_vertex(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
 struct VertexHalfEdge {
     u32 other;  ///< the edge's larger vertex
     u32 number;
+    auto operator<=>(const VertexHalfEdge&) const = default;
 };
 
-/// The sides of proper triangles, by the smaller vertex of their edges.
+/// Half-edges grouped by the smaller vertex of their edges.
 struct ByVertex {
-    std::vector<u32> begin;   ///< where a vertex's sides begin, and one more
-    std::vector<VertexHalfEdge> half_edges;  ///< of one vertex: by edge, then by number
+    std::vector<u32> begin;  ///< start of every vertex's group, and one more
+    std::vector<VertexHalfEdge> half_edges;  ///< within a group by edge, then by number
 };
 
 /// Cost: linear where no vertex has many edges, 24 bytes per triangle and 8 per vertex.
 ByVertex by_smaller_vertex(const TriangleMesh& mesh);
 
-/// In place of an opposite: nothing on the other side; the side of a triangle that names a vertex twice.
+/// Calls action(smaller vertex, half-edges of one edge) for every edge, by smaller and then by larger vertex.
+template <class Action>
+void for_each_edge(const ByVertex& by_vertex, Action&& action) {
+    const std::span<const VertexHalfEdge> all = by_vertex.half_edges;
+    for (u32 vertex = 0; vertex + 1 < by_vertex.begin.size(); ++vertex)
+        for (u32 first = by_vertex.begin[vertex], last; first < by_vertex.begin[vertex + 1]; first = last) {
+            for (last = first + 1; last < by_vertex.begin[vertex + 1] && all[last].other == all[first].other;) ++last;
+            action(vertex, all.subspan(first, last - first));
+        }
+}
+
+/// In place of an opposite: of a half-edge on the boundary; of the numbers of a triangle with a repeated vertex.
 inline constexpr u32 boundary = ~u32(0), no_half_edge = ~u32(0) - 1;
 
-/// Of every side the one that passes its edge in the other direction, or `boundary`, or `no_half_edge`.
+/// The opposite of every half-edge, or `boundary`, or `no_half_edge`.
 ///
-/// Throws Error for an index out of range, for more triangles than 32 bits number sides of, for an edge in three or
-/// more triangles and for an edge that two triangles pass in the same direction, naming the first such edge (lowest
-/// vertices) with its place, and how many there are. Cost: as above and 12 bytes per triangle.
+/// Throws Error for an index out of range, for more half-edges than 32 bits can number, for an edge in three or more
+/// triangles and for an edge with two half-edges of the same direction: naming the first such edge (lowest vertices),
+/// its position and the number of such edges. Cost: as above, and 12 bytes per triangle.
 Array<u32> opposites(const TriangleMesh& mesh);
 
 }  // namespace scanmill::half_edges

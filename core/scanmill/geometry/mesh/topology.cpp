@@ -14,21 +14,21 @@ namespace {
 
 constexpr u32 none = ~u32(0);
 
-/// Whether the corner's fan, found by going around its vertex from triangle to triangle, has so many corners. Pre: no
-/// edge at the vertex is in more than two triangles.
+/// Whether the fan of triangles that contains `corner`, around its vertex, has `corners` corners. Pre: no edge at the
+/// vertex is in more than two triangles.
 bool fan_has(const TriangleMesh& mesh, const std::vector<u32>& opposite, u32 corner, u32 corners) {
     const u32 vertex = half_edges::start(mesh, corner);
-    u32 seen = 1;
+    u32 visited = 1;
     for (const u32 first : {corner, before(corner)}) {
-        for (u32 half_edge = first; opposite[half_edge] != none; ++seen) {
+        for (u32 half_edge = first; opposite[half_edge] != none; ++visited) {
             const u32 other = opposite[half_edge];
             const bool starts_here = half_edges::start(mesh, other) == vertex;
             const u32 here = starts_here ? other : after(other);
-            if (here == corner) return seen == corners;
+            if (here == corner) return visited == corners;
             half_edge = starts_here ? before(other) : here;
         }
     }
-    return seen == corners;
+    return visited == corners;
 }
 
 }  // namespace
@@ -39,41 +39,38 @@ MeshTopology topology(const TriangleMesh& mesh) {
     std::vector<bool> used(mesh.positions.size(), false);
     std::vector<bool> unmanifold(mesh.positions.size(), false);
     for (const Triangle& triangle : mesh.triangles) {
-        if (half_edges::names_a_vertex_twice(triangle)) ++result.degenerate_triangles;
+        if (half_edges::has_repeated_vertex(triangle)) ++result.degenerate_triangles;
         for (u32 vertex : triangle) used[vertex] = true;
     }
     result.vertices = static_cast<std::size_t>(std::ranges::count(used, true));
     result.unused_vertices = used.size() - result.vertices;
 
-    const half_edges::ByVertex by_vertex = half_edges::by_smaller_vertex(mesh);
     std::vector<u32> opposite(3 * mesh.triangles.size(), none);  // across edges of two triangles
     DisjointSets faces(mesh.triangles.size());
     DisjointSets boundary(mesh.positions.size());
     std::vector<bool> on_boundary(mesh.positions.size(), false);
-    for (u32 a = 0; a < mesh.positions.size(); ++a)
-        for (u32 first = by_vertex.begin[a], last; first < by_vertex.begin[a + 1]; first = last) {
-            const u32 b = by_vertex.half_edges[first].other, half_edge = by_vertex.half_edges[first].number;
-            for (last = first + 1; last < by_vertex.begin[a + 1] && by_vertex.half_edges[last].other == b; ++last)
-                faces.unite(half_edge / 3, by_vertex.half_edges[last].number / 3);
-            ++result.edges;
-            if (last - first == 1) {
-                ++result.boundary_edges;
-                boundary.unite(a, b);
-                on_boundary[a] = on_boundary[b] = true;
-            } else if (last - first > 2) {
-                ++result.nonmanifold_edges;
-                unmanifold[a] = unmanifold[b] = true;
-            } else {
-                const u32 other = by_vertex.half_edges[first + 1].number;
-                opposite[half_edge] = other;
-                opposite[other] = half_edge;
-                if (half_edges::start(mesh, half_edge) == half_edges::start(mesh, other)) ++result.misoriented_edges;
-            }
+    half_edges::for_each_edge(half_edges::by_smaller_vertex(mesh), [&](u32 a, auto edge) {
+        const u32 b = edge[0].other, half_edge = edge[0].number;
+        for (const auto& other : edge) faces.unite(half_edge / 3, other.number / 3);
+        ++result.edges;
+        if (edge.size() == 1) {
+            ++result.boundary_edges;
+            boundary.unite(a, b);
+            on_boundary[a] = on_boundary[b] = true;
+        } else if (edge.size() > 2) {
+            ++result.nonmanifold_edges;
+            unmanifold[a] = unmanifold[b] = true;
+        } else {
+            const u32 other = edge[1].number;
+            opposite[half_edge] = other;
+            opposite[other] = half_edge;
+            if (half_edges::start(mesh, half_edge) == half_edges::start(mesh, other)) ++result.misoriented_edges;
         }
+    });
 
     std::vector<u32> corner_of(mesh.positions.size(), none), corners(mesh.positions.size(), 0);
     for (u32 t = 0; t < mesh.triangles.size(); ++t) {
-        if (half_edges::names_a_vertex_twice(mesh.triangles[t])) continue;
+        if (half_edges::has_repeated_vertex(mesh.triangles[t])) continue;
         if (faces.find(t) == t) ++result.components;
         for (u32 i = 0; i < 3; ++i) {
             const u32 vertex = mesh.triangles[t][i];

@@ -3,8 +3,8 @@
 /// Angles whose bits do not depend on the processor.
 ///
 /// The C library chooses between variants of atan2, sin and the like by the processor, and their last bits differ.
-/// Code that decides by angles, or by sums of angles, uses these functions instead. They use only +, -, *, /, sqrt and
-/// comparisons, each of which IEEE 754 rounds in exactly one way. (All of Scanmill is compiled with -ffp-contract=off.)
+/// Decisions by angles, or by sums of angles, use these functions instead. They consist of +, -, *, /, sqrt and
+/// comparisons, which IEEE 754 rounds in exactly one way. (All of Scanmill is compiled with -ffp-contract=off.)
 
 #include "scanmill/data/frame.hpp"
 
@@ -12,13 +12,13 @@ namespace scanmill {
 
 /// The angle in [0, π], in radians, whose cosine and sine have the ratio of `cosine` to `sine`; 0 if both are 0.
 ///
-/// Pre:   sine ≥ 0; the larger of the two magnitudes is between 1e-250 and 1e250, or both are 0.
+/// Pre:   sine ≥ 0.
 /// Error: at most 0.52 units in the last place; about one result in 10,000 is not the nearest double. Multiples of 45°
 ///        are the nearest doubles.
 double angle_of(double cosine, double sine);
 
-/// The angle between two vectors, in radians, in [0, π]; 0 if one of them is zero. Small and flat angles keep their
-/// digits. Pre: each vector is zero or between 1e-70 and 1e70 long.
+/// The angle between two vectors, in radians, in [0, π]; 0 if one of them is zero. Angles near 0 and π keep their
+/// digits.
 double angle_between(const Vec3& a, const Vec3& b);
 
 }  // namespace scanmill

@@ -16,6 +16,7 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t most_queries = 100'000;
+
 double length(const Vec3& v) { return std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z()); }
 
 double median(std::vector<double>& values) {
@@ -25,7 +26,7 @@ double median(std::vector<double>& values) {
     return *middle;
 }
 
-/// Well mixed 64 bits of the coordinates' values; both zeros are equal.
+/// Both zeros have one hash.
 std::uint64_t hash_of(const Vec3& p) {
     std::uint64_t hash = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -37,7 +38,7 @@ std::uint64_t hash_of(const Vec3& p) {
     return hash;
 }
 
-/// Rows of `points` to ask, chosen by a hash of their coordinates.
+/// All rows of `points`, or a sample chosen by a hash of the coordinates.
 std::vector<u32> sampled_rows(std::span<const Vec3> points) {
     std::vector<u32> rows(points.size());
     std::iota(rows.begin(), rows.end(), u32(0));
@@ -61,13 +62,13 @@ double point_spacing(std::span<const Vec3> positions) {
     if (points.size() < 2) return 0;
 
     const PointTree tree(points);
-    std::vector<u32> rows_at(tree.places().size(), 0);
-    for (const u32 place : tree.place_of_row()) ++rows_at[place];
+    std::vector<u32> rows_at(tree.positions().size(), 0);
+    for (const u32 index : tree.index_of_row()) ++rows_at[index];
     std::vector<double> distances;
     NeighbourBuffer buffer;
     for (const u32 row : sampled_rows(points)) {
-        const u32 place = tree.place_of_row()[row];
-        distances.push_back(rows_at[place] > 1 ? 0 : std::sqrt(tree.nearest(place, 1, buffer).front().squared));
+        const u32 index = tree.index_of_row()[row];
+        distances.push_back(rows_at[index] > 1 ? 0 : std::sqrt(tree.nearest(index, 1, buffer).front().squared));
     }
     return median(distances);
 }

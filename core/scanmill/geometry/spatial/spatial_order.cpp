@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/spatial/spatial_order.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cassert>
 
 #include "scanmill/data/points.hpp"
@@ -11,12 +9,12 @@ namespace scanmill {
 
 namespace {
 
-struct Place {
+struct Entry {
     u64 code;
     u32 row;
 };
 
-/// Puts two zeros behind every one of 21 bits.
+/// Inserts two zero bits above each of 21 bits.
 u64 spread(u64 bits) {
     bits = (bits | bits << 32) & 0x1f00000000ffff;
     bits = (bits | bits << 16) & 0x1f0000ff0000ff;
@@ -26,12 +24,12 @@ u64 spread(u64 bits) {
 }
 
 /// Stable, by 16 bits from `shift` on.
-void sort_by_digit(const Array<Place>& from, Array<Place>& to, int shift) {
+void sort_by_digit(const Array<Entry>& from, Array<Entry>& to, int shift) {
     std::vector<std::size_t> next(std::size_t(1) << 16, 0);
-    for (const Place& place : from) ++next[place.code >> shift & 0xffff];
+    for (const Entry& entry : from) ++next[entry.code >> shift & 0xffff];
     std::size_t sum = 0;
     for (std::size_t& count : next) sum += std::exchange(count, sum);
-    for (const Place& place : from) to[next[place.code >> shift & 0xffff]++] = place;
+    for (const Entry& entry : from) to[next[entry.code >> shift & 0xffff]++] = entry;
 }
 
 }  // namespace
@@ -41,25 +39,21 @@ Array<u32> spatial_order(std::span<const Vec3> positions) {
     constexpr double steps = (1 << 21) - 1;
     const BoundingBox box = bounding_box(positions);
     const double extent = positions.empty() ? 0 : (box.high - box.low).maxCoeff();
-    Array<Place> places(positions.size()), other(positions.size());
+    Array<Entry> entries(positions.size()), other(positions.size());
     for (std::size_t row = 0; row < positions.size(); ++row) {
         u64 code = 0;
         for (int axis = 0; axis < 3 && extent > 0; ++axis) {
             const double share = (positions[row][axis] - box.low[axis]) / extent;
             code |= spread(static_cast<u64>(share * steps)) << axis;
         }
-        places[row] = {code, static_cast<u32>(row)};
+        entries[row] = {code, static_cast<u32>(row)};
     }
-    if (positions.size() < 1 << 14) {
-        std::ranges::sort(places, {}, [](const Place& place) { return std::pair(place.code, place.row); });
-    } else {
-        for (int shift = 0; shift < 64; shift += 16) {
-            sort_by_digit(places, other, shift);
-            places.swap(other);
-        }
+    for (int shift = 0; shift < 64; shift += 16) {
+        sort_by_digit(entries, other, shift);
+        entries.swap(other);
     }
-    Array<u32> rows(places.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = places[i].row;
+    Array<u32> rows(entries.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = entries[i].row;
     return rows;
 }
 

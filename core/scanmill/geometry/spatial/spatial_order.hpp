@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// An order in which neighbours follow each other: queries asked in it find the last answer's surroundings in the cache
-/// and its answer a good hint.
+/// An order in which consecutive points are near each other: searches in it find the memory of the last search in the
+/// cache, and its result is a good hint.
 
 #include <span>
 

@@ -36,15 +36,15 @@ Vec3 nearest_by_region(const Vec3& point, const Vec3& a, const Vec3& b, const Ve
     return a + vb * scale * ab + vc * scale * ac;
 }
 
-/// Where the line through `point` across the plane of the triangle meets it, held inside. Along the longest edge and
-/// the height on it, which are perpendicular, rounding costs no more than it costs the corners, however thin the
-/// triangle is. Pre: p q is its longest edge.
-Vec3 below(const Vec3& point, const Vec3& p, const Vec3& q, const Vec3& r) {
+/// The projection of `point` to the plane of the triangle, clamped to the triangle. Coordinates along the longest edge
+/// and its height, which are perpendicular, are as accurate as the corners, however thin the triangle is.
+/// Pre: p q is the longest edge.
+Vec3 projection(const Vec3& point, const Vec3& p, const Vec3& q, const Vec3& r) {
     const Vec3 edge = q - p, side = r - p;
     const double squared = edge.squaredNorm();
     const double foot = edge.dot(side) / squared;
     Vec3 height = side - foot * edge;
-    height -= edge.dot(height) / squared * edge;  // what rounding left of the edge in it
+    height -= edge.dot(height) / squared * edge;  // removes the rounding error along the edge
     if (!(height.squaredNorm() > 0)) return p;
     const Vec3 to = point - p;
     const double up = std::clamp(height.dot(to) / height.squaredNorm(), 0.0, 1.0);
@@ -55,7 +55,7 @@ Vec3 below(const Vec3& point, const Vec3& p, const Vec3& q, const Vec3& r) {
 Vec3 nearest_on_thin(const Vec3& point, const Vec3& p, const Vec3& q, const Vec3& r) {
     Vec3 best = nearest_on_segment(point, p, q);
     for (const Vec3& candidate :
-         {nearest_on_segment(point, q, r), nearest_on_segment(point, r, p), below(point, p, q, r)})
+         {nearest_on_segment(point, q, r), nearest_on_segment(point, r, p), projection(point, p, q, r)})
         if ((candidate - point).squaredNorm() < (best - point).squaredNorm()) best = candidate;
     return best;
 }

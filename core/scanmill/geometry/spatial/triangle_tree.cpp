@@ -2,12 +2,10 @@
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/spatial/detail/outward_floats.hpp"
 #include "scanmill/geometry/spatial/triangle_distance.hpp"
 
 namespace scanmill {
@@ -15,28 +13,37 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t largest_leaf = 4;
-/// Of the scaled extent: far above the rounding of a distance in doubles, far below that of a float.
+/// As a share of the scaled extent: far above the rounding of a distance in doubles, far below that of a float.
 constexpr double widening = 0x1p-40;
 
+/// A float below `value`, also if `value` is a float.
+float rounded_down(double value) {
+    return std::nextafterf(static_cast<float>(value), -std::numeric_limits<float>::infinity());
+}
+float rounded_up(double value) { return -rounded_down(-value); }
+
+using Float3 = Eigen::Array3f;
+
+Float3 rounded_down(const Vec3& point) {
+    return {rounded_down(point.x()), rounded_down(point.y()), rounded_down(point.z())};
+}
+Float3 rounded_up(const Vec3& point) { return -rounded_down(Vec3(-point)); }
+
 struct Centroid {
-    float at[3];
+    Float3 at;
     u32 row;
 };
 
-/// Puts the `middle - first` smallest along the longest axis first; equal ones by row.
+/// Moves the `middle - first` smallest along the longest axis to the front; equal ones by row.
 void split(Centroid* first, Centroid* middle, Centroid* last) {
     if (middle == first || middle == last) return;
-    float low[3], high[3];
-    std::copy_n(first->at, 3, low);
-    std::copy_n(first->at, 3, high);
-    for (const Centroid* c = first; c != last; ++c)
-        for (int axis = 0; axis < 3; ++axis) {
-            low[axis] = std::min(low[axis], c->at[axis]);
-            high[axis] = std::max(high[axis], c->at[axis]);
-        }
+    Float3 low = first->at, high = first->at;
+    for (const Centroid* c = first; c != last; ++c) {
+        low = low.min(c->at);
+        high = high.max(c->at);
+    }
     int longest = 0;
-    for (int axis = 1; axis < 3; ++axis)
-        if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
+    (high - low).maxCoeff(&longest);
     std::nth_element(first, middle, last, [longest](const Centroid& a, const Centroid& b) {
         return a.at[longest] != b.at[longest] ? a.at[longest] < b.at[longest] : a.row < b.row;
     });
@@ -48,10 +55,7 @@ TriangleTree::TriangleTree(std::span<const Vec3> positions, std::span<const Tria
     assert(!triangles.empty() && triangles.size() < ~u32(0));
     BoundingBox box;
     for (const Triangle& triangle : triangles)
-        for (u32 vertex : triangle) {
-            box.low = box.low.cwiseMin(positions[vertex]);
-            box.high = box.high.cwiseMax(positions[vertex]);
-        }
+        for (u32 vertex : triangle) box.add(positions[vertex]);
     centre_ = box.low + (box.high - box.low) / 2;
     if (const double extent = (box.high - box.low).maxCoeff(); extent > 0)
         scale_ = std::ldexp(1.0, -std::ilogb(extent));
@@ -70,9 +74,8 @@ void TriangleTree::sort_triangles(std::span<const Vec3> positions, std::span<con
     for_each_chunk(threads, count, chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
             const auto& [a, b, c] = triangles[row];
-            const Vec3 third = scaled(positions[a]) + scaled(positions[b]) + scaled(positions[c]);
-            for (int axis = 0; axis < 3; ++axis) centroids[row].at[axis] = static_cast<float>(third[axis]);
-            centroids[row].row = static_cast<u32>(row);
+            const Vec3 sum = scaled(positions[a]) + scaled(positions[b]) + scaled(positions[c]);
+            centroids[row] = {sum.cast<float>().array(), static_cast<u32>(row)};
         }
     });
     rows_.resize(count);
@@ -89,10 +92,10 @@ void TriangleTree::sort_triangles(std::span<const Vec3> positions, std::span<con
         });
     corners_.resize(count);
     for_each_chunk(threads, count, chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t place = begin; place < end; ++place) {
-            rows_[place] = centroids[place].row;
-            const auto& [a, b, c] = triangles[rows_[place]];
-            corners_[place] = {positions[a], positions[b], positions[c]};
+        for (std::size_t slot = begin; slot < end; ++slot) {
+            rows_[slot] = centroids[slot].row;
+            const auto& [a, b, c] = triangles[rows_[slot]];
+            corners_[slot] = {positions[a], positions[b], positions[c]};
         }
     });
 }
@@ -112,7 +115,7 @@ void TriangleTree::bound_nodes(unsigned threads) {
 void TriangleTree::bound_node(std::size_t node) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < arity; ++i) {
-        float low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
+        Float3 low = Float3::Constant(infinity), high = -low;
         const std::size_t child = arity * node + 1 + i;
         if (child < nodes_.size()) {
             for (int axis = 0; axis < 3; ++axis) {
@@ -121,14 +124,11 @@ void TriangleTree::bound_node(std::size_t node) {
             }
         } else {
             const std::size_t leaf = child - nodes_.size();
-            for (std::size_t place = begin_of(leaf, depth_); place < begin_of(leaf + 1, depth_); ++place) {
-                const Corners& corners = corners_[place];
-                for (const Vec3& corner : {corners.a, corners.b, corners.c})
-                    for (int axis = 0; axis < 3; ++axis) {
-                        const double at = scaled(corner)[axis];
-                        low[axis] = std::min(low[axis], rounded_down(at - widening));
-                        high[axis] = std::max(high[axis], rounded_up(at + widening));
-                    }
+            for (std::size_t slot = begin_of(leaf, depth_); slot < begin_of(leaf + 1, depth_); ++slot) {
+                for (const Vec3& corner : corners_[slot]) {
+                    low = low.min(rounded_down(Vec3(scaled(corner).array() - widening)));
+                    high = high.max(rounded_up(Vec3(scaled(corner).array() + widening)));
+                }
             }
         }
         for (int axis = 0; axis < 3; ++axis) {
@@ -144,8 +144,6 @@ TriangleTree tree_of_points(std::span<const Vec3> positions, unsigned threads) {
     return TriangleTree(positions, triangles, threads);
 }
 
-// The questions to a TriangleTree; triangle_tree.cpp builds it.
-
 namespace {
 
 using Float4 = float __attribute__((vector_size(16)));
@@ -155,17 +153,17 @@ Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
 Float4 all(float value) { return Float4{value, value, value, value}; }
 Float4 load(const float* values) { return Float4{values[0], values[1], values[2], values[3]}; }
 
-/// A point as an interval of floats that holds it.
+/// The interval of floats that contains a point.
 struct FloatPoint {
     explicit FloatPoint(const Vec3& point) {
         for (int axis = 0; axis < 3; ++axis) {
-            // Far outside, a point held nearer is still outside, and its square is a float.
-            const double held = std::clamp(point[axis], -1e18, 1e18);
-            low[axis] = all(rounded_down(held));
-            high[axis] = all(rounded_up(held));
+            // Moved nearer, a point far outside is still outside, and its square fits in a float.
+            const double moved = std::clamp(point[axis], -1e18, 1e18);
+            low[axis] = all(rounded_down(moved));
+            high[axis] = all(rounded_up(moved));
         }
     }
-    /// Squared distances to four boxes, from below but for a few roundings.
+    /// Lower bounds of the squared distances to four boxes, apart from a few roundings.
     Float4 squared_distances(const float (&bounds)[6][4]) const {
         Float4 sum = all(0);
         for (int axis = 0; axis < 3; ++axis) {
@@ -179,16 +177,16 @@ struct FloatPoint {
     Float4 low[3], high[3];
 };
 
-/// No box nearer than this can hold a triangle as near as `squared`: more than all roundings together.
+/// Upper bound of the bounds of boxes that contain a triangle at `squared`: adds more than all roundings together.
 float reach(double squared, double scale) {
     return static_cast<float>(std::min(squared * (scale * scale) * (1 + 0x1p-18), 1e38)) + 1e-36f;
 }
 
 }  // namespace
 
-Vec3 TriangleTree::nearest_point(const Vec3& point, u32 place) const {
-    const Corners& corners = corners_[place];
-    return nearest_on_triangle(point, corners.a, corners.b, corners.c);
+Vec3 TriangleTree::nearest_point(const Vec3& point, u32 slot) const {
+    const auto& [a, b, c] = corners_[slot];
+    return nearest_on_triangle(point, a, b, c);
 }
 
 NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
@@ -201,10 +199,10 @@ NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
     std::size_t waiting = 0;
     NearestTriangle best;
     float limit = std::numeric_limits<float>::infinity();
-    const auto offer = [&](std::size_t place) {
-        const double squared = squared_distance(point, static_cast<u32>(place));
-        if (squared < best.squared_distance || (squared == best.squared_distance && rows_[place] < best.triangle)) {
-            best = {rows_[place], static_cast<u32>(place), squared};
+    const auto offer = [&](std::size_t slot) {
+        const double squared = squared_distance(point, static_cast<u32>(slot));
+        if (squared < best.squared_distance || (squared == best.squared_distance && rows_[slot] < best.triangle)) {
+            best = {rows_[slot], static_cast<u32>(slot), squared};
             limit = reach(squared, scale_);
         }
     };
@@ -217,8 +215,8 @@ NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
         if (next.bound > limit) continue;
         if (next.node >= nodes_.size()) {
             const std::size_t leaf = next.node - nodes_.size();
-            for (std::size_t place = begin_of(leaf, depth_); place < begin_of(leaf + 1, depth_); ++place)
-                if (place != hint) offer(place);
+            for (std::size_t slot = begin_of(leaf, depth_); slot < begin_of(leaf + 1, depth_); ++slot)
+                if (slot != hint) offer(slot);
             continue;
         }
         const Float4 bounds = query.squared_distances(nodes_[next.node].bounds);
@@ -236,11 +234,7 @@ NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
 }
 
 void TriangleTree::meeting(const BoundingBox& box, Array<u32>& rows) const {
-    float low[3], high[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = rounded_down(scaled(box.low)[axis]);
-        high[axis] = rounded_up(scaled(box.high)[axis]);
-    }
+    const Float3 low = rounded_down(scaled(box.low)), high = rounded_up(scaled(box.high));
     std::array<u32, (arity - 1) * deepest + 1> stack;
     std::size_t waiting = 0;
     stack[waiting++] = 0;
@@ -256,11 +250,11 @@ void TriangleTree::meeting(const BoundingBox& box, Array<u32>& rows) const {
             continue;
         }
         const std::size_t leaf = node - nodes_.size();
-        for (std::size_t place = begin_of(leaf, depth_); place < begin_of(leaf + 1, depth_); ++place) {
-            const Corners& at = corners_[place];
-            const Vec3 least = at.a.cwiseMin(at.b).cwiseMin(at.c), most = at.a.cwiseMax(at.b).cwiseMax(at.c);
+        for (std::size_t slot = begin_of(leaf, depth_); slot < begin_of(leaf + 1, depth_); ++slot) {
+            const auto& [a, b, c] = corners_[slot];
+            const Vec3 least = a.cwiseMin(b).cwiseMin(c), most = a.cwiseMax(b).cwiseMax(c);
             if ((least.array() <= box.high.array()).all() && (most.array() >= box.low.array()).all())
-                rows.push_back(rows_[place]);
+                rows.push_back(rows_[slot]);
         }
     }
 }

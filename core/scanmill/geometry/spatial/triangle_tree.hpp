@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Which triangle of a mesh is nearest to a point, and which lie in a box: a tree of bounding boxes over the triangles.
+/// Finds the triangle nearest to a point and the triangles in a box: a tree of bounding boxes over triangles.
 ///
-/// Every node has four children, each with half of a half of its triangles (split at the median of the longest axis),
+/// Every node has four children, each with a quarter of its triangles (two splits at the median of the longest axis),
 /// so the tree is complete and needs no pointers. Boxes are floats, rounded outwards and widened by more than the
-/// rounding of a distance in doubles; distances to triangles are doubles. So the answers are those of looking at every
-/// triangle, bit for bit, whatever the order of the search.
+/// rounding of a distance in doubles; distances to triangles are doubles. Results therefore equal those of a search
+/// over all triangles, bit for bit.
 ///
-/// A soup is welcome: nothing is asked of the topology, degenerate triangles are segments or points. A cloud of points
-/// is a soup too, of triangles with three equal corners: see tree_of_points().
+/// Any set of triangles is allowed; degenerate ones are segments or points. tree_of_points() treats every point as a
+/// triangle with three equal corners.
 
 #include <array>
 #include <span>
@@ -22,8 +22,8 @@ struct NearestTriangle {
     static constexpr u32 none = ~u32(0);
     /// Row of the triangle; of equally near ones the smallest.
     u32 triangle = none;
-    /// Where the tree keeps it: asking for a near point next, give this as `hint`.
-    u32 place = none;
+    /// Its index in the tree's own order; the `hint` for a search from a nearby point.
+    u32 slot = none;
     double squared_distance = std::numeric_limits<double>::infinity();
 };
 
@@ -35,19 +35,19 @@ public:
 
     std::size_t size() const { return rows_.size(); }
 
-    /// The triangle whose nearest_on_triangle() is nearest to `point`; ties: the smallest row. Finds the same with any
-    /// hint, faster with one whose triangle is near. Pre: a finite point. Safe from any number of threads.
-    /// Cost: O(log n) for points near the surface; far away from a round surface many triangles compete.
+    /// The triangle whose nearest_on_triangle() is nearest to `point`; ties: the smallest row. The result does not
+    /// depend on the hint; a hint whose triangle is near makes it faster. Pre: a finite point. Safe from several
+    /// threads. Cost: O(log n) for points near the surface; far away from a round surface many triangles compete.
     NearestTriangle nearest(const Vec3& point, u32 hint = NearestTriangle::none) const;
 
-    /// The point of triangle `place` (NearestTriangle::place) nearest to `point`.
-    Vec3 nearest_point(const Vec3& point, u32 place) const;
-    double squared_distance(const Vec3& point, u32 place) const {
-        return (nearest_point(point, place) - point).squaredNorm();
+    /// The point of triangle `slot` (NearestTriangle::slot) nearest to `point`.
+    Vec3 nearest_point(const Vec3& point, u32 slot) const;
+    double squared_distance(const Vec3& point, u32 slot) const {
+        return (nearest_point(point, slot) - point).squaredNorm();
     }
 
-    /// The corners of triangle `place`.
-    std::array<Vec3, 3> corners(u32 place) const { return {corners_[place].a, corners_[place].b, corners_[place].c}; }
+    /// The corners of triangle `slot`.
+    const std::array<Vec3, 3>& corners(u32 slot) const { return corners_[slot]; }
 
     /// Appends the rows of all triangles whose bounding boxes meet `box` (borders included), in the tree's order.
     void meeting(const BoundingBox& box, Array<u32>& rows) const;
@@ -58,9 +58,6 @@ private:
     struct Node {
         /// Of the four children: low.x, low.y, low.z, high.x, high.y, high.z. Empty ones: low infinite, high minus it.
         alignas(16) float bounds[6][arity];
-    };
-    struct Corners {
-        Vec3 a, b, c;
     };
 
     std::size_t begin_of(std::size_t node_in_level, unsigned level) const {
@@ -77,7 +74,7 @@ private:
     unsigned depth_ = 0;
     /// Level by level: the children of node i are 4 i + 1 … 4 i + 4; numbers from nodes_.size() on are leaves.
     Array<Node> nodes_;
-    Array<Corners> corners_;
+    Array<std::array<Vec3, 3>> corners_;
     Array<u32> rows_;
 };
 

@@ -14,8 +14,10 @@ namespace {
 constexpr std::size_t chunk = 1 << 14;
 constexpr u8 solid = 1;
 
-/// The edge that starts at `vertex`, or nullptr. Pre: when there are more than a few, they ascend by `from`.
+/// Longer links are sorted by `from` before they are searched.
 constexpr std::size_t few = 32;
+
+/// The edge that starts at `vertex`, or nullptr.
 const LinkEdge* starting_at(std::span<const LinkEdge> link, u32 vertex) {
     const auto found = link.size() <= few ? std::ranges::find(link, vertex, &LinkEdge::from)
                                           : std::ranges::lower_bound(link, vertex, {}, &LinkEdge::from);
@@ -26,15 +28,15 @@ bool is_one_cycle(std::span<const LinkEdge> link) {
     std::size_t walked = 1;
     for (u32 at = link[0].to; at != link[0].from; ++walked) {
         const LinkEdge* edge = starting_at(link, at);
-        // Where several edges start at one vertex the walk takes always the same, so it misses one or never ends.
+        // If several edges start at one vertex, the walk always takes the same one; it misses the others or never ends.
         if (edge == nullptr || walked > link.size()) return false;
         at = edge->to;
     }
     return walked == link.size();
 }
 
-/// Link vertices beyond `centre` at which several edges start: each edge with surplus triangles is counted at its
-/// smaller end.
+/// The number of edges with more than two triangles between `centre` and a larger vertex: link vertices at which
+/// several edges start.
 std::size_t surplus_edges(std::span<LinkEdge> link, u32 centre) {
     std::ranges::sort(link, {}, &LinkEdge::from);
     std::size_t count = 0;
@@ -46,9 +48,19 @@ std::size_t surplus_edges(std::span<LinkEdge> link, u32 centre) {
 
 }  // namespace
 
+Array<u32> hidden_vertices(const TetMesh& tets) {
+    std::vector<bool> in_cell(tets.positions.size());
+    for (const Tetrahedron& cell : tets.cells)
+        for (u32 vertex : cell) in_cell[vertex] = true;
+    Array<u32> hidden;
+    for (u32 vertex = 0; vertex < in_cell.size(); ++vertex)
+        if (!in_cell[vertex]) hidden.push_back(vertex);
+    return hidden;
+}
+
 Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labels, unsigned threads) {
     const std::size_t cells = tets.cells.size();
-    // The labels beyond the facets are looked up once: per cell a bit for each corner whose facet is on the boundary.
+    // Per cell a bit for each corner whose facet is on the boundary: neighbours' labels are looked up once.
     Array<u8> open(cells);
     Array<std::size_t> starts((cells + chunk - 1) / chunk);
     for_each_chunk(threads, cells, chunk, [&](std::size_t begin, std::size_t end) {
@@ -105,7 +117,7 @@ BoundaryLinks::BoundaryLinks(std::span<const Triangle> triangles, std::size_t ve
     });
     u32 start = 0;
     for (u32& entry : ends_) start += std::exchange(entry, start);
-    // Filling moves every start to the next vertex's.
+    // Afterwards every start has become the start of the next vertex.
     for_each_chunk(threads, triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const auto& [a, b, c] = triangles[t];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The boundary of a set of cells, and whether it is a 2-manifold.
+/// The boundary of a set of cells, whether it is a 2-manifold, and the vertices in no cell.
 
 #include <span>
 
@@ -10,9 +10,13 @@
 
 namespace scanmill {
 
-/// The facets between cells labelled 1 and others, outward, in vertices of `tets`; ascending by cell, then by corner.
+/// The vertices in no cell, ascending: points hidden by the weights of others. Cost: linear.
+Array<u32> hidden_vertices(const TetMesh& tets);
+
+/// The facets between cells labelled 1 and other cells or the outside, oriented outwards, in vertices of `tets`;
+/// ascending by cell, then by corner.
 Array<Triangle> boundary_triangles(const TetMesh& tets, std::span<const u8> labels, unsigned threads);
-/// These triangles as a mesh over only the vertices that they use, in vertex order, columns carried.
+/// These triangles as a mesh with only the vertices that they use, in vertex order, with all columns.
 TriangleMesh boundary_mesh(const TetMesh& tets, Array<Triangle> triangles);
 
 /// A triangle seen from one of its corners: the opposite edge, in the triangle's direction.
@@ -20,7 +24,7 @@ struct LinkEdge {
     u32 from, to;
 };
 
-/// The triangles round every vertex, as the edges opposite to it; in no order that could be relied on.
+/// The triangles around every vertex, as the edges opposite to it; in unspecified order.
 /// Cost: linear, 24 bytes per triangle.
 class BoundaryLinks {
 public:
@@ -44,13 +48,13 @@ struct BoundaryDefects {
     std::size_t edges = 0;
 };
 
-/// Pre: triangles bound a set of cells: every directed edge occurs as often as its reverse.
+/// Pre: the triangles bound a set of cells: every directed edge occurs as often as its reverse.
 /// Cost: linear, 24 bytes per triangle for the links.
 BoundaryDefects boundary_defects(std::span<const Triangle> triangles, std::size_t vertices, unsigned threads);
 /// The same; sorts the longer links by `from`.
 BoundaryDefects boundary_defects(BoundaryLinks& links, unsigned threads);
 
-/// The triangles' vertices joined along them; the return value is the number of sets that have a triangle.
+/// Unites the vertices of every triangle; returns the number of sets that contain a triangle.
 std::size_t join_vertices(std::span<const Triangle> triangles, DisjointSets& vertices);
 
 }  // namespace scanmill

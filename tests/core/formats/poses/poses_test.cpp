@@ -172,8 +172,8 @@ TEST_F(PoseFiles, JsonMatrixThatIsNoMotion_IsRefusedWithWhatItIs) {
               "pose 1: the last row of the matrix is 5 6 7 1; expected 0 0 0 1");
     EXPECT_THAT(matrix("[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]"), HasSubstr("is a reflection"));
     EXPECT_THAT(matrix("[2, 0, 0, 0], [0, 2, 0, 0], [0, 0, 2, 0], [0, 0, 0, 1]"), HasSubstr("scales by 2"));
-    EXPECT_THAT(matrix("[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]"), HasSubstr("is no rotation"));
-    EXPECT_THAT(matrix("[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1]"), HasSubstr("is no rotation"));
+    EXPECT_THAT(matrix("[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]"), HasSubstr("is not a rotation"));
+    EXPECT_THAT(matrix("[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1]"), HasSubstr("is not a rotation"));
     EXPECT_THAT(sentence(json("{\"matrix\": [], \"rotation\": [0, 0, 0, 1]}")),
                 HasSubstr("has a matrix and 'rotation'"));
 }

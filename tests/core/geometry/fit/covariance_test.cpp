@@ -15,19 +15,19 @@ TEST(Scatter, OfABoxsCorners_IsThatOfItsEdges) {
     const Scatter scatter = scatter_of(corners);
     EXPECT_LT((scatter.centroid - Vec3(5, 6, 7)).norm(), 1e-14);
     EXPECT_LT((scatter.normal - Vec3(0, 1, 0)).norm(), 1e-12);
-    EXPECT_NEAR(scatter.roughness, 1.0 / 14, 1e-14);
+    EXPECT_NEAR(scatter.surface_variation, 1.0 / 14, 1e-14);
     EXPECT_NEAR(scatter.flatness, 36.0 / (13 * 13), 1e-14);
 }
 
 TEST(Scatter, OfAFlatSquare_HasNoRoughness) {
     const std::vector<Vec3> square{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
-    EXPECT_EQ(scatter_of(square).roughness, 0);
+    EXPECT_EQ(scatter_of(square).surface_variation, 0);
     EXPECT_NEAR(scatter_of(square).flatness, 0.25, 1e-15);
 }
 
 TEST(Scatter, OfOnePlace_IsNothing) {
     const Scatter scatter = scatter_of(std::vector<Vec3>(3, Vec3(1, 2, 3)));
-    EXPECT_EQ(scatter.roughness, 0);
+    EXPECT_EQ(scatter.surface_variation, 0);
     EXPECT_EQ(scatter.normal, Vec3(0, 0, 1));
 }
 

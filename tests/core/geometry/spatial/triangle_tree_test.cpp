@@ -53,7 +53,7 @@ void expect_same_as_all(const TriangleMesh& mesh, const TriangleTree& tree, cons
     const NearestTriangle expected = nearest_of_all(mesh, point), found = tree.nearest(point, hint);
     EXPECT_EQ(found.triangle, expected.triangle) << point.transpose();
     EXPECT_EQ(found.squared_distance, expected.squared_distance) << point.transpose();
-    EXPECT_EQ(tree.squared_distance(point, found.place), found.squared_distance);
+    EXPECT_EQ(tree.squared_distance(point, found.slot), found.squared_distance);
 }
 
 TEST(TriangleTree, RandomSoups_AnswerAsLookingAtAllTriangles) {
@@ -126,7 +126,7 @@ TEST(TriangleTree, AnyNumberOfThreads_MakesTheSameTree) {
     Random random(4);
     for (int i = 0; i < 500; ++i) {
         const Vec3 point(random.uniform(), random.uniform(), random.uniform());
-        EXPECT_EQ(one.nearest(point).place, three.nearest(point).place);
+        EXPECT_EQ(one.nearest(point).slot, three.nearest(point).slot);
     }
 }
 
@@ -188,7 +188,7 @@ TEST(TriangleTree, RealScan_AnswersAsLookingAtAllTriangles) {
         Vec3 point = mesh->positions[random.index(mesh->positions.size())];
         point += 0.01 * i / 200 * box.diagonal() * Vec3(random.normal(), random.normal(), random.normal());
         expect_same_as_all(*mesh, tree, point, hint);
-        hint = tree.nearest(point).place;
+        hint = tree.nearest(point).slot;
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/filter/manifest.hpp"
+#include "scanmill/plugin/manifest.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -131,7 +131,7 @@ TEST(Manifest, Stream_ReadsBackEqual) {
     for (const Json& wrong : {Json(true), Json::object(), Json{{"given", "alpha"}}, Json{{"given", {1}}}}) {
         Json json = Json::parse(text);
         json["streams"] = wrong;
-        EXPECT_THAT(sentence_of([&] { parse_manifest(json.dump()); }), StartsWith("is no manifest")) << wrong;
+        EXPECT_THAT(sentence_of([&] { parse_manifest(json.dump()); }), StartsWith("is not a manifest")) << wrong;
     }
 }
 
@@ -143,7 +143,7 @@ TEST(Manifest, Text_IsIndentedAndEndsTheLine) {
 
 TEST(Manifest, Garbage_IsRefused) {
     for (const std::string text : {"", "null", "[]", "7", "\"manifest\"", "{", "{}", "\xff\xfe", "not json at all"})
-        EXPECT_THAT(sentence_of([&] { parse_manifest(text); }), StartsWith("is no manifest: ")) << text;
+        EXPECT_THAT(sentence_of([&] { parse_manifest(text); }), StartsWith("is not a manifest: ")) << text;
 }
 
 TEST(Manifest, AnyTruncation_IsRefused) {
@@ -166,16 +166,16 @@ TEST(Manifest, MissingField_IsNamed) {
 }
 
 TEST(Manifest, FieldOfAnotherType_IsRefused) {
-    EXPECT_THAT(verdict([](Json& json) { json["version"] = "twelve"; }), StartsWith("is no manifest: "));
-    EXPECT_THAT(verdict([](Json& json) { json["inputs"] = {1, 2}; }), StartsWith("is no manifest: "));
-    EXPECT_THAT(verdict([](Json& json) { json["inputs"][0]["list"] = "yes"; }), StartsWith("is no manifest: "));
-    EXPECT_THAT(verdict([](Json& json) { json["parameters"][0]["default"] = 3; }), StartsWith("is no manifest: "));
+    EXPECT_THAT(verdict([](Json& json) { json["version"] = "twelve"; }), StartsWith("is not a manifest: "));
+    EXPECT_THAT(verdict([](Json& json) { json["inputs"] = {1, 2}; }), StartsWith("is not a manifest: "));
+    EXPECT_THAT(verdict([](Json& json) { json["inputs"][0]["list"] = "yes"; }), StartsWith("is not a manifest: "));
+    EXPECT_THAT(verdict([](Json& json) { json["parameters"][0]["default"] = 3; }), StartsWith("is not a manifest: "));
 }
 
 TEST(Manifest, UnknownNames_AreRefused) {
-    EXPECT_EQ(verdict([](Json& json) { json["inputs"][0]["kind"] = "voxels"; }), "'voxels' is no kind");
-    EXPECT_EQ(verdict([](Json& json) { json["parameters"][0]["type"] = "colour"; }), "'colour' is no parameter type");
-    EXPECT_EQ(verdict([](Json& json) { json["metrics"][0]["unit"] = "mm"; }), "'mm' is no unit");
+    EXPECT_EQ(verdict([](Json& json) { json["inputs"][0]["kind"] = "voxels"; }), "kind: 'voxels' is unknown");
+    EXPECT_EQ(verdict([](Json& json) { json["parameters"][0]["type"] = "colour"; }), "type: 'colour' is unknown");
+    EXPECT_EQ(verdict([](Json& json) { json["metrics"][0]["unit"] = "mm"; }), "unit: 'mm' is unknown");
 }
 
 TEST(Manifest, DefaultOutsideItsRange_IsRefused) {

@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What a format in a loadable module says of itself: enough to recognise its files and to list it without loading its
-/// code. The manifest beside the module holds it as JSON.
+/// The manifest of a module: its declaration as JSON, written at build time beside the module, so that listing,
+/// checking and schema generation load no code.
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "scanmill/kinds/value.hpp"
+#include "scanmill/filter/spec.hpp"
 
 namespace scanmill {
+
+/// Of a filter's module.
+struct Manifest {
+    std::string abi;
+    FilterSpec spec;
+
+    bool operator==(const Manifest&) const = default;
+};
 
 struct FormatSpec {
     std::string name;  ///< "PCD"
@@ -18,20 +26,23 @@ struct FormatSpec {
     /// A file that begins with one of these is certainly of this format.
     std::vector<std::string> begins;
     std::vector<Kind> writes;
-    /// False for a format that is written for other programs and not read.
+    /// False for a format that is only written, for other programs.
     bool reads = true;
 
     bool operator==(const FormatSpec&) const = default;
 };
 
+/// Of a file format's module.
 struct FormatManifest {
     std::string abi;
     FormatSpec spec;
 };
 
-/// Indented JSON with a trailing newline; reading it back gives an equal manifest.
+/// Indented JSON with a trailing newline, which reads back to an equal manifest.
+std::string to_json_text(const Manifest& manifest);
 std::string to_json_text(const FormatManifest& manifest);
-/// Throws Error saying what is wrong with the text.
+/// Throw Error with what is wrong with the text.
+Manifest parse_manifest(std::string_view text);
 FormatManifest parse_format_manifest(std::string_view text);
 
 }  // namespace scanmill

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Everything the framework needs of a kind, in one class; and the visitor of an object's fields.
+
+#include <nlohmann/json.hpp>
+
+#include "scanmill/geometry/spatial/spacing.hpp"
+#include "scanmill/kinds/value.hpp"
+
+namespace scanmill {
+
+/// Visits every field of an object of any kind, to read or to change it. KindTraits<T>::visit() calls one function per
+/// field and so states what the field means: a visitor that moves an object changes positions and directions, one that
+/// converts units changes lengths, one that stores the object takes everything. By default nothing changes.
+class FieldVisitor {
+public:
+    virtual ~FieldVisitor() = default;
+
+    virtual void frame(const char* /*name*/, Frame&) {}
+    /// Relative to the frame's origin.
+    virtual void positions(const char* /*name*/, Buffer<Vec3>&) {}
+    /// Unit vectors, or zero.
+    virtual void directions(const char* /*name*/, Buffer<Vec3>&) {}
+    /// Lengths raised to `exponent`.
+    virtual void lengths(const char* /*name*/, Buffer<double>&, int /*exponent*/) {}
+    virtual void columns(const char* /*name*/, ColumnTable&) {}
+    /// Numbers that neither a motion nor a unit changes: indices, labels.
+    template <class T>
+    void plain(const char* name, Buffer<T>& elements) {
+        Buffer<std::byte> bytes(elements.owner(), reinterpret_cast<const std::byte*>(elements.data()),
+                                elements.size() * sizeof(T));
+        bytes_of(name, bytes, sizeof(T));
+        elements = Buffer<T>(bytes.owner(), reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T));
+    }
+    /// A small field with a JSON form, which neither a motion nor a unit changes.
+    template <class T>
+    void small(const char* name, T& field) {
+        nlohmann::json json = field;
+        if (json_of(name, json)) field = json.get<T>();
+    }
+
+private:
+    virtual void bytes_of(const char* /*name*/, Buffer<std::byte>&, std::size_t /*element*/) {}
+    /// True if it replaced the JSON.
+    virtual bool json_of(const char* /*name*/, nlohmann::json&) { return false; }
+};
+
+/// Specialised for every kind, derived from KindDefaults. Required members:
+///
+///     static constexpr std::string_view name = "points";
+///     static void visit(FieldVisitor& visitor, PointCloud& cloud);
+template <class T>
+struct KindTraits;
+
+/// The other members of KindTraits; a specialisation hides those that differ.
+template <class T>
+struct KindDefaults {
+    /// Whether objects have a frame and positions.
+    static constexpr bool is_geometric = requires(T object) { object.positions; };
+    /// The lengths that `%diag` and `spacing` refer to. Pre: is_geometric.
+    static BoundingBox box(const T& object) {
+        if constexpr (is_geometric) return bounding_box(object.positions.span());
+        return {};
+    }
+    static double spacing(const T& object) {
+        if constexpr (is_geometric) return point_spacing(object.positions.span());
+        return 0;
+    }
+    /// Counts and topology that `expect` may test and summaries show.
+    static std::vector<PropertySpec> property_specs() { return {}; }
+    /// In the order of property_specs(); empty where a property is not defined.
+    static std::vector<std::optional<double>> property_values(const T&) { return {}; }
+    /// Throws Error if a filter's result of this kind is empty or inconsistent.
+    static void require_usable(const T&) {}
+    /// The JSON form. `json_member` is a member that only documents of this kind have; empty: no JSON form.
+    static constexpr std::string_view json_member = "";
+    static void to_json(const T&, nlohmann::ordered_json&) {}
+    static T from_json(const nlohmann::ordered_json&, const OnWarning&) { return {}; }
+};
+
+Metrics metrics_from(const std::vector<PropertySpec>& specs, const std::vector<std::optional<double>>& values);
+
+template <class T>
+inline constexpr KindInfo kind_info{
+    KindTraits<T>::name,
+    KindTraits<T>::is_geometric,
+    []() -> std::shared_ptr<void> { return std::make_shared<T>(); },
+    [](const void* object) -> std::shared_ptr<void> { return std::make_shared<T>(*static_cast<const T*>(object)); },
+    [](FieldVisitor& visitor, void* object) { KindTraits<T>::visit(visitor, *static_cast<T*>(object)); },
+    [](const void* object) { return KindTraits<T>::box(*static_cast<const T*>(object)); },
+    [](const void* object) { return KindTraits<T>::spacing(*static_cast<const T*>(object)); },
+    &KindTraits<T>::property_specs,
+    [](const void* object) {
+        return metrics_from(KindTraits<T>::property_specs(),
+                            KindTraits<T>::property_values(*static_cast<const T*>(object)));
+    },
+    [](const void* object) { KindTraits<T>::require_usable(*static_cast<const T*>(object)); },
+    KindTraits<T>::json_member,
+    [](const void* object, nlohmann::ordered_json& document) {
+        KindTraits<T>::to_json(*static_cast<const T*>(object), document);
+    },
+    [](const nlohmann::ordered_json& document, const OnWarning& warn) -> std::shared_ptr<void> {
+        return std::make_shared<T>(KindTraits<T>::from_json(document, warn));
+    }};
+
+template <class T>
+Kind kind_of() {
+    return Kind(kind_info<T>);
+}
+// In the source files with their traits.
+extern template Kind kind_of<PointCloud>();
+extern template Kind kind_of<TriangleMesh>();
+extern template Kind kind_of<TetMesh>();
+extern template Kind kind_of<FeatureGraph>();
+extern template Kind kind_of<RigidTransform>();
+extern template Kind kind_of<Metrics>();
+
+}  // namespace scanmill
+
+namespace nlohmann {
+
+/// A vector as a list of numbers.
+template <>
+struct adl_serializer<scanmill::Vec3> {
+    static void to_json(json& value, const scanmill::Vec3& vector) { value = {vector.x(), vector.y(), vector.z()}; }
+    static void from_json(const json& value, scanmill::Vec3& vector) {
+        for (int axis = 0; axis < 3; ++axis) vector[axis] = value.at(static_cast<std::size_t>(axis)).get<double>();
+    }
+};
+
+}  // namespace nlohmann
