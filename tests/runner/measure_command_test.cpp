@@ -204,7 +204,7 @@ TEST_F(MeasureCommand, TruthIsNeverGuessed) {
     const ProgramResult unsaid = scanmill({"check", "w.yaml"});
     EXPECT_EQ(unsaid.exit_code, 2);
     EXPECT_THAT(unsaid.err + unsaid.out,
-                HasSubstr("measure takes mesh or points at its port 'truth'; say which value"));
+                HasSubstr("measure takes mesh or points at its port 'truth'; expected `in:"));
     folder_.write(
         "w.yaml",
         "scanmill: 1\nname: w\ninputs:\n  scan: points\nsteps:\n  - delaunay:\n  - alpha-solid:\n  - measure:\n"

@@ -98,7 +98,7 @@ TEST_F(RunsCommand, WhatIsNotThere_IsSaid) {
     EXPECT_THAT(nothing.err, AllOf(HasSubstr("there are no records"), HasSubstr("hint")));
     scanmill({"run", "w.yaml", "a.xyz", "-o", "out"});
     EXPECT_THAT(scanmill({"runs", "out", "show", "5"}).err, HasSubstr("there is no run 5"));
-    EXPECT_THAT(scanmill({"runs", "out", "show", "x"}).err, HasSubstr("'x' is no number of a run"));
+    EXPECT_THAT(scanmill({"runs", "out", "show", "x"}).err, HasSubstr("'x' is not the number of a run"));
     EXPECT_THAT(scanmill({"runs", "out", "show"}).err, HasSubstr("which run?"));
 }
 

@@ -49,7 +49,7 @@ TEST_F(StreamingCommand, Filter_SaysThatItStreams) {
     EXPECT_THAT(scanmill({"show", "voxel-thin"}).out, HasSubstr("With bin-size given"));
     const Json shown = Json::parse(scanmill({"show", "voxel-thin", "--json"}).out);
     EXPECT_EQ(shown["filter"]["streams"]["given"], Json({"bin-size"}));
-    EXPECT_THAT(scanmill({"show", "delaunay"}).out, Not(HasSubstr("piece by piece")));
+    EXPECT_THAT(scanmill({"show", "delaunay"}).out, Not(HasSubstr("in chunks")));
 }
 
 TEST_F(StreamingCommand, ScanLargerThanTheLimit_IsThinned) {

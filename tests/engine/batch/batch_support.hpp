@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "scanmill/batch/plan_batch.hpp"
+#include "scanmill/batch/batch.hpp"
 #include "support/declared_filters.hpp"
 #include "support/temporary_folder.hpp"
 

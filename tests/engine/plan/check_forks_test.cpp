@@ -84,7 +84,7 @@ TEST_F(CheckForks, DefaultThatIsAReference_IsAnErrorAndNotUsed) {
                              diagnostics),
               library_, {}, diagnostics);
     ASSERT_EQ(diagnostics.errors(), 1u);
-    EXPECT_THAT(diagnostics.sorted().front().message, HasSubstr("cannot refer to another parameter"));
+    EXPECT_THAT(diagnostics.sorted().front().message, HasSubstr("cannot refer to a parameter"));
 }
 
 TEST_F(CheckForks, TenThousandVariants_AreNotTooMany) {

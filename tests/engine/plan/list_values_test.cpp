@@ -137,7 +137,7 @@ TEST_F(ListValues, ListWithinAList_IsRefusedAtItsPlace) {
 
 TEST_F(ListValues, DefaultsAndSettings_CannotReferFromWithinAList) {
     EXPECT_THAT(check_step("a: 1 u, b: [2 u, $a]", "thresholds: $b"),
-                ElementsAre(AllOf(StartsWith("w:3:31: "), HasSubstr("cannot refer to another parameter"))));
+                ElementsAre(AllOf(StartsWith("w:3:31: "), HasSubstr("cannot refer to a parameter"))));
     EXPECT_THAT(rest("set: {s: [1 u, $n]}\n"), ElementsAre(AllOf(StartsWith("b:5:16: "), HasSubstr("cannot refer"))));
 }
 
