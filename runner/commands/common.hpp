@@ -42,9 +42,8 @@ using Warn = std::function<void(std::string)>;
 Warn warning_printer();
 
 struct CacheOptions {
-    std::string folder, keep = "worth";
+    std::string folder;
     u64 limit = Cache::default_limit;
-    bool none = false;
 };
 
 /// Adds `--cache`, which it returns, and `--cache-limit`.

@@ -126,11 +126,11 @@ std::string zsh(const std::vector<Command>& commands) {
     return fmt::format(R"sh(#compdef scanmill
 _scanmill_settings() {{
     compadd -S '' -- ${{(f)"$(scanmill complete-set $words 2>/dev/null)"}}
-}
-}
-_scanmill() {
-    {
-        local - a commands = ({}) if ((CURRENT == 2)); then
+}}
+_scanmill() {{
+    local -a commands=(
+{}    )
+    if (( CURRENT == 2 )); then
         _describe command commands
         return
     fi

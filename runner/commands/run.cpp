@@ -24,19 +24,16 @@ namespace scanmill::runner {
 namespace {
 
 struct ExecuteOptions {
-    std::string output_folder = "scanmill-out";
-    std::optional<unsigned> jobs;  ///< nothing: as the work and the machine allow
-    unsigned threads = 0;
-    std::uint64_t seed = 0;
-    bool dry_run = false, json = false, quiet = false, fail_fast = false;
+    SessionSettings session;
     CacheOptions cache;
-    std::vector<std::string> command_line;
+    std::uint64_t seed = 0;
+    bool no_cache = false, dry_run = false, json = false, quiet = false;
 };
 
 struct RunOptions {
-    std::string workflow, until;
-    LengthUnit unit = LengthUnit::unknown;
-    std::vector<std::string> scans, inputs, settings, only, save;
+    std::string workflow;
+    std::vector<std::string> scans, inputs, settings;
+    RunRequest request;
     ExecuteOptions execute;
 };
 
@@ -83,17 +80,18 @@ std::string folder_error(const std::string& folder) {
 }
 
 void add_execute_options(CLI::App& command, ExecuteOptions& options) {
-    command.add_option("-o,--output", options.output_folder, "The output folder")
+    options.session.output_folder = "scanmill-out";
+    command.add_option("-o,--output", options.session.output_folder, "The output folder")
         ->capture_default_str()
         ->check(CLI::Validator(folder_error, ""));
     command
-        .add_option("-j,--jobs", options.jobs,
+        .add_option("-j,--jobs", options.session.jobs,
                     "Worker processes; a crash in one does not affect the others; 0: run in this process, without time "
                     "limits. Default: the number of cores, fewer for large scans")
         ->check(whole_number<unsigned>())
         ->check(CLI::Range(0u, most_jobs));
     command
-        .add_option("--threads", options.threads,
+        .add_option("--threads", options.session.threads,
                     "Threads inside a filter; 0: the machine's cores shared among the jobs. Does not change results")
         ->capture_default_str()
         ->check(whole_number<unsigned>());
@@ -101,24 +99,30 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
         ->capture_default_str()
         ->check(whole_number<std::uint64_t>());
     CLI::Option* folder = add_cache_options(command, options.cache);
-    command.add_flag("--no-cache", options.cache.none, "Compute everything and store nothing")->excludes(folder);
+    command.add_flag("--no-cache", options.no_cache, "Compute everything and store nothing")->excludes(folder);
+    const auto keep = [&](const std::string& policy) {
+        options.session.keep = policy == "always"  ? KeepRule::Policy::always
+                               : policy == "never" ? KeepRule::Policy::never
+                                                   : KeepRule::Policy::worth;
+    };
     command
-        .add_option("--keep", options.cache.keep,
-                    "Which values the cache stores: worth, if recomputing takes more than twice as long as writing; "
-                    "always; or never")
-        ->capture_default_str()
+        .add_option_function<std::string>(
+            "--keep", keep,
+            "Which values the cache stores: worth, if recomputing takes more than twice as long as writing; always; or "
+            "never")
+        ->default_str("worth")
         ->check(CLI::IsMember({"worth", "always", "never"}));
-    command.add_flag("--fail-fast", options.fail_fast, "Start no new step after a failure");
+    command.add_flag("--fail-fast", options.session.fail_fast, "Start no new step after a failure");
     command.add_flag("--dry-run", options.dry_run,
                      "Print the steps to run with reasons, the cached steps and the output files, and stop");
     command.add_flag("-q,--quiet", options.quiet, "No progress on stderr");
 }
 
-/// Nothing with --no-cache, and, after a warning, when there is no folder for the cache.
-std::unique_ptr<Cache> cache_for_run(const CacheOptions& options, const Warn& warn) {
-    if (options.none) return nullptr;
+/// Nothing with --no-cache, and, after a warning, without a folder for the cache.
+std::unique_ptr<Cache> cache_for(const ExecuteOptions& options, const Warn& warn) {
+    if (options.no_cache) return nullptr;
     try {
-        return open_cache(options, warn);
+        return open_cache(options.cache, warn);
     } catch (const Error& error) {
         warn(fmt::format("{}; results are not cached. {}", error.sentence(), error.hint()));
         return nullptr;
@@ -126,30 +130,55 @@ std::unique_ptr<Cache> cache_for_run(const CacheOptions& options, const Warn& wa
 }
 
 /// No worker process starts for a dry run.
-std::unique_ptr<Session> open_session(const ExecuteOptions& options, Cache* cache) {
-    SessionSettings settings;
-    settings.output_folder = options.output_folder;
-    settings.jobs = options.jobs;
-    settings.threads = options.threads;
-    settings.fail_fast = options.fail_fast;
-    settings.keep = options.cache.keep == "always"  ? KeepRule::Policy::always
-                    : options.cache.keep == "never" ? KeepRule::Policy::never
-                                                    : KeepRule::Policy::worth;
+SessionSettings settings_for(const ExecuteOptions& options) {
+    SessionSettings settings = options.session;
     if (!options.dry_run) settings.worker_command = {"/proc/self/exe", "worker"};
-    settings.command_line = options.command_line;
     settings.is_cancelled = [] { return interrupt_requested != 0; };
-    return std::make_unique<Session>(std::move(settings), cache);
+    return settings;
 }
 
-/// Prints the prediction, with --dry-run, or runs the graph and prints the report. With `streams_events`, --json prints
-/// one event per line during the run. Returns the exit code.
-int execute(const SessionTask& task, bool streams_events, Session& session, FilterLibrary& library, const Warn& warn,
-            const ExecuteOptions& options) {
+/// Prints errors and warnings; with `json` also as JSON if there are errors. Returns whether there are none.
+bool report(const std::vector<Diagnostics>& all, bool json) {
+    Json files = Json::array();
+    for (const Diagnostics& diagnostics : all) {
+        print(diagnostics);
+        files.push_back(to_json(diagnostics));
+    }
+    if (std::ranges::none_of(all, &Diagnostics::has_errors)) return true;
+    if (json) print_files_json(std::move(files));
+    return false;
+}
+
+/// The session of a command. Its first worker process starts before the workflow is read.
+class Execution {
+public:
+    explicit Execution(const ExecuteOptions& options)
+        : options_(options),
+          cache_(cache_for(options, warn_)),
+          session_(settings_for(options), cache_.get()) {}
+
+    FilterLibrary& library() { return library_; }
+    std::string hash(const std::filesystem::path& file) const {
+        return cache_ ? cache_->file_hash(file) : content_hash(file);
+    }
+    /// Prints the prediction, with --dry-run, or runs the graph and prints the report. With `streams_events`, --json
+    /// prints one event per line during the run. Returns the exit code.
+    int run(const SessionTask& task, bool streams_events);
+
+private:
+    const ExecuteOptions& options_;
+    Warn warn_ = warning_printer();
+    std::unique_ptr<Cache> cache_;
+    Session session_;
+    FilterLibrary library_ = open_library();
+};
+
+int Execution::run(const SessionTask& task, bool streams_events) {
     const RunGraph& graph = task.graph;
-    session.on_warning(warn);
-    std::vector<NodePrediction> predictions = session.predict(graph, library);
-    if (options.dry_run) {
-        if (options.json)
+    session_.on_warning(warn_);
+    std::vector<NodePrediction> predictions = session_.predict(graph, library_);
+    if (options_.dry_run) {
+        if (options_.json)
             print_json(graph_json(graph, predictions));
         else
             fmt::print("{}", printable(graph_text(graph, predictions)));
@@ -159,16 +188,17 @@ int execute(const SessionTask& task, bool streams_events, Session& session, Filt
     std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
-    Progress progress(graph, predictions, std::max(1u, session.jobs(graph)), options.quiet);
-    session.on_warning([&](std::string text) { progress.print_beside([&] { warn(std::move(text)); }); });
+    Progress progress(graph, predictions, std::max(1u, session_.jobs(graph)), options_.quiet);
+    session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
     std::optional<EventStream> events;
     std::vector<RunObserver*> observers{&progress};
-    if (options.json && streams_events) observers.push_back(&events.emplace(graph));
-    const RunReport report = session.run(task, library, std::move(predictions), observers, [&](const RunStarted& run) {
-        if (events) events->begin(task.name, run.jobs, run.threads, run.run);
-    });
+    if (options_.json && streams_events) observers.push_back(&events.emplace(graph));
+    const RunReport report =
+        session_.run(task, library_, std::move(predictions), observers, [&](const RunStarted& run) {
+            if (events) events->begin(task.name, run.jobs, run.threads, run.run);
+        });
     progress.finish();
-    session.on_warning(warn);
+    session_.on_warning(warn_);
 
     if (events) {
         events->end(report);
@@ -176,7 +206,7 @@ int execute(const SessionTask& task, bool streams_events, Session& session, Filt
             print_stderr("error: not all events could be written\n");
             return our_fault;
         }
-    } else if (options.json) {
+    } else if (options_.json) {
         print_json(report_json(graph, report));
     } else {
         fmt::print("{}", report_text(graph, report));
@@ -204,40 +234,25 @@ std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std
 }
 
 int run_workflow(const RunOptions& options) {
-    const Warn warn = warning_printer();
-    const std::unique_ptr<Cache> cache = cache_for_run(options.execute.cache, warn);
-    const std::unique_ptr<Session> session = open_session(options.execute, cache.get());
-    FilterLibrary library = open_library();
+    Execution execution(options.execute);
     const std::string workflow = workflow_file(options.workflow);
     const std::string text = read_workflow_file(workflow);
     if (is_batch(text)) throw Error("'{}' is a batch, not a workflow", workflow).hint("scanmill batch " + workflow);
-    const CheckedWorkflow checked = check_workflow(workflow, text, library, parse_settings(options.settings));
-    print(checked.diagnostics);
-    if (checked.diagnostics.has_errors()) {
-        if (options.execute.json) print_files_json({to_json(checked.diagnostics)});
-        return bad_request;
-    }
+    const CheckedWorkflow checked =
+        check_workflow(workflow, text, execution.library(), parse_settings(options.settings));
+    if (!report({checked.diagnostics}, options.execute.json)) return bad_request;
 
-    RunRequest request;
+    RunRequest request = options.request;
     for (const std::string& scan : options.scans) request.scans.emplace_back(scan);
     request.inputs = parse_inputs(options.inputs);
-    if (!checked.plan.workflow.inputs.empty())  // `--in` feeds the first input, too
+    if (!checked.plan.workflow.inputs.empty())  // `--in` feeds the first input too
         if (auto first = request.inputs.extract(checked.plan.workflow.inputs.front().name))
             for (const std::filesystem::path& file : first.mapped()) request.scans.emplace_back(file);
-    request.output_folder = options.execute.output_folder;
-    request.unit = options.unit;
+    request.output_folder = options.execute.session.output_folder;
     request.seed = options.execute.seed;
-    request.only = options.only;
-    request.until = options.until;
-    request.save = options.save;
-    SessionTask task{workflow_name(checked.plan),
-                     workflow,
-                     make_graph(checked.plan, library, request,
-                                [&](const std::filesystem::path& file) {
-                                    return cache ? cache->file_hash(file) : content_hash(file);
-                                }),
-                     {}};
-    return execute(task, false, *session, library, warn, options.execute);
+    const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
+    RunGraph graph = make_graph(checked.plan, execution.library(), request, hash);
+    return execution.run({workflow_name(checked.plan), workflow, std::move(graph), {}}, false);
 }
 
 RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteOptions& options) {
@@ -253,7 +268,7 @@ RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteO
             if (!other.empty()) request.protected_files.push_back(other);
     }
     request.protected_files.emplace_back(batch.file);
-    request.output_folder = options.output_folder;
+    request.output_folder = options.session.output_folder;
     request.seed = options.seed;
     return request;
 }
@@ -263,29 +278,15 @@ int run_batch(const BatchOptions& options) {
     if (!is_batch(text))
         throw Error("'{}' is not a batch: it has no key `batch`", options.file)
             .hint("a workflow is run by: scanmill run WORKFLOW SCAN…");
-    const Warn warn = warning_printer();
-    const std::unique_ptr<Cache> cache = cache_for_run(options.execute.cache, warn);
-    const std::unique_ptr<Session> session = open_session(options.execute, cache.get());
-    FilterLibrary library = open_library();
-    CheckedBatch checked = check_batch(text, options.file, library);
-    nlohmann::ordered_json found = nlohmann::ordered_json::array();
-    for (const Diagnostics& diagnostics : checked.diagnostics) {
-        print(diagnostics);
-        found.push_back(to_json(diagnostics));
-    }
-    if (checked.has_errors()) {
-        if (options.execute.json) print_files_json(std::move(found));
-        return bad_request;
-    }
-
+    Execution execution(options.execute);
+    CheckedBatch checked = check_batch(text, options.file, execution.library());
+    if (!report(checked.diagnostics, options.execute.json)) return bad_request;
     std::vector<GraphPart> parts;
     for (const BatchPart& part : checked.parts)
         parts.push_back({part.plan, request_for(checked.batch, part, options.execute)});
-    const auto hash = [&](const std::filesystem::path& file) {
-        return cache ? cache->file_hash(file) : content_hash(file);
-    };
-    SessionTask task{checked.batch.name, options.file, make_graph(parts, library, hash), checked.batch.limits};
-    return execute(task, true, *session, library, warn, options.execute);
+    const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
+    RunGraph graph = make_graph(parts, execution.library(), hash);
+    return execution.run({checked.batch.name, options.file, std::move(graph), checked.batch.limits}, true);
 }
 
 }  // namespace
@@ -302,11 +303,11 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
         run.add_option(name, values, help)->take_all()->allow_extra_args(false);
     };
     add_list("--in", options.inputs, "Files for an input: NAME=FILE[,FILE…]");
-    add_unit_option(run, "--unit", options.unit, "The scans' unit of length");
+    add_unit_option(run, "--unit", options.request.unit, "The scans' unit of length");
     add_list("--set", options.settings, "A workflow parameter's value, NAME=VALUE");
-    add_list("--only", options.only, "Run only this variant (may be repeated)");
-    run.add_option("--until", options.until, "Stop after this step");
-    add_list("--save", options.save, "Also write this step's result, STEP or STEP.PORT (may be repeated)");
+    add_list("--only", options.request.only, "Run only this variant (may be repeated)");
+    run.add_option("--until", options.request.until, "Stop after this step");
+    add_list("--save", options.request.save, "Also write this step's result, STEP or STEP.PORT (may be repeated)");
     add_execute_options(run, options.execute);
     run.add_flag("--json", options.execute.json, "Print the report as JSON");
 
@@ -315,7 +316,7 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
     batch.add_option("FILE", batch_options.file, "The batch file")->required();
     add_execute_options(batch, batch_options.execute);
     batch.add_flag("--json", batch_options.execute.json, "Print events as JSON, one per line");
-    options.execute.command_line = batch_options.execute.command_line = command_line;
+    options.execute.session.command_line = batch_options.execute.session.command_line = command_line;
 }
 
 }  // namespace scanmill::runner

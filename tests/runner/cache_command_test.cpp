@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cache as a user meets it: a second run, what a dry run says, how large it is, and emptying it.
+// The cache on the command line: a second run, a dry run, its size, and emptying it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

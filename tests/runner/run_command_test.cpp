@@ -42,7 +42,7 @@ TEST(RunCommand, TheShippedBatch_PassesCheckWhereItsScansAre) {
         std::filesystem::create_directories(folder / "workflows");
         std::filesystem::copy_file(file.path(), folder / "workflows" / file.path().filename());
     }
-    // Names of what `make data` fetches; nobody looks into them.
+    // The names of files that `make data` fetches; their content is not read.
     for (const char* scan :
          {"points_3/kitten.xyz", "points_3/sphere_20k.xyz", "meshes/bunny00.off", "meshes/fandisk_large.off"})
         folder.write(std::string("build/data/") + scan, "0 0 0\n");

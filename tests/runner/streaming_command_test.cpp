@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the command says of scans that are streamed, and that it thins what would not fit into its memory.
+// How the command describes scans that are streamed, and that it thins scans larger than its memory.
 #include "runner/batch_fixture.hpp"
 #include "support/point_files.hpp"
 

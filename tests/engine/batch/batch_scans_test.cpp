@@ -49,7 +49,7 @@ TEST_F(ScanFiles, TwoStars_AreAnyNumberOfFolders) {
     EXPECT_THAT(found("s/**/*.ply"), ElementsAre("s/b.ply", "s/t/c.ply", "s/t/u/d.ply"));
     EXPECT_THAT(found("**/t/*.ply"), ElementsAre("s/t/c.ply"));
     EXPECT_THAT(found("**/**/d.ply"), ElementsAre("s/t/u/d.ply")) << "once, whatever the ways to it";
-    EXPECT_THAT(refusal("s/**"), HasSubstr("'**' stands for folders"));
+    EXPECT_THAT(refusal("s/**"), HasSubstr("'**' matches folders"));
 }
 
 TEST_F(ScanFiles, HiddenFilesAndFolders_AreOnlyFoundByTheirNames) {
@@ -142,7 +142,7 @@ TEST_F(BatchScans, EntriesThatAreNone_AreRefused) {
     EXPECT_THAT(scans("[{path: scans/*.ply, pose: }]"), ElementsAre(HasSubstr("expected a file, as poses/")));
 }
 
-TEST_F(BatchScans, MissingTruth_IsToldForEachScan) {
+TEST_F(BatchScans, MissingTruth_IsReportedForEachScan) {
     folder_.write("truth/b.stl", "x");
     EXPECT_THAT(
         scans("[{path: scans/*.ply, truth: 'truth/{stem}.stl'}]"),

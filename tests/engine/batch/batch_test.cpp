@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batch files: what they say, and what is wrong with them.
+// Batch files: their content, and their errors.
 
 #include "engine/batch/batch_support.hpp"
 
@@ -127,10 +127,10 @@ TEST_F(BatchFile, LimitsThatAreNone_AreRefused) {
     EXPECT_THAT(rest("limits: 8 GiB\n"), ElementsAre(HasSubstr("expected a map of limits")));
 }
 
-TEST_F(BatchFile, KeysThatNothingActsOn_AreRefused) {
+TEST_F(BatchFile, KeysWithoutEffect_AreRefused) {
     for (const std::string key : {"measure", "gate"})
         for (const std::string value : {"", " {}", " all"})
-            EXPECT_THAT(rest(key + ":" + value + "\n"), ElementsAre(HasSubstr("nothing acts on `" + key + "`")));
+            EXPECT_THAT(rest(key + ":" + value + "\n"), ElementsAre(HasSubstr("`" + key + "` has no effect")));
 }
 
 TEST_F(BatchFile, SettingsThatAreNone_AreRefused) {

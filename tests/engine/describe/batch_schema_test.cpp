@@ -35,8 +35,8 @@ TEST_F(BatchSchema, WhatTheParserAccepts_IsAccepted) {
 
 struct Mistake {
     std::string batch;
-    std::string schema;  ///< a part of the schema's complaints: place and reason
-    std::string parser;  ///< a part of the only thing that the parser says
+    std::string schema;  ///< a part of the schema's errors: position and reason
+    std::string parser;  ///< a part of the parser's only error
 };
 
 /// One mistake each, so that neither of the two can reject it for another reason.

@@ -28,12 +28,12 @@ using testing::HasSubstr;
 
 class WorkflowSchema : public testing::Test {
 protected:
-    std::vector<std::string> check_says(const std::string& workflow) {
+    std::vector<std::string> errors_of_check(const std::string& workflow) {
         Diagnostics diagnostics("w");
         make_plan(parse_workflow(workflow, diagnostics), library_, {}, diagnostics);
-        std::vector<std::string> said;
-        for (const Diagnostic& diagnostic : diagnostics.sorted()) said.push_back(diagnostic.message);
-        return said;
+        std::vector<std::string> errors;
+        for (const Diagnostic& diagnostic : diagnostics.sorted()) errors.push_back(diagnostic.message);
+        return errors;
     }
 
     test::DeclaredFilters filters_;
@@ -62,15 +62,15 @@ TEST_F(WorkflowSchema, WhatCheckAccepts_IsAccepted) {
           std::string(
               "scanmill: 1\ninputs: {scan: points}\nparameters: {s: {default: {sweep: [1 u, 2 u]}, help: It.}}\n"
               "steps: [{thin: {size: $s}, in: scan}]\n")}) {
-        EXPECT_THAT(check_says(workflow), testing::IsEmpty()) << workflow;
+        EXPECT_THAT(errors_of_check(workflow), testing::IsEmpty()) << workflow;
         EXPECT_EQ(schema_.complaints(workflow), "") << workflow;
     }
 }
 
 struct Mistake {
     std::string workflow;
-    std::string schema;  ///< a part of the schema's complaints: place and reason
-    std::string check;  ///< a part of the only thing that check says
+    std::string schema;  ///< a part of the schema's errors: position and reason
+    std::string check;  ///< a part of the only error of check
 };
 
 /// One mistake each, so that neither of the two can reject it for another reason.
@@ -110,7 +110,7 @@ const std::vector<Mistake> mistakes{
      "axis: has 2 values"},
     {with_n("  - thin: {axis: [1, $n]}\n"), "steps 0 thin axis: Array should contain no fewer than 3",
      "axis: has 2 values"},
-    {steps("  - thin: {axis: [1, $, 0]}\n"), "steps 0 thin axis: ", "'$' names no parameter"},
+    {steps("  - thin: {axis: [1, $, 0]}\n"), "steps 0 thin axis: ", "'$' is not the name of a parameter"},
     {"parameters: {n: [1, $m]}\n" + steps("  - thin: {axis: $n}\n"), "parameters n: ", "cannot refer to a parameter"},
     {steps("  - thin: {axis: 1}\n"), "steps 0 thin axis: Value type not permitted", "axis: has 1 value"},
     {steps("  - thin: {count: {sweep: []}}\n"), "steps 0 thin count sweep: Array should contain no fewer than 1",
@@ -152,26 +152,28 @@ const std::vector<Mistake> mistakes{
 
 TEST_F(WorkflowSchema, WhatIsWrongAtOnePlace_IsRejectedThere_AsByCheck) {
     for (const Mistake& mistake : mistakes) {
-        EXPECT_THAT(check_says(mistake.workflow), testing::ElementsAre(HasSubstr(mistake.check))) << mistake.workflow;
+        EXPECT_THAT(errors_of_check(mistake.workflow), testing::ElementsAre(HasSubstr(mistake.check)))
+            << mistake.workflow;
         EXPECT_THAT("\n" + schema_.complaints(mistake.workflow), HasSubstr("\n" + mistake.schema)) << mistake.workflow;
     }
 }
 
-/// The complaints but for those that only repeat that something below is wrong.
+/// The errors without those that only repeat an error below them.
 std::vector<std::string> causes(const std::string& complaints) {
     std::vector<std::string> result;
     std::istringstream lines(complaints);
     for (std::string line; std::getline(lines, line);)
         if (line.find(": Failed to validate item #") == std::string::npos &&
             line.find(": Failed to validate against schema associated with property name") == std::string::npos &&
+            line.find(": Failed to validate against additional properties schema") == std::string::npos &&
             line.find(": Failed to validate against a conditional schema set by") == std::string::npos &&
             line.find(": Failed to validate against child schema #") == std::string::npos)
             result.push_back(line);
     return result;
 }
 
-TEST_F(WorkflowSchema, OneWrongValue_IsTheOnlyPlaceThatIsRejected) {
-    for (const auto& [workflow, place] : std::vector<std::pair<std::string, std::string>>{
+TEST_F(WorkflowSchema, OneWrongValue_IsTheOnlyPositionWithErrors) {
+    for (const auto& [workflow, position] : std::vector<std::pair<std::string, std::string>>{
              {steps("  - thin: {count: many}\n"), "steps 0 thin count: "},
              {steps("  - thin: {size: 1 yard}\n"), "steps 0 thin size: "},
              {steps("  - thin: {axis: [1, x, 0]}\n"), "steps 0 thin axis 1: "},
@@ -186,7 +188,7 @@ TEST_F(WorkflowSchema, OneWrongValue_IsTheOnlyPlaceThatIsRejected) {
              {"parameters: {n: {default: {swep: [1]}}}\n" + steps("  - thin: {count: $n}\n"),
               "parameters n default: "}})
         EXPECT_THAT(causes(schema_.complaints(workflow)),
-                    testing::AllOf(testing::Not(testing::IsEmpty()), testing::Each(testing::StartsWith(place))))
+                    testing::AllOf(testing::Not(testing::IsEmpty()), testing::Each(testing::StartsWith(position))))
             << workflow;
 }
 

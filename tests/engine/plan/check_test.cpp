@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is wrong with a workflow is found before any scan is opened: all of it at once, each with its place.
+// All errors of a workflow are found at once, before any scan is opened, each with its position.
 
 #include "engine/plan/workflow_findings.hpp"
 
@@ -141,8 +141,9 @@ TEST_F(Check, WorkflowParameterThatOnlyTextsMention_IsUsedByNoStep) {
 
 TEST_F(Check, DollarWithoutAName_IsAnError) {
     EXPECT_THAT(steps("  - thin: {size: $}\n"),
-                ElementsAre(AllOf(StartsWith("w:4:18: "), HasSubstr("'$' names no parameter"))));
-    EXPECT_THAT(steps("  - thin: {count: {sweep: [1, $]}}\n"), ElementsAre(HasSubstr("'$' names no parameter")));
+                ElementsAre(AllOf(StartsWith("w:4:18: "), HasSubstr("'$' is not the name of a parameter"))));
+    EXPECT_THAT(steps("  - thin: {count: {sweep: [1, $]}}\n"),
+                ElementsAre(HasSubstr("'$' is not the name of a parameter")));
     Diagnostics diagnostics("--set");
     EXPECT_TRUE(parse_value_expression("$", diagnostics).values.empty());
     EXPECT_TRUE(diagnostics.has_errors());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What feeds a port is found before any scan is opened, and so is what cannot.
+// The source of every port is found before any scan is opened, and so are wrong ones.
 
 #include "engine/plan/workflow_findings.hpp"
 

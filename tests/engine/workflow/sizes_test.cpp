@@ -25,7 +25,8 @@ TEST(Duration, WhatIsNone_SaysWhatWasExpected) {
     EXPECT_EQ(test::sentence_of([] { parse_duration("10"); }),
               "'10' has no unit; expected 500 ms, 30 s, 10 min or 2 h");
     for (const char* text : {"", "s", "-1 s", "inf s", "nan h", "1e308 h", "10 m", "1,5 h", "ten min", " 1 s", "1 s "})
-        EXPECT_THAT(test::sentence_of([&] { parse_duration(text); }), HasSubstr("is not a time; expected 500 ms")) << text;
+        EXPECT_THAT(test::sentence_of([&] { parse_duration(text); }), HasSubstr("is not a time; expected 500 ms"))
+            << text;
 }
 
 TEST(Duration, Text_ReadsBack) {
