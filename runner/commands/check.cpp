@@ -25,20 +25,13 @@ std::string sources_text(const Plan& plan, const PlannedInput& input) {
     return text;
 }
 
-/// Whether the step reads its scan piece by piece, if the file's format allows it.
+/// Whether the step reads its scan in chunks, if the file's format allows it.
 bool streams(const Plan& plan, const PlannedInput& input) {
     return std::ranges::any_of(
         input.sources, [&](const ValueSource& source) { return !source.step && is_streamed(plan, source.input); });
 }
 
-std::string quoted(const std::string& text) {
-    std::string result = "\"";
-    for (char c : text) {
-        if (c == '"' || c == '\\') result += '\\';
-        result += c;
-    }
-    return result + "\"";
-}
+std::string quoted(const std::string& text) { return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 std::string source_node(const ValueSource& source) {
     return source.step ? fmt::format("step{}", *source.step) : fmt::format("input{}", source.input);
@@ -125,103 +118,80 @@ struct CheckOptions {
     std::string format = "text";
 };
 
-/// Checks one file after the other and prints errors at once, or all results as JSON at the end.
-class Checker {
-public:
-    explicit Checker(const CheckOptions& options)
-        : options_(options),
-          as_json_(options.json || options.format == "json"),
-          library_(open_library()),
-          settings_(parse_settings(options.settings)) {}
-
-    int check() {
-        for (const std::string& file : options_.files) {
-            try {
-                const std::string text = read_workflow_file(file);
-                if (is_batch(text))
-                    check_one_batch(file, text);
-                else
-                    check_one_workflow(file, text);
-            } catch (const Error& error) {
-                code_ = bad_request;
-                if (as_json_)
-                    entries_.push_back(unreadable_json(file, error));
-                else
-                    print(error, false);
-            }
-        }
-        if (as_json_) print_files_json(std::move(entries_));
-        return code_;
-    }
-
-private:
-    void check_one_workflow(const std::string& file, const std::string& text) {
-        const CheckedWorkflow checked = check_workflow(file, text, library_, settings_);
-        const bool sound = report(checked.diagnostics);
-        if (!sound) return;
-        if (options_.plan)
-            show(checked.plan);
-        else
-            print_line("{}: ok, {}, {}\n", file, count_text(checked.plan.steps.size(), "step", "steps"),
-                       count_text(checked.plan.variants.size(), "variant", "variants"));
-    }
-
-    void check_one_batch(const std::string& file, const std::string& text) {
-        if (!settings_.empty())
-            throw Error("--set does not apply to the batch '{}'; write the values under its `set:`", file);
-        const CheckedBatch checked = check_batch(text, file, library_);
-        for (const Diagnostics& diagnostics : checked.diagnostics) report(diagnostics);
-        if (checked.has_errors()) return;
-        if (options_.plan)
-            for (const BatchPart& part : checked.parts) show(*part.plan);
-        else
-            print_line("{}: ok, {}, {}, {}, {}\n", file, count_text(checked.batch.scans.size(), "scan", "scans"),
-                       count_text(checked.batch.workflows.size(), "workflow", "workflows"),
-                       count_text(checked.variants(), "variant", "variants"),
-                       count_text(checked.cells(), "cell", "cells"));
-    }
-
-    /// Whether there are no errors.
-    bool report(const Diagnostics& diagnostics) {
-        if (diagnostics.has_errors()) code_ = bad_request;
-        if (as_json_)
-            entries_.push_back(to_json(diagnostics));
-        else
-            print(diagnostics);
-        return !diagnostics.has_errors();
-    }
-
-    /// As JSON, adds the plan to the entry of its workflow's file.
-    void show(const Plan& plan) {
-        if (!as_json_) {
-            fmt::print("{}", options_.format == "dot" ? plan_dot(plan) : plan_text(plan));
-            return;
-        }
-        for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry)
-            if ((*entry)["file"] == plan.workflow.file) {
-                Json json = plan_json(plan);
-                if (entry->contains("plan"))
-                    (*entry)["further-plans"].push_back(std::move(json));
-                else
-                    (*entry)["plan"] = std::move(json);
-                return;
-            }
-    }
-
-    template <class... Arguments>
-    void print_line(fmt::format_string<Arguments...> line, Arguments&&... arguments) {
-        if (!as_json_) fmt::print(line, std::forward<Arguments>(arguments)...);
-    }
-
-    const CheckOptions& options_;
-    bool as_json_;
-    FilterLibrary library_;
-    Settings settings_;
-    Json entries_ = Json::array();
-    int code_ = done;
+/// Plans are to be printed only without errors.
+struct CheckedFile {
+    std::vector<Diagnostics> diagnostics;
+    std::vector<std::shared_ptr<const Plan>> plans;
+    std::string summary;
 };
 
-int check(const CheckOptions& options) { return Checker(options).check(); }
+CheckedFile check_file(const std::string& file, const FilterLibrary& library, const Settings& settings) {
+    const std::string text = read_workflow_file(file);
+    if (!is_batch(text)) {
+        CheckedWorkflow checked = check_workflow(file, text, library, settings);
+        std::string summary = fmt::format("{}, {}", count_text(checked.plan.steps.size(), "step", "steps"),
+                                          count_text(checked.plan.variants.size(), "variant", "variants"));
+        return {{std::move(checked.diagnostics)}, {std::make_shared<const Plan>(std::move(checked.plan))}, summary};
+    }
+    if (!settings.empty())
+        throw Error("--set does not apply to the batch '{}'; write the values under its `set:`", file);
+    const CheckedBatch checked = check_batch(text, file, library);
+    CheckedFile result{checked.diagnostics,
+                       {},
+                       fmt::format("{}, {}, {}, {}", count_text(checked.batch.scans.size(), "scan", "scans"),
+                                   count_text(checked.batch.workflows.size(), "workflow", "workflows"),
+                                   count_text(checked.variants(), "variant", "variants"),
+                                   count_text(checked.cells(), "cell", "cells"))};
+    for (const BatchPart& part : checked.parts) result.plans.push_back(part.plan);
+    return result;
+}
+
+/// Adds the plan to the last entry of its workflow's file.
+void add_plan(Json& entries, const Plan& plan) {
+    const auto entry = std::find_if(entries.rbegin(), entries.rend(),
+                                    [&](const Json& each) { return each["file"] == plan.workflow.file; });
+    if (entry->contains("plan"))
+        (*entry)["further-plans"].push_back(plan_json(plan));
+    else
+        (*entry)["plan"] = plan_json(plan);
+}
+
+/// Prints the errors and plans of each file at once, or all results as JSON at the end.
+int check(const CheckOptions& options) {
+    const bool as_json = options.json || options.format == "json";
+    const FilterLibrary library = open_library();
+    const Settings settings = parse_settings(options.settings);
+    Json entries = Json::array();
+    int code = done;
+    for (const std::string& file : options.files) try {
+            const CheckedFile checked = check_file(file, library, settings);
+            for (const Diagnostics& diagnostics : checked.diagnostics)
+                if (as_json)
+                    entries.push_back(to_json(diagnostics));
+                else
+                    print(diagnostics);
+            if (std::ranges::any_of(checked.diagnostics, &Diagnostics::has_errors)) {
+                code = bad_request;
+                continue;
+            }
+            if (!options.plan && !as_json) fmt::print("{}: ok, {}\n", file, checked.summary);
+            for (std::size_t i = 0; options.plan && i < checked.plans.size(); ++i) {
+                const Plan& plan = *checked.plans[i];
+                if (as_json)
+                    add_plan(entries, plan);
+                else
+                    fmt::print("{}", options.format == "dot" ? plan_dot(plan) : plan_text(plan));
+            }
+        } catch (const Error& error) {
+            code = bad_request;
+            if (as_json)
+                entries.push_back(unreadable_json(file, error));
+            else
+                print(error, false);
+        }
+    if (as_json) print_files_json(std::move(entries));
+    return code;
+}
 
 }  // namespace
 

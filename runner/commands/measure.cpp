@@ -47,7 +47,7 @@ ParameterSet parameters_of(const FilterSpec& spec, const std::vector<std::string
     }
     Diagnostics diagnostics("");
     ParameterSet set = step_parameters(expanded, spec, {"", {}, diagnostics, nullptr});
-    if (diagnostics.has_errors()) throw Error("--set {}", diagnostics.sorted().front().message);
+    if (diagnostics.has_errors()) throw Error("--set: {}", diagnostics.sorted().front().message);
     return set;
 }
 
@@ -62,7 +62,7 @@ std::vector<StepInput> read_inputs(const Options& options, const Warn& warn) {
     if (!truth.find<TriangleMesh>() && !truth.find<PointCloud>())
         throw Error("'{}': the truth is a mesh or points; the file contains {}", options.truth, truth.kind().name());
     if (Frame frame = *frame_of(truth); frame.unit == LengthUnit::unknown) {
-        frame.unit = options.unit;  // --unit applies to both files
+        frame.unit = options.unit;  // --unit is also that of a truth that declares none
         truth = reframed(truth, frame);
     }
     for (const Value* value : std::initializer_list<const Value*>{&mesh, &truth})
@@ -134,9 +134,9 @@ void add_measure(CLI::App& app, Action& chosen) {
         app, chosen, "measure", "Measures the distance of a mesh from the truth, and the quality of the mesh", measure);
     command.add_option("MESH", options.mesh, "The mesh to measure")->required();
     command.add_option("TRUTH", options.truth, "The correct shape: a mesh, or points")->required();
-    add_unit_option(command, "--unit", options.unit, "The files' unit of length, which overrides the declared one");
+    add_unit_option(command, "--unit", options.unit, "The unit of MESH, and of TRUTH if that declares none");
     add_unit_option(command, "--truth-unit", options.truth_unit,
-                    "The same for TRUTH, which is converted to MESH's unit");
+                    "The unit of TRUTH, which is converted to that of MESH");
     command.add_flag("--certify", options.certify, "Bound the Hausdorff distance from below and above; takes longer");
     command.add_option("--set", options.settings,
                        "NAME=VALUE: a parameter of the filter, as `scanmill show measure` lists them");

@@ -88,7 +88,7 @@ TEST(Completion, Bash_ProposesCommandsOptionsAndFilters) {
 
 TEST(Completion, Bash_ProposesTheValuesOfOptions) {
     const TemporaryFolder folder;
-    EXPECT_EQ(completed(folder, "run w.yaml --keep ''", 4), "always never worth\n");
+    EXPECT_EQ(completed(folder, "run w.yaml --keep ''", 4), "worth always never\n");
     EXPECT_EQ(completed(folder, "run w.yaml --keep a", 4), "always\n");
     EXPECT_EQ(completed(folder, "run w.yaml --keep = n", 5), "never\n");
     EXPECT_EQ(completed(folder, "check --format d", 3), "dot\n");
@@ -116,10 +116,10 @@ TEST(Completion, Bash_ProposesTheParametersOfTheWorkflow) {
 
 TEST(Completion, ZshAndFish_ProposeValuesToo) {
     const std::string zsh = scanmill_program({"completion", "zsh"}).out;
-    EXPECT_THAT(zsh, HasSubstr(":value:(always never worth)"));
+    EXPECT_THAT(zsh, HasSubstr(":value:(worth always never)"));
     EXPECT_THAT(zsh, HasSubstr(":value:_scanmill_settings"));
     const std::string fish = scanmill_program({"completion", "fish"}).out;
-    EXPECT_THAT(fish, HasSubstr("-l keep -x -a 'always never worth'"));
+    EXPECT_THAT(fish, HasSubstr("-l keep -x -a 'worth always never'"));
     EXPECT_THAT(fish, HasSubstr("-l set -x -a '(scanmill complete-set"));
 }
 

@@ -169,6 +169,16 @@ INSTANTIATE_TEST_SUITE_P(All, HostileName,
                                          StrangeName{"LongestThereIs", std::string(251, 'x')}),
                          [](const auto& name) { return name.param.test_name; });
 
+TEST_F(Hostile, LineEndInAName_IsEscapedInWarningsAndTables) {
+    folder_.write("w.yaml", workflow("{scan}.ply"));
+    folder_.write("a\nb\x1b.xyz", "# unit parsec\n" + four_points);
+    const ProgramResult ran = run_scan("a\nb\x1b.xyz");
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("warning: 'a\\nb\\x1b.xyz': the unit 'parsec'"));
+    EXPECT_THAT(ran.out, HasSubstr("\na\\nb\\x1b.xyz  "));
+    EXPECT_EQ(times(ran.out, "\n"), 2u);
+}
+
 TEST_F(Hostile, NameLongerThanFileSystemsTake_IsReported) {
     folder_.write("w.yaml", workflow("{scan}.ply"));
     expect_refused(run_scan(std::string(296, 'x') + ".xyz"), 1, "File name too long");

@@ -81,7 +81,7 @@ std::string remarks(const FilterSpec& spec) {
     return list.empty() ? list : "\n" + list;
 }
 
-/// The first filter that makes values of this kind from what files hold.
+/// The first filter that makes this kind from kinds that files can hold.
 const FilterSpec* maker_of(Kind kind, const FilterLibrary& library) {
     for (const std::string& name : library.names()) {
         const FilterSpec* spec = library.find(name);

@@ -152,7 +152,8 @@ private:
             const std::string extensions = writable_extensions(kind);
             if (extensions.empty()) throw Error("--save {}: no file format can hold {}", wanted, name_of(kind));
             const std::string variant_part = plan_->variants.size() > 1 ? ".{variant}" : "";
-            all.emplace_back("{scan}" + variant_part + "." + wanted + "." + extensions.substr(0, extensions.find(',')), ValueSource{step->second, 0, port});
+            all.emplace_back("{scan}" + variant_part + "." + wanted + "." + extensions.substr(0, extensions.find(',')),
+                             ValueSource{step->second, 0, port});
         }
         return all;
     }

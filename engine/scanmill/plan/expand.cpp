@@ -163,7 +163,7 @@ private:
 
     /// Adds the chosen value to the variant's name, with its step when the parameter's name is there already.
     void name_sweep(const StepSyntax& step, const std::string& name, const WrittenParameter& value) {
-        const std::string label = swept_.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
+        const std::string label = swept_.contains(name) ? step.name() + "." + name : name;
         swept_.insert(name);
         name_parts_.push_back(file_safe(label + "=" + fmt::format("{}", fmt::join(value.items, ","))));
     }
@@ -202,9 +202,9 @@ std::string excess(const Workflow& workflow, const Settings& settings) {
 class ReferenceCheck {
 public:
     ReferenceCheck(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
-        : diagnostics_(diagnostics) {
-        for (const WorkflowParameter& parameter : workflow.parameters) {
-            names_.push_back(parameter.name);
+        : diagnostics_(diagnostics),
+          parameters_(workflow.parameters) {
+        for (const WorkflowParameter& parameter : parameters_) {
             const auto setting = settings.find(parameter.name);
             const ValueExpression& given = setting != settings.end() ? setting->second : parameter.value;
             const auto is_list = [](const WrittenValue& value) { return value.literal.list; };
@@ -219,10 +219,8 @@ public:
 
 private:
     void require_declared(const std::string& name, Position position) {
-        if (std::ranges::find(names_, name) != names_.end()) return;
-        diagnostics_.error(position, "the workflow has no parameter '{}'; {}{}", name,
-                           names_.empty() ? "it declares none" : "it has " + enumerated(names_),
-                           did_you_mean(name, names_));
+        if (std::ranges::find(parameters_, name, &WorkflowParameter::name) == parameters_.end())
+            diagnostics_.error(position, "the workflow has no parameter '{}'; {}", name, it_has(parameters_, name));
     }
 
     void check(const std::vector<StepItem>& items) {
@@ -245,7 +243,7 @@ private:
     }
 
     Diagnostics& diagnostics_;
-    std::vector<std::string> names_;
+    const std::vector<WorkflowParameter>& parameters_;
     std::set<std::string> lists_;
 };
 

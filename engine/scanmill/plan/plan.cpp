@@ -114,7 +114,7 @@ private:
 
     static std::vector<std::string> names_of(const ExpandedStep& step) {
         std::vector<std::string> names = step.aliases;
-        names.push_back(step.syntax->id.empty() ? step.syntax->filter : step.syntax->id);
+        names.push_back(step.syntax->name());
         return names;
     }
 

@@ -47,13 +47,10 @@ public:
     explicit Reader(const ParameterSources& sources) : sources_(sources) {}
 
     ParameterSet parameters(const ExpandedStep& step, const FilterSpec& spec) {
-        std::vector<std::string> names;
-        for (const ParameterSpec& parameter : spec.parameters) names.push_back(parameter.name);
         for (const NamedExpression& written : step.syntax->parameters)
             if (!spec.parameter(written.name))
-                sources_.diagnostics.error(written.position, "{} has no parameter '{}'; {}{}", spec.name, written.name,
-                                           names.empty() ? "it has none" : "it has " + enumerated(names),
-                                           did_you_mean(written.name, names));
+                sources_.diagnostics.error(written.position, "{} has no parameter '{}'; {}", spec.name, written.name,
+                                           it_has(spec.parameters, written.name));
         ParameterSet set;
         for (const ParameterSpec& parameter : spec.parameters)
             set.values.emplace_back(parameter.name, parameter_value(step, parameter));

@@ -46,17 +46,15 @@ public:
 
 private:
     void check_ports() {
-        const std::vector<std::string> ports = names_of(spec_.inputs);
-        const std::string has = ports.empty() ? "it has none" : "it has " + enumerated(ports);
         for (const InputWiring& wired : step_.in)
             if (!spec_.input(wired.port))
-                diagnostics_.error(wired.position, "{} has no input port '{}'; {}{}", spec_.name, wired.port, has,
-                                   did_you_mean(wired.port, ports));
+                diagnostics_.error(wired.position, "{} has no input port '{}'; {}", spec_.name, wired.port,
+                                   it_has(spec_.inputs, wired.port));
         if (step_.in_shorthand && spec_.inputs.size() != 1)
             diagnostics_.error(step_.in_shorthand->position,
                                "`in:` with a single name is for filters with one input port; {}: {}. Expected "
                                "`in: {{port: {}}}`",
-                               spec_.name, has, step_.in_shorthand->text);
+                               spec_.name, it_has(spec_.inputs, ""), step_.in_shorthand->text);
     }
 
     bool is_given(const PortSpec& port) const {
@@ -171,9 +169,8 @@ std::optional<ValueSource> resolve(const Reference& reference, const WiringScope
         const std::string port =
             dot == std::string::npos ? planned.spec.outputs.front().name : reference.text.substr(dot + 1);
         if (planned.spec.output(port)) return ValueSource{step->second, 0, port};
-        const std::vector<std::string> ports = names_of(planned.spec.outputs);
-        diagnostics.error(reference.position, "'{}' has no output port '{}'; it has {}{}", name, port,
-                          enumerated(ports), did_you_mean(port, ports));
+        diagnostics.error(reference.position, "'{}' has no output port '{}'; {}", name, port,
+                          it_has(planned.spec.outputs, port));
         return std::nullopt;
     }
     if (const auto unusable = scope.unusable_names.find(name); unusable != scope.unusable_names.end()) {

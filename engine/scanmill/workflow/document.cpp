@@ -12,19 +12,12 @@
 #include <unordered_map>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill {
 
-void Diagnostics::add(Diagnostic diagnostic) {
-    if (!distinct_.insert(diagnostic).second) return;
-    if (diagnostic.severity == Diagnostic::Severity::error) ++errors_;
-    items_.push_back(std::move(diagnostic));
-}
-
-std::vector<Diagnostic> Diagnostics::sorted() const {
-    std::vector<Diagnostic> result = items_;
-    std::ranges::stable_sort(result, {}, &Diagnostic::position);
-    return result;
+std::string it_has(std::span<const std::string> names, std::string_view unknown) {
+    return (names.empty() ? "it has none" : "it has " + enumerated(names)) + did_you_mean(unknown, names);
 }
 
 std::string text(const Diagnostic& diagnostic, const std::string& file) {

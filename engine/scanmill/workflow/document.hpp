@@ -11,6 +11,7 @@
 #include <compare>
 #include <filesystem>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,19 +27,21 @@ struct Position {
 
 struct Diagnostic {
     enum class Severity { error, warning };
-    Severity severity;
     Position position;
+    Severity severity;
     std::string message;
     auto operator<=>(const Diagnostic&) const = default;
 };
 
+/// The errors and warnings about a file, in its order. A repeated message at the same position is dropped.
 class Diagnostics {
 public:
     explicit Diagnostics(std::string file) : file_(std::move(file)) {}
 
-    /// A repeated message at the same position is dropped.
-    void error(Position position, std::string message) { add({Diagnostic::Severity::error, position, message}); }
-    void warning(Position position, std::string message) { add({Diagnostic::Severity::warning, position, message}); }
+    void error(Position position, std::string message) {
+        errors_ += add(position, Diagnostic::Severity::error, message);
+    }
+    void warning(Position position, std::string message) { add(position, Diagnostic::Severity::warning, message); }
     /// The same with a format and its arguments.
     template <class... Arguments>
         requires(sizeof...(Arguments) > 0)
@@ -48,18 +51,29 @@ public:
 
     bool has_errors() const { return errors_ > 0; }
     std::size_t errors() const { return errors_; }
-    /// In the order of the file.
-    std::vector<Diagnostic> sorted() const;
+    std::vector<Diagnostic> sorted() const { return {all_.begin(), all_.end()}; }
     const std::string& file() const { return file_; }
 
 private:
-    void add(Diagnostic diagnostic);
+    bool add(Position position, Diagnostic::Severity severity, std::string& message) {
+        return all_.insert({position, severity, std::move(message)}).second;
+    }
 
     std::string file_;
-    std::vector<Diagnostic> items_;
-    std::set<Diagnostic> distinct_;
+    std::set<Diagnostic> all_;
     std::size_t errors_ = 0;
 };
+
+/// The end of a message about an unknown name: "it has a, b and c; did you mean 'a'?", or "it has none".
+std::string it_has(std::span<const std::string> names, std::string_view unknown);
+/// The same for the names of the items.
+template <class Items>
+    requires requires(const Items& items) { items.begin()->name; }
+std::string it_has(const Items& items, std::string_view unknown) {
+    std::vector<std::string> names;
+    for (const auto& item : items) names.push_back(item.name);
+    return it_has(std::span<const std::string>(names), unknown);
+}
 
 /// "file:line:column: message", or "file:line:column: warning: message".
 std::string text(const Diagnostic& diagnostic, const std::string& file);

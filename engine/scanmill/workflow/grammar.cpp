@@ -17,9 +17,7 @@ void report_unexpected(const YamlNode& node, std::string_view expected, Diagnost
 }  // namespace
 
 void read_mapping(const YamlNode& node, std::string_view what, const std::vector<Key>& keys, Diagnostics& diagnostics) {
-    std::vector<std::string> names;
     for (const Key& key : keys) {
-        names.push_back(key.name);
         const auto entry = std::ranges::find(node.entries, key.name, &YamlEntry::key);
         if (entry != node.entries.end())
             key.read(*entry);
@@ -27,9 +25,8 @@ void read_mapping(const YamlNode& node, std::string_view what, const std::vector
             diagnostics.error(node.position, key.when_missing);
     }
     for (const YamlEntry& entry : node.entries)
-        if (std::ranges::find(names, entry.key) == names.end())
-            diagnostics.error(entry.position, "{} has no key '{}'; it has {}{}", what, entry.key, enumerated(names),
-                              did_you_mean(entry.key, names));
+        if (std::ranges::find(keys, entry.key, &Key::name) == keys.end())
+            diagnostics.error(entry.position, "{} has no key '{}'; {}", what, entry.key, it_has(keys, entry.key));
 }
 
 ReadEntry text_into(std::string& target, Diagnostics& diagnostics) {

@@ -233,7 +233,7 @@ private:
         else if (!first)
             return result;  // a fork names its own alternatives
         else
-            result.name = first->id.empty() ? first->filter : first->id;
+            result.name = first->name();
         if (result.name.empty())  // after an error; a unique name keeps its variant apart from others
             result.name = fmt::format("line-{}-column-{}", result.position.line, result.position.column);
         return result;

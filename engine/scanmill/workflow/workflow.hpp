@@ -70,6 +70,9 @@ struct StepSyntax {
     std::vector<InputWiring> in;
     std::optional<Reference> in_shorthand;  ///< `in: scan`, for filters with one port
     std::vector<Expectation> expect;
+
+    /// How other steps refer to this one.
+    const std::string& name() const { return id.empty() ? filter : id; }
 };
 
 struct StepItem;
