@@ -8,7 +8,7 @@
 
 #include "commands/commands.hpp"
 #include "output/error_output.hpp"
-#include "output/stderr_text.hpp"
+#include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/worker/serve.hpp"
@@ -16,7 +16,7 @@
 int main(int argc, char** argv) {
     using namespace scanmill::runner;
     if (argc == 2 && argv[1] == std::string_view("worker")) return scanmill::serve_as_worker();
-    // Beyond the largest file that the system allows, writing then fails with a reason instead of ending the program.
+    // Writing beyond the largest file that the system allows then fails with a reason instead of ending the program.
     std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app("Scanmill turns libraries of 3D scans into surfaces, unattended.", "scanmill");
     app.set_version_flag("--version", "scanmill " SCANMILL_VERSION);
@@ -24,45 +24,36 @@ int main(int argc, char** argv) {
     app.set_help_all_flag("--help-all", "Help of every command");
     const bool json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc;
     Action chosen;
-    add_run(app, chosen, {argv, argv + argc});
-    add_batch(app, chosen, {argv, argv + argc});
+    add_run_and_batch(app, chosen, {argv, argv + argc});
     add_check(app, chosen);
-    add_list(app, chosen);
-    add_show(app, chosen);
+    add_list_and_show(app, chosen);
     add_info(app, chosen);
     add_convert(app, chosen);
     add_measure(app, chosen);
-    add_schema(app, chosen);
-    add_docs(app, chosen);
+    add_schema_and_docs(app, chosen);
     add_runs(app, chosen);
     add_cache(app, chosen);
     add_completion(app, chosen);
     try {
         app.parse(argc, argv);
+        const int code = chosen();
+        if (std::fflush(stdout) == 0) return code;
+        print_stderr("error: the output could not be written\n");
+        return our_fault;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
         const auto commands = app.get_subcommands();
+        scanmill::Error described(std::string(error.what()));
+        described.set_hint("scanmill " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help");
         if (const std::string word = argc > 1 ? argv[1] : ""; commands.empty() && !word.empty() && word[0] != '-') {
             std::vector<std::string> names;
             for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
                 names.push_back(command->get_name());
-            print(scanmill::Error("there is no command '{}'{}", word, scanmill::did_you_mean(word, names))
-                      .hint("scanmill --help"),
-                  json);
-            return bad_request;
+            described = scanmill::Error("there is no command '{}'{}", word, scanmill::did_you_mean(word, names))
+                            .hint("scanmill --help");
         }
-        print(scanmill::Error(std::string(error.what()))
-                  .hint("scanmill " + (commands.empty() ? "" : commands.front()->get_name() + " ") + "--help"),
-              json);
+        print(described, json);
         return bad_request;
-    }
-    try {
-        const int code = chosen();
-        if (std::fflush(stdout) != 0) {
-            tell("error: the output could not be written\n");
-            return our_fault;
-        }
-        return code;
     } catch (const scanmill::Error& error) {
         print(error, json);
         return bad_request;

@@ -3,41 +3,40 @@
 
 #include <nlohmann/json.hpp>
 
-#include "commands/cache_options.hpp"
 #include "commands/commands.hpp"
-#include "output/printable.hpp"
-#include "scanmill/base/error.hpp"
+#include "commands/common.hpp"
+#include "output/terminal.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
 namespace scanmill::runner {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+struct Options {
+    CacheOptions cache;
+    bool json = false;
+};
 
-Cache open_named(const CacheOptions& options) {
-    const u64 limit = options.limit.empty() ? Cache::default_limit : parse_byte_size(options.limit);
-    return Cache(options.folder.empty() ? default_cache_folder() : std::filesystem::path(options.folder), limit);
-}
-
-int info(const CacheOptions& options, bool json) {
-    const CacheInfo info = open_named(options).info();
-    if (json) {
-        const Json described{{"scanmill", 1},       {"folder", info.folder.string()},
-                             {"steps", info.steps}, {"values", info.values},
-                             {"bytes", info.bytes}, {"limit", info.limit}};
-        fmt::print("{}\n", described.dump(2, ' ', false, Json::error_handler_t::replace));
-        return done;
-    }
-    fmt::print("folder  {}\nsteps   {}\nvalues  {}\nsize    {} of {}\n", printable_line(info.folder.string()),
-               info.steps, info.values, byte_size_text(info.bytes), byte_size_text(info.limit));
+int info(const Options& options) {
+    const CacheInfo info = open_cache(options.cache, {})->info();
+    const std::string folder = info.folder.string();
+    if (options.json)
+        print_json({{"scanmill", 1},
+                    {"folder", folder},
+                    {"steps", info.steps},
+                    {"values", info.values},
+                    {"bytes", info.bytes},
+                    {"limit", info.limit}});
+    else
+        fmt::print("folder  {}\nsteps   {}\nvalues  {}\nsize    {} of {}\n", printable_line(folder), info.steps,
+                   info.values, byte_size_text(info.bytes), byte_size_text(info.limit));
     return done;
 }
 
-int clear(const CacheOptions& options, bool json) {
-    const u64 removed = open_named(options).clear();
-    if (json)
-        fmt::print("{}\n", Json{{"scanmill", 1}, {"removed", removed}}.dump(2));
+int clear(const Options& options) {
+    const u64 removed = open_cache(options.cache, {})->clear();
+    if (options.json)
+        print_json({{"scanmill", 1}, {"removed", removed}});
     else
         fmt::print("{} removed\n", byte_size_text(removed));
     return done;
@@ -46,21 +45,14 @@ int clear(const CacheOptions& options, bool json) {
 }  // namespace
 
 void add_cache(CLI::App& app, Action& chosen) {
-    struct Options {
-        CacheOptions cache;
-        bool json = false;
-    };
-    CLI::App* command = app.add_subcommand("cache", "Says how large the cache of results is, or empties it");
+    CLI::App* command = app.add_subcommand("cache", "Shows the size of the cache of results, or empties it");
     command->require_subcommand(1);
-    const auto add = [&](const char* name, const char* help, int (*act)(const CacheOptions&, bool)) {
-        auto options = std::make_shared<Options>();
-        CLI::App* part = command->add_subcommand(name, help);
-        add_cache_options(*part, options->cache, false);
-        part->add_flag("--json", options->json, "Print it as JSON");
-        part->callback(
-            [&chosen, options, act] { chosen = [options, act] { return act(options->cache, options->json); }; });
+    const auto add = [&](const char* name, const char* help, int (*act)(const Options&)) {
+        auto [part, options] = add_command<Options>(*command, chosen, name, help, act);
+        add_cache_options(part, options.cache);
+        part.add_flag("--json", options.json, "Print it as JSON");
     };
-    add("info", "Prints the folder, how many results it holds, and their size", info);
+    add("info", "Prints the folder, the number of results and their size", info);
     add("clear", "Removes all results; they are computed again when they are needed", clear);
 }
 

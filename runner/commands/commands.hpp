@@ -1,29 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The commands: each adds itself to the parser and, when it is called, returns the program's exit code.
-/// Results go to stdout, everything else to stderr.
+/// The commands: each adds itself to the parser and, when it is called, returns the program's exit code. Results go to
+/// stdout, everything else to stderr.
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace scanmill::runner {
 
 /// 0 done, 1 some scans failed or an expect was not met, 2 bad arguments or workflow, 3 our own fault, 130 interrupted.
 enum ExitCode { done = 0, some_failed = 1, bad_request = 2, our_fault = 3, interrupted = 130 };
 
+/// The action of the command on the command line.
 using Action = std::function<int()>;
 
+/// Adds a command that calls `act` with its options, which the caller declares on the result.
+template <class Options>
+std::pair<CLI::App&, Options&> add_command(CLI::App& parent, Action& chosen, const char* name, const char* help,
+                                           int (*act)(const Options&)) {
+    CLI::App* command = parent.add_subcommand(name, help);
+    auto options = std::make_shared<Options>();
+    command->callback([&chosen, options, act] { chosen = [options, act] { return act(*options); }; });
+    return {*command, *options};
+}
+
 /// `command_line`: the program and its arguments, for the records.
-void add_run(CLI::App& app, Action& chosen, std::vector<std::string> command_line);
-void add_batch(CLI::App& app, Action& chosen, std::vector<std::string> command_line);
+void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::string>& command_line);
 void add_check(CLI::App& app, Action& chosen);
-void add_list(CLI::App& app, Action& chosen);
-void add_show(CLI::App& app, Action& chosen);
+void add_list_and_show(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);
-void add_measure(CLI::App& app, Action& chosen);
 void add_convert(CLI::App& app, Action& chosen);
-void add_schema(CLI::App& app, Action& chosen);
-void add_docs(CLI::App& app, Action& chosen);
+void add_measure(CLI::App& app, Action& chosen);
+void add_schema_and_docs(CLI::App& app, Action& chosen);
 void add_runs(CLI::App& app, Action& chosen);
 void add_cache(CLI::App& app, Action& chosen);
 void add_completion(CLI::App& app, Action& chosen);

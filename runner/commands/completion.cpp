@@ -1,48 +1,61 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Completion scripts, made from the commands that the program has.
+// Completion scripts, made from the commands and options that the program has.
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "commands/commands.hpp"
+#include "commands/common.hpp"
+#include "scanmill/workflow/document.hpp"
 
 namespace scanmill::runner {
 
 namespace {
 
 struct Option {
-    std::string name;  ///< "--set"
+    std::string name;  ///< "--set"; empty: the command's argument
     std::string help;
+    std::string words;  ///< the values that it accepts, with blanks between; empty: any, or none
     bool takes_value;
 };
 
 struct Command {
     std::string name, help;
     std::vector<Option> options;
+    std::string words;  ///< the arguments that it accepts in place of files
 };
+
+/// The set of CLI::IsMember, which is part of the option's type: "TEXT:{um,mm}".
+std::string words_of(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    const std::size_t open = type.find('{'), close = type.find('}');
+    if (open == std::string::npos || close == std::string::npos) return {};
+    std::string words = type.substr(open + 1, close - open - 1);
+    std::ranges::replace(words, ',', ' ');
+    return words;
+}
 
 std::vector<Command> commands_of(const CLI::App& app) {
     std::vector<Command> commands;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-        Command described{command->get_name(), command->get_description(), {}};
-        for (const CLI::Option* option : command->get_options())
+    for (const CLI::App* command :
+         app.get_subcommands([](const CLI::App* each) { return !each->get_group().empty(); })) {
+        Command described{command->get_name(), command->get_description(), {}, {}};
+        for (const CLI::Option* option : command->get_options()) {
             for (const std::string& name : option->get_lnames())
                 described.options.push_back(
-                    {"--" + name, option->get_description(), option->get_items_expected_max() > 0});
+                    {"--" + name, option->get_description(), words_of(*option), option->get_items_expected_max() > 0});
+        }
+        const auto arguments = command->get_options([](const CLI::Option* each) { return each->get_positional(); });
+        if (!arguments.empty()) described.words = words_of(*arguments.front());
+        if (described.name == "show") described.words = "$(scanmill list --names 2>/dev/null)";
         commands.push_back(std::move(described));
     }
     return commands;
 }
 
-bool completes_filters(const Command& command) { return command.name == "show"; }
-
-/// Words that the command takes in place of files; none where it takes files.
-std::string_view words_of(const Command& command) {
-    return command.name == "completion" ? "bash zsh fish" : command.name == "schema" ? "workflow batch" : "";
-}
-
-/// The text without what would end a quoted word of a shell, or has a meaning of its own in zsh's descriptions.
+/// The text without characters that end a quoted word of a shell, or have a meaning in zsh's descriptions.
 std::string plain(std::string_view text) {
     std::string result;
     for (char c : text) {
@@ -55,26 +68,46 @@ std::string plain(std::string_view text) {
 std::string bash(const std::vector<Command>& commands) {
     std::string names, cases;
     for (const Command& command : commands) {
-        names += (names.empty() ? "" : " ") + command.name;
+        names += " " + command.name;
         std::string options;
-        for (const Option& option : command.options) options += (options.empty() ? "" : " ") + option.name;
-        cases += fmt::format("        {}:-*) words=\"{}\" ;;\n", command.name, options);
-        if (!words_of(command).empty())
-            cases += fmt::format("        {}:*) words=\"{}\" ;;\n", command.name, words_of(command));
-        if (completes_filters(command))
-            cases += fmt::format("        {}:*) words=$(scanmill list --names 2>/dev/null) ;;\n", command.name);
+        for (const Option& option : command.options) {
+            options += " " + option.name;
+            if (option.name == "--set")
+                cases += fmt::format("        {}:--set:*) words=$(_scanmill_settings \"$name\") ;;\n", command.name);
+            else if (!option.words.empty())
+                cases += fmt::format("        {}:{}:*) words=\"{}\" ;;\n", command.name, option.name, option.words);
+        }
+        cases += fmt::format("        {}:*:-*) words=\"{}\" ;;\n", command.name, options.substr(1));
+        if (!command.words.empty())
+            cases += fmt::format("        {}:*) words=\"{}\" ;;\n", command.name, command.words);
     }
-    return fmt::format(R"(_scanmill() {{
-    local word=${{COMP_WORDS[COMP_CWORD]}} words
-    case $([ "$COMP_CWORD" -gt 1 ] && echo "${{COMP_WORDS[1]}}"):$word in
+    return fmt::format(R"sh(_scanmill_settings() {{
+    local all=$(scanmill complete-set "${{COMP_WORDS[@]:1}}" 2>/dev/null)
+    if [ -n "$1" ]; then
+        sed -n "s/^$1=//p" <<< "$all"
+    else
+        compopt -o nospace 2>/dev/null
+        sed 's/=.*/=/' <<< "$all" | sort -u
+    fi
+}}
+_scanmill() {{
+    # bash makes words of --set NAME=VALUE and --keep=VALUE that end before and after the =
+    local word=${{COMP_WORDS[COMP_CWORD]}} option=${{COMP_WORDS[COMP_CWORD-1]}} name words
+    if [ "$word" = = ]; then
+        name=$option option=${{COMP_WORDS[COMP_CWORD-2]}} word=
+    elif [ "$option" = = ]; then
+        name=${{COMP_WORDS[COMP_CWORD-2]}} option=${{COMP_WORDS[COMP_CWORD-3]}}
+    fi
+    case $name in --*) option=$name name= ;; esac
+    case $([ "$COMP_CWORD" -gt 1 ] && echo "${{COMP_WORDS[1]}}:$option"):$word in
         :*) words="{} --help --version" ;;
 {}        *) mapfile -t COMPREPLY < <(compgen -f -- "$word"); return ;;
     esac
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
 }}
 complete -o filenames -F _scanmill scanmill
-)",
-                       names, cases);
+)sh",
+                       names.substr(1), cases);
 }
 
 std::string zsh(const std::vector<Command>& commands) {
@@ -83,13 +116,17 @@ std::string zsh(const std::vector<Command>& commands) {
         names += fmt::format("        '{}:{}'\n", command.name, plain(command.help));
         cases += fmt::format("        {}) _arguments", command.name);
         for (const Option& option : command.options)
-            cases +=
-                fmt::format(" '*{}[{}]{}'", option.name, plain(option.help), option.takes_value ? ":value:_files" : "");
-        cases += completes_filters(command)   ? " \"*:filter:($(scanmill list --names 2>/dev/null))\" ;;\n"
-                 : !words_of(command).empty() ? fmt::format(" '1:word:({})' ;;\n", words_of(command))
-                                              : " '*:file:_files' ;;\n";
+            cases += fmt::format(" '*{}[{}]{}'", option.name, plain(option.help),
+                                 !option.takes_value      ? ""
+                                 : option.name == "--set" ? ":value:_scanmill_settings"
+                                 : option.words.empty()   ? ":value:_files"
+                                                          : ":value:(" + option.words + ")");
+        cases += command.words.empty() ? " '*:file:_files' ;;\n" : fmt::format(" \"*:word:({})\" ;;\n", command.words);
     }
-    return fmt::format(R"(#compdef scanmill
+    return fmt::format(R"sh(#compdef scanmill
+_scanmill_settings() {{
+    compadd -S '' -- ${{(f)"$(scanmill complete-set $words 2>/dev/null)"}}
+}}
 _scanmill() {{
     local -a commands=(
 {}    )
@@ -104,7 +141,7 @@ _scanmill() {{
 {}    esac
 }}
 compdef _scanmill scanmill
-)",
+)sh",
                        names, cases);
 }
 
@@ -114,35 +151,97 @@ std::string fish(const std::vector<Command>& commands) {
         text += fmt::format("complete -c scanmill -n __fish_use_subcommand -f -a {} -d '{}'\n", command.name,
                             plain(command.help));
         const std::string here = fmt::format("complete -c scanmill -n '__fish_seen_subcommand_from {}'", command.name);
-        if (!words_of(command).empty()) text += fmt::format("{} -f -a '{}'\n", here, words_of(command));
-        if (completes_filters(command)) text += here + " -f -a '(scanmill list --names 2>/dev/null)'\n";
-        for (const Option& option : command.options)
-            text += fmt::format("{} -l {}{} -d '{}'\n", here, option.name.substr(2), option.takes_value ? " -r" : "",
+        if (!command.words.empty())
+            text += fmt::format("{} -f -a '{}'\n", here, command.words.substr(command.words.starts_with('$')));
+        for (const Option& option : command.options) {
+            const std::string words =
+                option.name == "--set" ? "(scanmill complete-set (commandline -opc)[2..] 2>/dev/null)" : option.words;
+            text += fmt::format("{} -l {}{} -d '{}'\n", here, option.name.substr(2),
+                                !words.empty()       ? fmt::format(" -x -a '{}'", words)
+                                : option.takes_value ? " -r"
+                                                     : "",
                                 plain(option.help));
+        }
     }
     return text;
+}
+
+struct CompletionOptions {
+    std::string shell;
+    const CLI::App* app = nullptr;
+};
+
+int completion(const CompletionOptions& options) {
+    const std::vector<Command> commands = commands_of(*options.app);
+    fmt::print("{}", options.shell == "bash"  ? bash(commands)
+                     : options.shell == "zsh" ? zsh(commands)
+                                              : fish(commands));
+    return done;
+}
+
+/// The values of a parameter that have names: choices, true and false, its word.
+std::vector<std::string> values_of(const ParameterSpec& parameter) {
+    std::vector<std::string> values;
+    for (const Choice& choice : parameter.choices) values.push_back(choice.name);
+    if (parameter.type == ParameterType::boolean) values = {"false", "true"};
+    if (!parameter.word.empty()) values.push_back(parameter.word);
+    return values;
+}
+
+/// Prints NAME=VALUE for every value; NAME= when there is none.
+template <class Values>
+void print_setting(const std::string& name, const Values& values) {
+    if (values.empty()) fmt::print("{}=\n", name);
+    for (const std::string& value : values) fmt::print("{}={}\n", name, value);
+}
+
+/// The values of a workflow's parameter are those of the filters' parameters that use it.
+void print_settings(const Workflow& workflow, const FilterLibrary& library) {
+    std::map<std::string, std::set<std::string>> values;
+    Diagnostics ignored("");
+    expand(workflow, {}, ignored, [&](const Variant& variant) {
+        for (const ExpandedStep& step : variant.steps)
+            if (const FilterSpec* spec = library.find(step.syntax->filter))
+                for (const ChosenArgument& argument : step.arguments)
+                    if (const ParameterSpec* parameter = spec->parameter(argument.parameter->name))
+                        for (const ReplacedName& replaced : argument.replaced)
+                            for (const std::string& value : values_of(*parameter))
+                                values[replaced.use->name].insert(value);
+    });
+    for (const WorkflowParameter& parameter : workflow.parameters)
+        print_setting(parameter.name, values[parameter.name]);
+}
+
+/// For the scripts: the words are those after `scanmill` on the command line so far.
+int complete_set(const std::vector<std::string>& words) {
+    const FilterLibrary library = open_library();
+    if (const FilterSpec* spec = library.find("measure"); spec && !words.empty() && words.front() == "measure") {
+        for (const ParameterSpec& parameter : spec->parameters) print_setting(parameter.name, values_of(parameter));
+        return done;
+    }
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        const std::string file = workflow_file(words[i]);
+        if (!std::filesystem::is_regular_file(file) || !file.ends_with(".yaml")) continue;
+        Diagnostics ignored(file);
+        print_settings(parse_workflow(read_workflow_file(file), ignored), library);
+        break;
+    }
+    return done;
 }
 
 }  // namespace
 
 void add_completion(CLI::App& app, Action& chosen) {
-    CLI::App* command =
-        app.add_subcommand("completion", "Prints a script that completes commands, options and filters");
-    auto shell = std::make_shared<std::string>();
-    command->add_option("SHELL", *shell, "bash, zsh or fish")
-        ->required()
-        ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-    command->footer(
+    auto [command, options] = add_command<CompletionOptions>(
+        app, chosen, "completion", "Prints a script that completes commands, options and their values", completion);
+    options.app = &app;
+    command.add_option("SHELL", options.shell, "The shell")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+    command.footer(
         "In ~/.bashrc: source <(scanmill completion bash)\n"
         "In ~/.zshrc, after compinit: source <(scanmill completion zsh)\n"
         "In ~/.config/fish/config.fish: scanmill completion fish | source");
-    command->callback([&chosen, &app, shell] {
-        chosen = [&app, shell] {
-            const std::vector<Command> commands = commands_of(app);
-            fmt::print("{}", *shell == "bash" ? bash(commands) : *shell == "zsh" ? zsh(commands) : fish(commands));
-            return done;
-        };
-    });
+    CLI::App* hidden = app.add_subcommand("complete-set")->group("")->prefix_command();
+    hidden->callback([&chosen, hidden] { chosen = [hidden] { return complete_set(hidden->remaining()); }; });
 }
 
 }  // namespace scanmill::runner

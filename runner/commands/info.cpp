@@ -4,9 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "commands/load.hpp"
 #include "output/error_output.hpp"
-#include "output/printable.hpp"
+#include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/describe/file_info.hpp"
 
@@ -15,6 +14,11 @@ namespace scanmill::runner {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+struct Options {
+    std::vector<std::string> files;
+    bool json = false;
+};
 
 /// Coordinates have more digits than lengths: micrometres at a distance of 10^6 m.
 std::string value_text(const Json& value, int digits = 9) {
@@ -41,44 +45,39 @@ std::string value_text(const Json& value, int digits = 9) {
     return text.empty() ? "none" : text;
 }
 
-int info(const std::vector<std::string>& files, bool as_json) {
+int info(const Options& options) {
     Json all{{"scanmill", 1}, {"files", Json::array()}};
     int code = done;
-    for (const std::string& file : files) {
+    for (const std::string& file : options.files) {
         try {
             Json described = file_info(file);
-            if (as_json) {
+            if (options.json) {
                 all["files"].push_back(std::move(described));
                 continue;
             }
-            if (files.size() > 1 && &file != &files.front()) fmt::print("\n");
+            if (&file != &options.files.front()) fmt::print("\n");
             for (const auto& [key, value] : described.items())
                 if (!(value.is_array() && value.empty()))
                     fmt::print("{:<15} {}\n", key, printable_line(value_text(value)));
         } catch (const Error& error) {
             code = some_failed;
-            if (as_json)
+            if (options.json)
                 all["files"].push_back({{"file", file}, {"error", error.what()}});
             else
                 print(error, false);
         }
     }
-    if (as_json) fmt::print("{}\n", all.dump(2, ' ', false, Json::error_handler_t::replace));
+    if (options.json) print_json(all);
     return code;
 }
 
 }  // namespace
 
 void add_info(CLI::App& app, Action& chosen) {
-    struct Options {
-        std::vector<std::string> files;
-        bool json = false;
-    };
-    CLI::App* command = app.add_subcommand("info", "Says what files hold: counts, columns, size, unit, topology");
-    auto options = std::make_shared<Options>();
-    command->add_option("FILE", options->files, "Scans or meshes")->required();
-    command->add_flag("--json", options->json, "Print it as JSON");
-    command->callback([&chosen, options] { chosen = [options] { return info(options->files, options->json); }; });
+    auto [command, options] = add_command<Options>(
+        app, chosen, "info", "Prints the content of files: counts, columns, size, unit, topology", info);
+    command.add_option("FILE", options.files, "Scans or meshes")->required();
+    command.add_flag("--json", options.json, "Print it as JSON");
 }
 
 }  // namespace scanmill::runner

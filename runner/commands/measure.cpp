@@ -5,71 +5,64 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "commands/execute.hpp"
-#include "commands/load.hpp"
+#include "commands/common.hpp"
 #include "output/error_output.hpp"
-#include "output/printable.hpp"
-#include "output/stderr_text.hpp"
-#include "output/table.hpp"
+#include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
+#include "scanmill/plan/step_parameters.hpp"
+#include "scanmill/session/session.hpp"
 #include "scanmill/worker/step_runner.hpp"
 
 namespace scanmill::runner {
 
 namespace {
 
-constexpr std::string_view filter = "measure";
+const std::string filter = "measure";
 
 struct Options {
-    std::string mesh, truth, unit, truth_unit;
+    std::string mesh, truth;
+    LengthUnit unit = LengthUnit::unknown, truth_unit = LengthUnit::unknown;
     std::vector<std::string> settings;
     bool certify = false, json = false;
     unsigned threads = 0;
     std::uint64_t seed = 0;
 };
 
-/// The filter's defaults, but for what is given.
+/// The filter's defaults, overridden by --set.
 ParameterSet parameters_of(const FilterSpec& spec, const std::vector<std::string>& pairs) {
-    const Settings settings = parse_settings(pairs);
-    for (const auto& [name, value] : settings) {
-        std::vector<std::string> names;
-        for (const ParameterSpec& parameter : spec.parameters) names.push_back(parameter.name);
-        if (!spec.parameter(name))
-            throw Error("{} has no parameter '{}'; it has {}{}", spec.name, name, enumerated(names),
-                        did_you_mean(name, names));
+    StepSyntax step;
+    step.filter = spec.name;
+    for (const auto& [name, value] : parse_settings(pairs)) {
         if (value.sweep) throw Error("--set {}: a sweep is for workflows; give one value", name);
+        step.parameters.push_back({name, {}, value});
     }
-    ParameterSet set;
-    for (const ParameterSpec& parameter : spec.parameters) {
-        const auto given = settings.find(parameter.name);
-        try {
-            set.values.emplace_back(parameter.name, given == settings.end()
-                                                        ? parameter.default_value
-                                                        : parse(parameter, given->second.values.front().literal));
-        } catch (const Error& error) {
-            throw Error("--set {}: {}", parameter.name, error.sentence());
-        }
+    ExpandedStep expanded{&step, {}, {}};
+    for (const NamedExpression& parameter : step.parameters) {
+        const WrittenValue& written = parameter.value.values.front();
+        expanded.arguments.push_back({&parameter, &written, written.literal, {}});
     }
+    Diagnostics diagnostics("");
+    ParameterSet set = step_parameters(expanded, spec, {"", {}, diagnostics, nullptr});
+    if (diagnostics.has_errors()) throw Error("--set: {}", diagnostics.sorted().front().message);
     return set;
 }
 
 /// The truth in the mesh's unit, where both are known.
-std::vector<StepInput> read_inputs(const Options& options, LengthUnit unit, LengthUnit truth_unit,
-                                   const std::function<void(std::string)>& warn) {
+std::vector<StepInput> read_inputs(const Options& options, const Warn& warn) {
     ReadOptions reading;
     reading.on_warning = warn;
-    reading.unit = unit;
+    reading.unit = options.unit;
     const Value mesh = read_mesh(options.mesh, reading);
-    reading.unit = truth_unit;
+    reading.unit = options.truth_unit;
     Value truth = read_file(options.truth, reading).value;
     if (!truth.find<TriangleMesh>() && !truth.find<PointCloud>())
         throw Error("'{}': the truth is a mesh or points; the file contains {}", options.truth, truth.kind().name());
     if (Frame frame = *frame_of(truth); frame.unit == LengthUnit::unknown) {
-        frame.unit = unit;  // --unit is for files that do not declare theirs
+        frame.unit = options.unit;  // --unit is also that of a truth that declares none
         truth = reframed(truth, frame);
     }
     for (const Value* value : std::initializer_list<const Value*>{&mesh, &truth})
@@ -85,28 +78,28 @@ std::string report_text(const Metrics& metrics) {
     return table.text();
 }
 
-std::string report_json(const Options& options, const Metrics& metrics, const std::vector<std::string>& warnings) {
+nlohmann::ordered_json report_json(const Options& options, const Metrics& metrics,
+                                   const std::vector<std::string>& warnings) {
     nlohmann::ordered_json json;
     kind_of<Metrics>().info().to_json(&metrics, json);
     json["mesh"] = options.mesh;
     json["truth"] = options.truth;
     json["warnings"] = warnings;
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    return json;
 }
 
-int measure(Options options) {
+int measure(const Options& options) {
     FilterLibrary library = open_library();
-    const FilterSpec* spec = library.find(filter);
-    if (!spec) throw Error("the filter '{}' is not installed", filter).hint("scanmill list");
-    if (options.certify) options.settings.emplace_back("certify=true");
+    const FilterSpec& spec = find_filter(library, filter);
+    std::vector<std::string> settings = options.settings;
+    if (options.certify) settings.emplace_back("certify=true");
     PlannedStep step;
     step.label = filter;
-    step.spec = *spec;
-    step.parameters = parameters_of(*spec, options.settings);
-    const LengthUnit unit = parse_unit(options.unit), truth_unit = parse_unit(options.truth_unit);
+    step.spec = spec;
+    step.parameters = parameters_of(spec, settings);
     std::vector<std::string> warnings;
     const auto warn = [&](std::string text) {
-        tell("warning: {}\n", printable(text));
+        print_warning(text);
         warnings.push_back(std::move(text));
     };
     ContextOptions running;
@@ -116,11 +109,13 @@ int measure(Options options) {
     try {
         NodeReport report;
         const Outputs outputs = run_step(
-            step, [&]() -> const FilterDeclaration& { return library.load(std::string(filter)); },
-            read_inputs(options, unit, truth_unit, warn), std::move(running),
-            [](const ParameterSet&, NodeReport&) { return std::nullopt; }, report);
-        const auto& metrics = *outputs.find(spec->outputs.front().name)->get<Metrics>();
-        fmt::print("{}", options.json ? report_json(options, metrics, warnings) : report_text(metrics));
+            step, [&]() -> const FilterDeclaration& { return library.load(filter); }, read_inputs(options, warn),
+            std::move(running), [](const ParameterSet&, NodeReport&) { return std::nullopt; }, report);
+        const auto& metrics = *outputs.find(spec.outputs.front().name)->get<Metrics>();
+        if (options.json)
+            print_json(report_json(options, metrics, warnings));
+        else
+            fmt::print("{}", report_text(metrics));
     } catch (const Error& error) {
         print(error, options.json);
         return some_failed;
@@ -135,23 +130,19 @@ int measure(Options options) {
 }  // namespace
 
 void add_measure(CLI::App& app, Action& chosen) {
-    CLI::App* command =
-        app.add_subcommand("measure", "Tells how far a mesh is from the truth, and how good a mesh it is");
-    auto options = std::make_shared<Options>();
-    command->add_option("MESH", options->mesh, "The mesh to measure")->required();
-    command->add_option("TRUTH", options->truth, "What it should be: a mesh, or points")->required();
-    command->add_option("--unit", options->unit,
-                        "The files' unit of length, whatever they declare: um, mm, cm, m, in, ft");
-    command->add_option("--truth-unit", options->truth_unit,
-                        "The same of TRUTH, where it differs: it is converted to that of MESH");
-    command->add_flag("--certify", options->certify, "Bound the Hausdorff distance from below and above; takes longer");
-    command->add_option("--set", options->settings,
-                        "NAME=VALUE: a parameter of the filter, as `scanmill show measure` lists them");
-    command->add_option("--threads", options->threads, "0: all cores. Results do not depend on it")
-        ->capture_default_str();
-    command->add_option("--seed", options->seed, "Seed of the samples")->capture_default_str();
-    command->add_flag("--json", options->json, "Print JSON");
-    command->callback([&chosen, options] { chosen = [options] { return measure(*options); }; });
+    auto [command, options] = add_command<Options>(
+        app, chosen, "measure", "Measures the distance of a mesh from the truth, and the quality of the mesh", measure);
+    command.add_option("MESH", options.mesh, "The mesh to measure")->required();
+    command.add_option("TRUTH", options.truth, "The correct shape: a mesh, or points")->required();
+    add_unit_option(command, "--unit", options.unit, "The unit of MESH, and of TRUTH if that declares none");
+    add_unit_option(command, "--truth-unit", options.truth_unit,
+                    "The unit of TRUTH, which is converted to that of MESH");
+    command.add_flag("--certify", options.certify, "Bound the Hausdorff distance from below and above; takes longer");
+    command.add_option("--set", options.settings,
+                       "NAME=VALUE: a parameter of the filter, as `scanmill show measure` lists them");
+    command.add_option("--threads", options.threads, "0: all cores. Does not change results")->capture_default_str();
+    command.add_option("--seed", options.seed, "Seed of the samples")->capture_default_str();
+    command.add_flag("--json", options.json, "Print JSON");
 }
 
 }  // namespace scanmill::runner

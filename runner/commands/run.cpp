@@ -1,27 +1,222 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// `run` and `batch`: from the command line to a graph, and from its run to the report and the exit code.
+
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <charconv>
+#include <csignal>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "commands/execute.hpp"
-#include "commands/load.hpp"
+#include "commands/common.hpp"
 #include "output/error_output.hpp"
+#include "output/progress.hpp"
+#include "output/run_output.hpp"
+#include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/batch/batch.hpp"
-#include "scanmill/plugin/module.hpp"
-#include "scanmill/workflow/document.hpp"
+#include "scanmill/session/session.hpp"
 
 namespace scanmill::runner {
 
 namespace {
 
-struct Options {
-    std::string workflow, unit, until;
-    std::vector<std::string> scans, inputs, settings, only, save;
+struct ExecuteOptions {
+    SessionSettings session;
+    CacheOptions cache;
+    std::uint64_t seed = 0;
+    bool no_cache = false, dry_run = false, json = false, quiet = false;
+};
+
+struct RunOptions {
+    std::string workflow;
+    std::vector<std::string> scans, inputs, settings;
+    RunRequest request;
     ExecuteOptions execute;
 };
+
+struct BatchOptions {
+    std::string file;
+    ExecuteOptions execute;
+};
+
+constexpr unsigned most_jobs = 1024;
+
+// A signal handler may write only to such a variable.
+volatile std::sig_atomic_t interrupt_requested = 0;
+
+void on_interrupt(int signal) {
+    interrupt_requested = 1;
+    std::signal(signal, SIG_DFL);  // a second signal ends the program at once
+}
+
+/// CLI11 itself reads -1 as the largest number and 010 as eight.
+template <class Number>
+CLI::Validator whole_number() {
+    return CLI::Validator(
+        [](const std::string& text) -> std::string {
+            Number ignored = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ignored);
+            const bool octal = text.size() > 1 && text[0] == '0';
+            if (error == std::errc() && end == text.data() + text.size() && !octal) return {};
+            return fmt::format("'{}' is not a whole number from 0 to {}", text, std::numeric_limits<Number>::max());
+        },
+        "");
+}
+
+/// Empty when the folder exists or can be made.
+std::string folder_error(const std::string& folder) {
+    if (folder.empty()) return "the output folder's name is empty";
+    std::error_code ignored;
+    for (std::filesystem::path part = folder; !part.empty(); part = part.parent_path()) {
+        if (std::filesystem::is_directory(part, ignored)) break;
+        if (std::filesystem::exists(part, ignored))
+            return fmt::format("results cannot be written to '{}': '{}' is a file", folder, part.string());
+        if (part == part.parent_path()) break;
+    }
+    return {};
+}
+
+void add_execute_options(CLI::App& command, ExecuteOptions& options) {
+    options.session.output_folder = "scanmill-out";
+    command.add_option("-o,--output", options.session.output_folder, "The output folder")
+        ->capture_default_str()
+        ->check(CLI::Validator(folder_error, ""));
+    command
+        .add_option("-j,--jobs", options.session.jobs,
+                    "Worker processes; a crash in one does not affect the others; 0: run in this process, without time "
+                    "limits. Default: the number of cores, fewer for large scans")
+        ->check(whole_number<unsigned>())
+        ->check(CLI::Range(0u, most_jobs));
+    command
+        .add_option("--threads", options.session.threads,
+                    "Threads inside a filter; 0: the machine's cores shared among the jobs. Does not change results")
+        ->capture_default_str()
+        ->check(whole_number<unsigned>());
+    command.add_option("--seed", options.seed, "Seed of everything random")
+        ->capture_default_str()
+        ->check(whole_number<std::uint64_t>());
+    CLI::Option* folder = add_cache_options(command, options.cache);
+    command.add_flag("--no-cache", options.no_cache, "Compute everything and store nothing")->excludes(folder);
+    const auto keep = [&](const std::string& policy) {
+        options.session.keep = policy == "always"  ? KeepRule::Policy::always
+                               : policy == "never" ? KeepRule::Policy::never
+                                                   : KeepRule::Policy::worth;
+    };
+    command
+        .add_option_function<std::string>(
+            "--keep", keep,
+            "Which values the cache stores: worth, if recomputing takes more than twice as long as writing; always; or "
+            "never")
+        ->default_str("worth")
+        ->check(CLI::IsMember({"worth", "always", "never"}));
+    command.add_flag("--fail-fast", options.session.fail_fast, "Start no new step after a failure");
+    command.add_flag("--dry-run", options.dry_run,
+                     "Print the steps to run with reasons, the cached steps and the output files, and stop");
+    command.add_flag("-q,--quiet", options.quiet, "No progress on stderr");
+}
+
+/// Nothing with --no-cache, and, after a warning, without a folder for the cache.
+std::unique_ptr<Cache> cache_for(const ExecuteOptions& options, const Warn& warn) {
+    if (options.no_cache) return nullptr;
+    try {
+        return open_cache(options.cache, warn);
+    } catch (const Error& error) {
+        warn(fmt::format("{}; results are not cached. {}", error.sentence(), error.hint()));
+        return nullptr;
+    }
+}
+
+/// No worker process starts for a dry run.
+SessionSettings settings_for(const ExecuteOptions& options) {
+    SessionSettings settings = options.session;
+    if (!options.dry_run) settings.worker_command = {"/proc/self/exe", "worker"};
+    settings.is_cancelled = [] { return interrupt_requested != 0; };
+    return settings;
+}
+
+/// Prints errors and warnings; with `json` also as JSON if there are errors. Returns whether there are none.
+bool report(const std::vector<Diagnostics>& all, bool json) {
+    Json files = Json::array();
+    for (const Diagnostics& diagnostics : all) {
+        print(diagnostics);
+        files.push_back(to_json(diagnostics));
+    }
+    if (std::ranges::none_of(all, &Diagnostics::has_errors)) return true;
+    if (json) print_files_json(std::move(files));
+    return false;
+}
+
+/// The session of a command. Its first worker process starts before the workflow is read.
+class Execution {
+public:
+    explicit Execution(const ExecuteOptions& options)
+        : options_(options),
+          cache_(cache_for(options, warn_)),
+          session_(settings_for(options), cache_.get()) {}
+
+    FilterLibrary& library() { return library_; }
+    std::string hash(const std::filesystem::path& file) const {
+        return cache_ ? cache_->file_hash(file) : content_hash(file);
+    }
+    /// Prints the prediction, with --dry-run, or runs the graph and prints the report. With `streams_events`, --json
+    /// prints one event per line during the run. Returns the exit code.
+    int run(const SessionTask& task, bool streams_events);
+
+private:
+    const ExecuteOptions& options_;
+    Warn warn_ = warning_printer();
+    std::unique_ptr<Cache> cache_;
+    Session session_;
+    FilterLibrary library_ = open_library();
+};
+
+int Execution::run(const SessionTask& task, bool streams_events) {
+    const RunGraph& graph = task.graph;
+    session_.on_warning(warn_);
+    std::vector<NodePrediction> predictions = session_.predict(graph, library_);
+    if (options_.dry_run) {
+        if (options_.json)
+            print_json(graph_json(graph, predictions));
+        else
+            fmt::print("{}", printable(graph_text(graph, predictions)));
+        return done;
+    }
+
+    std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+    Progress progress(graph, predictions, std::max(1u, session_.jobs(graph)), options_.quiet);
+    session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
+    std::optional<EventStream> events;
+    std::vector<RunObserver*> observers{&progress};
+    if (options_.json && streams_events) observers.push_back(&events.emplace(graph));
+    const RunReport report =
+        session_.run(task, library_, std::move(predictions), observers, [&](const RunStarted& run) {
+            if (events) events->begin(task.name, run.jobs, run.threads, run.run);
+        });
+    progress.finish();
+    session_.on_warning(warn_);
+
+    if (events) {
+        events->end(report);
+        if (events->has_failed()) {
+            print_stderr("error: not all events could be written\n");
+            return our_fault;
+        }
+    } else if (options_.json) {
+        print_json(report_json(graph, report));
+    } else {
+        fmt::print("{}", report_text(graph, report));
+    }
+    if (report.interrupted) {
+        print_stderr("interrupted; all files written so far are complete\n");
+        return interrupted;
+    }
+    return report.all_done() ? done : some_failed;
+}
 
 std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std::vector<std::string>& pairs) {
     std::map<std::string, std::vector<std::filesystem::path>> inputs;
@@ -38,74 +233,90 @@ std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std
     return inputs;
 }
 
-int run_workflow(const Options& options) {
-    const Warn warn = warning_teller();
-    const std::unique_ptr<Cache> cache = open_cache(options.execute.cache, warn);
-    const std::unique_ptr<Session> session = open_session(options.execute, cache.get());
-    FilterLibrary library = open_library();
+int run_workflow(const RunOptions& options) {
+    Execution execution(options.execute);
     const std::string workflow = workflow_file(options.workflow);
     const std::string text = read_workflow_file(workflow);
     if (is_batch(text)) throw Error("'{}' is a batch, not a workflow", workflow).hint("scanmill batch " + workflow);
-    const CheckedWorkflow checked = check_workflow(workflow, text, library, parse_settings(options.settings));
-    print(checked.diagnostics);
-    if (checked.diagnostics.has_errors()) {
-        if (options.execute.json) print_files_json({to_json(checked.diagnostics)});
-        return bad_request;
-    }
+    const CheckedWorkflow checked =
+        check_workflow(workflow, text, execution.library(), parse_settings(options.settings));
+    if (!report({checked.diagnostics}, options.execute.json)) return bad_request;
 
-    RunRequest request;
+    RunRequest request = options.request;
     for (const std::string& scan : options.scans) request.scans.emplace_back(scan);
     request.inputs = parse_inputs(options.inputs);
-    if (!checked.plan.workflow.inputs.empty())  // `--in` feeds the first input, too
+    if (!checked.plan.workflow.inputs.empty())  // `--in` feeds the first input too
         if (auto first = request.inputs.extract(checked.plan.workflow.inputs.front().name))
             for (const std::filesystem::path& file : first.mapped()) request.scans.emplace_back(file);
-    request.output_folder = options.execute.output_folder;
-    request.unit = parse_unit(options.unit);
+    request.output_folder = options.execute.session.output_folder;
     request.seed = options.execute.seed;
-    request.only = options.only;
-    request.until = options.until;
-    request.save = options.save;
-    SessionTask task{workflow_name(checked.plan),
-                     workflow,
-                     make_graph(checked.plan, library, request,
-                                [&](const std::filesystem::path& file) {
-                                    return cache ? cache->file_hash(file) : content_hash(file);
-                                }),
-                     {}};
-    return execute(task, false, *session, library, warn, options.execute);
+    const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
+    RunGraph graph = make_graph(checked.plan, execution.library(), request, hash);
+    return execution.run({workflow_name(checked.plan), workflow, std::move(graph), {}}, false);
+}
+
+RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteOptions& options) {
+    RunRequest request;
+    for (const std::size_t index : part.scans) {
+        const BatchScan& scan = batch.scans[index];
+        ScanFile file(scan.file);
+        file.unit = scan.unit;
+        file.frame = scan.frame;
+        file.pose = scan.pose;
+        request.scans.push_back(std::move(file));
+        for (const std::filesystem::path& other : {scan.truth, scan.pose_file})
+            if (!other.empty()) request.protected_files.push_back(other);
+    }
+    request.protected_files.emplace_back(batch.file);
+    request.output_folder = options.session.output_folder;
+    request.seed = options.seed;
+    return request;
+}
+
+int run_batch(const BatchOptions& options) {
+    const std::string text = read_workflow_file(options.file);
+    if (!is_batch(text))
+        throw Error("'{}' is not a batch: it has no key `batch`", options.file)
+            .hint("a workflow is run by: scanmill run WORKFLOW SCAN…");
+    Execution execution(options.execute);
+    CheckedBatch checked = check_batch(text, options.file, execution.library());
+    if (!report(checked.diagnostics, options.execute.json)) return bad_request;
+    std::vector<GraphPart> parts;
+    for (const BatchPart& part : checked.parts)
+        parts.push_back({part.plan, request_for(checked.batch, part, options.execute)});
+    const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
+    RunGraph graph = make_graph(parts, execution.library(), hash);
+    return execution.run({checked.batch.name, options.file, std::move(graph), checked.batch.limits}, true);
 }
 
 }  // namespace
 
-void add_run(CLI::App& app, Action& chosen, std::vector<std::string> command_line) {
-    CLI::App* command = app.add_subcommand("run", "Runs a workflow over one scan or many");
-    auto options = std::make_shared<Options>();
-    options->execute.command_line = std::move(command_line);
-    command
-        ->add_option("WORKFLOW", options->workflow,
-                     "The workflow file, or the name of a shipped one, such as bernardini-1997")
+void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::string>& command_line) {
+    auto [run, options] =
+        add_command<RunOptions>(app, chosen, "run", "Runs a workflow over one scan or many", run_workflow);
+    run.add_option("WORKFLOW", options.workflow,
+                   "The workflow file, or the name of a shipped one, such as bernardini-1997")
         ->required();
-    command->add_option(
-        "SCAN", options->scans,
-        "Files that feed the workflow's first input: one run each, or all of them one run when that input is a "
-        "list");
-    command->add_option("--in", options->inputs, "Files for an input: NAME=FILE[,FILE…]")
-        ->take_all()
-        ->allow_extra_args(false);
-    command->add_option("--unit", options->unit, "The scans' unit of length: um, mm, cm, m, in, ft");
-    command->add_option("--set", options->settings, "A workflow parameter's value, NAME=VALUE")
-        ->take_all()
-        ->allow_extra_args(false);
-    command->add_option("--only", options->only, "Run only this variant (may be repeated)")
-        ->take_all()
-        ->allow_extra_args(false);
-    command->add_option("--until", options->until, "Stop after this step");
-    command->add_option("--save", options->save, "Also write this step's result, STEP or STEP.PORT (may be repeated)")
-        ->take_all()
-        ->allow_extra_args(false);
-    add_execute_options(*command, options->execute);
-    command->add_flag("--json", options->execute.json, "Print the report as JSON");
-    command->callback([&chosen, options] { chosen = [options] { return run_workflow(*options); }; });
+    run.add_option("SCAN", options.scans,
+                   "Files for the workflow's first input: one run each, or one run for all if that input is a list");
+    const auto add_list = [&run = run](const char* name, std::vector<std::string>& values, const char* help) {
+        run.add_option(name, values, help)->take_all()->allow_extra_args(false);
+    };
+    add_list("--in", options.inputs, "Files for an input: NAME=FILE[,FILE…]");
+    add_unit_option(run, "--unit", options.request.unit, "The scans' unit of length");
+    add_list("--set", options.settings, "A workflow parameter's value, NAME=VALUE");
+    add_list("--only", options.request.only, "Run only this variant (may be repeated)");
+    run.add_option("--until", options.request.until, "Stop after this step");
+    add_list("--save", options.request.save, "Also write this step's result, STEP or STEP.PORT (may be repeated)");
+    add_execute_options(run, options.execute);
+    run.add_flag("--json", options.execute.json, "Print the report as JSON");
+
+    auto [batch, batch_options] = add_command<BatchOptions>(
+        app, chosen, "batch", "Runs workflows over a library of scans, as a batch file describes", run_batch);
+    batch.add_option("FILE", batch_options.file, "The batch file")->required();
+    add_execute_options(batch, batch_options.execute);
+    batch.add_flag("--json", batch_options.execute.json, "Print events as JSON, one per line");
+    options.execute.session.command_line = batch_options.execute.session.command_line = command_line;
 }
 
 }  // namespace scanmill::runner

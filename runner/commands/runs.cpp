@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
-#include "output/printable.hpp"
-#include "output/table.hpp"
+#include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
@@ -40,16 +39,15 @@ void add_failure(Json& entry, const FailureRecord& failure) {
 }
 
 Json to_json(const RunDetails& run) {
-    Json json{{"scanmill", 1}, {"run", to_json(run.summary)}};
-    json["run"]["file"] = run.start.file;
-    json["run"]["arguments"] = run.start.arguments;
-    json["run"]["seed"] = run.start.seed;
-    json["run"]["threads"] = run.start.threads;
-    json["run"]["version"] = run.start.version;
-    json["run"]["jobs"] = run.start.jobs;
-    json["run"]["machine"] = run.start.machine;
-    json["run"]["libraries"] = run.start.libraries;
-    json["cells"] = Json::array();
+    Json json{{"scanmill", 1}, {"run", to_json(run.summary)}, {"cells", Json::array()}, {"steps", Json::array()}};
+    json["run"].update({{"file", run.start.file},
+                        {"arguments", run.start.arguments},
+                        {"seed", run.start.seed},
+                        {"threads", run.start.threads},
+                        {"version", run.start.version},
+                        {"jobs", run.start.jobs},
+                        {"machine", run.start.machine},
+                        {"libraries", run.start.libraries}});
     for (const CellRecord& cell : run.cells) {
         Json entry{{"scan", cell.scan},       {"workflow", cell.workflow}, {"variant", cell.variant},
                    {"outcome", cell.outcome}, {"seconds", cell.seconds},   {"steps", cell.nodes},
@@ -62,7 +60,6 @@ Json to_json(const RunDetails& run) {
                                         {"properties", metrics_json(output.properties)}});
         json["cells"].push_back(std::move(entry));
     }
-    json["steps"] = Json::array();
     for (const StepRecord& step : run.steps) {
         Json entry{{"node", step.node},
                    {"workflow", step.workflow},
@@ -92,14 +89,12 @@ Json to_json(const RunDetails& run) {
     return json;
 }
 
-std::string dumped(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
-
 int list_runs(const RunRecords& records, bool json) {
     const std::vector<RunSummary> runs = records.runs();
     if (json) {
         Json all{{"scanmill", 1}, {"runs", Json::array()}};
         for (const RunSummary& run : runs) all["runs"].push_back(to_json(run));
-        fmt::print("{}", dumped(all));
+        print_json(all);
         return done;
     }
     Table table({"run", "started", "workflow", "cells", "failed", "computed", "cached", "seconds", "outcome"});
@@ -107,14 +102,14 @@ int list_runs(const RunRecords& records, bool json) {
         table.add({std::to_string(run.id), run.started, run.workflow, std::to_string(run.cells),
                    std::to_string(run.failed), std::to_string(run.ran), std::to_string(run.cached),
                    fmt::format("{:.2f}", run.seconds), outcome_of(run)});
-    fmt::print("{}", printable(table.text()));
+    fmt::print("{}", table.text());
     return done;
 }
 
 int show_run(const RunRecords& records, std::int64_t id, bool json) {
     const RunDetails run = records.run(id);
     if (json) {
-        fmt::print("{}", dumped(to_json(run)));
+        print_json(to_json(run));
         return done;
     }
     fmt::print("run       {} of {}, {}\nworkflow  {}\nversion   {}\nmachine   {}\nthreads   {}, seed {}\n\n", id,
@@ -123,11 +118,11 @@ int show_run(const RunRecords& records, std::int64_t id, bool json) {
     Table cells({"scan", "variant", "outcome", "seconds"});
     for (const CellRecord& cell : run.cells)
         cells.add({cell.scan, cell.variant, cell.outcome, fmt::format("{:.2f}", cell.seconds)});
-    fmt::print("{}\n", printable(cells.text()));
+    fmt::print("{}\n", cells.text());
     Table steps({"scan", "step", "outcome", "seconds", "from", "why"});
     for (const StepRecord& step : run.steps)
         steps.add({step.scan, step.label, step.outcome, fmt::format("{:.2f}", step.seconds), step.origin, step.why});
-    fmt::print("{}", printable(steps.text()));
+    fmt::print("{}", steps.text());
     for (const CellRecord& cell : run.cells)
         if (!cell.failure.error.empty()) fmt::print("\n{}\n", printable(cell.failure.error));
     return done;
@@ -136,32 +131,32 @@ int show_run(const RunRecords& records, std::int64_t id, bool json) {
 std::int64_t parse_id(const std::string& text) {
     std::int64_t id = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
-    if (error != std::errc() || end != text.data() + text.size()) throw Error("'{}' is no number of a run", text);
+    if (error != std::errc() || end != text.data() + text.size()) throw Error("'{}' is not the number of a run", text);
     return id;
+}
+
+struct Options {
+    std::filesystem::path folder;
+    std::string show, id;
+    bool json = false;
+};
+
+int runs(const Options& options) {
+    const RunRecords records = RunRecords::read(options.folder / records_file);
+    if (options.show.empty()) return list_runs(records, options.json);
+    if (options.id.empty()) throw Error("which run?").hint("scanmill runs DIR show 3; scanmill runs DIR lists them");
+    return show_run(records, parse_id(options.id), options.json);
 }
 
 }  // namespace
 
 void add_runs(CLI::App& app, Action& chosen) {
-    struct Options {
-        std::string folder, show, id;
-        bool json = false;
-    };
-    CLI::App* command = app.add_subcommand("runs", "Lists the runs recorded in an output folder, or shows one of them");
-    auto options = std::make_shared<Options>();
-    command->add_option("DIR", options->folder, "The output folder of the runs")->required();
-    command->add_option("show", options->show, "The word `show`, to show one run")->check(CLI::IsMember({"show"}));
-    command->add_option("ID", options->id, "The run's number, as the list says it");
-    command->add_flag("--json", options->json, "Print it as JSON");
-    command->callback([&chosen, options] {
-        chosen = [options] {
-            const RunRecords records = RunRecords::read(std::filesystem::path(options->folder) / records_file);
-            if (options->show.empty()) return list_runs(records, options->json);
-            if (options->id.empty())
-                throw Error("which run?").hint("scanmill runs DIR show 3; scanmill runs DIR lists them");
-            return show_run(records, parse_id(options->id), options->json);
-        };
-    });
+    auto [command, options] = add_command<Options>(
+        app, chosen, "runs", "Lists the runs recorded in an output folder, or shows one of them", runs);
+    command.add_option("DIR", options.folder, "The output folder of the runs")->required();
+    command.add_option("show", options.show, "The word `show`, to show one run")->check(CLI::IsMember({"show"}));
+    command.add_option("ID", options.id, "The run's number in the list");
+    command.add_flag("--json", options.json, "Print it as JSON");
 }
 
 }  // namespace scanmill::runner

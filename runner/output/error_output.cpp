@@ -6,8 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "output/printable.hpp"
-#include "output/stderr_text.hpp"
+#include "output/terminal.hpp"
 #include "scanmill/base/text.hpp"
 
 namespace scanmill::runner {
@@ -16,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void print_json(const Json& json) {
+void print_json_line(const Json& json) {
     fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));  // names of files may be no UTF-8
 }
 
@@ -27,18 +26,19 @@ void print(const Error& error, bool json) {
     std::string text = "error: " + printable_line(error.sentence());
     for (const std::string& frame : error.frames()) text += "\n  " + printable_line(frame);
     if (!error.hint().empty()) text += "\nhint: " + printable_line(error.hint());
-    tell("{}\n", text);
+    print_stderr("{}\n", text);
     if (!json) return;
     Json described{{"message", error.sentence()}, {"where", error.frames()}};
     if (!error.hint().empty()) described["hint"] = error.hint();
-    print_json({{"scanmill", 1}, {"error", std::move(described)}});
+    print_json_line({{"scanmill", 1}, {"error", std::move(described)}});
 }
 
 void print(const Diagnostics& diagnostics) {
     for (const Diagnostic& diagnostic : diagnostics.sorted())
-        tell("{}\n", printable_line(text(diagnostic, diagnostics.file())));
+        print_stderr("{}\n", printable_line(text(diagnostic, diagnostics.file())));
     if (diagnostics.has_errors())
-        tell("{} in '{}'\n", count_text(diagnostics.errors(), "error", "errors"), printable_line(diagnostics.file()));
+        print_stderr("{} in '{}'\n", count_text(diagnostics.errors(), "error", "errors"),
+                     printable_line(diagnostics.file()));
 }
 
 Json to_json(const Diagnostics& diagnostics) {
@@ -57,6 +57,6 @@ Json unreadable_json(const std::string& file, const Error& error) {
     return to_json(diagnostics);
 }
 
-void print_files_json(Json files) { print_json({{"scanmill", 1}, {"files", std::move(files)}}); }
+void print_files_json(Json files) { print_json_line({{"scanmill", 1}, {"files", std::move(files)}}); }
 
 }  // namespace scanmill::runner

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/workflow/diagnostics.hpp"
+#include "scanmill/workflow/document.hpp"
 
 namespace scanmill::runner {
 

@@ -4,17 +4,57 @@
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
+#include <wchar.h>
 
 #include <algorithm>
+#include <clocale>
+#include <cmath>
+#include <cwchar>
 
-#include "output/printable.hpp"
-#include "output/stderr_text.hpp"
+#include "output/terminal.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill::runner {
 
 namespace {
 
-/// Columns and lines.
+struct Character {
+    std::size_t begin, columns;
+};
+
+/// The characters of UTF-8 text with their columns on a terminal; an invalid byte counts as one.
+std::vector<Character> characters_of(const std::string& text) {
+    static const ::locale_t utf8 = ::newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
+    const ::locale_t before = ::uselocale(utf8);
+    std::vector<Character> all;
+    std::mbstate_t state{};
+    for (std::size_t begin = 0; begin < text.size();) {
+        wchar_t character = 0;
+        const std::size_t bytes = std::mbrtowc(&character, &text[begin], text.size() - begin, &state);
+        const bool is_valid = bytes != 0 && bytes <= text.size();
+        all.push_back({begin, is_valid ? static_cast<std::size_t>(std::max(0, ::wcwidth(character))) : 1});
+        if (!is_valid) state = {};
+        begin += is_valid ? bytes : 1;
+    }
+    ::uselocale(before);
+    return all;
+}
+
+/// At most `width` columns of whole characters; the beginning is cut off, because names differ at their end.
+std::string fitted(const std::string& text, std::size_t width) {
+    const std::vector<Character> characters = characters_of(text);
+    std::size_t columns = 0;
+    for (const Character& each : characters) columns += each.columns;
+    if (columns <= width) return text;
+    if (width < 2) return "";
+    for (const Character& each : characters) {
+        if (columns + 1 <= width) return "…" + text.substr(each.begin);
+        columns -= each.columns;
+    }
+    return "…";
+}
+
+/// Columns and lines of the terminal.
 std::pair<std::size_t, std::size_t> terminal_size() {
     winsize size{};
     if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) return {80, 24};
@@ -25,16 +65,66 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-std::size_t count_to_run(const std::vector<NodePrediction>& prediction) {
-    return static_cast<std::size_t>(std::ranges::count(prediction, true, &NodePrediction::will_run));
+std::size_t count_to_run(const std::vector<NodePrediction>& predictions) {
+    return static_cast<std::size_t>(std::ranges::count(predictions, true, &NodePrediction::will_run));
 }
 
 }  // namespace
 
-Progress::Progress(const RunGraph& graph, const std::vector<NodePrediction>& prediction, std::size_t workers,
+void ProgressBoard::progressed(const void* id, double fraction) {
+    for (Doing& each : workers_)
+        if (each.id == id) each.fraction = std::clamp(fraction, 0.0, 1.0);
+}
+
+void ProgressBoard::ended(const void* id) {
+    for (Doing& each : workers_)
+        if (each.id == id) each = {};
+}
+
+std::optional<double> ProgressBoard::time_left(double now) const {
+    constexpr double least_time = 1;
+    if (ran_ == 0 || now < least_time || ended_ >= steps_) return std::nullopt;
+    const std::size_t to_come = to_run_ > ran_ ? to_run_ - ran_ : 0;
+    return now / static_cast<double>(ran_) * static_cast<double>(to_come);
+}
+
+std::string ProgressBoard::line_of(std::size_t worker, double now, std::size_t width) const {
+    const Doing& doing = workers_[worker];
+    const std::string head = workers_.size() > 1 ? fmt::format("{:>3} ", worker + 1) : "";
+    if (!doing.id) return fitted(head + "-", width);
+    const std::string percent = doing.fraction > 0 ? fmt::format(" {:.0f} %", 100 * doing.fraction) : "";
+    const std::string tail = fmt::format("{} {}", percent, clock_text(now - doing.since));
+    const std::size_t taken = head.size() + tail.size();
+    return fitted(head + fitted(doing.what, width > taken ? width - taken : 0) + tail, width);
+}
+
+std::vector<std::string> ProgressBoard::lines(double now, std::size_t width, std::size_t height) const {
+    std::vector<std::string> all;
+    const bool has_room = workers_.size() < height;
+    for (std::size_t worker = 0; worker < workers_.size() && all.size() + 1 < height; ++worker)
+        if (has_room || workers_[worker].id) all.push_back(line_of(worker, now, width));
+    constexpr std::size_t bar_width = 20;
+    const std::size_t filled = steps_ > 0 ? bar_width * std::min(ended_, steps_) / steps_ : bar_width;
+    std::string total = fmt::format("[{}{}] {}/{}", std::string(filled, '#'), std::string(bar_width - filled, '.'),
+                                    std::min(ended_, steps_), count_text(steps_, "step", "steps"));
+    if (failed_ > 0) total += fmt::format(", {} failed", failed_);
+    total += ", " + clock_text(now);
+    if (const std::optional<double> left = time_left(now)) total += fmt::format(", about {} left", clock_text(*left));
+    all.push_back(total.substr(0, width));
+    return all;
+}
+
+std::string clock_text(double seconds) {
+    const auto whole = static_cast<long long>(std::max(0.0, std::floor(seconds)));
+    const long long hours = whole / 3600, minutes = whole / 60 % 60;
+    return hours > 0 ? fmt::format("{}:{:02}:{:02}", hours, minutes, whole % 60)
+                     : fmt::format("{}:{:02}", minutes, whole % 60);
+}
+
+Progress::Progress(const RunGraph& graph, const std::vector<NodePrediction>& predictions, std::size_t workers,
                    bool quiet)
     : graph_(graph),
-      board_(workers, graph.nodes.size(), count_to_run(prediction)),
+      board_(workers, graph.nodes.size(), count_to_run(predictions)),
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) != 0),
       begin_(std::chrono::steady_clock::now()) {}
@@ -44,23 +134,23 @@ std::string Progress::label(const RunNode& node) const {
                                     : fmt::format("{}: read", node.leaf.file.string()));
 }
 
-void Progress::say(const std::string& line) {
+void Progress::print(const std::string& text) {
     wipe();
-    tell("{}\n", printable(line));
+    print_stderr("{}\n", printable(text));
 }
 
 void Progress::wipe() {
-    if (painted_ > 0) tell("\x1b[{}A\x1b[J", painted_);
+    if (painted_ > 0) print_stderr("\x1b[{}A\x1b[J", painted_);
     painted_ = 0;
 }
 
 void Progress::paint() {
     wipe();
     const auto [width, height] = terminal_size();
-    // The last column and the last line stay free: nothing wraps, nothing scrolls away.
+    // The last column and the last line stay free, so that no line wraps or scrolls.
     for (const std::string& line : board_.lines(seconds_since(begin_), std::max<std::size_t>(width, 2) - 1,
                                                 std::max<std::size_t>(height, 2) - 1)) {
-        tell("{}\n", line);
+        print_stderr("{}\n", line);
         ++painted_;
     }
     std::fflush(stderr);
@@ -91,8 +181,8 @@ void Progress::node_progress(const RunNode& node, double fraction) {
 
 void Progress::node_warning(const RunNode& node, std::string_view text) {
     const std::scoped_lock lock(mutex_);
-    // What is said of reading begins with the file's path.
-    say(node.step ? fmt::format("warning: {}: {}", label(node), text) : fmt::format("warning: {}", text));
+    // Warnings of readers begin with the file's path.
+    print("warning: " + printable_line(node.step ? fmt::format("{}: {}", label(node), text) : std::string(text)));
 }
 
 void Progress::node_ended(const RunNode& node, const NodeReport& report) {
@@ -103,7 +193,7 @@ void Progress::node_ended(const RunNode& node, const NodeReport& report) {
     if (quiet_ || terminal_ || report.outcome != Outcome::done) return;
     const std::string took =
         report.origin == Origin::ran ? fmt::format("{:.2f} s", report.effort.seconds) : std::string("cached");
-    tell("[{}/{}] {} {}\n", ended_, graph_.nodes.size(), label(node), took);
+    print_stderr("[{}/{}] {} {}\n", ended_, graph_.nodes.size(), label(node), took);
 }
 
 void Progress::output_started(const RunCell&, const RunOutput& output, std::size_t worker) {
@@ -115,7 +205,7 @@ void Progress::output_written(const RunCell& cell, const OutputReport& report) {
     const std::scoped_lock lock(mutex_);
     for (const RunOutput& output : cell.outputs)
         if (output.file == report.file) board_.ended(&output);
-    for (const std::string& warning : report.warnings) say(fmt::format("warning: {}", warning));
+    for (const std::string& warning : report.warnings) print("warning: " + printable_line(warning));
 }
 
 void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
@@ -123,14 +213,14 @@ void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     if (!report.failure) return;
     board_.cell_failed();
     const bool several = graph_.plans[cell.plan]->variants.size() > 1;
-    say(fmt::format("error: {}{}", report.failure.text,
-                    several ? fmt::format("\n  under variant '{}'", graph_.variant(cell).name) : ""));
+    print(fmt::format("error: {}{}", report.failure.text,
+                      several ? fmt::format("\n  under variant '{}'", graph_.variant(cell).name) : ""));
 }
 
-void Progress::say_beside(const std::function<void()>& say_it) {
+void Progress::print_beside(const std::function<void()>& print) {
     const std::scoped_lock lock(mutex_);
     wipe();
-    say_it();
+    print();
 }
 
 void Progress::finish() {

@@ -1,20 +1,62 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What a run says on stderr while it runs: on a terminal a line per worker and one for the whole, written over and
-/// over, elsewhere a plain line per finished step. Warnings and failures are always said.
+/// Progress of a run on stderr: on a terminal one line per worker and one for the whole, rewritten in place; elsewhere
+/// one plain line per finished step. Warnings and failures are always printed.
 
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
 
-#include "output/progress_board.hpp"
 #include "scanmill/run/run.hpp"
 
 namespace scanmill::runner {
 
+/// The lines on the terminal: one per worker, then one for the whole with an estimate of the time left.
+class ProgressBoard {
+public:
+    /// `steps`: all steps, run or taken from the cache; `to_run`: the steps that take time.
+    ProgressBoard(std::size_t workers, std::size_t steps, std::size_t to_run)
+        : workers_(workers),
+          steps_(steps),
+          to_run_(to_run) {}
+
+    /// `id` identifies the work for later calls. Times are seconds since the run began.
+    void started(std::size_t worker, const void* id, std::string what, double at) {
+        workers_[worker] = {id, std::move(what), at, 0};
+    }
+    void progressed(const void* id, double fraction);
+    void ended(const void* id);
+    void step_ended(bool took_time) {
+        ++ended_;
+        ran_ += took_time;
+    }
+    void cell_failed() { ++failed_; }
+
+    /// At most `width` columns and `height` lines: idle workers are left out first.
+    std::vector<std::string> lines(double now, std::size_t width, std::size_t height = 1000) const;
+    /// Estimated seconds until the end, if the remaining steps take as long as the finished ones on average.
+    std::optional<double> time_left(double now) const;
+
+private:
+    struct Doing {
+        const void* id = nullptr;  ///< nullptr: idle
+        std::string what;
+        double since = 0, fraction = 0;
+    };
+    std::vector<Doing> workers_;
+    std::string line_of(std::size_t worker, double now, std::size_t width) const;
+    std::size_t steps_, to_run_, ended_ = 0, ran_ = 0, failed_ = 0;
+};
+
+/// "0:07", "12:30", "1:02:05".
+std::string clock_text(double seconds);
+
 class Progress : public RunObserver {
 public:
-    Progress(const RunGraph& graph, const std::vector<NodePrediction>& prediction, std::size_t workers, bool quiet);
+    Progress(const RunGraph& graph, const std::vector<NodePrediction>& predictions, std::size_t workers, bool quiet);
 
     void node_started(const RunNode& node, std::size_t worker) override;
     void node_progress(const RunNode& node, double fraction) override;
@@ -24,15 +66,15 @@ public:
     void output_written(const RunCell& cell, const OutputReport& report) override;
     void cell_ended(const RunCell& cell, const CellReport& report) override;
     void time_passed() override;
-    /// Something else that is said on stderr meanwhile.
-    void say_beside(const std::function<void()>& say);
-    /// Leaves the terminal's lines empty.
+    /// Calls `print`, which writes other lines to stderr.
+    void print_beside(const std::function<void()>& print);
+    /// Clears the terminal's lines.
     void finish();
 
 private:
     std::string label(const RunNode& node) const;
     bool has_board() const { return terminal_ && !quiet_; }
-    void say(const std::string& line);
+    void print(const std::string& text);
     void paint();
     void wipe();
 

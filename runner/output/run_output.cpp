@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <cstdio>
 
-#include "output/failure_json.hpp"
-#include "output/table.hpp"
+#include "output/terminal.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
@@ -30,10 +29,10 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
         const PlannedStep* step = graph.step(node);
         if (!step) {
             if (!node.is_scan) continue;
-            for (const Metric& fact : done.properties.values) {  // a list's scans are counted together
-                const Metric* before = read.find(fact.name);
-                read.set(fact.name, fact.value + (before ? before->value : 0), fact.unit);
-                shown.set(fact.name, read.find(fact.name)->value, fact.unit);
+            for (const Metric& property : done.properties.values) {  // the scans of a list are added up
+                const Metric* before = read.find(property.name);
+                read.set(property.name, property.value + (before ? before->value : 0), property.unit);
+                shown.set(property.name, read.find(property.name)->value, property.unit);
             }
             continue;
         }
@@ -44,7 +43,8 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
     for (const OutputReport& output : report.cells[cell].outputs)
         if (output.kind == kind_of<TriangleMesh>() && output.outcome == Outcome::done) {
             for (const std::string_view name : {"triangles", "closed", "genus"})
-                if (const Metric* fact = output.properties.find(name)) shown.set(name, fact->value, fact->unit);
+                if (const Metric* property = output.properties.find(name))
+                    shown.set(name, property->value, property->unit);
             break;
         }
     return shown;
@@ -59,6 +59,22 @@ bool has_several_variants(const RunGraph& graph) {
     return std::ranges::any_of(graph.plans, [](const auto& plan) { return plan->variants.size() > 1; });
 }
 
+/// The scan, workflow and variant of a cell.
+Json cell_json(const RunGraph& graph, const RunCell& cell) {
+    return {{"scan", graph.scan_names[cell.scan]},
+            {"workflow", graph.workflow(cell)},
+            {"variant", graph.variant(cell).name}};
+}
+
+/// Adds `error`, `cause` and, where there is one, `signal` or `exit-code`.
+void add_failure(Json& entry, const Failure& failure) {
+    if (!failure) return;
+    entry["error"] = failure.text;
+    entry["cause"] = name_of(failure.cause);
+    if (failure.cause == Cause::signal) entry["signal"] = failure.number;
+    if (failure.cause == Cause::exit) entry["exit-code"] = failure.number;
+}
+
 Json to_json(const ParameterSet& parameters) {
     Json json = Json::object();
     for (const auto& [name, value] : parameters.values)
@@ -68,7 +84,7 @@ Json to_json(const ParameterSet& parameters) {
 
 }  // namespace
 
-std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& prediction) {
+std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& predictions) {
     std::string text;
     std::size_t cached = 0;
     const bool several_workflows = has_several_workflows(graph);
@@ -81,9 +97,9 @@ std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>&
             text += fmt::format("        {} <- {}{}\n", input.port, input.node + 1,
                                 input.from.empty() ? "" : "." + input.from);
         if (!node.unreadable.empty()) text += fmt::format("        {}\n", node.unreadable);
-        cached += !prediction[index].will_run;
-        text += prediction[index].will_run ? fmt::format("        will run because {}\n", prediction[index].why)
-                                           : "        cached\n";
+        cached += !predictions[index].will_run;
+        text += predictions[index].will_run ? fmt::format("        will run because {}\n", predictions[index].why)
+                                            : "        cached\n";
     }
     for (const RunCell& cell : graph.cells)
         for (const RunOutput& output : cell.outputs)
@@ -94,7 +110,7 @@ std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>&
                               count_text(graph.cells.size(), "cell", "cells"));
 }
 
-std::string graph_json(const RunGraph& graph, const std::vector<NodePrediction>& prediction) {
+Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predictions) {
     Json json{{"scanmill", 1}, {"nodes", Json::array()}, {"cells", Json::array()}};
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         const RunNode& node = graph.nodes[index];
@@ -106,20 +122,18 @@ std::string graph_json(const RunGraph& graph, const std::vector<NodePrediction>&
         if (!node.unreadable.empty()) entry["unreadable"] = node.unreadable;
         for (const NodeInput& input : node.inputs)
             entry["in"].push_back({{"port", input.port}, {"node", input.node}, {"from", input.from}});
-        entry["cached"] = !prediction[index].will_run;
-        if (prediction[index].will_run) entry["why"] = prediction[index].why;
+        entry["cached"] = !predictions[index].will_run;
+        if (predictions[index].will_run) entry["why"] = predictions[index].why;
         json["nodes"].push_back(std::move(entry));
     }
     for (const RunCell& cell : graph.cells) {
-        Json entry{{"scan", graph.scan_names[cell.scan]},
-                   {"workflow", graph.workflow(cell)},
-                   {"variant", graph.variant(cell).name},
-                   {"nodes", cell.nodes},
-                   {"outputs", Json::array()}};
+        Json entry = cell_json(graph, cell);
+        entry["nodes"] = cell.nodes;
+        entry["outputs"] = Json::array();
         for (const RunOutput& output : cell.outputs) entry["outputs"].push_back(output.file.string());
         json["cells"].push_back(std::move(entry));
     }
-    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+    return json;
 }
 
 std::string report_text(const RunGraph& graph, const RunReport& report) {
@@ -161,7 +175,7 @@ std::string report_text(const RunGraph& graph, const RunReport& report) {
     return text;
 }
 
-std::string report_json(const RunGraph& graph, const RunReport& report) {
+Json report_json(const RunGraph& graph, const RunReport& report) {
     Json json{{"scanmill", 1},
               {"workflow", workflow_name(*graph.plans.front())},
               {"interrupted", report.interrupted},
@@ -185,20 +199,18 @@ std::string report_json(const RunGraph& graph, const RunReport& report) {
         if (!done.metrics.values.empty()) entry["metrics"] = metrics_json(done.metrics);
         if (!done.properties.values.empty()) entry["properties"] = metrics_json(done.properties);
         if (!done.warnings.empty()) entry["warnings"] = done.warnings;
-        if (done.failure) add_failure(entry, done.failure);
+        add_failure(entry, done.failure);
         if (!done.effort.log.empty()) entry["log"] = done.effort.log;
         json["steps"].push_back(std::move(entry));
     }
     for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
         const CellReport& done = report.cells[cell];
-        Json entry{{"scan", graph.scan_names[graph.cells[cell].scan]},
-                   {"workflow", graph.workflow(graph.cells[cell])},
-                   {"variant", graph.variant(graph.cells[cell]).name},
-                   {"outcome", name_of(done.outcome)},
-                   {"seconds", done.seconds},
-                   {"steps", graph.cells[cell].nodes},
-                   {"outputs", Json::array()}};
-        if (done.failure) add_failure(entry, done.failure);
+        Json entry = cell_json(graph, graph.cells[cell]);
+        entry.update({{"outcome", name_of(done.outcome)},
+                      {"seconds", done.seconds},
+                      {"steps", graph.cells[cell].nodes},
+                      {"outputs", Json::array()}});
+        add_failure(entry, done.failure);
         for (const OutputReport& output : done.outputs) {
             Json file{{"file", output.file.string()},
                       {"outcome", name_of(output.outcome)},
@@ -209,7 +221,107 @@ std::string report_json(const RunGraph& graph, const RunReport& report) {
         }
         json["cells"].push_back(std::move(entry));
     }
-    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+    return json;
+}
+
+Json EventStream::event(const char* name) const {
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - begin_;
+    return {{"event", name}, {"at", since.count()}};
+}
+
+Json EventStream::step_event(const char* name, const RunNode& node) const {
+    Json json = event(name);
+    json["node"] = graph_.index(node);
+    json["scan"] = graph_.scan_names[node.scan];
+    json["workflow"] = workflow_name(*graph_.plans[node.plan]);
+    json["step"] = graph_.label(node);
+    return json;
+}
+
+void EventStream::print(const Json& event) {
+    const std::scoped_lock one_at_a_time(mutex_);
+    const std::string line = event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    has_failed_ = std::fwrite(line.data(), 1, line.size(), stdout) < line.size() || has_failed_;
+    has_failed_ = std::fflush(stdout) != 0 || has_failed_;
+}
+
+void EventStream::begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run) {
+    Json json{{"scanmill", 1}};
+    json.update(event("run-started"));
+    json["name"] = name;
+    if (run > 0) json["run"] = run;
+    json["jobs"] = jobs;
+    json["threads"] = threads;
+    json["steps"] = graph_.nodes.size();
+    json["cells"] = graph_.cells.size();
+    print(json);
+}
+
+void EventStream::node_started(const RunNode& node, std::size_t worker) {
+    Json json = step_event("step-started", node);
+    json["worker"] = worker;
+    print(json);
+}
+
+void EventStream::node_progress(const RunNode& node, double fraction) {
+    const int percent = static_cast<int>(100 * fraction);
+    {
+        const std::scoped_lock one_at_a_time(mutex_);
+        int& last = percents_[graph_.index(node)];
+        if (percent <= last) return;
+        last = percent;
+    }
+    Json json = step_event("step-progress", node);
+    json["percent"] = percent;
+    print(json);
+}
+
+void EventStream::node_warning(const RunNode& node, std::string_view text) {
+    Json json = step_event("warning", node);
+    json["text"] = text;
+    print(json);
+}
+
+void EventStream::node_ended(const RunNode& node, const NodeReport& report) {
+    Json json = step_event("step-ended", node);
+    json["outcome"] = name_of(report.outcome);
+    json["origin"] = name_of(report.origin);
+    if (!report.why.empty()) json["why"] = report.why;
+    json["seconds"] = report.effort.seconds;
+    json["cpu-seconds"] = report.effort.cpu_seconds;
+    json["peak-memory"] = report.effort.peak_memory;
+    if (!report.metrics.values.empty()) json["metrics"] = metrics_json(report.metrics);
+    add_failure(json, report.failure);
+    if (!report.effort.log.empty()) json["log"] = report.effort.log;
+    print(json);
+}
+
+void EventStream::output_written(const RunCell& cell, const OutputReport& report) {
+    Json json = event("output-written");
+    json["scan"] = graph_.scan_names[cell.scan];
+    json["file"] = report.file.string();
+    json["outcome"] = name_of(report.outcome);
+    json["properties"] = metrics_json(report.properties);
+    if (!report.warnings.empty()) json["warnings"] = report.warnings;
+    print(json);
+}
+
+void EventStream::cell_ended(const RunCell& cell, const CellReport& report) {
+    Json json = event("cell-ended");
+    json["cell"] = graph_.index(cell);
+    json.update(cell_json(graph_, cell));
+    json["outcome"] = name_of(report.outcome);
+    json["seconds"] = report.seconds;
+    add_failure(json, report.failure);
+    print(json);
+}
+
+void EventStream::end(const RunReport& report) {
+    Json json = event("run-ended");
+    json["interrupted"] = report.interrupted;
+    for (const Outcome outcome : {Outcome::done, Outcome::failed, Outcome::skipped})
+        json[std::string(name_of(outcome))] = std::ranges::count(report.cells, outcome, &CellReport::outcome);
+    print(json);
 }
 
 }  // namespace scanmill::runner

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What a run prints on stdout: before it, with --dry-run, and after it.
+/// The results of a run on stdout: the prediction with --dry-run, events during the run, and the report after it.
 
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "scanmill/cache/prediction.hpp"
@@ -9,11 +13,46 @@
 
 namespace scanmill::runner {
 
-std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& prediction);
-std::string graph_json(const RunGraph& graph, const std::vector<NodePrediction>& prediction);
+using Json = nlohmann::ordered_json;
+
+std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
+Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
 
 /// A row per cell: points read, the filters' headline metrics, the written mesh's properties, seconds, files.
 std::string report_text(const RunGraph& graph, const RunReport& report);
-std::string report_json(const RunGraph& graph, const RunReport& report);
+Json report_json(const RunGraph& graph, const RunReport& report);
+
+/// Events as JSON on stdout during the run, one object per line.
+///
+/// The first is `run-started`, the last `run-ended`; between them `step-started`, `step-progress` (full percents),
+/// `warning`, `step-ended`, `output-written` and `cell-ended`. Each has its time in seconds since the start.
+class EventStream : public RunObserver {
+public:
+    explicit EventStream(const RunGraph& graph) : graph_(graph) {}
+
+    /// `run`: its number in the records; 0: not recorded.
+    void begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run);
+    void end(const RunReport& report);
+    /// Some events could not be written.
+    bool has_failed() const { return has_failed_; }
+
+    void node_started(const RunNode& node, std::size_t worker) override;
+    void node_progress(const RunNode& node, double fraction) override;
+    void node_warning(const RunNode& node, std::string_view text) override;
+    void node_ended(const RunNode& node, const NodeReport& report) override;
+    void output_written(const RunCell& cell, const OutputReport& report) override;
+    void cell_ended(const RunCell& cell, const CellReport& report) override;
+
+private:
+    Json event(const char* name) const;
+    Json step_event(const char* name, const RunNode& node) const;
+    void print(const Json& event);
+
+    const RunGraph& graph_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    std::map<std::size_t, int> percents_;  // by node
+    bool has_failed_ = false;
+    std::mutex mutex_;
+};
 
 }  // namespace scanmill::runner

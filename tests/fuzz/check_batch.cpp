@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "fuzz/targets.hpp"
-#include "scanmill/batch/plan_batch.hpp"
+#include "scanmill/batch/batch.hpp"
 #include "support/declared_filters.hpp"
 
 namespace scanmill::test {

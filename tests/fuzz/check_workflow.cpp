@@ -3,7 +3,6 @@
 
 #include "fuzz/targets.hpp"
 #include "scanmill/base/error.hpp"
-#include "scanmill/plan/output_template.hpp"
 #include "scanmill/plan/plan.hpp"
 #include "support/declared_filters.hpp"
 

@@ -17,7 +17,7 @@ struct BadScan {
     std::string test_name;
     std::string file;
     std::string content;
-    std::vector<std::string> said;  ///< all of these, beside the file's name
+    std::vector<std::string> parts;  ///< of the message, beside the file's name
 };
 
 void PrintTo(const BadScan& scan, std::ostream* stream) { *stream << scan.test_name; }
@@ -72,10 +72,10 @@ class BadScanTest : public testing::TestWithParam<BadScan> {};
 
 /// One refusal: the exit code, one error that names the file, nothing written.
 void expect_one_clear_sentence(const ProgramResult& ran, const std::string& file,
-                               const std::vector<std::string>& said) {
+                               const std::vector<std::string>& parts) {
     EXPECT_EQ(ran.exit_code, 1) << ran.err;
     EXPECT_THAT(ran.err, HasSubstr(file));
-    for (const std::string& part : said) EXPECT_THAT(ran.err, HasSubstr(part));
+    for (const std::string& part : parts) EXPECT_THAT(ran.err, HasSubstr(part));
     EXPECT_THAT(ran.err, testing::Not(HasSubstr("bad_alloc")));
     EXPECT_THAT(ran.err, testing::Not(HasSubstr("memory did not suffice")));
     std::size_t errors = 0;
@@ -96,7 +96,7 @@ TEST_P(BadScanTest, Run_SaysOneClearSentenceAndEndsWith1) {
     options.memory_limit = std::size_t(1) << 31;
 #endif
     const ProgramResult ran = scanmill_program({"run", "w.yaml", bad.file, "-o", "out"}, options);
-    expect_one_clear_sentence(ran, bad.file, bad.said);
+    expect_one_clear_sentence(ran, bad.file, bad.parts);
     EXPECT_FALSE(std::filesystem::exists(folder / "out/scan.stl"));
 }
 
@@ -107,7 +107,7 @@ TEST_P(BadScanTest, Quickstart_SaysOneClearSentenceAndEndsWith1) {
     const std::string quickstart = std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml";
     const ProgramResult ran =
         scanmill_program({"run", quickstart, bad.file, "-o", "out"}, {.folder = folder.path(), .environment = {}});
-    expect_one_clear_sentence(ran, bad.file, bad.said);
+    expect_one_clear_sentence(ran, bad.file, bad.parts);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BadScanTest, testing::ValuesIn(bad_scans),

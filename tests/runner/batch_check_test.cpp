@@ -70,7 +70,7 @@ TEST_F(CheckOfABatch, BadValue_StandsInTheBatch) {
 TEST_F(CheckOfABatch, SettingsOfTheCommandLine_DoNotReachIt) {
     const ProgramResult found = check(with_size("2 u"), {"--set", "size=1 u"});
     EXPECT_EQ(found.exit_code, 2);
-    EXPECT_THAT(found.err, HasSubstr("is a batch, which --set does not reach"));
+    EXPECT_THAT(found.err, HasSubstr("--set does not apply to the batch"));
 }
 
 TEST_F(CheckOfABatch, PathsOfItsValues_CountFromItsFolder) {

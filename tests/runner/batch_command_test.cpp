@@ -132,7 +132,7 @@ TEST_F(Batch, TwoWorkflows_ShareWhatIsEqual) {
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out/v-scan_01.ply"));
 }
 
-/// What is cached stands on what it was made from: the same is written as if nothing were cached.
+/// Cached results belong to their inputs: the output is the same as without the cache.
 TEST_F(Batch, ExpectationAddedBeforeWhatIsCached_FailsItToo) {
     write_scans("scan", 1);
     write_batch("scans/*.xyz");

@@ -21,7 +21,7 @@ TEST_F(Batch, TwoCellsOfOneFile_AreRefusedBeforeAnythingRuns) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
-/// One of them may fail its expectation; then nobody could say what the file is.
+/// One of them may fail its expectation; the content of the file would then be undefined.
 TEST_F(Batch, OneFileOfTwoWorkflowsThatExpectDifferentThings_IsRefused) {
     write_scans("scan", 1);
     const std::string head =

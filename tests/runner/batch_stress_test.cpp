@@ -25,7 +25,7 @@ protected:
         return words.begin()[number(0, static_cast<int>(words.size()) - 1)];
     }
 
-    /// Up to five steps that read the scan or one another; some sweep, some expect, some misbehave as a parameter says.
+    /// Up to five steps that read the scan or one another; some sweep, some expect, some misbehave, by a parameter.
     void write_random_workflow() {
         std::string steps, outputs, parameters;
         for (int i = 0; i < steps_; ++i) {

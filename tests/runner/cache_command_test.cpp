@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cache as a user meets it: a second run, what a dry run says, how large it is, and emptying it.
+// The cache on the command line: a second run, a dry run, its size, and emptying it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ TEST_F(CacheCommand, LimitThatIsReached_RemovesAtTheEndOfTheRun) {
     EXPECT_LE(json::parse(scanmill({"cache", "info", "--json"}).out)["bytes"], 1000);
     const ProgramResult refused = run({"--cache-limit", "much"});
     EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_THAT(refused.err, HasSubstr("'much' is no size; expected 500 MiB"));
+    EXPECT_THAT(refused.err, HasSubstr("'much' is not a size; expected 500 MiB"));
 }
 
 TEST_F(CacheCommand, WithoutAHome_TheRunGoesOnWithoutACache) {
@@ -101,7 +101,7 @@ TEST_F(CacheCommand, WithoutAHome_TheRunGoesOnWithoutACache) {
         {"run", "w.yaml", "a.xyz", "-o", "out"},
         {.folder = folder_.path(), .environment = {"XDG_CACHE_HOME=relative", "HOME="}, .cache = folder_ / "home"});
     EXPECT_EQ(ran.exit_code, 0);
-    EXPECT_THAT(ran.err, AllOf(HasSubstr("there is no folder for the cache"), HasSubstr("nothing is kept")));
+    EXPECT_THAT(ran.err, AllOf(HasSubstr("there is no folder for the cache"), HasSubstr("results are not cached")));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run would do, as `--dry-run` says it: of scans that are no files, of values that are not there, and how many.
+// The output of `--dry-run`: scans that are not files, values that are missing, and counts.
 #include <sys/stat.h>
 
 #include "runner/batch_fixture.hpp"

@@ -60,7 +60,7 @@ TEST(DocsCommand, FilesOfOthers_AreNotReplaced_AndNothingIsWritten) {
     folder.write("README.md", "mine\n");
     const ProgramResult refused = scanmill_program({"docs", "-o", folder.path().string()});
     EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_THAT(refused.err, HasSubstr("README.md' is there and was not written by scanmill docs"));
+    EXPECT_THAT(refused.err, HasSubstr("README.md' exists and was not written by scanmill docs"));
     EXPECT_EQ(content_of(folder / "README.md"), "mine\n");
     EXPECT_EQ(folder.files(), 1u);
 }
@@ -84,6 +84,43 @@ TEST(Completion, Bash_ProposesCommandsOptionsAndFilters) {
     EXPECT_EQ(completed(folder, "show vox", 2), "voxel-thin\n");
     EXPECT_EQ(completed(folder, "completion f", 2), "fish\n");
     EXPECT_EQ(completed(folder, "schema b", 2), "batch\n");
+}
+
+TEST(Completion, Bash_ProposesTheValuesOfOptions) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(completed(folder, "run w.yaml --keep ''", 4), "worth always never\n");
+    EXPECT_EQ(completed(folder, "run w.yaml --keep a", 4), "always\n");
+    EXPECT_EQ(completed(folder, "run w.yaml --keep = n", 5), "never\n");
+    EXPECT_EQ(completed(folder, "check --format d", 3), "dot\n");
+    EXPECT_EQ(completed(folder, "convert --unit c", 3), "cm\n");
+}
+
+TEST(Completion, Bash_ProposesTheParametersOfTheWorkflow) {
+    const TemporaryFolder folder;
+    const std::string run = "run '" +
+                            folder
+                                .write("w.yaml",
+                                       "scanmill: 1\ninputs: {scan: points, truth: mesh}\n"
+                                       "parameters: {size: 1 u, exact: true, size-of-bins: auto}\n"
+                                       "steps:\n  - voxel-thin: {bin-size: $size-of-bins, tolerance: $size}\n"
+                                       "  - measure: {certify: $exact}\n    in: {mesh: truth, truth: scan}\n")
+                                .string() +
+                            "' --set ";
+    EXPECT_EQ(completed(folder, run + "''", 4), "exact= size-of-bins= size=\n");
+    EXPECT_EQ(completed(folder, run + "e", 4), "exact=\n");
+    EXPECT_EQ(completed(folder, run + "exact =", 5), "false true\n");
+    EXPECT_EQ(completed(folder, run + "exact = t", 6), "true\n");
+    EXPECT_EQ(completed(folder, run + "size-of-bins = ''", 6), "auto\n");
+    EXPECT_EQ(completed(folder, "measure a.ply b.ply --set cert", 5), "certify=\n");
+}
+
+TEST(Completion, ZshAndFish_ProposeValuesToo) {
+    const std::string zsh = scanmill_program({"completion", "zsh"}).out;
+    EXPECT_THAT(zsh, HasSubstr(":value:(worth always never)"));
+    EXPECT_THAT(zsh, HasSubstr(":value:_scanmill_settings"));
+    const std::string fish = scanmill_program({"completion", "fish"}).out;
+    EXPECT_THAT(fish, HasSubstr("-l keep -x -a 'worth always never'"));
+    EXPECT_THAT(fish, HasSubstr("-l set -x -a '(scanmill complete-set"));
 }
 
 TEST(Completion, Bash_ProposesFilesWithBlanksWhole) {

@@ -63,9 +63,9 @@ protected:
     ProgramResult run_scan(const std::string& scan, ProgramOptions options = {}) const {
         return run({"run", "-o", "out", "--", "w.yaml", scan}, options);
     }
-    void expect_refused(const ProgramResult& ran, int exit_code, const std::string& said) const {
+    void expect_refused(const ProgramResult& ran, int exit_code, const std::string& message) const {
         EXPECT_EQ(ran.exit_code, exit_code) << ran.err;
-        EXPECT_THAT(ran.err, HasSubstr(said));
+        EXPECT_THAT(ran.err, HasSubstr(message));
         EXPECT_EQ(times(ran.err, "error: "), 1u) << ran.err;
         EXPECT_THAT(ran.err, Not(HasSubstr("unexpected")));
         EXPECT_EQ(files_below(folder_ / "out"), 0u);
@@ -77,7 +77,7 @@ protected:
 TEST_F(Hostile, LibrariesInTheWorkingFolder_AreNeverLoaded) {
     for (const char* name :
          {"libfmt.so.9", "libstdc++.so.6", "libtbb.so.12", "libscanmill-core.so.0", "libxxhash.so.0"})
-        folder_.write(name, "whoever loads this cannot start");
+        folder_.write(name, "this module cannot be loaded");
     folder_.write("w.yaml", workflow("{scan}.ply"));
     folder_.write("a.xyz", four_points);
     const ProgramResult ran = run_scan("a.xyz");
@@ -169,7 +169,17 @@ INSTANTIATE_TEST_SUITE_P(All, HostileName,
                                          StrangeName{"LongestThereIs", std::string(251, 'x')}),
                          [](const auto& name) { return name.param.test_name; });
 
-TEST_F(Hostile, NameLongerThanFileSystemsTake_IsSaid) {
+TEST_F(Hostile, LineEndInAName_IsEscapedInWarningsAndTables) {
+    folder_.write("w.yaml", workflow("{scan}.ply"));
+    folder_.write("a\nb\x1b.xyz", "# unit parsec\n" + four_points);
+    const ProgramResult ran = run_scan("a\nb\x1b.xyz");
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("warning: 'a\\nb\\x1b.xyz': the unit 'parsec'"));
+    EXPECT_THAT(ran.out, HasSubstr("\na\\nb\\x1b.xyz  "));
+    EXPECT_EQ(times(ran.out, "\n"), 2u);
+}
+
+TEST_F(Hostile, NameLongerThanFileSystemsTake_IsReported) {
     folder_.write("w.yaml", workflow("{scan}.ply"));
     expect_refused(run_scan(std::string(296, 'x') + ".xyz"), 1, "File name too long");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Workflows written to exhaust whoever reads them. Memory and processor time are limited far above what a check takes,
+// Workflows written to exhaust their reader. Memory and processor time are limited far above what a check takes,
 // and far below what following such a file would: where it is followed, the program dies and the exit code shows it.
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 struct HostileWorkflow {
     std::string test_name;
     std::function<std::string()> text;
-    std::string said;
+    std::string message;
 };
 void PrintTo(const HostileWorkflow& workflow, std::ostream* stream) { *stream << workflow.test_name; }
 
@@ -82,9 +82,9 @@ const std::vector<HostileWorkflow> hostile_workflows{
     {"AliasesOfALongText", bomb_of_text, "unfolds to more than 67108864 bytes"},
     {"ForksInForks", forks_in_forks, "unfolds to more than 500 levels"},
     {"ListsInLists", [] { return head + "steps: " + std::string(100'000, '[') + std::string(100'000, ']'); },
-     "is no YAML"},
+     "invalid YAML"},
     {"MapsInMaps", [] { return head + "steps: " + repeated(100'000, [](const std::string&) { return "{a: "; }); },
-     "is no YAML"},
+     "invalid YAML"},
     {"StepsTimesVariants", steps_times_variants, "more than 500000 steps in all its variants"},
     {"TenMegabytesOfOneText", [] { return head + "steps: [" + std::string(10'000'000, 'x') + "]\n"; },
      "a text of 10000000 bytes"},
@@ -122,7 +122,7 @@ TEST_P(HostileWorkflowTest, Check_RefusesWithinLimits) {
     const ProgramResult ran = scanmill_program({"check", "w.yaml"}, options);
     EXPECT_EQ(ran.exit_code, 2) << ran.err.substr(0, 1000);
     EXPECT_THAT(ran.err.substr(0, 2000) + ran.err.substr(ran.err.size() - std::min<std::size_t>(ran.err.size(), 2000)),
-                HasSubstr(GetParam().said));
+                HasSubstr(GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HostileWorkflowTest, testing::ValuesIn(hostile_workflows),

@@ -88,7 +88,7 @@ TEST_F(Limits, MemoryIsNotEnoughForAStepOfAStream_SaysSo) {
 }
 #endif
 
-/// What ends the reading for another reason names the file, too; what the reader says itself is not said twice.
+/// Other errors of reading name the file too, and only once.
 TEST_F(Limits, RefusalOfAReader_NamesItsFileOnce) {
     write_thinning("auto");
     folder_.write("bad.xyz", "0 0 zero\n");

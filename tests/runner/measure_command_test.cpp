@@ -54,10 +54,10 @@ protected:
 TEST_F(MeasureCommand, MovedSphere_IsAsFarAsItWasMoved) {
     const ProgramResult ran = scanmill({"measure", "moved.ply", "sphere.ply", "--json", "--unit", "mm"});
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
-    const json said = json::parse(ran.out);
-    EXPECT_EQ(said["mesh"], "moved.ply");
-    EXPECT_EQ(said["unit"], "mm");
-    const json& metrics = said["metrics"];
+    const json printed = json::parse(ran.out);
+    EXPECT_EQ(printed["mesh"], "moved.ply");
+    EXPECT_EQ(printed["unit"], "mm");
+    const json& metrics = printed["metrics"];
     EXPECT_NEAR(metrics["hausdorff"].get<double>(), 0.1, 1e-3);
     EXPECT_LE(metrics["hausdorff"].get<double>(), 0.1 + 1e-12);
     EXPECT_EQ(metrics["genus"], 0);
@@ -153,10 +153,10 @@ TEST_F(MeasureCommand, TruthOfAnotherKnownUnit_IsConverted) {
         arguments.insert(arguments.end(), files.begin(), files.end());
         const ProgramResult ran = scanmill(arguments);
         ASSERT_EQ(ran.exit_code, 0) << ran.err;
-        const json said = json::parse(ran.out);
-        EXPECT_EQ(said["unit"], "mm");
-        EXPECT_LT(said["metrics"]["hausdorff"].get<double>(), 1e-12);
-        EXPECT_EQ(said["units"]["hausdorff"], "length");
+        const json printed = json::parse(ran.out);
+        EXPECT_EQ(printed["unit"], "mm");
+        EXPECT_LT(printed["metrics"]["hausdorff"].get<double>(), 1e-12);
+        EXPECT_EQ(printed["units"]["hausdorff"], "length");
     }
     EXPECT_EQ(scanmill({"measure", "sphere.ply", "sphere.ply", "--unit", "banana"}).exit_code, 2);
     EXPECT_EQ(scanmill({"measure", "sphere.ply", "sphere.ply", "--truth-unit", "banana"}).exit_code, 2);
@@ -164,10 +164,10 @@ TEST_F(MeasureCommand, TruthOfAnotherKnownUnit_IsConverted) {
 
 TEST_F(MeasureCommand, TruthInAnotherUnit_IsNotScored) {
     scanmill({"convert", "sphere.ply", "metres.ply", "--unit", "mm", "--to-unit", "m"});
-    const ProgramResult told = scanmill({"measure", "sphere.ply", "metres.ply"});
-    EXPECT_EQ(told.exit_code, 1);
-    EXPECT_EQ(told.out, "");
-    EXPECT_THAT(told.err, HasSubstr("1000"));
+    const ProgramResult refused = scanmill({"measure", "sphere.ply", "metres.ply"});
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_EQ(refused.out, "");
+    EXPECT_THAT(refused.err, HasSubstr("1000"));
     const ProgramResult trusted = scanmill({"measure", "sphere.ply", "metres.ply", "--set", "same-frame=true"});
     EXPECT_EQ(trusted.exit_code, 0);
     EXPECT_THAT(trusted.err, HasSubstr("measured anyway"));
@@ -203,8 +203,7 @@ TEST_F(MeasureCommand, TruthIsNeverGuessed) {
                   "measure\n");
     const ProgramResult unsaid = scanmill({"check", "w.yaml"});
     EXPECT_EQ(unsaid.exit_code, 2);
-    EXPECT_THAT(unsaid.err + unsaid.out,
-                HasSubstr("measure takes mesh or points at its port 'truth'; say which value"));
+    EXPECT_THAT(unsaid.err + unsaid.out, HasSubstr("measure takes mesh or points at its port 'truth'; expected `in:"));
     folder_.write(
         "w.yaml",
         "scanmill: 1\nname: w\ninputs:\n  scan: points\nsteps:\n  - delaunay:\n  - alpha-solid:\n  - measure:\n"

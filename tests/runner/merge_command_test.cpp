@@ -21,7 +21,7 @@ using testing::Not;
 
 std::string merge_views() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/merge-views.yaml"; }
 
-/// Two views, and poses that stand in the other order: a quarter turn about z for `left`, against its quaternion.
+/// Two views, and poses in the other order: a quarter turn about z for `left`, against its quaternion.
 class MergeCommand : public testing::Test {
 protected:
     MergeCommand() {

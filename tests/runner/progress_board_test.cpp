@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "output/progress_board.hpp"
+#include "output/progress.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -42,7 +42,7 @@ TEST(RunCommand, TheShippedBatch_PassesCheckWhereItsScansAre) {
         std::filesystem::create_directories(folder / "workflows");
         std::filesystem::copy_file(file.path(), folder / "workflows" / file.path().filename());
     }
-    // Names of what `make data` fetches; nobody looks into them.
+    // The names of files that `make data` fetches; their content is not read.
     for (const char* scan :
          {"points_3/kitten.xyz", "points_3/sphere_20k.xyz", "meshes/bunny00.off", "meshes/fandisk_large.off"})
         folder.write(std::string("build/data/") + scan, "0 0 0\n");
@@ -192,6 +192,27 @@ TEST(RunCommand, SaveAndUntil_WriteAndStopAtAStep) {
     EXPECT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_TRUE(std::filesystem::exists(folder / "out/ball.voxel-thin.ply"));
     EXPECT_FALSE(std::filesystem::exists(folder / "out/ball.stl"));
+}
+
+TEST(RunCommand, Save_WritesEveryKindInItsFirstFormat) {
+    const TemporaryFolder folder;
+    write_sphere(folder, "ball");
+    folder.write("w.yaml",
+                 "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - delaunay:\n  - alpha-solid:\n  - features:\n"
+                 "  - measure: {samples: 1000}\n    in: {mesh: alpha-solid, truth: scan}\n");
+    std::vector<std::string> run{"run", "w.yaml", "ball.ply", "-o", "out"};
+    for (const char* step : {"alpha-solid", "features", "measure"}) run.insert(run.end(), {"--save", step});
+    const ProgramResult ran = scanmill_program(run, {.folder = folder.path()});
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    for (const char* file : {"ball.alpha-solid.ply", "ball.features.json", "ball.measure.json"})
+        EXPECT_TRUE(std::filesystem::exists(folder / "out" / file)) << file;
+    // Tetrahedra need the module for VTU, which a build may leave out.
+    const ProgramResult tets =
+        scanmill_program({"run", "w.yaml", "ball.ply", "--save", "delaunay", "-o", "out"}, {.folder = folder.path()});
+    if (tets.exit_code == 0)
+        EXPECT_TRUE(std::filesystem::exists(folder / "out/ball.delaunay.vtu"));
+    else
+        EXPECT_THAT(tets.err, HasSubstr("--save delaunay: no file format can hold tets"));
 }
 
 TEST(RunCommand, RealScan_ThroughTheQuickstart) {

@@ -98,17 +98,16 @@ TEST_F(RunsCommand, WhatIsNotThere_IsSaid) {
     EXPECT_THAT(nothing.err, AllOf(HasSubstr("there are no records"), HasSubstr("hint")));
     scanmill({"run", "w.yaml", "a.xyz", "-o", "out"});
     EXPECT_THAT(scanmill({"runs", "out", "show", "5"}).err, HasSubstr("there is no run 5"));
-    EXPECT_THAT(scanmill({"runs", "out", "show", "x"}).err, HasSubstr("'x' is no number of a run"));
+    EXPECT_THAT(scanmill({"runs", "out", "show", "x"}).err, HasSubstr("'x' is not the number of a run"));
     EXPECT_THAT(scanmill({"runs", "out", "show"}).err, HasSubstr("which run?"));
 }
 
 TEST_F(RunsCommand, RecordsThatCannotBeWritten_DoNotStopTheRun) {
-    folder_.write("out/scanmill.sqlite",
-                  "somebody else's file, of more than a few bytes so that it is looked into at all");
+    folder_.write("out/scanmill.sqlite", "another program's file, long enough to be read as a database");
     const ProgramResult ran = scanmill({"run", "w.yaml", "a.xyz", "-o", "out"});
     EXPECT_EQ(ran.exit_code, 0);
     EXPECT_THAT(ran.err, HasSubstr("this run is not recorded"));
-    EXPECT_THAT(content_of(folder_ / "out/scanmill.sqlite"), HasSubstr("somebody else's"));
+    EXPECT_THAT(content_of(folder_ / "out/scanmill.sqlite"), HasSubstr("another program's"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the command says of scans that are streamed, and that it thins what would not fit into its memory.
+// How the command describes scans that are streamed, and that it thins scans larger than its memory.
 #include "runner/batch_fixture.hpp"
 #include "support/point_files.hpp"
 
@@ -49,7 +49,7 @@ TEST_F(StreamingCommand, Filter_SaysThatItStreams) {
     EXPECT_THAT(scanmill({"show", "voxel-thin"}).out, HasSubstr("With bin-size given"));
     const Json shown = Json::parse(scanmill({"show", "voxel-thin", "--json"}).out);
     EXPECT_EQ(shown["filter"]["streams"]["given"], Json({"bin-size"}));
-    EXPECT_THAT(scanmill({"show", "delaunay"}).out, Not(HasSubstr("piece by piece")));
+    EXPECT_THAT(scanmill({"show", "delaunay"}).out, Not(HasSubstr("in chunks")));
 }
 
 TEST_F(StreamingCommand, ScanLargerThanTheLimit_IsThinned) {

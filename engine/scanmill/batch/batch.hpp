@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What work on a scan may cost before it is stopped, and how often it may be tried again.
+/// Batch files: which scans run under which workflows, with which values, limits and truth. A batch is parsed, then
+/// checked together with its workflows.
+///
+/// Paths are relative to the batch file. Scans are named by globs: `*`, `?` and `[…]` within a name, `**` for any
+/// number of folders, never a name that begins with a dot. A parsed batch holds the files found, sorted, every file
+/// once.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/transform.hpp"
-#include "scanmill/plan/expand.hpp"
+#include "scanmill/plan/plan.hpp"
 
 namespace scanmill {
 
@@ -25,20 +31,15 @@ struct Limits {
     bool operator==(const Limits&) const = default;
 };
 
-// A batch as its file says it: which scans, under which workflows, with which values, limits and truth.
-//
-// Paths are relative to the batch file. Scans are named by globs: `*`, `?` and `[…]` within a name, `**` for any
-// number of folders, never what begins with a dot. What `scans` has found stands here, sorted, every file once.
-
 struct BatchScan {
     std::filesystem::path file;
     Position position;  ///< of the path in the batch file
     LengthUnit unit = LengthUnit::unknown;
-    std::string frame;                   ///< its {stem} replaced; empty: what the workflow or the file says
+    std::string frame;                   ///< {stem} replaced; empty: the workflow's or the file's own
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
-    std::filesystem::path pose_file;     ///< empty: the pose stands in the batch
-    std::filesystem::path truth;         ///< empty: there is none
-    Settings settings;                   ///< the scan's own, before the batch's
+    std::filesystem::path pose_file;     ///< empty: the pose is written in the batch
+    std::filesystem::path truth;         ///< empty: none
+    Settings settings;                   ///< the scan's own, which override the batch's
 };
 
 struct BatchWorkflow {
@@ -49,18 +50,46 @@ struct BatchWorkflow {
 /// In Settings a value's `position` is that of its name.
 struct Batch {
     std::string file, name, summary;
-    std::vector<BatchScan> scans;  ///< entry by entry, within one by path
+    std::vector<BatchScan> scans;  ///< in the order of the entries, within one by path
     std::vector<BatchWorkflow> workflows;
     Settings settings;
     Limits limits;
 };
 
-/// The batch in `text`; `diagnostics` is that of its file, and what is wrong goes there: all of it, each with its
-/// place. What is right is still returned. Looks for the files that it names and reads those of poses, but no scan. A
-/// name in `set` that no workflow declares is not found here (see plan_batch.hpp).
+/// The batch in `text`; `diagnostics` is that of its file. All errors are reported, and everything that could be read
+/// is returned. Looks for the files that the batch names and reads poses, but opens no scan. Names in `set` that no
+/// workflow declares are found by check_batch().
 Batch parse_batch(const std::string& text, Diagnostics& diagnostics);
 
 /// Whether the text is a batch rather than a workflow: it has the key `batch`.
 bool is_batch(const std::string& text);
+
+/// One workflow under one set of values, and its scans.
+struct BatchPart {
+    std::shared_ptr<const Plan> plan;
+    std::size_t workflow = 0;        ///< index into Batch::workflows
+    std::vector<std::size_t> scans;  ///< indices into Batch::scans, ascending
+};
+
+struct CheckedBatch {
+    Batch batch;
+    /// Workflow by workflow, within one in the order of the first scan. A workflow whose first input is a list takes
+    /// all scans of a part at once.
+    std::vector<BatchPart> parts;
+    /// Of the batch file, then of each workflow that could be read, over all the values it is run with.
+    std::vector<Diagnostics> diagnostics;
+
+    /// With errors no part must be run.
+    bool has_errors() const;
+    /// Variants of all workflows; a variant in several parts of a workflow counts once.
+    std::size_t variants() const;
+    /// Scans times variants, over all workflows.
+    std::size_t cells() const;
+};
+
+/// Checks the batch in `text`, the content of `file`. A scan's values are the batch's `set`, overridden by its own, for
+/// the names that the workflow declares. Scans with equal values share a part and its plan. Wrong values, and names
+/// that no workflow declares, are reported at their position in the batch.
+CheckedBatch check_batch(const std::string& text, const std::string& file, const FilterLibrary& library);
 
 }  // namespace scanmill

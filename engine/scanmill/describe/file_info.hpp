@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What `scanmill info` prints of a file: format, kind, counts, columns, size, unit, topology.
+/// The output of `scanmill info`: format, kind, counts, columns, size, unit, topology of a file.
 
 #include <nlohmann/json.hpp>
 #include <string>
 
 namespace scanmill {
 
-/// An object with the members in the order in which they are shown; of a kind without positions those that apply.
-/// Warnings of reading are its member `warnings`. Throws Error as read_file().
+/// An object whose members are in the order of the output. Kinds without positions have fewer. Warnings of reading are
+/// the member `warnings`. Throws Error as read_file().
 nlohmann::ordered_json file_info(const std::string& file);
 
 }  // namespace scanmill

@@ -14,7 +14,7 @@ constexpr std::string_view generated = "<!-- Written by `scanmill docs` from the
 
 bool is_readable(Kind kind) { return kind == kind_of<PointCloud>() || kind == kind_of<TriangleMesh>(); }
 
-/// A value that the parameter would take, for examples of required ones.
+/// A valid value, for examples of required parameters.
 std::string sample(const ParameterSpec& parameter) {
     switch (parameter.type) {
         case ParameterType::boolean: return "true";
@@ -30,10 +30,10 @@ std::string sample(const ParameterSpec& parameter) {
     return number_text(parameter.low ? parameter.low->value + (parameter.low->inclusive ? 0 : 1) : 1);
 }
 
-/// In a cell of a table a bar would end it.
+/// Escapes the bar, which ends a cell of a table.
 std::string cell(std::string_view text) {
-    std::string escaped;
-    for (char c : text) escaped += c == '|' ? std::string("\\|") : std::string(1, c);
+    std::string escaped(text);
+    for (std::size_t at = 0; (at = escaped.find('|', at)) != std::string::npos; at += 2) escaped.insert(at, 1, '\\');
     return escaped;
 }
 
@@ -41,7 +41,7 @@ std::string code(std::string_view text) { return text.empty() ? "" : "`" + cell(
 
 std::string ports_table(std::string_view title, std::string_view column, const std::vector<PortSpec>& ports) {
     if (ports.empty()) return {};
-    std::string table = fmt::format("\n## {}\n\n| {} | kind | what it is |\n|---|---|---|\n", title, column);
+    std::string table = fmt::format("\n## {}\n\n| {} | kind | content |\n|---|---|---|\n", title, column);
     for (const PortSpec& port : ports)
         table += fmt::format("| {} | {}{}{} | {} |\n", code(port.name), kinds_text(port),
                              port.list ? ", any number" : "", port.optional ? ", optional" : "", cell(port.help));
@@ -50,7 +50,7 @@ std::string ports_table(std::string_view title, std::string_view column, const s
 
 std::string parameters_table(const std::vector<ParameterSpec>& parameters) {
     if (parameters.empty()) return {};
-    std::string table = "\n## Parameters\n\n| parameter | default | takes | what it means |\n|---|---|---|---|\n";
+    std::string table = "\n## Parameters\n\n| parameter | default | takes | meaning |\n|---|---|---|---|\n";
     for (const ParameterSpec& parameter : parameters) {
         std::string meaning = parameter.help;
         for (const Choice& choice : parameter.choices) meaning += fmt::format("<br>`{}`: {}", choice.name, choice.help);
@@ -66,7 +66,7 @@ std::string parameters_table(const std::vector<ParameterSpec>& parameters) {
 
 std::string metrics_table(const std::vector<MetricSpec>& metrics) {
     if (metrics.empty()) return {};
-    std::string table = "\n## Metrics\n\n| metric | unit | what it says |\n|---|---|---|\n";
+    std::string table = "\n## Metrics\n\n| metric | unit | meaning |\n|---|---|---|\n";
     for (const MetricSpec& metric : metrics)
         table += fmt::format("| {} | {} | {} |\n", code(metric.name) + (metric.numbered ? ", `…@2`" : ""),
                              name_of(metric.unit), cell(metric.help));
@@ -81,7 +81,7 @@ std::string remarks(const FilterSpec& spec) {
     return list.empty() ? list : "\n" + list;
 }
 
-/// The first filter that makes values of this kind from what files hold.
+/// The first filter that makes this kind from kinds that files can hold.
 const FilterSpec* maker_of(Kind kind, const FilterLibrary& library) {
     for (const std::string& name : library.names()) {
         const FilterSpec* spec = library.find(name);
@@ -104,7 +104,7 @@ std::string example_step(const FilterSpec& spec, bool whole) {
     return step;
 }
 
-/// `in:` for a filter with a port that is not wired without it; every port is fed by the input of its name.
+/// `in:` for a filter with a port that only `in` can wire; the input of its name feeds every port.
 std::string example_wiring(const FilterSpec& spec) {
     if (std::ranges::all_of(spec.inputs, [](const PortSpec& port) { return port.also.empty(); })) return {};
     std::string wiring;
@@ -113,7 +113,7 @@ std::string example_wiring(const FilterSpec& spec) {
     return fmt::format("    in: {{{}}}\n", wiring);
 }
 
-/// The steps that lead to this one and what is read from files for them.
+/// The filter, the filters that make its inputs, and the ports that read files.
 struct ExampleSteps {
     std::vector<const FilterSpec*> steps;
     std::vector<const PortSpec*> inputs;
@@ -121,7 +121,7 @@ struct ExampleSteps {
 
 void add_step(ExampleSteps& example, const FilterSpec& spec, const FilterLibrary& library) {
     const bool is_last = example.steps.empty();
-    example.steps.push_back(&spec);  // backwards
+    example.steps.push_back(&spec);  // in reverse order
     for (const PortSpec& port : spec.inputs) {
         if (is_readable(port.kind)) {
             if (is_last || !port.optional) example.inputs.push_back(&port);
@@ -159,16 +159,15 @@ std::string filter_page(const FilterSpec& spec, const FilterLibrary& library) {
     return fmt::format("# {}\n\n{}\n{}\n\nSource: {}. Version {}.\n", spec.name, generated, spec.summary, spec.source,
                        spec.version) +
            remarks(spec) + ports_table("Takes", "port", spec.inputs) +
-           ports_table("Gives (the first is what the step's name alone means)", "port", spec.outputs) +
+           ports_table("Gives (the step's name alone refers to the first)", "port", spec.outputs) +
            parameters_table(spec.parameters) + metrics_table(spec.metrics) + "\n## Example\n\n```yaml\n" +
            example_workflow(spec, library) + "```\n";
 }
 
 std::string stream_text(const FilterSpec& spec) {
-    std::string given;
-    for (const std::string& name : spec.streams->given) given += (given.empty() ? "" : " and ") + name;
-    return fmt::format("{} a scan that no other step needs whole is read piece by piece, and never is in memory.",
-                       given.empty() ? "As the first step," : fmt::format("With {} given,", given));
+    const std::vector<std::string>& given = spec.streams->given;
+    return fmt::format("{} a scan that no other step needs whole is read in chunks and never completely in memory.",
+                       given.empty() ? "As the first step," : fmt::format("With {} given,", fmt::join(given, " and ")));
 }
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What a filter declares, as texts for people: an example workflow, and a page in Markdown.
+/// The declaration of a filter as an example workflow, and as a page in Markdown.
 
 #include <string>
 #include <string_view>
@@ -9,8 +9,8 @@
 
 namespace scanmill {
 
-/// A whole workflow with this filter, every parameter at its default. What no file holds is made by the first filter of
-/// the library that can; then, and when the filter takes nothing but points and meshes, it passes `scanmill check`.
+/// A whole workflow with this filter, every parameter at its default. Inputs that no file can hold are made by the
+/// first filter of the library that can; if there is one, the workflow passes `scanmill check`.
 std::string example_workflow(const FilterSpec& spec, const FilterLibrary& library);
 
 /// The filter's page: ports, parameters, metrics and the example.
@@ -19,10 +19,10 @@ std::string filter_page(const FilterSpec& spec, const FilterLibrary& library);
 /// The page that lists the pages of these filters.
 std::string filter_index(const std::vector<FilterSpec>& specs);
 
-/// Whether the text is such a page, or their list.
+/// Whether the text is one of these pages.
 bool is_filter_page(std::string_view text);
 
-/// When the filter reads its scan piece by piece, as a sentence. Pre: spec.streams.
+/// The sentence about reading the scan in chunks. Pre: spec.streams.
 std::string stream_text(const FilterSpec& spec);
 
 }  // namespace scanmill

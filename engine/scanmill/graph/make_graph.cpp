@@ -10,7 +10,6 @@
 #include "scanmill/graph/output_files.hpp"
 #include "scanmill/graph/streaming.hpp"
 #include "scanmill/io/mapped_file.hpp"
-#include "scanmill/plan/output_template.hpp"
 #include "scanmill/plan/step_parameters.hpp"
 #include "scanmill/workflow/grammar.hpp"
 
@@ -150,10 +149,11 @@ private:
             const std::string port = dot == std::string::npos ? spec.outputs.front().name : wanted.substr(dot + 1);
             if (!spec.output(port)) throw Error("--save {}: the step has no output port '{}'", wanted, port);
             const Kind kind = spec.output(port)->kind;
-            if (!can_write("ply", kind))
-                throw Error("--save {}: {} cannot be written to a file yet", wanted, name_of(kind));
+            const std::string extensions = writable_extensions(kind);
+            if (extensions.empty()) throw Error("--save {}: no file format can hold {}", wanted, name_of(kind));
             const std::string variant_part = plan_->variants.size() > 1 ? ".{variant}" : "";
-            all.emplace_back("{scan}" + variant_part + "." + wanted + ".ply", ValueSource{step->second, 0, port});
+            all.emplace_back("{scan}" + variant_part + "." + wanted + "." + extensions.substr(0, extensions.find(',')),
+                             ValueSource{step->second, 0, port});
         }
         return all;
     }
@@ -214,7 +214,7 @@ private:
         node.leaf.unit = file.unit != LengthUnit::unknown        ? file.unit
                          : request_->unit != LengthUnit::unknown ? request_->unit
                                                                  : declared.unit;
-        node.leaf.frame = !file.frame.empty() ? file.frame : frame_of_file(declared.frame, file.path);
+        node.leaf.frame = !file.frame.empty() ? file.frame : with_stem(declared.frame, file.path);
         node.leaf.pose = file.pose;
         node.is_uncacheable = !node.unreadable.empty();
         node.key = key_of_leaf(node.leaf, base_);

@@ -28,17 +28,11 @@ std::string file_safe(std::string_view text) {
     return safe;
 }
 
-std::string written_text(const WrittenParameter& value) {
-    std::string text;
-    for (const std::string& item : value.items) text += (text.empty() ? "" : ",") + item;
-    return text;
-}
-
-/// Says at every fork which way to go.
+/// Decides at every fork which branch to follow.
 class Choices {
 public:
     virtual ~Choices() = default;
-    /// One of 0 … count - 1; `fork` tells one fork of the workflow from another.
+    /// One of 0 … count - 1; `fork` identifies the fork within the workflow.
     virtual std::size_t choose(const void* fork, std::size_t count) = 0;
 };
 
@@ -50,7 +44,7 @@ public:
         if (next_ == made_.size()) made_.push_back({0, count});
         return made_[next_++].choice;
     }
-    /// Goes on to the next combination; false after the last.
+    /// Moves to the next combination; false after the last.
     bool advance() {
         next_ = 0;
         while (!made_.empty() && made_.back().choice + 1 == made_.back().count) made_.pop_back();
@@ -64,15 +58,14 @@ private:
         std::size_t choice, count;
     };
     std::vector<Made> made_;
-    std::size_t next_ = 0;  // the fork that is asked for next
+    std::size_t next_ = 0;  // the fork to decide next
 };
 
-/// At every fork the first way, then, whenever it is reached again, the next: each way of each fork at least once.
+/// At every fork the first branch, then the next one each time the fork is reached again: every branch at least once.
 class EachOnce : public Choices {
 public:
     std::size_t choose(const void* fork, std::size_t count) override {
-        Fork& known = forks_.try_emplace(fork, Fork{0, count}).first->second;
-        return known.reached++ % count;
+        return forks_.try_emplace(fork, Fork{0, count}).first->second.reached++ % count;
     }
     bool advance() {
         const auto is_done = [](const auto& fork) { return fork.second.reached >= fork.second.count; };
@@ -87,7 +80,7 @@ private:
     std::size_t rounds_ = 0;
 };
 
-/// One way through the workflow's forks.
+/// One path through the workflow: the variant that `choices` leads to.
 class Walk {
 public:
     Walk(const Workflow& workflow, const Settings& settings, Choices& choices)
@@ -97,8 +90,7 @@ public:
 
     Variant variant() {
         follow(workflow_.steps);
-        for (const std::string& part : name_parts_) variant_.name += (variant_.name.empty() ? "" : "+") + part;
-        if (variant_.name.empty()) variant_.name = "default";
+        variant_.name = name_parts_.empty() ? "default" : fmt::format("{}", fmt::join(name_parts_, "+"));
         return std::move(variant_);
     }
 
@@ -125,14 +117,13 @@ private:
         std::vector<ChosenArgument> all;
         for (const NamedExpression& parameter : step.parameters) {
             const std::vector<WrittenValue>& values = parameter.value.values;
-            if (values.empty()) continue;  // its text was wrong
+            if (values.empty()) continue;  // after an error
             const WrittenValue& written = values[choices_.choose(&values, values.size())];
-            const std::size_t told = name_parts_.size();
+            const std::size_t parts = name_parts_.size();
             std::optional<ChosenArgument> argument = replaced(step, parameter, written);
             if (!argument) continue;  // an unknown parameter, or one whose text was wrong
-            const bool is_told =
-                !written.literal.list && name_parts_.size() > told;  // by the name of what it stands for
-            if (parameter.value.sweep && !is_told) warn_swept(step, parameter.name, argument->value);
+            const bool is_named = !written.literal.list && name_parts_.size() > parts;  // by the swept `$name` itself
+            if (parameter.value.sweep && !is_named) name_sweep(step, parameter.name, argument->value);
             all.push_back(std::move(*argument));
         }
         return all;
@@ -153,7 +144,7 @@ private:
         return argument;
     }
 
-    /// What `$name` stands for; a swept parameter keeps the value that was chosen where it is first used.
+    /// The value of `$name`. A swept parameter keeps the value that was chosen at its first use.
     const WrittenValue* referenced(const StepSyntax& step, const std::string& name) {
         if (const auto bound = bound_.find(name); bound != bound_.end()) return bound->second;
         const auto setting = settings_.find(name);
@@ -165,16 +156,16 @@ private:
         const WrittenValue* chosen = &values[choices_.choose(&values, values.size())];
         if (values.size() > 1) {
             bound_.emplace(name, chosen);
-            warn_swept(step, name, chosen->literal);
+            name_sweep(step, name, chosen->literal);
         }
         return chosen;
     }
 
-    void warn_swept(const StepSyntax& step, const std::string& name, const WrittenParameter& value) {
-        // A second sweep of the same name tells whose it is.
-        const std::string label = swept_.contains(name) ? (step.id.empty() ? step.filter : step.id) + "." + name : name;
+    /// Adds the chosen value to the variant's name, with its step when the parameter's name is there already.
+    void name_sweep(const StepSyntax& step, const std::string& name, const WrittenParameter& value) {
+        const std::string label = swept_.contains(name) ? step.name() + "." + name : name;
         swept_.insert(name);
-        name_parts_.push_back(file_safe(label + "=" + written_text(value)));
+        name_parts_.push_back(file_safe(label + "=" + fmt::format("{}", fmt::join(value.items, ","))));
     }
 
     const Workflow& workflow_;
@@ -182,32 +173,79 @@ private:
     Choices& choices_;
     Variant variant_;
     std::vector<std::string> name_parts_;
-    std::set<std::string> swept_;                       // names that appear in name_parts_
+    std::set<std::string> swept_;  // names that appear in name_parts_
     std::map<std::string, const WrittenValue*> bound_;  // swept workflow parameters, once chosen
 };
 
-/// What there is too many of, as "more than 7 variants"; empty when there is not.
-std::string excess(const Workflow& workflow, const Settings& settings) {
-    EveryCombination choices;
-    std::size_t variants = 0, steps = 0;
-    do {
-        steps += Walk(workflow, settings, choices).variant().steps.size();
-        if (++variants > most_variants) return fmt::format("more than {} variants", most_variants);
-        if (steps > most_steps) return fmt::format("more than {} steps in all its variants", most_steps);
-    } while (choices.advance());
-    return {};
+/// Calls `visit` with variants until it returns false.
+template <class Order>
+void visit_all(const Workflow& workflow, const Settings& settings, const std::function<bool(const Variant&)>& visit) {
+    Order choices;
+    while (visit(Walk(workflow, settings, choices).variant()) && choices.advance()) {
+    }
 }
 
-template <class Order>
-void visit_all(const Workflow& workflow, const Settings& settings, const std::function<void(const Variant&)>& visit) {
-    Order choices;
-    std::size_t steps = 0;
-    do {
-        const Variant variant = Walk(workflow, settings, choices).variant();
-        visit(variant);
+/// The exceeded limit, as "more than 7 variants"; empty within the limits.
+std::string excess(const Workflow& workflow, const Settings& settings) {
+    std::size_t variants = 0, steps = 0;
+    visit_all<EveryCombination>(workflow, settings, [&](const Variant& variant) {
         steps += variant.steps.size();
-    } while (steps <= most_steps && choices.advance());
+        return ++variants <= most_variants && steps <= most_steps;
+    });
+    return variants > most_variants ? fmt::format("more than {} variants", most_variants)
+           : steps > most_steps     ? fmt::format("more than {} steps in all its variants", most_steps)
+                                    : "";
 }
+
+/// Checks that every `$name` in a step is declared, and a single value within a list; that every setting is declared;
+/// and that every declared parameter is mentioned in the file.
+class ReferenceCheck {
+public:
+    ReferenceCheck(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
+        : diagnostics_(diagnostics),
+          parameters_(workflow.parameters) {
+        for (const WorkflowParameter& parameter : parameters_) {
+            const auto setting = settings.find(parameter.name);
+            const ValueExpression& given = setting != settings.end() ? setting->second : parameter.value;
+            const auto is_list = [](const WrittenValue& value) { return value.literal.list; };
+            if (std::ranges::any_of(given.values, is_list)) lists_.insert(parameter.name);
+            if (!workflow.mentions.contains(parameter.name))
+                diagnostics_.warning(parameter.position,
+                                     fmt::format("no step uses the parameter '{}'", parameter.name));
+        }
+        check(workflow.steps);
+        for (const auto& [name, value] : settings) require_declared(name, {});
+    }
+
+private:
+    void require_declared(const std::string& name, Position position) {
+        if (std::ranges::find(parameters_, name, &WorkflowParameter::name) == parameters_.end())
+            diagnostics_.error(position, "the workflow has no parameter '{}'; {}", name, it_has(parameters_, name));
+    }
+
+    void check(const std::vector<StepItem>& items) {
+        for (const StepItem& item : items) {
+            if (const auto* fork = std::get_if<OneOfSyntax>(&item.item)) {
+                for (const AlternativeSyntax& alternative : fork->alternatives) check(alternative.steps);
+                continue;
+            }
+            for (const NamedExpression& parameter : std::get<StepSyntax>(item.item).parameters)
+                for (const WrittenValue& written : parameter.value.values)
+                    for (const NameUse& use : written.uses) {
+                        require_declared(use.name, use.position);
+                        if (written.literal.list && lists_.contains(use.name))
+                            diagnostics_.error(use.position,
+                                               "${0} is a list, which cannot be part of a list; expected a "
+                                               "single value, or the whole list as `{1}: ${0}`",
+                                               use.name, parameter.name);
+                    }
+        }
+    }
+
+    Diagnostics& diagnostics_;
+    const std::vector<WorkflowParameter>& parameters_;
+    std::set<std::string> lists_;
+};
 
 }  // namespace
 
@@ -221,84 +259,25 @@ std::vector<std::string> undeclared(const Settings& settings, const Workflow& wo
 
 void expand(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics,
             const std::function<void(const Variant&)>& visit) {
-    check_references(workflow, settings, diagnostics);
-    if (const std::string too_much = excess(workflow, settings); !too_much.empty()) {
-        diagnostics.error({}, "has " + too_much + "; sweep over fewer values");
-        visit_all<EachOnce>(workflow, settings, visit);
+    ReferenceCheck(workflow, settings, diagnostics);
+    if (const std::string limit = excess(workflow, settings); !limit.empty()) {
+        diagnostics.error({}, "has " + limit + "; sweep over fewer values");
+        std::size_t steps = 0;
+        visit_all<EachOnce>(workflow, settings, [&](const Variant& variant) {
+            visit(variant);
+            return (steps += variant.steps.size()) <= most_steps;
+        });
         return;
     }
     std::set<std::string> names;
-    bool told = false;  // one pair is enough: a value that stands twice in a sweep makes many
+    bool is_reported = false;  // one pair is enough: a value repeated in a sweep makes many
     visit_all<EveryCombination>(workflow, settings, [&](const Variant& variant) {
-        if (!names.insert(variant.name).second && !std::exchange(told, true))
-            diagnostics.error(
-                variant.steps.empty() ? Position{} : variant.steps.back().syntax->position,
-                fmt::format("two variants are called '{}'; give their alternatives different names", variant.name));
+        if (!names.insert(variant.name).second && !std::exchange(is_reported, true))
+            diagnostics.error(variant.steps.empty() ? Position{} : variant.steps.back().syntax->position,
+                              "two variants are called '{}'; give their alternatives different names", variant.name);
         visit(variant);
+        return true;
     });
-}
-
-namespace {
-
-class References {
-public:
-    References(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics)
-        : diagnostics_(diagnostics) {
-        for (const WorkflowParameter& parameter : workflow.parameters) {
-            names_.push_back(parameter.name);
-            const auto setting = settings.find(parameter.name);
-            const ValueExpression& given = setting != settings.end() ? setting->second : parameter.value;
-            const auto is_list = [](const WrittenValue& value) { return value.literal.list; };
-            if (std::ranges::any_of(given.values, is_list)) lists_.insert(parameter.name);
-        }
-        look_at(workflow.steps);
-        // Where a name stands in what could not be read, or where it must not, that is said already.
-        for (const WorkflowParameter& parameter : workflow.parameters)
-            if (!workflow.mentions.contains(parameter.name))
-                diagnostics_.warning(parameter.position,
-                                     fmt::format("no step uses the parameter '{}'", parameter.name));
-    }
-
-    void require_known(const std::string& name, Position position) const {
-        if (std::ranges::find(names_, name) != names_.end()) return;
-        diagnostics_.error(position, fmt::format("the workflow has no parameter '{}'; {}{}", name,
-                                                 names_.empty() ? "it declares none" : "it has " + enumerated(names_),
-                                                 did_you_mean(name, names_)));
-    }
-
-private:
-    void look_at(const std::vector<StepItem>& items) {
-        for (const StepItem& item : items) {
-            if (const auto* fork = std::get_if<OneOfSyntax>(&item.item)) {
-                for (const AlternativeSyntax& alternative : fork->alternatives) look_at(alternative.steps);
-                continue;
-            }
-            for (const NamedExpression& parameter : std::get<StepSyntax>(item.item).parameters)
-                for (const WrittenValue& written : parameter.value.values)
-                    for (const NameUse& use : written.uses) {
-                        require_known(use.name, use.position);
-                        if (written.literal.list) require_single(use, parameter.name);
-                    }
-        }
-    }
-
-    void require_single(const NameUse& use, const std::string& parameter) const {
-        if (lists_.contains(use.name))
-            diagnostics_.error(use.position, fmt::format("${0} is a list, which cannot stand within a list; expected a "
-                                                         "single value, or the whole list as `{1}: ${0}`",
-                                                         use.name, parameter));
-    }
-
-    Diagnostics& diagnostics_;
-    std::vector<std::string> names_;
-    std::set<std::string> lists_;
-};
-
-}  // namespace
-
-void check_references(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics) {
-    const References references(workflow, settings, diagnostics);
-    for (const auto& [name, value] : settings) references.require_known(name, {});
 }
 
 }  // namespace scanmill

@@ -9,29 +9,25 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/kinds/value.hpp"
-#include "scanmill/workflow/length_power.hpp"
+#include "scanmill/workflow/sizes.hpp"
 
 namespace scanmill {
 
 ParameterSpec written_as(Unit unit) {
     ParameterSpec spec;
-    switch (unit) {
-        case Unit::boolean: spec.type = ParameterType::boolean; break;
-        case Unit::length:
-        case Unit::area:
-        case Unit::volume: spec.type = ParameterType::length; break;
-        case Unit::angle: spec.type = ParameterType::angle; break;
-        case Unit::ratio: spec.type = ParameterType::ratio; break;
-        default: spec.type = ParameterType::number;
-    }
+    spec.type = power_of_length(unit) > 0 ? ParameterType::length
+                : unit == Unit::boolean   ? ParameterType::boolean
+                : unit == Unit::angle     ? ParameterType::angle
+                : unit == Unit::ratio     ? ParameterType::ratio
+                                          : ParameterType::number;
     return spec;
 }
 
 std::vector<MetricSpec> expectable(const FilterSpec& spec) {
-    std::vector<MetricSpec> askable = spec.metrics;
+    std::vector<MetricSpec> all = spec.metrics;
     for (const PropertySpec& property : property_specs(spec.outputs.front().kind))
-        if (!spec.metric(property.name)) askable.push_back({property.name, property.unit, property.help});
-    return askable;
+        if (!spec.metric(property.name)) all.push_back({property.name, property.unit, property.help});
+    return all;
 }
 
 namespace {
@@ -67,8 +63,7 @@ bool is_met(const PlannedExpectation& expectation, double found, const LengthSca
     return false;
 }
 
-/// Whether nothing lies between the ends, whatever the scan. Only absolute lengths in different units can be compared
-/// without it.
+/// Whether the range is empty on every scan. Lengths in different units are compared only when both are absolute.
 bool is_backwards(const PlannedExpectation& expectation) {
     if (expectation.relation != Expectation::Relation::between) return false;
     if (power_of_length(expectation.unit) == 0)
@@ -81,14 +76,14 @@ bool is_backwards(const PlannedExpectation& expectation) {
     return number_of(expectation.low, expectation.unit, any) > number_of(expectation.high, expectation.unit, any);
 }
 
-/// Throws Error for what no number can meet.
+/// Throws Error for an expectation that no number can meet.
 void require_possible(const PlannedExpectation& expectation) {
     const bool equal = expectation.relation == Expectation::Relation::equal;
     if (expectation.unit == Unit::count && equal)
         if (const double wanted = number_of(expectation.low, Unit::count, {}); wanted != std::floor(wanted))
             throw Error("a count is never {}; expected a whole number", number_text(wanted));
     if (is_backwards(expectation))
-        throw Error("nothing lies in {}; expected the lower end first",
+        throw Error("the range {} is empty; expected the lower end first",
                     expectation.text.substr(expectation.text.find('[')));
 }
 
@@ -107,25 +102,24 @@ std::string expectation_text(const Expectation& written) {
 
 std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec,
                                                    Diagnostics& diagnostics) {
-    const std::vector<MetricSpec> askable = expectable(spec);
+    const std::vector<MetricSpec> metrics = expectable(spec);
     const MetricSpec* declared = spec.metric(written.name);
-    const auto asked = std::ranges::find(askable, declared ? declared->name : written.name, &MetricSpec::name);
-    if (asked == askable.end()) {
+    const auto found = std::ranges::find(metrics, declared ? declared->name : written.name, &MetricSpec::name);
+    if (found == metrics.end()) {
         std::vector<std::string> names;
-        for (const MetricSpec& metric : askable) names.push_back(metric.name);
-        diagnostics.error(written.position,
-                          fmt::format("nothing is known as '{}' of what {} gives; expect takes {}{}", written.name,
-                                      spec.name, enumerated(names), did_you_mean(written.name, names)));
+        for (const MetricSpec& metric : metrics) names.push_back(metric.name);
+        diagnostics.error(written.position, "{} has no metric or property '{}'; expect accepts {}{}", spec.name,
+                          written.name, enumerated(names), did_you_mean(written.name, names));
         return std::nullopt;
     }
-    PlannedExpectation planned{written.name, written.position,         written.relation, asked->unit, {},
+    PlannedExpectation planned{written.name, written.position,         written.relation, found->unit, {},
                                {},           expectation_text(written)};
     try {
-        planned.low = parse_end(asked->unit, written.value);
-        if (written.relation == Expectation::Relation::between) planned.high = parse_end(asked->unit, written.high);
+        planned.low = parse_end(found->unit, written.value);
+        if (written.relation == Expectation::Relation::between) planned.high = parse_end(found->unit, written.high);
         require_possible(planned);
     } catch (const Error& error) {
-        diagnostics.error(written.position, fmt::format("expect {}: {}", written.name, error.sentence()));
+        diagnostics.error(written.position, "expect {}: {}", written.name, error.sentence());
         return std::nullopt;
     }
     return planned;
@@ -137,7 +131,7 @@ void require_met(const std::vector<PlannedExpectation>& expectations, const Metr
         const Metric* metric = found.find(expectation.name);
         if (metric && is_met(expectation, metric->value, scale)) continue;
         unmet += fmt::format("{}expected {}, found {}", unmet.empty() ? "" : "; ", expectation.text,
-                             metric ? display(*metric, scale.unit) : "that it is not defined");
+                             metric ? display(*metric, scale.unit) : "no such value");
     }
     if (!unmet.empty()) throw Error(unmet);
 }

@@ -6,16 +6,15 @@
 
 namespace scanmill {
 
-/// The expectation with its numbers typed by what it asks for: a metric of the filter, or a fact about its primary
-/// output. Areas and volumes are lengths whose amounts count the unit's power (see length_power.hpp). Reports unknown
-/// names and values of the wrong type.
+/// The expectation with its numbers typed by the metric or property that it names. Areas and volumes are lengths whose
+/// amounts count the unit's power (see sizes.hpp). Unknown names and values of the wrong type are reported.
 std::optional<PlannedExpectation> plan_expectation(const Expectation& written, const FilterSpec& spec,
                                                    Diagnostics& diagnostics);
 
-/// What `expect` may ask for: the filter's metrics, and the properties about its primary output.
+/// The names that `expect` accepts: the filter's metrics, and the properties of its primary output.
 std::vector<MetricSpec> expectable(const FilterSpec& spec);
 
-/// How a number of this unit is written in a workflow; of areas and volumes, before the unit is raised to its power.
+/// The parameter type in which a number of this unit is written; for areas and volumes, before the power.
 ParameterSpec written_as(Unit unit);
 
 /// Throws Error naming every expectation that `found` does not meet. Lengths are resolved against `scale`.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <set>
 
@@ -12,13 +13,44 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/plan/expectation.hpp"
-#include "scanmill/plan/output_template.hpp"
 #include "scanmill/plan/step_parameters.hpp"
 #include "scanmill/plan/wiring.hpp"
+#include "scanmill/workflow/grammar.hpp"
 
 namespace scanmill {
 
 namespace {
+
+const std::array<std::string, 4> placeholders{"scan", "folder", "variant", "workflow"};
+
+bool leaves_folder(const std::filesystem::path& path) {
+    const std::filesystem::path normal = path.lexically_normal();
+    return path.is_absolute() || normal.empty() || *normal.begin() == "..";
+}
+
+bool names_a_folder(const std::filesystem::path& path) {
+    return !path.has_filename() || path.filename() == "." || path.filename() == "..";
+}
+
+/// Reports wrong placeholders, absolute paths, paths that leave the output folder, and paths that are not in normal
+/// form (`a//b`, `a/../b`), because equal files must have equal names.
+void check_template(const WorkflowOutput& output, Diagnostics& diagnostics) {
+    const std::string& file = output.file;
+    const auto error = [&](std::string message) { diagnostics.error(output.position, std::move(message)); };
+    check_placeholders(file, "the file name", placeholders, output.position, diagnostics);
+    if (file.find('\0') != std::string::npos) error("a file's name has a zero byte");
+    constexpr std::size_t most = 255;  // of nearly every file system
+    const std::string shortest = with_placeholders(file, [](const std::string&) { return std::string(); });
+    for (const std::filesystem::path& part : std::filesystem::path(shortest))
+        if (const std::size_t bytes = part.native().size(); bytes > most)
+            error(fmt::format("a file's name has {} bytes; expected at most {}", bytes, most));
+    if (leaves_folder(file))
+        error(fmt::format("'{}' lies outside the output folder; expected a path below it, as \"{{scan}}.stl\"", file));
+    else if (names_a_folder(file))
+        error(fmt::format("'{}' is the name of a folder; expected a file, as \"{{scan}}.stl\"", file));
+    else if (const std::string normal = std::filesystem::path(file).lexically_normal().string(); normal != file)
+        error(fmt::format("'{}' is not in its shortest form; expected '{}'", file, normal));
+}
 
 class Planner {
 public:
@@ -34,15 +66,14 @@ public:
         settings_ = &settings;
         expand(plan_.workflow, settings, diagnostics_,
                [this](const Variant& variant) { plan_.variants.push_back(plan_variant(variant)); });
-        for (const WorkflowOutput& output : plan_.workflow.outputs)
-            check_template(output.file, output.position, diagnostics_);
-        complain_of_shared_files();
-        complain_of_folders();
+        for (const WorkflowOutput& output : plan_.workflow.outputs) check_template(output, diagnostics_);
+        check_shared_files();
+        check_folders();
         return std::move(plan_);
     }
 
 private:
-    /// What one variant's names stand for, while it is being planned.
+    /// The steps that the names of one variant refer to, while it is being planned.
     struct Names {
         std::map<std::string, std::size_t> steps;
         std::map<std::string, std::string> unusable;  // name → why; empty: already reported
@@ -51,7 +82,7 @@ private:
             if (unusable.contains(name)) return;
             if (!steps.emplace(name, step).second && steps[name] != step) {
                 steps.erase(name);
-                unusable[name] = fmt::format("'{}' stands for several steps; give the one you mean an id", name);
+                unusable[name] = fmt::format("'{}' is the name of several steps; give the one you mean an id", name);
             }
         }
     };
@@ -63,7 +94,7 @@ private:
         bool uncertain = false;
         std::set<std::string> ids;
         for (const ExpandedStep& step : variant.steps) {
-            complain_of_id(step, ids);
+            check_ids(step, ids);
             const FilterSpec* spec = find_filter(*step.syntax);
             if (!spec) {
                 uncertain = true;
@@ -83,19 +114,17 @@ private:
 
     static std::vector<std::string> names_of(const ExpandedStep& step) {
         std::vector<std::string> names = step.aliases;
-        names.push_back(step.syntax->id.empty() ? step.syntax->filter : step.syntax->id);
+        names.push_back(step.syntax->name());
         return names;
     }
 
-    void complain_of_id(const ExpandedStep& step, std::set<std::string>& ids) {
+    void check_ids(const ExpandedStep& step, std::set<std::string>& ids) {
         for (const std::string& name : names_of(step)) {
             const bool given = name == step.syntax->id || std::ranges::find(step.aliases, name) != step.aliases.end();
-            if (!given || name.empty()) continue;  // empty: neither id nor filter could be read, and that is reported
-            if (!ids.insert(name).second)
-                diagnostics_.error(step.syntax->position, fmt::format("the id '{}' is given twice", name));
+            if (!given || name.empty()) continue;  // empty after an error: neither id nor filter could be read
+            if (!ids.insert(name).second) diagnostics_.error(step.syntax->position, "the id '{}' is used twice", name);
             if (std::ranges::find(plan_.workflow.inputs, name, &WorkflowInput::name) != plan_.workflow.inputs.end())
-                diagnostics_.error(step.syntax->position,
-                                   fmt::format("the id '{}' is already the name of an input", name));
+                diagnostics_.error(step.syntax->position, "the id '{}' is already the name of an input", name);
         }
     }
 
@@ -104,18 +133,17 @@ private:
         if (const FilterSpec* spec = library_.find(step.filter)) return spec;
         for (const UnusableModule& module : library_.unusable())
             if (module.name == step.filter) {
-                diagnostics_.error(step.position, fmt::format("the filter '{}' cannot be used: '{}' {}", step.filter,
-                                                              module.manifest.string(), module.reason));
+                diagnostics_.error(step.position, "the filter '{}' cannot be used: '{}' {}", step.filter,
+                                   module.manifest.string(), module.reason);
                 return nullptr;
             }
         const std::vector<std::string> names = library_.names();
-        diagnostics_.error(step.position,
-                           fmt::format("there is no filter '{}'; `scanmill list` shows the {} there are{}", step.filter,
-                                       names.size(), did_you_mean(step.filter, names)));
+        diagnostics_.error(step.position, "there is no filter '{}'; `scanmill list` lists the {} installed ones{}",
+                           step.filter, names.size(), did_you_mean(step.filter, names));
         return nullptr;
     }
 
-    /// Outputs that follow an input get the kind of what is wired to it.
+    /// Outputs that follow an input get the kind of the value wired to it.
     FilterSpec with_kinds(FilterSpec spec, const std::vector<PlannedInput>& inputs) const {
         for (PortSpec& output : spec.outputs)
             if (const auto wired = std::ranges::find(inputs, output.like, &PlannedInput::port);
@@ -130,7 +158,7 @@ private:
         std::vector<PlannedInput> inputs = wire(*step.syntax, declared, scope, diagnostics_);
         const FilterSpec spec = with_kinds(declared, inputs);
         std::string key = structure_key(spec, set, inputs);
-        const auto [place, is_new] = step_of_key_.emplace(key, plan_.steps.size());
+        const auto [found, is_new] = step_of_key_.emplace(key, plan_.steps.size());
         if (is_new)
             plan_.steps.push_back({step.syntax->id.empty() ? spec.name : step.syntax->id,
                                    step.syntax->position,
@@ -139,14 +167,14 @@ private:
                                    std::move(inputs),
                                    {},
                                    std::move(key)});
-        std::vector<PlannedExpectation>& expectations = plan_.steps[place->second].expectations;
+        std::vector<PlannedExpectation>& expectations = plan_.steps[found->second].expectations;
         for (const Expectation& written : step.syntax->expect) {
             if (std::ranges::find(expectations, written.position, &PlannedExpectation::position) != expectations.end())
                 continue;  // of the same step in an earlier variant
             if (auto expectation = plan_expectation(written, spec, diagnostics_))
                 expectations.push_back(std::move(*expectation));
         }
-        return place->second;
+        return found->second;
     }
 
     std::string structure_key(const FilterSpec& spec, const ParameterSet& parameters,
@@ -166,55 +194,54 @@ private:
         const std::optional<ValueSource> source = resolve(output.source, scope, diagnostics_);
         if (!source) return;
         if (!source->step && plan_.workflow.inputs[source->input].list) {
-            diagnostics_.error(output.source.position,
-                               fmt::format("'{}' is a list; a file holds one value", output.source.text));
+            diagnostics_.error(output.source.position, "'{}' is a list; a file holds one value", output.source.text);
             return;
         }
         const Kind kind = kind_of(plan_, *source);
         const std::string extension = std::filesystem::path(output.file).extension().string();
         if (!can_write(extension, kind)) {
             const std::string writable = writable_extensions(kind), unusable = why_unusable(extension);
-            diagnostics_.error(output.position, fmt::format("'{}' is {}, which no '{}' file can hold; {}",
-                                                            output.source.text, name_of(kind), extension,
-                                                            !unusable.empty()  ? unusable
-                                                            : writable.empty() ? "this kind cannot be written yet"
-                                                                               : "expected " + writable));
+            diagnostics_.error(output.position, "'{}' is {}, which no '{}' file can hold; {}", output.source.text,
+                               name_of(kind), extension,
+                               !unusable.empty()  ? unusable
+                               : writable.empty() ? "this kind cannot be written yet"
+                                                  : "expected " + writable);
         }
         variant.outputs.push_back({output.file, output.position, *source});
     }
 
-    void complain_of_shared_files() {
+    void check_shared_files() {
         struct Writer {
             const PlannedVariant* variant;
             const PlannedOutput* output;
-            bool told = false;
+            bool is_reported = false;
         };
         std::map<std::string_view, Writer> last_writers;
         for (const PlannedVariant& variant : plan_.variants)
             for (const PlannedOutput& output : variant.outputs) {
-                if (mentions(output.file, "variant")) continue;
-                const auto [place, is_new] = last_writers.emplace(output.file, Writer{&variant, &output});
-                Writer& last = place->second;
-                if (!is_new && !last.told && last.output->source != output.source) {
-                    last.told = true;
+                if (output.file.find("{variant}") != std::string::npos) continue;
+                const auto [found, is_new] = last_writers.emplace(output.file, Writer{&variant, &output});
+                Writer& last = found->second;
+                if (!is_new && !last.is_reported && last.output->source != output.source) {
+                    last.is_reported = true;
                     diagnostics_.error(output.position,
-                                       fmt::format("the variants '{}' and '{}' would both write '{}'; put "
-                                                   "{{variant}} into the name",
-                                                   last.variant->name, variant.name, output.file));
+                                       "the variants '{}' and '{}' would both write '{}'; put "
+                                       "{{variant}} into the name",
+                                       last.variant->name, variant.name, output.file);
                 }
                 last.variant = &variant;
                 last.output = &output;
             }
     }
 
-    void complain_of_folders() {
+    void check_folders() {
         std::set<std::string_view> files;
         for (const WorkflowOutput& output : plan_.workflow.outputs) files.insert(output.file);
         for (const WorkflowOutput& output : plan_.workflow.outputs) {
             const std::string folder = output.file + "/";
             if (const auto file = files.lower_bound(folder); file != files.end() && file->starts_with(folder))
-                diagnostics_.error(output.position,
-                                   fmt::format("'{}' would be a file, and the folder of '{}' too", output.file, *file));
+                diagnostics_.error(output.position, "'{}' would be a file, and the folder of '{}' too", output.file,
+                                   *file);
         }
     }
 
@@ -240,6 +267,19 @@ std::string workflow_name(const Plan& plan) {
 Kind kind_of(const Plan& plan, const ValueSource& source) {
     return source.step ? plan.steps[*source.step].spec.output(source.port)->kind
                        : plan.workflow.inputs[source.input].kind;
+}
+
+std::string expand_template(const std::string& file, const TemplateValues& values) {
+    const std::string name = with_placeholders(file, [&](const std::string& placeholder) {
+        return placeholder == "scan"      ? values.scan
+               : placeholder == "folder"  ? values.folder
+               : placeholder == "variant" ? values.variant
+                                          : values.workflow;
+    });
+    if (leaves_folder(name) || names_a_folder(name))
+        throw Error("'{}' becomes '{}', which is not a file below the output folder", file, name)
+            .hint("rename the scan");
+    return std::filesystem::path(name).lexically_normal().string();
 }
 
 std::string describe(const Plan& plan, const ValueSource& source) {

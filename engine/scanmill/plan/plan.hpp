@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// The plan of one workflow: the graph of its steps over all variants, equal steps merged, every port wired, every
-/// parameter typed and in range. Making it finds everything that can be wrong before a scan is opened.
+/// parameter typed and in range. Planning finds every error that can be found before a scan is opened.
 
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace scanmill {
 
-/// Where a value comes from: an output of a planned step, or a workflow input.
+/// The origin of a value: an output of a planned step, or a workflow input.
 struct ValueSource {
     std::optional<std::size_t> step;  ///< index into Plan::steps
     std::size_t input = 0;            ///< index into Workflow::inputs, when there is no step
@@ -27,7 +27,7 @@ struct PlannedInput {
     bool operator==(const PlannedInput&) const = default;
 };
 
-/// A condition on a step's result; `low` and `high` are typed by the unit of what is asked.
+/// A condition on a step's result; `low` and `high` are typed by the unit of the metric or property.
 struct PlannedExpectation {
     std::string name;
     Position position;
@@ -44,7 +44,7 @@ struct PlannedStep {
     ParameterSet parameters;  ///< as authored, defaults filled in; lengths unresolved
     std::vector<PlannedInput> inputs;
     std::vector<PlannedExpectation> expectations;
-    /// Equal for steps that do the same whatever the inputs hold.
+    /// Equal for steps with the same filter, parameters and upstream steps.
     std::string structure_key;
 };
 
@@ -58,7 +58,7 @@ struct PlannedVariant {
     std::string name;
     std::vector<std::size_t> steps;  ///< indices into Plan::steps, each after its inputs
     std::vector<PlannedOutput> outputs;
-    /// What every name stands for in this variant: ids, filters, aliases.
+    /// The step of every name in this variant: ids, filters, aliases.
     std::map<std::string, std::size_t> steps_by_name;
 };
 
@@ -68,18 +68,26 @@ struct Plan {
     std::vector<PlannedVariant> variants;
 };
 
-/// Checks the workflow against the filters at hand; with errors in `diagnostics` the plan must not be run. When
-/// settings stand in a file of their own, `settings_diagnostics` is that file's: a value that its parameter cannot take
-/// is then reported there, at its own place, and relative paths among the values count from that file's folder. Without
-/// it the error is told at the step, and such paths count from the working folder.
+/// Checks the workflow against the installed filters; with errors in `diagnostics` the plan must not be run. When the
+/// settings come from a file, `settings_diagnostics` belongs to that file: values that their parameter refuses are
+/// reported there, and relative paths among the values count from that file's folder. Otherwise they are reported at
+/// the step, and relative paths count from the working folder.
 Plan make_plan(Workflow workflow, const FilterLibrary& library, const Settings& settings, Diagnostics& diagnostics,
                Diagnostics* settings_diagnostics = nullptr);
 
 /// The workflow's own name, else that of its file.
 std::string workflow_name(const Plan& plan);
 
-/// Kind of the value.
 Kind kind_of(const Plan& plan, const ValueSource& source);
+
+/// The values of the placeholders in names of output files: the scan's stem, the variant, the workflow and the name of
+/// the folder that holds the scan.
+struct TemplateValues {
+    std::string scan, variant, workflow, folder;
+};
+
+/// The file's name relative to the output folder, in normal form. Throws Error when a value makes it leave the folder.
+std::string expand_template(const std::string& file, const TemplateValues& values);
 
 /// "scan", "solid", "solid.tets": for messages and listings.
 std::string describe(const Plan& plan, const ValueSource& source);

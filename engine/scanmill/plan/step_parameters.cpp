@@ -47,14 +47,10 @@ public:
     explicit Reader(const ParameterSources& sources) : sources_(sources) {}
 
     ParameterSet parameters(const ExpandedStep& step, const FilterSpec& spec) {
-        std::vector<std::string> known;
-        for (const ParameterSpec& parameter : spec.parameters) known.push_back(parameter.name);
         for (const NamedExpression& written : step.syntax->parameters)
             if (!spec.parameter(written.name))
-                sources_.diagnostics.error(written.position,
-                                           fmt::format("{} has no parameter '{}'; {}{}", spec.name, written.name,
-                                                       known.empty() ? "it has none" : "it has " + enumerated(known),
-                                                       did_you_mean(written.name, known)));
+                sources_.diagnostics.error(written.position, "{} has no parameter '{}'; {}", spec.name, written.name,
+                                           it_has(spec.parameters, written.name));
         ParameterSet set;
         for (const ParameterSpec& parameter : spec.parameters)
             set.values.emplace_back(parameter.name, parameter_value(step, parameter));
@@ -67,17 +63,16 @@ private:
                                                 [](const ChosenArgument& given) { return given.parameter->name; });
         if (argument == step.arguments.end()) {
             const bool attempted = std::ranges::find(step.syntax->parameters, parameter.name, &NamedExpression::name) !=
-                                   step.syntax->parameters.end();  // its text was wrong, and reported
+                                   step.syntax->parameters.end();  // after an error
             if (parameter.required && !attempted)
-                sources_.diagnostics.error(step.syntax->position,
-                                           fmt::format("{} needs the parameter '{}': {}", step.syntax->filter,
-                                                       parameter.name, expectation(parameter)));
+                sources_.diagnostics.error(step.syntax->position, "{} needs the parameter '{}': {}",
+                                           step.syntax->filter, parameter.name, expectation(parameter));
             return parameter.default_value;
         }
         try {
             return with_folders(*argument, parameter, parse(parameter, argument->value));
         } catch (const Error& error) {
-            complain_of_value(*argument, parameter, step.syntax->filter, error.sentence());
+            report_value(*argument, parameter, step.syntax->filter, error.sentence());
             return parameter.default_value;
         }
     }
@@ -88,7 +83,7 @@ private:
         const auto with_folder = [&](const ParameterScalar& path, std::size_t item) -> ParameterScalar {
             const ReplacedName* source = source_of(argument, item);
             const bool from_outside = source && sources_.settings.contains(source->use->name);
-            if (from_outside && !sources_.settings_diagnostics) return path;  // relative to where we are
+            if (from_outside && !sources_.settings_diagnostics) return path;  // relative to the working folder
             const std::filesystem::path file = from_outside ? sources_.settings_diagnostics->file() : sources_.workflow;
             return std::get<ParameterScalar>(with_paths_from(file.parent_path(), path));
         };
@@ -98,29 +93,27 @@ private:
         return value;
     }
 
-    /// What an item of the value came from; nullptr when it stands in the step.
+    /// The `$name` that an item of the value came from; nullptr for a literal.
     static const ReplacedName* source_of(const ChosenArgument& argument, std::size_t item) {
         for (const ReplacedName& replaced : argument.replaced)
             if (!argument.written->literal.list || replaced.use->item == item) return &replaced;
         return nullptr;
     }
 
-    void complain_of_value(const ChosenArgument& argument, const ParameterSpec& parameter, const std::string& filter,
-                           std::string sentence) {
+    void report_value(const ChosenArgument& argument, const ParameterSpec& parameter, const std::string& filter,
+                      std::string sentence) {
         const ReplacedName* source =
             argument.written->literal.list ? refused_item(argument, parameter, sentence) : source_of(argument, 0);
         if (source && sources_.settings_diagnostics && sources_.settings.contains(source->use->name))
-            sources_.settings_diagnostics->error(
-                source->value->position,
-                fmt::format("${} is {}the {} of {}: {}", source->use->name,
-                            argument.written->literal.list ? "one of " : "", parameter.name, filter, sentence));
+            sources_.settings_diagnostics->error(source->value->position, "${} is {}the {} of {}: {}",
+                                                 source->use->name, argument.written->literal.list ? "one of " : "",
+                                                 parameter.name, filter, sentence);
         else
-            sources_.diagnostics.error(
-                source ? source->use->position : argument.written->position,
-                fmt::format("{}{}: {}", parameter.name, source ? " (from $" + source->use->name + ")" : "", sentence));
+            sources_.diagnostics.error(source ? source->use->position : argument.written->position, "{}{}: {}",
+                                       parameter.name, source ? " (from $" + source->use->name + ")" : "", sentence);
     }
 
-    /// The first `$name` of a list whose value is no item of it, and why; nullptr when something else is wrong.
+    /// The first `$name` of a list whose value the parameter refuses, and the reason; nullptr for other errors.
     static const ReplacedName* refused_item(const ChosenArgument& argument, const ParameterSpec& parameter,
                                             std::string& sentence) {
         if (!parameter.list) return nullptr;

@@ -18,12 +18,12 @@ std::vector<std::string> names_of(const Items& items) {
     return names;
 }
 
-/// "; filters that give a mesh: alpha-solid and sculpt", or nothing.
-std::string givers(const FilterLibrary& library, Kind kind) {
+/// "; filters that make mesh: alpha-solid and sculpt", or nothing.
+std::string makers(const FilterLibrary& library, Kind kind) {
     std::vector<std::string> names;
     for (const std::string& name : library.names())
         if (library.find(name)->outputs.front().kind == kind) names.push_back("'" + name + "'");
-    return names.empty() ? "" : "; filters that give " + std::string(name_of(kind)) + ": " + enumerated(names);
+    return names.empty() ? "" : "; filters that make " + std::string(name_of(kind)) + ": " + enumerated(names);
 }
 
 class Wiring {
@@ -35,7 +35,7 @@ public:
           diagnostics_(diagnostics) {}
 
     std::vector<PlannedInput> all() {
-        complain_of_unknown_ports();
+        check_ports();
         std::vector<PlannedInput> inputs;
         for (const PortSpec& port : spec_.inputs) {
             std::vector<ValueSource> sources = is_given(port) ? given(port) : nearest(port);
@@ -45,19 +45,16 @@ public:
     }
 
 private:
-    void complain_of_unknown_ports() {
-        const std::vector<std::string> ports = names_of(spec_.inputs);
-        const std::string has = ports.empty() ? "it has none" : "it has " + enumerated(ports);
+    void check_ports() {
         for (const InputWiring& wired : step_.in)
             if (!spec_.input(wired.port))
-                diagnostics_.error(wired.position, fmt::format("{} has no input port '{}'; {}{}", spec_.name,
-                                                               wired.port, has, did_you_mean(wired.port, ports)));
+                diagnostics_.error(wired.position, "{} has no input port '{}'; {}", spec_.name, wired.port,
+                                   it_has(spec_.inputs, wired.port));
         if (step_.in_shorthand && spec_.inputs.size() != 1)
-            diagnostics_.error(
-                step_.in_shorthand->position,
-                fmt::format("`in:` with a single name is for filters with one input port; {}: {}. Expected "
-                            "`in: {{port: {}}}`",
-                            spec_.name, has, step_.in_shorthand->text));
+            diagnostics_.error(step_.in_shorthand->position,
+                               "`in:` with a single name is for filters with one input port; {}: {}. Expected "
+                               "`in: {{port: {}}}`",
+                               spec_.name, it_has(spec_.inputs, ""), step_.in_shorthand->text);
     }
 
     bool is_given(const PortSpec& port) const {
@@ -72,8 +69,8 @@ private:
         else
             references = std::ranges::find(step_.in, port.name, &InputWiring::port)->sources;
         if (references.size() > 1 && !port.list)
-            diagnostics_.error(references[1].position, fmt::format("the port '{}' of {} takes one value; found {}",
-                                                                   port.name, spec_.name, references.size()));
+            diagnostics_.error(references[1].position, "the port '{}' of {} takes one value; found {}", port.name,
+                               spec_.name, references.size());
         std::vector<ValueSource> sources;
         for (const Reference& reference : references) {
             const auto source = resolve(reference, scope_, diagnostics_);
@@ -85,14 +82,14 @@ private:
     bool fits(const PortSpec& port, const ValueSource& source, const Reference& reference) {
         const Kind kind = kind_of(scope_.plan, source);
         if (!port.takes(kind)) {
-            diagnostics_.error(reference.position,
-                               fmt::format("'{}' is {}; the port '{}' of {} takes {}{}", reference.text, name_of(kind),
-                                           port.name, spec_.name, kinds_text(port), givers(scope_.library, port.kind)));
+            diagnostics_.error(reference.position, "'{}' is {}; the port '{}' of {} takes {}{}", reference.text,
+                               name_of(kind), port.name, spec_.name, kinds_text(port),
+                               makers(scope_.library, port.kind));
             return false;
         }
         if (!source.step && scope_.plan.workflow.inputs[source.input].list && !port.list) {
-            diagnostics_.error(reference.position, fmt::format("'{}' is a list of {}; the port '{}' of {} takes one",
-                                                               reference.text, name_of(kind), port.name, spec_.name));
+            diagnostics_.error(reference.position, "'{}' is a list of {}; the port '{}' of {} takes one",
+                               reference.text, name_of(kind), port.name, spec_.name);
             return false;
         }
         return true;
@@ -101,22 +98,20 @@ private:
     std::vector<ValueSource> nearest(const PortSpec& port) {
         if (!port.also.empty()) {
             if (!port.optional)
-                diagnostics_.error(step_.position,
-                                   fmt::format("{} takes {} at its port '{}'; say which value: `in: {{{}: …}}`",
-                                               spec_.name, kinds_text(port), port.name, port.name));
+                diagnostics_.error(step_.position, "{} takes {} at its port '{}'; expected `in: {{{}: …}}`", spec_.name,
+                                   kinds_text(port), port.name, port.name);
             return {};
         }
         std::size_t rivals = 0;
         for (const PortSpec& other : spec_.inputs) {
             if (other.kind != port.kind || other.name == port.name || !other.also.empty()) continue;
-            // An optional port would get what the port before it gets; who wants that says so.
+            // An optional port would get the same value as the port before it; only `in` can ask for that.
             if (port.optional && &other < &port) return {};
             rivals += other.optional ? 0 : 1;
         }
         if (rivals > 0 && !port.optional) {
-            diagnostics_.error(step_.position,
-                               fmt::format("{} has {} ports that take {}; say which value goes where: `in: {{{}: …}}`",
-                                           spec_.name, rivals + 1, name_of(port.kind), port.name));
+            diagnostics_.error(step_.position, "{} has {} ports that take {}; expected `in: {{{}: …}}`", spec_.name,
+                               rivals + 1, name_of(port.kind), port.name);
             return {};
         }
         for (auto step = scope_.earlier.rbegin(); step != scope_.earlier.rend(); ++step) {
@@ -126,7 +121,7 @@ private:
                 if (output.kind == port.kind) found.push_back(output.name);
             if (found.size() == 1) return {{*step, 0, found.front()}};
             if (found.size() > 1) {
-                ambiguous(port, fmt::format("'{}' gives {} of that kind ({})", scope_.plan.steps[*step].label,
+                ambiguous(port, fmt::format("'{}' has {} outputs of that kind ({})", scope_.plan.steps[*step].label,
                                             found.size(), enumerated(found)));
                 return {};
             }
@@ -145,18 +140,16 @@ private:
             for (std::size_t i : found) names.push_back(inputs[i].name);
             ambiguous(port, "the workflow has the inputs " + enumerated(names));
         } else if (!port.optional && !scope_.uncertain) {
-            diagnostics_.error(
-                step_.position,
-                fmt::format("{} needs {} for its port '{}', and nothing before it gives any{}", spec_.name,
-                            name_of(port.kind), port.name, givers(scope_.library, port.kind)));
+            diagnostics_.error(step_.position, "{} needs {} for its port '{}', and no earlier step makes any{}",
+                               spec_.name, name_of(port.kind), port.name, makers(scope_.library, port.kind));
         }
         return {};
     }
 
     void ambiguous(const PortSpec& port, const std::string& why) {
         diagnostics_.error(step_.position,
-                           fmt::format("which {} the port '{}' of {} takes is open: {}; expected `in: {{{}: …}}`",
-                                       name_of(port.kind), port.name, spec_.name, why, port.name));
+                           "the port '{}' of {} could take several values of kind {}: {}; expected `in: {{{}: …}}`",
+                           port.name, spec_.name, name_of(port.kind), why, port.name);
     }
 
     const StepSyntax& step_;
@@ -176,9 +169,8 @@ std::optional<ValueSource> resolve(const Reference& reference, const WiringScope
         const std::string port =
             dot == std::string::npos ? planned.spec.outputs.front().name : reference.text.substr(dot + 1);
         if (planned.spec.output(port)) return ValueSource{step->second, 0, port};
-        const std::vector<std::string> ports = names_of(planned.spec.outputs);
-        diagnostics.error(reference.position, fmt::format("'{}' has no output port '{}'; it has {}{}", name, port,
-                                                          enumerated(ports), did_you_mean(port, ports)));
+        diagnostics.error(reference.position, "'{}' has no output port '{}'; {}", name, port,
+                          it_has(planned.spec.outputs, port));
         return std::nullopt;
     }
     if (const auto unusable = scope.unusable_names.find(name); unusable != scope.unusable_names.end()) {
@@ -189,12 +181,11 @@ std::optional<ValueSource> resolve(const Reference& reference, const WiringScope
     const auto input = std::ranges::find(inputs, name, &WorkflowInput::name);
     if (input != inputs.end() && dot == std::string::npos)
         return ValueSource{std::nullopt, static_cast<std::size_t>(input - inputs.begin()), ""};
-    std::vector<std::string> known = names_of(inputs);
-    for (const auto& [known_name, index] : scope.steps_by_name) known.push_back(known_name);
-    diagnostics.error(reference.position,
-                      fmt::format("'{}' is neither an earlier step nor an input; there {} {}{}", name,
-                                  known.size() == 1 ? "is" : "are", known.empty() ? "none" : enumerated(known),
-                                  did_you_mean(name, known)));
+    std::vector<std::string> names = names_of(inputs);
+    for (const auto& [step_name, index] : scope.steps_by_name) names.push_back(step_name);
+    diagnostics.error(reference.position, "'{}' is neither an earlier step nor an input; there {} {}{}", name,
+                      names.size() == 1 ? "is" : "are", names.empty() ? "none" : enumerated(names),
+                      did_you_mean(name, names));
     return std::nullopt;
 }
 

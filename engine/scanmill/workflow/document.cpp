@@ -12,14 +12,27 @@
 #include <unordered_map>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 
 namespace scanmill {
+
+std::string it_has(std::span<const std::string> names, std::string_view unknown) {
+    return (names.empty() ? "it has none" : "it has " + enumerated(names)) + did_you_mean(unknown, names);
+}
+
+std::string text(const Diagnostic& diagnostic, const std::string& file) {
+    const std::string position = diagnostic.position.line == 0 ? file
+                                                               : fmt::format("{}:{}:{}", file, diagnostic.position.line,
+                                                                             diagnostic.position.column);
+    const bool warning = diagnostic.severity == Diagnostic::Severity::warning;
+    return fmt::format("{}: {}{}", position, warning ? "warning: " : "", diagnostic.message);
+}
 
 namespace {
 
 constexpr std::size_t most_nodes = 1'000'000;
 constexpr std::size_t most_bytes = std::size_t(64) << 20;
-/// Aliases put trees into trees; whoever walks over them recursively must not run out of stack.
+/// Aliases nest trees in trees; recursive walks over them must not overflow the stack.
 constexpr std::size_t most_levels = 500;
 
 struct TooMuch {
@@ -27,9 +40,9 @@ struct TooMuch {
     std::string what;
 };
 
-/// What a tree costs to copy and to walk over.
+/// The size of a tree: the cost to copy it and to walk over it.
 struct Extent {
-    std::size_t nodes = 0;   ///< keys are some, too
+    std::size_t nodes = 0;   ///< including keys
     std::size_t bytes = 0;   ///< of all texts
     std::size_t levels = 0;  ///< of nesting
 };
@@ -51,16 +64,16 @@ Extent extent_of(const YamlNode& node) {
     return whole;
 }
 
-/// Names with placeholders and wildcards are texts that YAML takes for something else.
-std::string way_out(const std::string& message) {
-    const auto says = [&](const char* words) { return message.find(words) != std::string::npos; };
-    if (says("flow"))
+/// Explains syntax errors that unquoted placeholders and wildcards cause.
+std::string quoting_hint(const std::string& message) {
+    if (message.find("flow") != std::string::npos)
         return "; within { } and [ ] a text with braces, brackets or commas needs quotes, as \"{stem}.ply\"";
-    if (says("anchor") || says("alias")) return "; a text that begins with * or & needs quotes, as \"*.ply\"";
+    if (message.find("anchor") != std::string::npos || message.find("alias") != std::string::npos)
+        return "; a text that begins with * or & needs quotes, as \"*.ply\"";
     return "";
 }
 
-/// Builds the tree from the parser's events: keys, values and items arrive one after the other.
+/// Builds the tree from the parser's events, which deliver keys, values and items one by one.
 class TreeBuilder : public YAML::EventHandler {
 public:
     explicit TreeBuilder(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
@@ -71,13 +84,12 @@ public:
     void OnDocumentStart(const YAML::Mark& mark) override { begin = position_of(mark); }
     void OnDocumentEnd() override {}
     void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-        finish({.type = YamlNode::Type::null, .position = position_of(mark), .text = "", .items = {}, .entries = {}},
-               anchor);
+        finish(node_of(YamlNode::Type::null, mark), anchor);
     }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
         const auto found = anchors_.find(anchor);
         if (found == anchors_.end()) {
-            diagnostics_.error(position_of(mark), "an alias inside the node that it names; write the value out");
+            diagnostics_.error(position_of(mark), "an alias inside its own anchor; write the value out");
             finish({}, 0);
             return;
         }
@@ -88,23 +100,18 @@ public:
     }
     void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   const std::string& value) override {
-        // An unquoted ~ or null or nothing is null; quoted ("!" tag) it is text.
+        // An unquoted ~, null or empty value is null; in quotes (tag "!") it is text.
         const bool null = tag == "?" && (value.empty() || value == "~" || value == "null");
-        finish({.type = null ? YamlNode::Type::null : YamlNode::Type::scalar,
-                .position = position_of(mark),
-                .text = value,
-                .items = {},
-                .entries = {}},
-               anchor);
+        finish(node_of(null ? YamlNode::Type::null : YamlNode::Type::scalar, mark, value), anchor);
     }
     void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                          YAML::EmitterStyle::value) override {
-        open(YamlNode::Type::sequence, mark, anchor);
+        stack_.push_back({.node = node_of(YamlNode::Type::sequence, mark), .anchor = anchor});
     }
     void OnSequenceEnd() override { close(); }
     void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
                     YAML::EmitterStyle::value) override {
-        open(YamlNode::Type::map, mark, anchor);
+        stack_.push_back({.node = node_of(YamlNode::Type::map, mark), .anchor = anchor});
     }
     void OnMapEnd() override { close(); }
 
@@ -113,9 +120,9 @@ private:
         YamlNode node;
         YAML::anchor_t anchor;
         bool has_key = false;
-        std::string key;
-        Position key_position;
-        std::unordered_map<std::string, int> line_of_key;
+        std::string key{};
+        Position key_position{};
+        std::unordered_map<std::string, int> line_of_key{};
     };
 
     struct Anchored {
@@ -123,7 +130,7 @@ private:
         Extent extent;
     };
 
-    /// Before a tree is put, or copied, below the open nodes.
+    /// Counts a tree before it is moved or copied below the open nodes. Throws TooMuch beyond a limit.
     void count(const Extent& extent, Position position) {
         nodes_ += extent.nodes;
         bytes_ += extent.bytes;
@@ -132,11 +139,12 @@ private:
         if (stack_.size() + extent.levels > most_levels)
             throw TooMuch{position, fmt::format("unfolds to more than {} levels", most_levels)};
     }
-    void open(YamlNode::Type type, const YAML::Mark& mark, YAML::anchor_t anchor) {
-        Open level{.node = {}, .anchor = anchor, .has_key = false, .key = {}, .key_position = {}, .line_of_key = {}};
-        level.node.type = type;
-        level.node.position = position_of(mark);
-        stack_.push_back(std::move(level));
+    static YamlNode node_of(YamlNode::Type type, const YAML::Mark& mark, std::string text = {}) {
+        YamlNode node;
+        node.type = type;
+        node.position = position_of(mark);
+        node.text = std::move(text);
+        return node;
     }
     void close() {
         Open level = std::move(stack_.back());
@@ -147,7 +155,7 @@ private:
         count({1, node.text.size(), 1}, node.position);
         if (anchor != 0) {
             const Extent extent = extent_of(node);
-            count(extent, node.position);  // it is kept a second time
+            count(extent, node.position);  // the anchor keeps a copy
             anchors_[anchor] = {node, extent};
         }
         if (stack_.empty()) {
@@ -172,9 +180,8 @@ private:
         map.has_key = false;
         const auto [earlier, is_new] = map.line_of_key.emplace(map.key, map.key_position.line);
         if (!is_new) {
-            diagnostics_.error(map.key_position,
-                               fmt::format("the key '{}' stands here a second time; it is already at line {}", map.key,
-                                           earlier->second));
+            diagnostics_.error(map.key_position, "the key '{}' is repeated; it is already at line {}", map.key,
+                               earlier->second);
             return;
         }
         map.node.entries.push_back({map.key, map.key_position, std::move(value)});
@@ -220,8 +227,8 @@ YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
         for (Position last = builder.begin;;) {
             TreeBuilder next(diagnostics);
             if (!parser.HandleNextDocument(next)) break;
-            if (next.begin <= last) {  // the parser neither takes what stands here nor complains: `,` outside a list
-                diagnostics.error(next.begin, "is no YAML: what stands here belongs to nothing");
+            if (next.begin <= last) {  // the parser neither consumes nor refuses a `,` outside a list
+                diagnostics.error(next.begin, "invalid YAML: unexpected token");
                 break;
             }
             if (!next.root.is_null())
@@ -229,7 +236,7 @@ YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
             last = next.begin;
         }
     } catch (const YAML::Exception& error) {
-        diagnostics.error(position_of(error.mark), "is no YAML: " + error.msg + way_out(error.msg));
+        diagnostics.error(position_of(error.mark), "invalid YAML: " + error.msg + quoting_hint(error.msg));
     } catch (const TooMuch& too_much) {
         diagnostics.error(too_much.position, too_much.what + "; write fewer anchors and aliases");
     }
@@ -238,8 +245,8 @@ YamlNode parse_yaml(const std::string& text, Diagnostics& diagnostics) {
 
 std::string read_workflow_file(const std::filesystem::path& file) {
     constexpr std::size_t largest = 16u << 20;
-    std::error_code trouble;
-    if (std::filesystem::is_directory(file, trouble))
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored))
         throw Error("'{}' is a folder; expected a workflow file", file.string());
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw Error("'{}' cannot be opened; expected a workflow file", file.string());
@@ -247,7 +254,7 @@ std::string read_workflow_file(const std::filesystem::path& file) {
     while (stream.read(block.data(), static_cast<std::streamsize>(block.size())), stream.gcount() > 0) {
         text.append(block, 0, static_cast<std::size_t>(stream.gcount()));
         if (text.size() > largest)
-            throw Error("'{}' has more than {} bytes, the most that a workflow may have", file.string(), largest);
+            throw Error("'{}' has more than {} bytes, the largest size of a workflow", file.string(), largest);
     }
     return text;
 }

@@ -8,103 +8,121 @@
 
 namespace scanmill {
 
-MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagnostics)
-    : node_(node),
-      what_(std::move(what)),
-      diagnostics_(diagnostics) {}
+namespace {
 
-const YamlEntry* MapReader::find(std::string_view key) {
-    known_.emplace_back(key);
-    const auto found = std::ranges::find(node_.entries, key, &YamlEntry::key);
-    return found == node_.entries.end() ? nullptr : &*found;
+void report_unexpected(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics) {
+    diagnostics.error(node.position, "found {}; expected {}", node.described(), expected);
 }
 
-std::string MapReader::text(std::string_view key) {
-    const YamlEntry* entry = find(key);
-    if (!entry) return {};
-    return require_text(entry->value, fmt::format("a text for '{}'", key), diagnostics_).value_or("");
+}  // namespace
+
+void read_mapping(const YamlNode& node, std::string_view what, const std::vector<Key>& keys, Diagnostics& diagnostics) {
+    for (const Key& key : keys) {
+        const auto entry = std::ranges::find(node.entries, key.name, &YamlEntry::key);
+        if (entry != node.entries.end())
+            key.read(*entry);
+        else if (!key.when_missing.empty())
+            diagnostics.error(node.position, key.when_missing);
+    }
+    for (const YamlEntry& entry : node.entries)
+        if (std::ranges::find(keys, entry.key, &Key::name) == keys.end())
+            diagnostics.error(entry.position, "{} has no key '{}'; {}", what, entry.key, it_has(keys, entry.key));
 }
 
-void MapReader::complain_of_others() {
-    for (const YamlEntry& entry : node_.entries)
-        if (std::ranges::find(known_, entry.key) == known_.end())
-            diagnostics_.error(entry.position, fmt::format("{} has no key '{}'; it has {}{}", what_, entry.key,
-                                                           enumerated(known_), did_you_mean(entry.key, known_)));
+ReadEntry text_into(std::string& target, Diagnostics& diagnostics) {
+    return [&](const YamlEntry& entry) {
+        target = require_text(entry.value, fmt::format("a text for '{}'", entry.key), diagnostics).value_or("");
+    };
 }
 
-void require_grammar_version(MapReader& root, Diagnostics& diagnostics) {
-    constexpr std::string_view version = "1";
-    const YamlEntry* entry = root.find("scanmill");
-    if (!entry)
-        diagnostics.error({1, 1}, "does not say its grammar; expected `scanmill: 1` as the first line");
-    else if (entry->value.text != version)
-        diagnostics.error(entry->value.position, fmt::format("the grammar is {}; this program reads grammar {}",
-                                                             entry->value.described(), version));
+ReadEntry name_into(std::string& target, std::string what, Diagnostics& diagnostics) {
+    return [&, what](const YamlEntry& entry) {
+        text_into(target, diagnostics)(entry);
+        if (entry.value.is_scalar()) require_name(target, entry.value.position, what, diagnostics);
+    };
+}
+
+ReadEntry unit_into(LengthUnit& target, Diagnostics& diagnostics) {
+    return [&](const YamlEntry& entry) {
+        const std::optional<LengthUnit> unit = length_unit(entry.value.text);
+        target = unit.value_or(LengthUnit::unknown);
+        if (!unit)
+            diagnostics.error(entry.value.position, "{} is not a unit; expected one of {}", entry.value.described(),
+                              length_unit_symbols());
+    };
+}
+
+Key grammar_version_key(Diagnostics& diagnostics) {
+    const auto read = [&](const YamlEntry& entry) {
+        if (entry.value.text != "1")
+            diagnostics.error(entry.value.position, "the grammar is {}; this program reads grammar 1",
+                              entry.value.described());
+    };
+    return {"scanmill", read, "has no grammar version; expected `scanmill: 1` as the first line"};
 }
 
 bool require_map(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics) {
-    if (node.is_map()) return true;
-    diagnostics.error(node.position, fmt::format("found {}; expected {}", node.described(), expected));
-    return false;
+    if (!node.is_map()) report_unexpected(node, expected, diagnostics);
+    return node.is_map();
 }
 
 bool require_list(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics) {
-    if (node.is_sequence()) return true;
-    diagnostics.error(node.position, fmt::format("found {}; expected {}", node.described(), expected));
-    return false;
+    if (!node.is_sequence()) report_unexpected(node, expected, diagnostics);
+    return node.is_sequence();
 }
 
 std::optional<std::string> require_text(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics) {
     if (node.is_scalar()) return node.text;
-    diagnostics.error(node.position, fmt::format("found {}; expected {}", node.described(), expected));
+    report_unexpected(node, expected, diagnostics);
     return std::nullopt;
 }
 
-LengthUnit require_unit(const YamlNode& node, Diagnostics& diagnostics) {
-    const std::optional<LengthUnit> known = length_unit(node.text);
-    if (!known)
-        diagnostics.error(node.position,
-                          fmt::format("{} is no unit; expected one of {}", node.described(), length_unit_symbols()));
-    return known.value_or(LengthUnit::unknown);
-}
-
 bool require_name(const std::string& name, Position position, std::string_view what, Diagnostics& diagnostics) {
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-    const auto plain = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
-    if (!name.empty() && letter(name.front()) && std::ranges::all_of(name, plain)) return true;
-    diagnostics.error(
-        position,
-        fmt::format("'{}' is no name for {}; expected letters, digits, '-' and '_', a letter first", name, what));
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const auto is_allowed = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '_'; };
+    if (!name.empty() && is_letter(name.front()) && std::ranges::all_of(name, is_allowed)) return true;
+    diagnostics.error(position, "'{}' is not a name for {}; expected letters, digits, '-' and '_', a letter first",
+                      name, what);
     return false;
 }
 
-namespace {
-const std::string placeholder = "{stem}";
+void check_placeholders(const std::string& text, std::string_view what, std::span<const std::string> placeholders,
+                        Position position, Diagnostics& diagnostics) {
+    for (std::size_t at = 0; (at = text.find_first_of("{}", at)) != std::string::npos; ++at) {
+        const std::size_t end = text.find('}', at);
+        if (text[at] == '}' || end == std::string::npos) {
+            diagnostics.error(position, "{} '{}' has a {} without its {}", what, text, text[at],
+                              text[at] == '}' ? '{' : '}');
+            continue;
+        }
+        const std::string name = text.substr(at + 1, end - at - 1);
+        if (std::ranges::find(placeholders, name) == placeholders.end()) {
+            std::vector<std::string> in_braces;
+            for (const std::string& each : placeholders) in_braces.push_back("{" + each + "}");
+            diagnostics.error(position, "{} '{}' has the unknown placeholder {{{}}}; it takes {}{}", what, text, name,
+                              enumerated(in_braces), did_you_mean(name, placeholders));
+        }
+        at = end;
+    }
+}
+
+std::string with_placeholders(const std::string& text, const std::function<std::string(const std::string&)>& value_of) {
+    std::string result;
+    std::size_t begin = 0, open, close;
+    while ((open = text.find('{', begin)) != std::string::npos && (close = text.find('}', open)) != std::string::npos) {
+        result.append(text, begin, open - begin).append(value_of(text.substr(open + 1, close - open - 1)));
+        begin = close + 1;
+    }
+    return result.append(text, begin);
 }
 
 void check_stem_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics) {
-    for (std::size_t at = 0; (at = text.find_first_of("{}", at)) != std::string::npos; at += placeholder.size())
-        if (text.compare(at, placeholder.size(), placeholder) != 0) {
-            diagnostics.error(position, fmt::format("{} '{}' has a brace that is not part of {}, the only placeholder "
-                                                    "that it may hold",
-                                                    what, text, placeholder));
-            return;
-        }
+    const std::string stem = "stem";
+    check_placeholders(text, what, {&stem, 1}, position, diagnostics);
 }
 
-void check_frame_template(const std::string& frame, Position position, Diagnostics& diagnostics) {
-    check_stem_template(frame, "the frame", position, diagnostics);
-}
-
-std::string with_stem(std::string text, const std::filesystem::path& file) {
-    const std::string stem = file.stem().string();
-    for (std::size_t at = 0; (at = text.find(placeholder, at)) != std::string::npos; at += stem.size())
-        text.replace(at, placeholder.size(), stem);
-    return text;
-}
-
-std::string frame_of_file(std::string frame, const std::filesystem::path& file) {
-    return with_stem(std::move(frame), file);
+std::string with_stem(const std::string& text, const std::filesystem::path& file) {
+    return with_placeholders(text, [&](const std::string&) { return file.stem().string(); });
 }
 
 }  // namespace scanmill

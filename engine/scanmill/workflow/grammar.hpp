@@ -1,63 +1,61 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Helpers for reading a YAML tree against a grammar: known keys, texts, lists, all errors collected with their place.
+/// Reads a YAML tree against a grammar. Every error is reported with its position, and reading goes on.
 
 #include <filesystem>
-#include <initializer_list>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scanmill/data/frame.hpp"
-#include "scanmill/workflow/diagnostics.hpp"
 #include "scanmill/workflow/document.hpp"
 
 namespace scanmill {
 
-/// A map whose keys are looked up by name; complain_of_others() reports what nobody asked for.
-class MapReader {
-public:
-    /// `what` names the map in messages: "a step", "the workflow".
-    MapReader(const YamlNode& node, std::string what, Diagnostics& diagnostics);
+using ReadEntry = std::function<void(const YamlEntry&)>;
 
-    /// The entry under `key`, or nullptr. Asking makes the key a known one.
-    const YamlEntry* find(std::string_view key);
-    /// The text under `key`; empty (after an error, if it is there but no text).
-    std::string text(std::string_view key);
-    /// Reports every key that was not asked for, with the closest known one.
-    void complain_of_others();
-
-private:
-    const YamlNode& node_;
-    std::string what_;
-    Diagnostics& diagnostics_;
-    std::vector<std::string> known_;
+/// A key that a mapping may have.
+struct Key {
+    std::string name;
+    ReadEntry read;
+    std::string when_missing{};  ///< the error when the key is absent; empty: the key is optional
 };
 
-/// Reports anything but `scanmill: 1`.
-void require_grammar_version(MapReader& root, Diagnostics& diagnostics);
+/// Calls `read` for every key of the table that the mapping has, in the table's order. Reports missing keys, and
+/// unknown ones with the closest name. `what` names the mapping in messages: "a step".
+void read_mapping(const YamlNode& node, std::string_view what, const std::vector<Key>& keys, Diagnostics& diagnostics);
 
-/// `node` must be of this type; otherwise reports what was found and `expected`.
+/// Readers of plain values: a text, and the name of `what` (see require_name).
+ReadEntry text_into(std::string& target, Diagnostics& diagnostics);
+ReadEntry name_into(std::string& target, std::string what, Diagnostics& diagnostics);
+/// The unit of a scan; after an error `target` is unknown.
+ReadEntry unit_into(LengthUnit& target, Diagnostics& diagnostics);
+
+/// The key `scanmill: 1`, which every file has.
+Key grammar_version_key(Diagnostics& diagnostics);
+
+/// Whether `node` is a mapping, or a list; otherwise reports the node found and `expected`.
 bool require_map(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics);
 bool require_list(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics);
-/// The scalar's text; nothing after reporting when it is none.
+/// The scalar's text; nothing after an error.
 std::optional<std::string> require_text(const YamlNode& node, std::string_view expected, Diagnostics& diagnostics);
 
-/// The unit that a scan is in; unknown after reporting when it is none.
-LengthUnit require_unit(const YamlNode& node, Diagnostics& diagnostics);
-
-/// Names of inputs, parameters, steps and variants: letters, digits, `-`, `_`; begins with a letter.
+/// Whether `name` is a valid name of an input, parameter, step or variant: letters, digits, `-`, `_`; a letter first.
 bool require_name(const std::string& name, Position position, std::string_view what, Diagnostics& diagnostics);
 
-// The name that a workflow gives to the frame of what it reads: a fixed text, or one that holds {stem}, the file's
-// name without folder and extension. So every scan of a list can have a frame of its own, by which its pose is found.
+// Texts with placeholders in braces, as "{scan}-{variant}.stl".
 
-/// Reports braces that are not `{stem}`. `what` begins the message: "the frame".
+/// Reports braces that do not enclose one of `placeholders`. `what` begins the message: "the frame".
+void check_placeholders(const std::string& text, std::string_view what, std::span<const std::string> placeholders,
+                        Position position, Diagnostics& diagnostics);
+/// The text with `value_of` every placeholder in its place.
+std::string with_placeholders(const std::string& text, const std::function<std::string(const std::string&)>& value_of);
+
+/// Frames, poses and truths of a list of scans may contain {stem}, the scan's file name without folder and extension.
 void check_stem_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics);
-void check_frame_template(const std::string& frame, Position position, Diagnostics& diagnostics);
-
-/// The text with the file's stem for every {stem}.
-std::string with_stem(std::string text, const std::filesystem::path& file);
-std::string frame_of_file(std::string frame, const std::filesystem::path& file);
+std::string with_stem(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace scanmill

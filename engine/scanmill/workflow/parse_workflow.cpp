@@ -1,209 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <set>
 
 #include "scanmill/base/text.hpp"
 #include "scanmill/workflow/grammar.hpp"
-#include "scanmill/workflow/parse_steps.hpp"
-#include "scanmill/workflow/parse_value.hpp"
 #include "scanmill/workflow/workflow.hpp"
 
 namespace scanmill {
 
 namespace {
 
+constexpr std::string_view value_forms = "a value, a list of values, $name or {sweep: [value, …]}";
 constexpr std::string_view step_forms = "a step, as `- decimate: {max-error: 0.1 %diag}`, or `- one-of: […]`";
+constexpr std::string_view workflow_forms = "a workflow: a map that begins with `scanmill: 1`";
 
-class StepParser {
-public:
-    explicit StepParser(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
-
-    std::vector<StepItem> steps(const YamlNode& list);
-
-private:
-    StepItem step_item(const YamlNode& node);
-    OneOfSyntax one_of(const YamlNode& node);
-    AlternativeSyntax alternative(const YamlNode& node);
-    StepSyntax step(const YamlNode& node);
-    void parameters(const YamlNode& node, StepSyntax& step);
-    void wiring(const YamlNode& node, StepSyntax& step);
-    void expectations(const YamlNode& node, StepSyntax& step);
-
-    static StepItem unreadable(const YamlNode& node) {
-        StepSyntax step;
-        step.position = node.position;
-        return {step};
+/// Adds one text, literal or `$name`; false after an error.
+bool add_item(WrittenValue& value, const YamlNode& node, std::string_view forms, Diagnostics& diagnostics) {
+    const auto text = require_text(node, forms, diagnostics);
+    if (!text) return false;
+    if (*text == "$") {
+        diagnostics.error(node.position, "'$' is not the name of a parameter; expected $name, or $$ for the text '$'");
+        return false;
     }
-
-    Diagnostics& diagnostics_;
-};
-
-std::vector<StepItem> StepParser::steps(const YamlNode& list) {
-    if (!require_list(list, "a list of steps, each beginning with `- `", diagnostics_)) return {unreadable(list)};
-    if (list.items.empty()) {
-        diagnostics_.error(list.position, "the list of steps is empty");
-        return {unreadable(list)};
+    std::string item = *text;
+    if (text->starts_with("$$")) {
+        item = text->substr(1);  // a literal text with one $
+    } else if (text->starts_with('$')) {
+        value.uses.push_back({text->substr(1), node.position, value.literal.items.size()});
+        item.clear();
     }
-    std::vector<StepItem> items;
-    for (const YamlNode& node : list.items) items.push_back(step_item(node));
-    return items;
-}
-
-StepItem StepParser::step_item(const YamlNode& node) {
-    if (!require_map(node, step_forms, diagnostics_)) return unreadable(node);
-    if (node.find("one-of")) return {one_of(node)};
-    return {step(node)};
-}
-
-OneOfSyntax StepParser::one_of(const YamlNode& node) {
-    OneOfSyntax one_of;
-    one_of.position = node.position;
-    MapReader keys(node, "a one-of step", diagnostics_);
-    one_of.id = keys.text("id");
-    if (!one_of.id.empty()) require_name(one_of.id, node.find("id")->position, "a step", diagnostics_);
-    const YamlEntry* alternatives = keys.find("one-of");
-    keys.complain_of_others();
-    const YamlNode& list = alternatives->value;
-    if (require_list(list, "a list of alternatives, each beginning with `- `", diagnostics_) && list.items.empty())
-        diagnostics_.error(alternatives->position, "one-of has no alternatives");
-    for (const YamlNode& item : list.items) one_of.alternatives.push_back(alternative(item));
-    if (list.items.empty()) one_of.alternatives.push_back({"", list.position, {unreadable(list)}});
-    return one_of;
-}
-
-AlternativeSyntax StepParser::alternative(const YamlNode& node) {
-    AlternativeSyntax result;
-    result.position = node.position;
-    if (node.is_sequence()) {
-        result.steps = steps(node);
-    } else if (node.find("steps")) {
-        MapReader keys(node, "an alternative", diagnostics_);
-        result.name = keys.text("name");
-        if (!result.name.empty())
-            require_name(result.name, node.find("name")->position, "an alternative", diagnostics_);
-        result.steps = steps(keys.find("steps")->value);
-        keys.complain_of_others();
-    } else {
-        result.steps.push_back(step_item(node));
-    }
-    if (!result.name.empty()) return result;
-    const auto* first = std::get_if<StepSyntax>(&result.steps.front().item);
-    if (result.steps.size() > 1)
-        diagnostics_.error(result.position, "an alternative of several steps needs a name, as `{name: …, steps: […]}`");
-    else if (!first)
-        return result;  // a fork names its own alternatives
-    else
-        result.name = first->id.empty() ? first->filter : first->id;
-    if (result.name.empty())  // reported; a name of its own keeps its variant apart from others
-        result.name = fmt::format("line-{}-column-{}", result.position.line, result.position.column);
-    return result;
-}
-
-StepSyntax StepParser::step(const YamlNode& node) {
-    StepSyntax step;
-    step.position = node.position;
-    MapReader keys(node, "a step", diagnostics_);
-    step.id = keys.text("id");
-    if (!step.id.empty()) require_name(step.id, node.find("id")->position, "a step", diagnostics_);
-    if (const YamlEntry* in = keys.find("in")) wiring(in->value, step);
-    if (const YamlEntry* expect = keys.find("expect")) expectations(expect->value, step);
-    static const std::set<std::string_view> reserved{"id", "in", "expect"};
-    const YamlEntry* filter = nullptr;
-    for (const YamlEntry& entry : node.entries) {
-        if (reserved.contains(entry.key)) continue;
-        if (filter) {
-            diagnostics_.error(
-                entry.position,
-                fmt::format("a step has one filter; '{}' stands beside '{}'. A second step begins with `- `; "
-                            "beside the filter a step takes id, in and expect",
-                            entry.key, filter->key));
-            continue;
-        }
-        filter = &entry;
-    }
-    if (!filter) {
-        diagnostics_.error(node.position, fmt::format("a step without a filter; expected {}", step_forms));
-        return step;
-    }
-    step.filter = filter->key;
-    step.position = filter->position;
-    parameters(filter->value, step);
-    return step;
-}
-
-void StepParser::parameters(const YamlNode& node, StepSyntax& step) {
-    if (node.is_null()) return;
-    if (!require_map(node, fmt::format("the parameters of {}, as {{name: value}}, or nothing", step.filter),
-                     diagnostics_))
-        return;
-    for (const YamlEntry& entry : node.entries)
-        step.parameters.push_back({entry.key, entry.position, value_expression(entry.value, diagnostics_)});
-}
-
-void StepParser::wiring(const YamlNode& node, StepSyntax& step) {
-    if (node.is_scalar()) {
-        step.in_shorthand = reference(node, diagnostics_);
-        return;
-    }
-    if (!require_map(node, "a map from ports to steps, as {points: scan}", diagnostics_)) return;
-    for (const YamlEntry& entry : node.entries) {
-        InputWiring wired{entry.key, entry.position, {}};
-        if (entry.value.is_sequence()) {
-            for (const YamlNode& item : entry.value.items)
-                if (auto source = reference(item, diagnostics_)) wired.sources.push_back(*source);
-        } else if (auto source = reference(entry.value, diagnostics_)) {
-            wired.sources.push_back(*source);
-        }
-        step.in.push_back(std::move(wired));
-    }
-}
-
-/// Reads "< 3", "> 3" and "3"; false for a comparison that there is not, which is reported.
-bool read_comparison(std::string_view text, Position position, Expectation& expectation, Diagnostics& diagnostics) {
-    for (std::string_view other : {"<=", ">=", "==", "!=", "=", "≤", "≥", "≠"})
-        if (text.starts_with(other)) {
-            diagnostics.error(
-                position, fmt::format("expect {}: '{}' is no comparison; expected a value, `< value`, `> value`, or "
-                                      "[low, high], both of which count",
-                                      expectation.name, other));
-            return false;
-        }
-    if (text.starts_with('<')) expectation.relation = Expectation::Relation::below;
-    if (text.starts_with('>')) expectation.relation = Expectation::Relation::above;
-    if (expectation.relation != Expectation::Relation::equal) text.remove_prefix(1);
-    while (text.starts_with(' ')) text.remove_prefix(1);
-    expectation.value = text;
+    value.literal.items.push_back(std::move(item));
     return true;
 }
 
-void StepParser::expectations(const YamlNode& node, StepSyntax& step) {
-    if (!require_map(node, "a map, as {closed: true, components: 1}", diagnostics_)) return;
-    for (const YamlEntry& entry : node.entries) {
-        Expectation expectation{entry.key, entry.position, Expectation::Relation::equal, {}, {}};
-        if (entry.value.is_sequence()) {
-            if (entry.value.items.size() != 2 || !entry.value.items[0].is_scalar() ||
-                !entry.value.items[1].is_scalar()) {
-                diagnostics_.error(entry.value.position, "a range has two ends, as [2, 4]");
-                continue;
-            }
-            expectation.relation = Expectation::Relation::between;
-            expectation.value = entry.value.items[0].text;
-            expectation.high = entry.value.items[1].text;
-        } else {
-            const auto text = require_text(entry.value, "a value, `< value`, `> value` or [low, high]", diagnostics_);
-            if (!text || !read_comparison(*text, entry.value.position, expectation, diagnostics_)) continue;
-        }
-        step.expect.push_back(std::move(expectation));
-    }
+std::optional<WrittenValue> written_value(const YamlNode& node, Diagnostics& diagnostics) {
+    WrittenValue result;
+    result.position = node.position;
+    result.literal.list = node.is_sequence();
+    bool is_whole = true;
+    if (!node.is_sequence()) is_whole = add_item(result, node, value_forms, diagnostics);
+    for (const YamlNode& item : node.items) is_whole &= add_item(result, item, "a value or $name", diagnostics);
+    return is_whole ? std::optional(result) : std::nullopt;
 }
 
-}  // namespace
-
-std::vector<StepItem> parse_steps(const YamlNode& list, Diagnostics& diagnostics) {
-    return StepParser(diagnostics).steps(list);
+/// "step", "step.port" or an input's name.
+std::optional<Reference> reference(const YamlNode& node, Diagnostics& diagnostics) {
+    const auto text = require_text(node, "the name of a step or an input, or step.port", diagnostics);
+    if (!text) return std::nullopt;
+    return Reference{*text, node.position};
 }
-
-namespace {
 
 void add_mentions(const YamlNode& node, std::set<std::string>& names) {
     if (node.is_scalar() && node.text.starts_with('$')) names.insert(node.text.substr(1));
@@ -215,153 +59,308 @@ class WorkflowParser {
 public:
     explicit WorkflowParser(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-    Workflow workflow(const YamlNode& root);
+    Workflow workflow(const YamlNode& root) {
+        Workflow workflow;
+        workflow.file = diagnostics_.file();
+        if (root.is_null()) {
+            if (!diagnostics_.has_errors()) diagnostics_.error({}, "is empty; expected {}", workflow_forms);
+            return workflow;
+        }
+        if (!require_map(root, workflow_forms, diagnostics_)) return workflow;
+        if (const YamlNode* batch = root.find("batch")) {
+            diagnostics_.error(batch->position, "is a batch; expected a workflow (`scanmill batch` runs batches)");
+            return workflow;
+        }
+        read_mapping(root, "a workflow",
+                     {grammar_version_key(diagnostics_),
+                      {"name", name_into(workflow.name, "a workflow", diagnostics_)},
+                      {"summary", text_into(workflow.summary, diagnostics_)},
+                      {"inputs", each("a map of inputs, as {scan: points}",
+                                      [&](const YamlEntry& entry) { workflow.inputs.push_back(input(entry)); })},
+                      {"parameters", each("a map of parameters, as {max-error: 0.1 %diag}",
+                                          [&](const YamlEntry& entry) { parameter(entry, workflow); })},
+                      {"steps", [&](const YamlEntry& entry) { workflow.steps = steps(entry.value); },
+                       "has no steps; expected `steps:` with a list of steps"},
+                      {"outputs", each("a map from file names to steps, as {\"{scan}.stl\": decimate}",
+                                       [&](const YamlEntry& entry) {
+                                           if (const auto source = reference(entry.value, diagnostics_))
+                                               workflow.outputs.push_back({entry.key, entry.position, *source});
+                                       })}},
+                     diagnostics_);
+        for (const char* key : {"steps", "outputs"})
+            if (const YamlNode* part = root.find(key)) add_mentions(*part, workflow.mentions);
+        return workflow;
+    }
 
 private:
-    void input(const YamlEntry& entry, Workflow& workflow);
-    void input_details(const YamlNode& node, WorkflowInput& input);
-    void input_kind(const YamlNode& node, WorkflowInput& input);
-    void parameter(const YamlEntry& entry, Workflow& workflow);
-    void output(const YamlEntry& entry, Workflow& workflow);
+    /// Reads a mapping that may be empty, entry by entry.
+    ReadEntry each(std::string_view expected, ReadEntry read) {
+        return [this, expected, read](const YamlEntry& entry) {
+            if (entry.value.is_null() || !require_map(entry.value, expected, diagnostics_)) return;
+            for (const YamlEntry& child : entry.value.entries) read(child);
+        };
+    }
 
-    template <class Action>
-    void each_entry(const YamlEntry* entry, std::string_view expected, Action&& action) {
-        if (!entry || entry->value.is_null() || !require_map(entry->value, expected, diagnostics_)) return;
-        for (const YamlEntry& child : entry->value.entries) action(child);
+    WorkflowInput input(const YamlEntry& entry) {
+        WorkflowInput input;
+        input.name = entry.key;
+        input.position = entry.position;
+        require_name(input.name, input.position, "an input", diagnostics_);
+        if (!entry.value.is_map()) {
+            input_kind(entry.value, input);
+            return input;
+        }
+        const auto list = [&](const YamlEntry& flag) {
+            input.list |= flag.value.text == "true";
+            if (flag.value.text != "true" && flag.value.text != "false")
+                diagnostics_.error(flag.value.position, "found {}; expected true or false", flag.value.described());
+        };
+        const auto frame = [&](const YamlEntry& name) {
+            text_into(input.frame, diagnostics_)(name);
+            check_stem_template(input.frame, "the frame", name.value.position, diagnostics_);
+        };
+        read_mapping(entry.value, "an input",
+                     {{"kind", [&](const YamlEntry& kind) { input_kind(kind.value, input); },
+                       fmt::format("the input '{}' has no kind; expected one of {}", input.name, kind_names())},
+                      {"help", text_into(input.help, diagnostics_)},
+                      {"frame", frame},
+                      {"list", list},
+                      {"unit", unit_into(input.unit, diagnostics_)}},
+                     diagnostics_);
+        return input;
+    }
+
+    void input_kind(const YamlNode& node, WorkflowInput& input) {
+        const YamlNode* scalar = &node;
+        if (node.is_sequence() && node.items.size() == 1) {  // `[points]`: a list of points
+            input.list = true;
+            scalar = &node.items.front();
+        }
+        const auto text = require_text(*scalar, fmt::format("a kind: {}", kind_names()), diagnostics_);
+        if (!text) return;
+        const std::optional<Kind> kind = kind_named(*text);
+        input.kind = kind.value_or(kind_of<PointCloud>());
+        std::vector<std::string> kinds, readable{"points", "mesh"};
+        for (const Kind each : all_kinds()) {
+            kinds.emplace_back(each.name());
+            if (each.has_json()) readable.emplace_back(each.name());
+        }
+        if (!kind)
+            diagnostics_.error(scalar->position, "'{}' is not a kind; expected one of {}{}", *text, kind_names(),
+                               did_you_mean(*text, kinds));
+        else if (std::ranges::find(readable, *text) == readable.end())
+            diagnostics_.error(scalar->position, "an input of kind {} cannot be read from a file; expected one of {}",
+                               *text, fmt::join(readable, ", "));
+    }
+
+    void parameter(const YamlEntry& entry, Workflow& workflow) {
+        WorkflowParameter parameter;
+        parameter.name = entry.key;
+        parameter.position = entry.position;
+        require_name(parameter.name, parameter.position, "a parameter", diagnostics_);
+        const auto value = [&](const YamlEntry& given) {
+            parameter.value = value_expression(given.value, diagnostics_);
+            add_mentions(given.value, workflow.mentions);
+        };
+        if (entry.value.is_map() && !entry.value.find("sweep"))
+            read_mapping(entry.value, "a workflow parameter",
+                         {{"default", value, fmt::format("the parameter '{}' has no default", parameter.name)},
+                          {"help", text_into(parameter.help, diagnostics_)}},
+                         diagnostics_);
+        else
+            value(entry);
+        refuse_uses(parameter.value, "a default", diagnostics_);
+        workflow.parameters.push_back(std::move(parameter));
+    }
+
+    /// A step that cannot be read becomes one without a filter, so that later checks expect a gap there.
+    static StepItem unreadable(const YamlNode& node) {
+        StepSyntax step;
+        step.position = node.position;
+        return {step};
+    }
+
+    std::vector<StepItem> steps(const YamlNode& list) {
+        if (!require_list(list, "a list of steps, each beginning with `- `", diagnostics_)) return {unreadable(list)};
+        if (list.items.empty()) {
+            diagnostics_.error(list.position, "the list of steps is empty");
+            return {unreadable(list)};
+        }
+        std::vector<StepItem> items;
+        for (const YamlNode& node : list.items) items.push_back(step_item(node));
+        return items;
+    }
+
+    StepItem step_item(const YamlNode& node) {
+        if (!require_map(node, step_forms, diagnostics_)) return unreadable(node);
+        if (node.find("one-of")) return {one_of(node)};
+        return {step(node)};
+    }
+
+    OneOfSyntax one_of(const YamlNode& node) {
+        OneOfSyntax fork;
+        fork.position = node.position;
+        const auto alternatives = [&](const YamlEntry& entry) {
+            const YamlNode& list = entry.value;
+            if (require_list(list, "a list of alternatives, each beginning with `- `", diagnostics_) &&
+                list.items.empty())
+                diagnostics_.error(entry.position, "one-of has no alternatives");
+            for (const YamlNode& item : list.items) fork.alternatives.push_back(alternative(item));
+            if (list.items.empty()) fork.alternatives.push_back({"", list.position, {unreadable(list)}});
+        };
+        read_mapping(node, "a one-of step",
+                     {{"id", name_into(fork.id, "a step", diagnostics_)}, {"one-of", alternatives}}, diagnostics_);
+        return fork;
+    }
+
+    AlternativeSyntax alternative(const YamlNode& node) {
+        AlternativeSyntax result;
+        result.position = node.position;
+        if (node.is_sequence())
+            result.steps = steps(node);
+        else if (node.find("steps"))
+            read_mapping(node, "an alternative",
+                         {{"name", name_into(result.name, "an alternative", diagnostics_)},
+                          {"steps", [&](const YamlEntry& entry) { result.steps = steps(entry.value); }}},
+                         diagnostics_);
+        else
+            result.steps.push_back(step_item(node));
+        if (!result.name.empty()) return result;
+        const auto* first = std::get_if<StepSyntax>(&result.steps.front().item);
+        if (result.steps.size() > 1)
+            diagnostics_.error(result.position,
+                               "an alternative of several steps needs a name, as `{name: …, steps: […]}`");
+        else if (!first)
+            return result;  // a fork names its own alternatives
+        else
+            result.name = first->name();
+        if (result.name.empty())  // after an error; a unique name keeps its variant apart from others
+            result.name = fmt::format("line-{}-column-{}", result.position.line, result.position.column);
+        return result;
+    }
+
+    StepSyntax step(const YamlNode& node) {
+        StepSyntax step;
+        step.position = node.position;
+        const YamlEntry* filter = nullptr;
+        for (const YamlEntry& entry : node.entries) {
+            if (entry.key == "id")
+                name_into(step.id, "a step", diagnostics_)(entry);
+            else if (entry.key == "in")
+                wiring(entry.value, step);
+            else if (entry.key == "expect")
+                expectations(entry.value, step);
+            else if (!filter)
+                filter = &entry;
+            else
+                diagnostics_.error(entry.position,
+                                   "a step has one filter; found '{}' beside '{}'. A second step begins "
+                                   "with `- `; the other keys of a step are id, in and expect",
+                                   entry.key, filter->key);
+        }
+        if (!filter) {
+            diagnostics_.error(node.position, "a step without a filter; expected {}", step_forms);
+            return step;
+        }
+        step.filter = filter->key;
+        step.position = filter->position;
+        each(fmt::format("the parameters of {}, as {{name: value}}, or nothing", step.filter),
+             [&](const YamlEntry& entry) {
+                 step.parameters.push_back({entry.key, entry.position, value_expression(entry.value, diagnostics_)});
+             })(*filter);
+        return step;
+    }
+
+    void wiring(const YamlNode& node, StepSyntax& step) {
+        if (node.is_scalar()) {
+            step.in_shorthand = reference(node, diagnostics_);
+            return;
+        }
+        if (!require_map(node, "a map from ports to steps, as {points: scan}", diagnostics_)) return;
+        for (const YamlEntry& entry : node.entries) {
+            InputWiring wired{entry.key, entry.position, {}};
+            const YamlNode& value = entry.value;
+            for (const YamlNode& item : value.is_sequence() ? std::span(value.items) : std::span(&value, 1))
+                if (auto source = reference(item, diagnostics_)) wired.sources.push_back(*source);
+            step.in.push_back(std::move(wired));
+        }
+    }
+
+    /// Reads "< 3", "> 3" and "3"; false after an error.
+    bool read_comparison(std::string_view text, Position position, Expectation& expectation) {
+        for (std::string_view other : {"<=", ">=", "==", "!=", "=", "≤", "≥", "≠"})
+            if (text.starts_with(other)) {
+                diagnostics_.error(position,
+                                   "expect {}: '{}' is not supported; expected a value, `< value`, "
+                                   "`> value`, or [low, high], which includes both ends",
+                                   expectation.name, other);
+                return false;
+            }
+        if (text.starts_with('<')) expectation.relation = Expectation::Relation::below;
+        if (text.starts_with('>')) expectation.relation = Expectation::Relation::above;
+        if (expectation.relation != Expectation::Relation::equal) text.remove_prefix(1);
+        while (text.starts_with(' ')) text.remove_prefix(1);
+        expectation.value = text;
+        return true;
+    }
+
+    void expectations(const YamlNode& node, StepSyntax& step) {
+        if (!require_map(node, "a map, as {closed: true, components: 1}", diagnostics_)) return;
+        for (const YamlEntry& entry : node.entries) {
+            Expectation expectation{entry.key, entry.position, Expectation::Relation::equal, {}, {}};
+            const std::vector<YamlNode>& ends = entry.value.items;
+            if (!entry.value.is_sequence()) {
+                const auto text =
+                    require_text(entry.value, "a value, `< value`, `> value` or [low, high]", diagnostics_);
+                if (!text || !read_comparison(*text, entry.value.position, expectation)) continue;
+            } else if (ends.size() == 2 && ends[0].is_scalar() && ends[1].is_scalar()) {
+                expectation.relation = Expectation::Relation::between;
+                expectation.value = ends[0].text;
+                expectation.high = ends[1].text;
+            } else {
+                diagnostics_.error(entry.value.position, "a range has two ends, as [2, 4]");
+                continue;
+            }
+            step.expect.push_back(std::move(expectation));
+        }
     }
 
     Diagnostics& diagnostics_;
 };
 
-Workflow WorkflowParser::workflow(const YamlNode& root) {
-    Workflow workflow;
-    workflow.file = diagnostics_.file();
-    if (root.is_null()) {
-        if (!diagnostics_.has_errors())
-            diagnostics_.error({}, "is empty; expected a workflow: a map that begins with `scanmill: 1`");
-        return workflow;
-    }
-    if (!require_map(root, "a workflow: a map that begins with `scanmill: 1`", diagnostics_)) return workflow;
-    if (const YamlNode* batch = root.find("batch")) {
-        diagnostics_.error(batch->position, "is a batch; expected a workflow (`scanmill batch` runs batches)");
-        return workflow;
-    }
-    MapReader keys(root, "a workflow", diagnostics_);
-    require_grammar_version(keys, diagnostics_);
-    workflow.name = keys.text("name");
-    if (const YamlNode* name = root.find("name"); name && name->is_scalar())
-        require_name(workflow.name, name->position, "a workflow", diagnostics_);
-    workflow.summary = keys.text("summary");
-    each_entry(keys.find("inputs"), "a map of inputs, as {scan: points}",
-               [&](const YamlEntry& entry) { input(entry, workflow); });
-    each_entry(keys.find("parameters"), "a map of parameters, as {max-error: 0.1 %diag}", [&](const YamlEntry& entry) {
-        parameter(entry, workflow);
-        const YamlNode* value = entry.value.is_map() ? entry.value.find("default") : &entry.value;
-        if (value) add_mentions(*value, workflow.mentions);
-    });
-    if (const YamlEntry* entry = keys.find("steps"))
-        workflow.steps = parse_steps(entry->value, diagnostics_);
+}  // namespace
+
+ValueExpression value_expression(const YamlNode& node, Diagnostics& diagnostics) {
+    ValueExpression result;
+    result.position = node.position;
+    const auto add = [&](const YamlNode& value) {
+        if (auto written = written_value(value, diagnostics)) result.values.push_back(std::move(*written));
+    };
+    const auto sweep = [&](const YamlEntry& entry) {
+        if (!require_list(entry.value, "a list of values to sweep over", diagnostics)) return;
+        result.sweep = true;
+        for (const YamlNode& item : entry.value.items) add(item);
+        if (entry.value.items.empty()) diagnostics.error(entry.position, "a sweep over no values");
+    };
+    if (node.is_map())
+        read_mapping(node, "a value", {{"sweep", sweep}}, diagnostics);
     else
-        diagnostics_.error(root.position, "has no steps; expected `steps:` with a list of steps");
-    each_entry(keys.find("outputs"), "a map from file names to steps, as {\"{scan}.stl\": decimate}",
-               [&](const YamlEntry& entry) { output(entry, workflow); });
-    keys.complain_of_others();
-    for (const char* key : {"steps", "outputs"})
-        if (const YamlNode* part = root.find(key)) add_mentions(*part, workflow.mentions);
-    return workflow;
+        add(node);
+    return result;
 }
 
-void WorkflowParser::input(const YamlEntry& entry, Workflow& workflow) {
-    WorkflowInput input;
-    input.name = entry.key;
-    input.position = entry.position;
-    require_name(input.name, input.position, "an input", diagnostics_);
-    const YamlNode* kind = &entry.value;
-    if (entry.value.is_map()) {
-        input_details(entry.value, input);
-        kind = entry.value.find("kind");
-    }
-    if (kind)
-        input_kind(*kind, input);
-    else
-        diagnostics_.error(entry.position,
-                           fmt::format("the input '{}' has no kind; expected one of {}", input.name, kind_names()));
-    workflow.inputs.push_back(std::move(input));
+ValueExpression parse_value_expression(const std::string& text, Diagnostics& diagnostics) {
+    const YamlNode root = parse_yaml(text, diagnostics);
+    return diagnostics.has_errors() ? ValueExpression{} : value_expression(root, diagnostics);
 }
 
-void WorkflowParser::input_details(const YamlNode& node, WorkflowInput& input) {
-    MapReader keys(node, "an input", diagnostics_);
-    keys.find("kind");
-    input.help = keys.text("help");
-    input.frame = keys.text("frame");
-    if (const YamlNode* frame = node.find("frame")) check_frame_template(input.frame, frame->position, diagnostics_);
-    if (const YamlEntry* list = keys.find("list")) {
-        if (list->value.text != "true" && list->value.text != "false")
-            diagnostics_.error(list->value.position,
-                               fmt::format("found {}; expected true or false", list->value.described()));
-        input.list = list->value.text == "true";
-    }
-    if (const YamlEntry* unit = keys.find("unit")) input.unit = require_unit(unit->value, diagnostics_);
-    keys.complain_of_others();
-}
-
-void WorkflowParser::input_kind(const YamlNode& node, WorkflowInput& input) {
-    const YamlNode* scalar = &node;
-    if (node.is_sequence() && node.items.size() == 1) {  // `[points]`: a list of points
-        input.list = true;
-        scalar = &node.items.front();
-    }
-    const auto text = require_text(*scalar, fmt::format("a kind: {}", kind_names()), diagnostics_);
-    if (!text) return;
-    const std::optional<Kind> kind = kind_named(*text);
-    if (!kind) {
-        std::vector<std::string> kinds;
-        for (const Kind each : all_kinds()) kinds.emplace_back(each.name());
-        diagnostics_.error(scalar->position, fmt::format("'{}' is no kind; expected one of {}{}", *text, kind_names(),
-                                                         did_you_mean(*text, kinds)));
-    } else if (*kind != kind_of<PointCloud>() && *kind != kind_of<TriangleMesh>() && !kind->has_json()) {
-        std::string readable = "points, mesh";
-        for (const Kind each : all_kinds())
-            if (each.has_json()) readable.append(", ").append(each.name());
-        diagnostics_.error(
-            scalar->position,
-            fmt::format("an input of kind {} cannot be read from a file; expected one of {}", *text, readable));
-    }
-    input.kind = kind.value_or(kind_of<PointCloud>());
-}
-
-void WorkflowParser::parameter(const YamlEntry& entry, Workflow& workflow) {
-    WorkflowParameter parameter;
-    parameter.name = entry.key;
-    parameter.position = entry.position;
-    require_name(parameter.name, parameter.position, "a parameter", diagnostics_);
-    const bool detailed = entry.value.is_map() && !entry.value.find("sweep");
-    if (detailed) {
-        MapReader keys(entry.value, "a workflow parameter", diagnostics_);
-        parameter.help = keys.text("help");
-        if (const YamlEntry* value = keys.find("default"))
-            parameter.value = value_expression(value->value, diagnostics_);
-        else
-            diagnostics_.error(entry.position, fmt::format("the parameter '{}' has no default", parameter.name));
-        keys.complain_of_others();
-    } else {
-        parameter.value = value_expression(entry.value, diagnostics_);
-    }
-    std::erase_if(parameter.value.values, [&](const WrittenValue& written) {
+void refuse_uses(ValueExpression& value, std::string_view what, Diagnostics& diagnostics) {
+    std::erase_if(value.values, [&](const WrittenValue& written) {
         if (!written.uses.empty())
-            diagnostics_.error(written.uses.front().position,
-                               "a default cannot refer to another parameter; write the value");
+            diagnostics.error(written.uses.front().position, "{} cannot refer to a parameter; write the value", what);
         return !written.uses.empty();
     });
-    workflow.parameters.push_back(std::move(parameter));
 }
-
-void WorkflowParser::output(const YamlEntry& entry, Workflow& workflow) {
-    if (const auto source = reference(entry.value, diagnostics_))
-        workflow.outputs.push_back({entry.key, entry.position, *source});
-}
-
-}  // namespace
 
 Workflow parse_workflow(const std::string& text, Diagnostics& diagnostics) {
     const YamlNode root = parse_yaml(text, diagnostics);

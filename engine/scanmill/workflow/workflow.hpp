@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// A workflow as its file says it, with the place of everything: the grammar's syntax tree. What the names in it mean
-/// is checked later (plan.hpp), against the filters at hand.
+/// A workflow as it is written, with the position of everything: the grammar's syntax tree. Names are resolved against
+/// the installed filters later, by plan.hpp.
 
 #include <optional>
 #include <set>
@@ -11,26 +11,25 @@
 
 #include "scanmill/filter/parameter.hpp"
 #include "scanmill/kinds/value.hpp"
-#include "scanmill/workflow/diagnostics.hpp"
 #include "scanmill/workflow/document.hpp"
 
 namespace scanmill {
 
-/// `$name`: the value of a workflow parameter stands here.
+/// `$name`, the use of a workflow parameter.
 struct NameUse {
     std::string name;  ///< without the $
     Position position;
-    std::size_t item = 0;  ///< of `literal.items`, which holds nothing there yet
+    std::size_t item = 0;  ///< index into `literal.items`, where the text is still empty
 };
 
-/// One written value: text(s), of which some may be uses of workflow parameters.
+/// One written value: one text or several, some of which may be uses of workflow parameters.
 struct WrittenValue {
     Position position;
     WrittenParameter literal;
     std::vector<NameUse> uses;
 };
 
-/// A value, or `{sweep: [value, …]}`: then it has several, and everything after it runs once for each.
+/// A value, or `{sweep: [value, …]}`, which has several: everything after it runs once for each.
 struct ValueExpression {
     Position position;
     std::vector<WrittenValue> values;
@@ -71,6 +70,9 @@ struct StepSyntax {
     std::vector<InputWiring> in;
     std::optional<Reference> in_shorthand;  ///< `in: scan`, for filters with one port
     std::vector<Expectation> expect;
+
+    /// How other steps refer to this one.
+    const std::string& name() const { return id.empty() ? filter : id; }
 };
 
 struct StepItem;
@@ -97,7 +99,7 @@ struct WorkflowInput {
     Kind kind = kind_of<PointCloud>();
     bool list = false;
     LengthUnit unit = LengthUnit::unknown;
-    std::string frame;  ///< may hold {stem}, see input_frame.hpp; empty: what the file says
+    std::string frame;  ///< may contain {stem}; empty: the file's own
     std::string help;
 };
 
@@ -118,19 +120,23 @@ struct Workflow {
     std::string file;
     std::string name;
     std::string summary;
-    std::vector<WorkflowInput>
-        inputs;  ///< the first is fed by the scans: one at a time, or all at once when it is a list
+    std::vector<WorkflowInput> inputs;  ///< scans feed the first: one at a time, or all at once when it is a list
     std::vector<WorkflowParameter> parameters;
     std::vector<StepItem> steps;
     std::vector<WorkflowOutput> outputs;
-    /// Names that stand as `$name` in steps, outputs and defaults, also in what could not be read.
+    /// Names used as `$name` in steps, outputs and defaults, including those that could not be read.
     std::set<std::string> mentions;
 };
 
-/// The workflow in `text`; what is wrong goes to `diagnostics`, what is right is still returned.
+/// The workflow in `text`. Errors go to `diagnostics`; everything that could be read is returned.
 Workflow parse_workflow(const std::string& text, Diagnostics& diagnostics);
 
-/// A value as a workflow would hold it, from the command line: "0.1 %diag", "[0, 1]", "{sweep: [1, 2]}".
+/// A value, a list of values, `$name` (also within a list) or `{sweep: [value, …]}`. Wrong values are reported and left
+/// out.
+ValueExpression value_expression(const YamlNode& node, Diagnostics& diagnostics);
+/// A value as in a workflow, from the command line: "0.1 %diag", "[0, 1]", "{sweep: [1, 2]}".
 ValueExpression parse_value_expression(const std::string& text, Diagnostics& diagnostics);
+/// Reports uses of parameters, which are not allowed here, and removes their values. `what` begins the message.
+void refuse_uses(ValueExpression& value, std::string_view what, Diagnostics& diagnostics);
 
 }  // namespace scanmill

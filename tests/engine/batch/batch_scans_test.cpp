@@ -2,7 +2,7 @@
 // Which files a batch means, and what each brings along.
 
 #include "engine/batch/batch_support.hpp"
-#include "scanmill/batch/parse_scans.hpp"
+#include "scanmill/batch/scans.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill {
@@ -49,7 +49,7 @@ TEST_F(ScanFiles, TwoStars_AreAnyNumberOfFolders) {
     EXPECT_THAT(found("s/**/*.ply"), ElementsAre("s/b.ply", "s/t/c.ply", "s/t/u/d.ply"));
     EXPECT_THAT(found("**/t/*.ply"), ElementsAre("s/t/c.ply"));
     EXPECT_THAT(found("**/**/d.ply"), ElementsAre("s/t/u/d.ply")) << "once, whatever the ways to it";
-    EXPECT_THAT(refusal("s/**"), HasSubstr("'**' stands for folders"));
+    EXPECT_THAT(refusal("s/**"), HasSubstr("'**' matches folders"));
 }
 
 TEST_F(ScanFiles, HiddenFilesAndFolders_AreOnlyFoundByTheirNames) {
@@ -125,7 +125,7 @@ TEST_F(BatchScans, EntriesKeepTheirOrder_FilesWithinOneAreSorted) {
 
 TEST_F(BatchScans, FileOfTwoEntries_IsRefusedNamingBothLines) {
     EXPECT_THAT(scans("\n  - scans/a.ply\n  - scans/../scans/*.ply"),
-                ElementsAre(AllOf(StartsWith("b:5:5: "), HasSubstr("a.ply' is a scan already by line 4"))));
+                ElementsAre(AllOf(StartsWith("b:5:5: "), HasSubstr("a.ply' is already a scan by line 4"))));
     EXPECT_THAT(names(), SizeIs(2));
 }
 
@@ -135,14 +135,14 @@ TEST_F(BatchScans, EntriesThatAreNone_AreRefused) {
     EXPECT_THAT(scans("[{path: [a]}]"), ElementsAre(HasSubstr("found a list; expected a path")));
     EXPECT_THAT(scans("[{path: scans/*.ply, untis: mm}]"), ElementsAre(HasSubstr("a scan has no key 'untis'")));
     EXPECT_THAT(scans("[{path: scans/*.ply, frame: [x]}]"), ElementsAre(HasSubstr("expected a text for 'frame'")));
-    EXPECT_THAT(scans("[{path: scans/*.ply, frame: '{scan}'}]"), ElementsAre(HasSubstr("not part of {stem}")));
-    EXPECT_THAT(scans("[{path: scans/*.ply, truth: '{name}.stl'}]"), ElementsAre(HasSubstr("not part of {stem}")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, frame: '{scan}'}]"), ElementsAre(HasSubstr("unknown placeholder")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, truth: '{name}.stl'}]"), ElementsAre(HasSubstr("unknown placeholder")));
     EXPECT_THAT(scans("[{path: scans/*.ply, truth: ''}]"), ElementsAre(HasSubstr("the truth is empty")));
     EXPECT_THAT(scans("[{path: scans/*.ply, truth: [a]}]"), ElementsAre(HasSubstr("expected a file, as truth/")));
     EXPECT_THAT(scans("[{path: scans/*.ply, pose: }]"), ElementsAre(HasSubstr("expected a file, as poses/")));
 }
 
-TEST_F(BatchScans, MissingTruth_IsToldForEachScan) {
+TEST_F(BatchScans, MissingTruth_IsReportedForEachScan) {
     folder_.write("truth/b.stl", "x");
     EXPECT_THAT(
         scans("[{path: scans/*.ply, truth: 'truth/{stem}.stl'}]"),
@@ -175,9 +175,9 @@ TEST_F(BatchScans, PoseFilesThatDoNotHelp_AreRefusedWithTheirPath) {
         return found.front();
     };
     EXPECT_THAT(refusal("{}"), HasSubstr("with \"scanmill\": 1"));
-    EXPECT_THAT(refusal(json(pose(1, "b.ply"))), HasSubstr("has no pose of 'a.ply'; it has those of b.ply"));
-    EXPECT_THAT(refusal(json(pose(1) + "," + pose(2))), HasSubstr("holds 2 poses, none of which says"));
-    EXPECT_THAT(refusal(json(pose(1, "a") + "," + pose(2, "a.ply"))), HasSubstr("there are 2 poses of 'a.ply'"));
+    EXPECT_THAT(refusal(json(pose(1, "b.ply"))), HasSubstr("has no pose of 'a.ply'; it has poses of b.ply"));
+    EXPECT_THAT(refusal(json(pose(1) + "," + pose(2))), HasSubstr("contains 2 poses, none of which names"));
+    EXPECT_THAT(refusal(json(pose(1, "a") + "," + pose(2, "a.ply"))), HasSubstr("contains 2 poses of 'a.ply'"));
     EXPECT_THAT(scans("[{path: scans/a.ply, pose: absent.json}]"), ElementsAre(HasSubstr("there is no such file")));
 }
 
@@ -202,9 +202,9 @@ TEST_F(BatchScans, PosesInPlaceThatAreNone_AreRefusedWhereTheyAreWrong) {
     EXPECT_THAT(refusals("[[1]]"), ElementsAre(HasSubstr("a matrix of 1 row; expected 4 rows")));
     EXPECT_THAT(refusals("[[1, 0, 0, 0], [0, 1, 0], 5, [0, 0, x, 1]]"),
                 ElementsAre(HasSubstr("a list of 3 values; expected a row of 4 numbers"), HasSubstr("found '5'"),
-                            HasSubstr("'x' is no finite number")));
+                            HasSubstr("'x' is not a finite number")));
     EXPECT_THAT(refusals("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, inf, 0], [0, 0, 0, 1]]"),
-                ElementsAre(HasSubstr("'inf' is no finite number")));
+                ElementsAre(HasSubstr("'inf' is not a finite number")));
     EXPECT_THAT(refusals("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [1, 2, 3, 1]]"),
                 ElementsAre(HasSubstr("the last row of the matrix is 1 2 3 1; expected 0 0 0 1")));
     EXPECT_THAT(refusals("[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]"),

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "scanmill/batch/plan_batch.hpp"
+#include "scanmill/batch/batch.hpp"
 #include "support/declared_filters.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -27,7 +27,7 @@ protected:
     }
     /// The same of lines that follow a sound beginning; the first is line 5.
     std::vector<std::string> rest(const std::string& lines) { return findings(head + lines); }
-    /// The same of what stands behind `scans: `, in line 3.
+    /// The same for the text after `scans: `, in line 3.
     std::vector<std::string> scans(const std::string& list) {
         return findings("scanmill: 1\nbatch: b\nscans: " + list + "\nworkflows: w.yaml\n");
     }

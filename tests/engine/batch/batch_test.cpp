@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batch files: what they say, and what is wrong with them.
+// Batch files: their content, and their errors.
 
 #include "engine/batch/batch_support.hpp"
 
@@ -77,12 +77,12 @@ gate: {hausdorf: exact}
 sumary: It.
 )"),
         ElementsAre(AllOf(StartsWith("b:4:5: no file matches 'scans/*.plyy'; looked in '"), HasSubstr("/scans'")),
-                    StartsWith("b:5:31: 'yard' is no unit"),
+                    StartsWith("b:5:31: 'yard' is not a unit"),
                     StartsWith("b:5:46: a setting cannot refer to a parameter"),
                     AllOf(StartsWith("b:6:13: "), HasSubstr("missing.yaml': there is no such file")),
                     "b:7:18: memory: '8' has no unit; expected a size, as 8 GiB",
                     AllOf(StartsWith("b:7:30: retries: 11 is out of range"), HasSubstr("at most 10")),
-                    StartsWith("b:8:1: nothing acts on `measure`"), StartsWith("b:9:1: nothing acts on `gate`"),
+                    StartsWith("b:8:1: `measure` has no effect"), StartsWith("b:9:1: `gate` has no effect"),
                     AllOf(StartsWith("b:10:1: a batch has no key 'sumary'"), HasSubstr("did you mean 'summary'?"))));
 }
 
@@ -92,11 +92,11 @@ TEST_F(BatchFile, WithoutItsParts_SaysWhichAreMissing) {
     EXPECT_THAT(findings("summary: x\n"), ElementsAre(HasSubstr("`scanmill: 1`"), HasSubstr("`batch: NAME`"),
                                                       HasSubstr("has no scans"), HasSubstr("has no workflows")));
     EXPECT_THAT(findings("scanmill: 2\nbatch: a b\nscans: []\nworkflows: []\n"),
-                ElementsAre(HasSubstr("'2'"), HasSubstr("'a b' is no name for a batch"),
+                ElementsAre(HasSubstr("'2'"), HasSubstr("'a b' is not a name for a batch"),
                             HasSubstr("the list of scans is empty"), HasSubstr("the list of workflows is empty")));
     EXPECT_THAT(findings(head + "batch: c\n"), ElementsAre(HasSubstr("already at line 2")));
     EXPECT_THAT(findings("scanmill: 1\nbatch: [b]\nscans: x\nworkflows: {}\n"),
-                ElementsAre(HasSubstr("expected the batch's name"), HasSubstr("expected a list of scans"),
+                ElementsAre(HasSubstr("expected a text for 'batch'"), HasSubstr("expected a list of scans"),
                             HasSubstr("expected a list of workflow files")));
 }
 
@@ -109,11 +109,11 @@ TEST_F(BatchFile, WorkflowTwice_NamesTheEarlierLine) {
 
 TEST_F(BatchFile, LimitsThatAreNone_AreRefused) {
     const auto limit = [&](const std::string& text) { return rest("limits: {" + text + "}\n"); };
-    EXPECT_THAT(limit("memory: 8 Gb"), ElementsAre(HasSubstr("memory: '8 Gb' is no size")));
+    EXPECT_THAT(limit("memory: 8 Gb"), ElementsAre(HasSubstr("memory: '8 Gb' is not a size")));
     EXPECT_THAT(limit("memory: 0 B"),
                 ElementsAre(HasSubstr("memory: 0 B is out of range; expected 64 MiB to 1024 TiB")));
     EXPECT_THAT(limit("time: 10"), ElementsAre(HasSubstr("time: '10' has no unit; expected a time, as 10 min")));
-    EXPECT_THAT(limit("time: 10 minutes"), ElementsAre(HasSubstr("time: '10 minutes' is no time")));
+    EXPECT_THAT(limit("time: 10 minutes"), ElementsAre(HasSubstr("time: '10 minutes' is not a time")));
     EXPECT_THAT(limit("memory: 1 MiB"), ElementsAre(HasSubstr("is out of range"))) << "no process lives on that";
     EXPECT_THAT(limit("time: 1e-300 s"), ElementsAre(HasSubstr("is out of range")));
     EXPECT_THAT(limit("time: 1e300 h"), ElementsAre(HasSubstr("is out of range")));
@@ -127,14 +127,14 @@ TEST_F(BatchFile, LimitsThatAreNone_AreRefused) {
     EXPECT_THAT(rest("limits: 8 GiB\n"), ElementsAre(HasSubstr("expected a map of limits")));
 }
 
-TEST_F(BatchFile, KeysThatNothingActsOn_AreRefused) {
+TEST_F(BatchFile, KeysWithoutEffect_AreRefused) {
     for (const std::string key : {"measure", "gate"})
         for (const std::string value : {"", " {}", " all"})
-            EXPECT_THAT(rest(key + ":" + value + "\n"), ElementsAre(HasSubstr("nothing acts on `" + key + "`")));
+            EXPECT_THAT(rest(key + ":" + value + "\n"), ElementsAre(HasSubstr("`" + key + "` has no effect")));
 }
 
 TEST_F(BatchFile, SettingsThatAreNone_AreRefused) {
-    EXPECT_THAT(rest("set: {a b: 1}\n"), ElementsAre(HasSubstr("'a b' is no name for a parameter")));
+    EXPECT_THAT(rest("set: {a b: 1}\n"), ElementsAre(HasSubstr("'a b' is not a name for a parameter")));
     EXPECT_THAT(rest("set: {n: {sweep: []}}\n"), ElementsAre(HasSubstr("a sweep over no values")));
     EXPECT_THAT(rest("set: {n: {sweep: [1, $n]}}\n"), ElementsAre(HasSubstr("cannot refer to a parameter")));
     EXPECT_THAT(rest("set: [n]\n"), ElementsAre(HasSubstr("expected a map of parameters")));

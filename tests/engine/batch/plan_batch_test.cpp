@@ -66,8 +66,8 @@ TEST_F(PlanBatch, BadValue_IsToldWhereItStandsInTheBatch) {
 TEST_F(PlanBatch, NameThatNoWorkflowDeclares_IsToldWithTheClosest) {
     EXPECT_THAT(
         check("scanmill: 1\nbatch: b\nscans: [{path: scans/a.ply, set: {m: 1}}]\nworkflows: w.yaml\nset: {nn: 1}\n"),
-        ElementsAre("b:3:35: none of the workflows has a parameter 'm'; there are n and s",
-                    "b:5:7: none of the workflows has a parameter 'nn'; there are n and s; did you mean 'n'?"));
+        ElementsAre("b:3:35: none of the workflows has a parameter 'm'; they have n and s",
+                    "b:5:7: none of the workflows has a parameter 'nn'; they have n and s; did you mean 'n'?"));
 }
 
 TEST_F(PlanBatch, MistakesOfAWorkflow_AreToldInItOnce) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The JSON Schema of batches accepts what the parser accepts, and rejects at the same place what it rejects.
 
-#include "scanmill/describe/batch_schema.hpp"
+#include "scanmill/describe/schemas.hpp"
 
 #include "engine/batch/batch_support.hpp"
 #include "engine/describe/schema_support.hpp"
@@ -35,8 +35,8 @@ TEST_F(BatchSchema, WhatTheParserAccepts_IsAccepted) {
 
 struct Mistake {
     std::string batch;
-    std::string schema;  ///< a part of the schema's complaints: place and reason
-    std::string parser;  ///< a part of the only thing that the parser says
+    std::string schema;  ///< a part of the schema's errors: position and reason
+    std::string parser;  ///< a part of the parser's only error
 };
 
 /// One mistake each, so that neither of the two can reject it for another reason.
@@ -45,7 +45,7 @@ std::vector<Mistake> mistakes(const std::string& head) {
     const std::string files = "scanmill: 1\nbatch: b\nscans: [scans/a.ply]\nworkflows: ";
     return {
         {"batch: b\nscans: [scans/a.ply]\nworkflows: w.yaml\n", ": Missing required property 'scanmill'",
-         "does not say its grammar"},
+         "has no grammar version"},
         {"scanmill: 1\nscans: [scans/a.ply]\nworkflows: w.yaml\n", ": Missing required property 'batch'",
          "has no name"},
         {"scanmill: 1\nbatch: b\nworkflows: w.yaml\n", ": Missing required property 'scans'", "has no scans"},
@@ -54,7 +54,7 @@ std::vector<Mistake> mistakes(const std::string& head) {
         {"scanmill: 2\nbatch: b\nscans: [scans/a.ply]\nworkflows: w.yaml\n", "scanmill: Failed to match expected value",
          "the grammar is '2'"},
         {"scanmill: 1\nbatch: a b\nscans: [scans/a.ply]\nworkflows: w.yaml\n", "batch: Failed to match regex",
-         "'a b' is no name"},
+         "'a b' is not a name"},
         {head + "sumary: x\n", ": Object contains a property" + known_only + "'sumary'", "has no key 'sumary'"},
         {head + "summary: [x]\n", "summary: Value type not permitted", "a text for 'summary'"},
         {scan + "[]\n", "scans: Array should contain no fewer than 1", "the list of scans is empty"},
@@ -64,7 +64,7 @@ std::vector<Mistake> mistakes(const std::string& head) {
         {scan + "[{path: scans/a.ply, unti: mm}]\n", "scans 0: Object contains a property" + known_only + "'unti'",
          "a scan has no key 'unti'"},
         {scan + "[{path: scans/a.ply, unit: yard}]\n", "scans 0 unit: Failed to match against any enum",
-         "'yard' is no unit"},
+         "'yard' is not a unit"},
         {scan + "[{path: scans/a.ply, frame: [x]}]\n", "scans 0 frame: Value type not permitted", "a text for 'frame'"},
         {scan + "[{path: scans/a.ply, truth: ''}]\n", "scans 0 truth: String should be no fewer than 1",
          "the truth is empty"},
@@ -75,11 +75,11 @@ std::vector<Mistake> mistakes(const std::string& head) {
         {scan + "[{path: scans/a.ply, pose: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1], [0, 0, 0, 1]]}]\n",
          "scans 0 pose 2: Array should contain no fewer than 4", "a list of 3 values"},
         {scan + "[{path: scans/a.ply, pose: {translation: [0, 0, x], rotation: [0, 0, 0, 1]}}]\n",
-         "scans 0 pose translation 2: Value type not permitted", "'x' is no finite number"},
+         "scans 0 pose translation 2: Value type not permitted", "'x' is not a finite number"},
         {scan + "[{path: scans/a.ply, pose: {rotation: [0, 0, 0, 1]}}]\n",
          "scans 0 pose: Missing required property 'translation'", "the pose has no translation"},
         {scan + "[{path: scans/a.ply, set: {a b: 1}}]\n",
-         "scans 0: Failed to validate against schema associated with property name 'set'", "'a b' is no name"},
+         "scans 0: Failed to validate against schema associated with property name 'set'", "'a b' is not a name"},
         {files + "[]\n", "workflows: Array should contain no fewer than 1", "the list of workflows is empty"},
         {files + "{}\n", "workflows: Value type not permitted", "expected a list of workflow files"},
         {files + "[[]]\n", "workflows 0: Value type not permitted", "expected a workflow file"},
@@ -90,10 +90,10 @@ std::vector<Mistake> mistakes(const std::string& head) {
          "a value has no key 'swep'"},
         {head + "set: {n: }\n", "set n: Value type not permitted", "found nothing"},
         {head + "limits: {memory: 8}\n", "limits memory: Value type not permitted", "'8' has no unit"},
-        {head + "limits: {memory: 8 Gb}\n", "limits memory: Failed to match regex", "'8 Gb' is no size"},
+        {head + "limits: {memory: 8 Gb}\n", "limits memory: Failed to match regex", "'8 Gb' is not a size"},
         {head + "limits: {memory: 0 B}\n", "limits memory: Failed to match regex", "is out of range"},
-        {head + "limits: {time: 5 m}\n", "limits time: Failed to match regex", "'5 m' is no time"},
-        {head + "limits: {time: -5 s}\n", "limits time: Failed to match regex", "'-5 s' is no time"},
+        {head + "limits: {time: 5 m}\n", "limits time: Failed to match regex", "'5 m' is not a time"},
+        {head + "limits: {time: -5 s}\n", "limits time: Failed to match regex", "'-5 s' is not a time"},
         {head + "limits: {step: {tme: 5 s}}\n", "limits step: Object contains a property" + known_only + "'tme'",
          "has no key 'tme'"},
         {head + "limits: {step: }\n", "limits step: Value type not permitted", "expected the limits of one step"},
@@ -101,9 +101,9 @@ std::vector<Mistake> mistakes(const std::string& head) {
          "11 is out of range"},
         {head + "limits: {retries: 1.5}\n", "limits retries: Value type not permitted", "'1.5' is not a whole number"},
         {head + "measure: {samples: 1}\n", ": Object contains a property" + known_only + "'measure'",
-         "nothing acts on `measure`"},
+         "`measure` has no effect"},
         {head + "gate: {genus: exact}\n", ": Object contains a property" + known_only + "'gate'",
-         "nothing acts on `gate`"},
+         "`gate` has no effect"},
     };
 }
 

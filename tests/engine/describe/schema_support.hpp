@@ -28,7 +28,7 @@ inline nlohmann::json to_json(const YAML::Node& node) {
     }
     if (node.IsNull() || !node.IsDefined()) return nullptr;
     const std::string& text = node.Scalar();
-    if (node.Tag() == "!") return text;  // it stood in quotes
+    if (node.Tag() == "!") return text;  // it was in quotes
     if (text == "true" || text == "false") return text == "true";
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -47,7 +47,7 @@ public:
     }
     bool accepts(const std::string& workflow) { return complaints(workflow).empty(); }
 
-    /// Every complaint as "place: what", the place being the keys on the way: "steps 0 thin count".
+    /// Every error as "position: text", where the position is the keys on the way: "steps 0 thin count".
     std::string complaints(const std::string& workflow) {
         const nlohmann::json document = to_json(YAML::Load(workflow));
         valijson::ValidationResults results;
@@ -68,7 +68,7 @@ private:
     valijson::Schema schema_;
 };
 
-/// What the validator says of a key that is not known, but for its name.
+/// The validator's error about an unknown key, without the key.
 inline const std::string known_only =
     " that could not be validated using 'properties' or 'additionalProperties' constraints: ";
 

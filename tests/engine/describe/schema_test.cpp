@@ -2,17 +2,18 @@
 // The JSON Schema of workflows, as an editor uses it: it accepts what check accepts, and rejects what check rejects at
 // one place of the file.
 
-#include "scanmill/describe/workflow_schema.hpp"
+#include "scanmill/describe/schemas.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "engine/describe/schema_support.hpp"
 #include "scanmill/batch/batch.hpp"
-#include "scanmill/describe/batch_schema.hpp"
+#include "scanmill/describe/schemas.hpp"
 #include "scanmill/plan/plan.hpp"
 #include "support/declared_filters.hpp"
 #include "support/temporary_folder.hpp"
@@ -27,12 +28,12 @@ using testing::HasSubstr;
 
 class WorkflowSchema : public testing::Test {
 protected:
-    std::vector<std::string> check_says(const std::string& workflow) {
+    std::vector<std::string> errors_of_check(const std::string& workflow) {
         Diagnostics diagnostics("w");
         make_plan(parse_workflow(workflow, diagnostics), library_, {}, diagnostics);
-        std::vector<std::string> said;
-        for (const Diagnostic& diagnostic : diagnostics.sorted()) said.push_back(diagnostic.message);
-        return said;
+        std::vector<std::string> errors;
+        for (const Diagnostic& diagnostic : diagnostics.sorted()) errors.push_back(diagnostic.message);
+        return errors;
     }
 
     test::DeclaredFilters filters_;
@@ -61,36 +62,35 @@ TEST_F(WorkflowSchema, WhatCheckAccepts_IsAccepted) {
           std::string(
               "scanmill: 1\ninputs: {scan: points}\nparameters: {s: {default: {sweep: [1 u, 2 u]}, help: It.}}\n"
               "steps: [{thin: {size: $s}, in: scan}]\n")}) {
-        EXPECT_THAT(check_says(workflow), testing::IsEmpty()) << workflow;
+        EXPECT_THAT(errors_of_check(workflow), testing::IsEmpty()) << workflow;
         EXPECT_EQ(schema_.complaints(workflow), "") << workflow;
     }
 }
 
 struct Mistake {
     std::string workflow;
-    std::string schema;  ///< a part of the schema's complaints: place and reason
-    std::string check;  ///< a part of the only thing that check says
+    std::string schema;  ///< a part of the schema's errors: position and reason
+    std::string check;  ///< a part of the only error of check
 };
 
 /// One mistake each, so that neither of the two can reject it for another reason.
 const std::vector<Mistake> mistakes{
-    {"inputs: {scan: points}\nsteps: [{thin: }]\n", ": Missing required property 'scanmill'",
-     "does not say its grammar"},
+    {"inputs: {scan: points}\nsteps: [{thin: }]\n", ": Missing required property 'scanmill'", "has no grammar version"},
     {"scanmill: 2\ninputs: {scan: points}\nsteps: [{thin: }]\n", "scanmill: Failed to match expected value",
      "the grammar is '2'"},
     {"scanmill: 1\ninputs: {scan: points}\n", ": Missing required property 'steps'", "has no steps"},
     {"scanmill: 1\ninputs: {scan: points}\nsteps: []\n", "steps: Array should contain no fewer than 1",
      "the list of steps is empty"},
     {"scanmill: 1\ninputs: {scan: cloud}\nsteps: [{thin: }]\n", "inputs scan: Failed to match against any enum",
-     "'cloud' is no kind"},
+     "'cloud' is not a kind"},
     {"scanmill: 1\ninputs: {scan: {unit: mm}}\nsteps: [{thin: }]\n", "inputs scan: Missing required property 'kind'",
      "the input 'scan' has no kind"},
     {"scanmill: 1\ninputs: {scan: {kind: points, unit: yard}}\nsteps: [{thin: }]\n",
-     "inputs scan unit: Failed to match against any enum", "'yard' is no unit"},
+     "inputs scan unit: Failed to match against any enum", "'yard' is not a unit"},
     {"scanmill: 1\noutput: {}\ninputs: {scan: points}\nsteps: [{thin: }]\n",
      ": Object contains a property" + known_only + "'output'", "a workflow has no key 'output'"},
     {"scanmill: 1\nname: no name\ninputs: {scan: points}\nsteps: [{thin: }]\n", "name: Failed to match regex",
-     "'no name' is no name"},
+     "'no name' is not a name"},
     {steps("  - thinn:\n"), "steps 0: Object contains a property" + known_only + "'thinn'",
      "there is no filter 'thinn'"},
     {steps("  - thin: {siz: 1 u}\n"), "steps 0 thin: Object contains a property" + known_only + "'siz'",
@@ -110,8 +110,8 @@ const std::vector<Mistake> mistakes{
      "axis: has 2 values"},
     {with_n("  - thin: {axis: [1, $n]}\n"), "steps 0 thin axis: Array should contain no fewer than 3",
      "axis: has 2 values"},
-    {steps("  - thin: {axis: [1, $, 0]}\n"), "steps 0 thin axis: ", "'$' names no parameter"},
-    {"parameters: {n: [1, $m]}\n" + steps("  - thin: {axis: $n}\n"), "parameters n: ", "cannot refer to another"},
+    {steps("  - thin: {axis: [1, $, 0]}\n"), "steps 0 thin axis: ", "'$' is not the name of a parameter"},
+    {"parameters: {n: [1, $m]}\n" + steps("  - thin: {axis: $n}\n"), "parameters n: ", "cannot refer to a parameter"},
     {steps("  - thin: {axis: 1}\n"), "steps 0 thin axis: Value type not permitted", "axis: has 1 value"},
     {steps("  - thin: {count: {sweep: []}}\n"), "steps 0 thin count sweep: Array should contain no fewer than 1",
      "a sweep over no values"},
@@ -126,13 +126,13 @@ const std::vector<Mistake> mistakes{
     {steps("  - thin:\n  - tetrahedralise:\n  - solid: {alpha: automatic}\n"),
      "steps 2 solid alpha: Failed to match expected value", "alpha: 'automatic' is not a length"},
     {steps("  - thin:\n    inn: scan\n"), "steps 0: Object contains a property" + known_only + "'inn'",
-     "'inn' stands beside 'thin'"},
+     "found 'inn' beside 'thin'"},
     {steps("  - thin:\n    in: {mesh: scan}\n"), "steps 0 in: Object contains a property" + known_only + "'mesh'",
      "thin has no input port 'mesh'"},
     {steps("  - thin:\n    expect: {keptt: 1}\n"),
-     "steps 0 expect: Object contains a property" + known_only + "'keptt'", "nothing is known as 'keptt'"},
+     "steps 0 expect: Object contains a property" + known_only + "'keptt'", "has no metric or property 'keptt'"},
     {steps("  - thin:\n    expect: {closed: true}\n"),
-     "steps 0 expect: Object contains a property" + known_only + "'closed'", "nothing is known as 'closed'"},
+     "steps 0 expect: Object contains a property" + known_only + "'closed'", "has no metric or property 'closed'"},
     {steps("  - thin:\n    expect: {kept: [1, 2, 3]}\n"), "steps 0 expect kept: Array should contain no more than 2",
      "a range has two ends"},
     {steps("  - thin:\n  - tetrahedralise:\n  - solid:\n    expect: {volume: 12}\n"),
@@ -141,7 +141,7 @@ const std::vector<Mistake> mistakes{
      "steps 2 expect skin: ", "expect skin: '12 mm3' is not an area"},
     {steps("  - thin:\n    expect: {kept: '>= 1'}\n"), "steps 0 expect kept: Failed to match regex", "expect kept:"},
     {steps("  - thin:\n    tetrahedralise:\n"), "steps 0: Failed to validate against exactly one child schema",
-     "'tetrahedralise' stands beside 'thin'"},
+     "found 'tetrahedralise' beside 'thin'"},
     {steps("  - id: a\n"), "steps 0: Missing required property 'thin'", "a step without a filter"},
     {steps("  - one-of: []\n"), "steps 0 one-of: Array should contain no fewer than 1", "one-of has no alternatives"},
     {steps("  - one-of: [{thin: }]\n    in: scan\n"), "steps 0: Object contains a property" + known_only + "'in'",
@@ -152,9 +152,44 @@ const std::vector<Mistake> mistakes{
 
 TEST_F(WorkflowSchema, WhatIsWrongAtOnePlace_IsRejectedThere_AsByCheck) {
     for (const Mistake& mistake : mistakes) {
-        EXPECT_THAT(check_says(mistake.workflow), testing::ElementsAre(HasSubstr(mistake.check))) << mistake.workflow;
+        EXPECT_THAT(errors_of_check(mistake.workflow), testing::ElementsAre(HasSubstr(mistake.check)))
+            << mistake.workflow;
         EXPECT_THAT("\n" + schema_.complaints(mistake.workflow), HasSubstr("\n" + mistake.schema)) << mistake.workflow;
     }
+}
+
+/// The errors without those that only repeat an error below them.
+std::vector<std::string> causes(const std::string& complaints) {
+    std::vector<std::string> result;
+    std::istringstream lines(complaints);
+    for (std::string line; std::getline(lines, line);)
+        if (line.find(": Failed to validate item #") == std::string::npos &&
+            line.find(": Failed to validate against schema associated with property name") == std::string::npos &&
+            line.find(": Failed to validate against additional properties schema") == std::string::npos &&
+            line.find(": Failed to validate against a conditional schema set by") == std::string::npos &&
+            line.find(": Failed to validate against child schema #") == std::string::npos)
+            result.push_back(line);
+    return result;
+}
+
+TEST_F(WorkflowSchema, OneWrongValue_IsTheOnlyPositionWithErrors) {
+    for (const auto& [workflow, position] : std::vector<std::pair<std::string, std::string>>{
+             {steps("  - thin: {count: many}\n"), "steps 0 thin count: "},
+             {steps("  - thin: {size: 1 yard}\n"), "steps 0 thin size: "},
+             {steps("  - thin: {axis: [1, x, 0]}\n"), "steps 0 thin axis 1: "},
+             {steps("  - thin: {count: {sweep: [1, many]}}\n"), "steps 0 thin count sweep 1: "},
+             {steps("  - thin: {counts: 1}\n"), "steps 0 thin: "},
+             {steps("  - thin:\n    in: {points: 3}\n"), "steps 0 in points: "},
+             {steps("  - thin:\n    expect: {kept: many}\n"), "steps 0 expect kept: "},
+             {steps("  - one-of: [{thin: }, {thin: {count: many}}]\n"), "steps 0 one-of 1 thin count: "},
+             {steps("  - one-of: [{name: a, steps: [{thin: {count: many}}]}]\n"),
+              "steps 0 one-of 0 steps 0 thin count: "},
+             {"scanmill: 1\ninputs: {scan: {kind: cloud}}\nsteps: [{thin: }]\n", "inputs scan kind: "},
+             {"parameters: {n: {default: {swep: [1]}}}\n" + steps("  - thin: {count: $n}\n"),
+              "parameters n default: "}})
+        EXPECT_THAT(causes(schema_.complaints(workflow)),
+                    testing::AllOf(testing::Not(testing::IsEmpty()), testing::Each(testing::StartsWith(position))))
+            << workflow;
 }
 
 TEST_F(WorkflowSchema, ParametersAndMetrics_CarryTheirHelpRangeAndDefault) {

@@ -18,7 +18,7 @@ using testing::StartsWith;
 
 class CheckForks : public testing::Test {
 protected:
-    /// What is wrong with a workflow of these steps (each line as it stands in the file, from line 4 on).
+    /// The errors of a workflow with these steps (each line as in the file, from line 4 on).
     std::vector<std::string> findings(const std::string& lines) {
         Diagnostics diagnostics("w");
         plan_ = make_plan(parse_workflow("scanmill: 1\ninputs: {scan: points}\nsteps:\n" + lines, diagnostics),
@@ -84,7 +84,7 @@ TEST_F(CheckForks, DefaultThatIsAReference_IsAnErrorAndNotUsed) {
                              diagnostics),
               library_, {}, diagnostics);
     ASSERT_EQ(diagnostics.errors(), 1u);
-    EXPECT_THAT(diagnostics.sorted().front().message, HasSubstr("cannot refer to another parameter"));
+    EXPECT_THAT(diagnostics.sorted().front().message, HasSubstr("cannot refer to a parameter"));
 }
 
 TEST_F(CheckForks, TenThousandVariants_AreNotTooMany) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is wrong with a workflow is found before any scan is opened: all of it at once, each with its place.
+// All errors of a workflow are found at once, before any scan is opened, each with its position.
 
 #include "engine/plan/workflow_findings.hpp"
 
@@ -37,7 +37,7 @@ outputs:
                     AllOf(StartsWith("w:8:23: "), HasSubstr("300 % is out of range"), HasSubstr("at most 1")),
                     AllOf(StartsWith("w:9:16: "), HasSubstr("'scan' is points"), HasSubstr("takes tets"),
                           HasSubstr("'tetrahedralise'")),
-                    AllOf(StartsWith("w:11:33: "), HasSubstr("'max-error' stands here a second time")),
+                    AllOf(StartsWith("w:11:33: "), HasSubstr("'max-error' is repeated")),
                     AllOf(StartsWith("w:13:3: "), HasSubstr("outside the output folder"))));
 }
 
@@ -49,7 +49,7 @@ TEST_F(Check, SoundWorkflow_HasNoFindings) {
 
 TEST_F(Check, MissingGrammarVersion_IsAnError) {
     EXPECT_THAT(findings("steps: [{make: }]\n"),
-                ElementsAre(HasSubstr("w:1:1: does not say its grammar; expected `scanmill: 1`")));
+                ElementsAre(HasSubstr("w:1:1: has no grammar version; expected `scanmill: 1`")));
     EXPECT_THAT(findings("scanmill: 2\nsteps: [{make: }]\n"),
                 ElementsAre(AllOf(StartsWith("w:1:11"), HasSubstr("'2'"))));
 }
@@ -69,12 +69,12 @@ TEST_F(Check, EmptyFile_IsAnError) {
 }
 
 TEST_F(Check, NotYaml_NamesThePlace) {
-    EXPECT_THAT(findings("scanmill: 1\nsteps: [\n"), testing::Contains(HasSubstr("is no YAML")));
+    EXPECT_THAT(findings("scanmill: 1\nsteps: [\n"), testing::Contains(HasSubstr("invalid YAML")));
 }
 
 TEST_F(Check, TwoFiltersInOneStep_SaysHowToBeginAnotherStep) {
     EXPECT_THAT(steps("  - thin: {}\n    make: {}\n"),
-                ElementsAre(AllOf(StartsWith("w:5:5: "), HasSubstr("'make' stands beside 'thin'"))));
+                ElementsAre(AllOf(StartsWith("w:5:5: "), HasSubstr("found 'make' beside 'thin'"))));
 }
 
 TEST_F(Check, StepsThatCannotBeRead_AreNotSaidToShareAnId) {
@@ -109,8 +109,8 @@ TEST_F(Check, WrongTypes_SayWhatWasExpected) {
 TEST_F(Check, IdsAndInputs_HaveDifferentNames) {
     EXPECT_THAT(steps("  - id: scan\n    thin:\n"), ElementsAre(HasSubstr("already the name of an input")));
     EXPECT_THAT(steps("  - id: a\n    thin: {size: 1 u}\n  - id: a\n    thin: {size: 2 u}\n"),
-                ElementsAre(HasSubstr("'a' is given twice")));
-    EXPECT_THAT(steps("  - id: 1a\n    thin:\n"), ElementsAre(HasSubstr("'1a' is no name")));
+                ElementsAre(HasSubstr("'a' is used twice")));
+    EXPECT_THAT(steps("  - id: 1a\n    thin:\n"), ElementsAre(HasSubstr("'1a' is not a name")));
 }
 
 TEST_F(Check, InputKinds_AreThoseThatFilesHold) {
@@ -119,7 +119,7 @@ TEST_F(Check, InputKinds_AreThoseThatFilesHold) {
     EXPECT_THAT(findings("scanmill: 1\ninputs: {scan: points, t: tets}\nsteps: [{thin: }]\n"),
                 ElementsAre(HasSubstr("cannot be read from a file")));
     EXPECT_THAT(findings("scanmill: 1\ninputs: {scan: {kind: points, unit: yard}}\nsteps: [{thin: }]\n"),
-                ElementsAre(AllOf(HasSubstr("'yard' is no unit"), HasSubstr("mm"))));
+                ElementsAre(AllOf(HasSubstr("'yard' is not a unit"), HasSubstr("mm"))));
 }
 
 TEST_F(Check, WorkflowParameters_AreTypedWhereTheyAreUsed) {
@@ -141,8 +141,9 @@ TEST_F(Check, WorkflowParameterThatOnlyTextsMention_IsUsedByNoStep) {
 
 TEST_F(Check, DollarWithoutAName_IsAnError) {
     EXPECT_THAT(steps("  - thin: {size: $}\n"),
-                ElementsAre(AllOf(StartsWith("w:4:18: "), HasSubstr("'$' names no parameter"))));
-    EXPECT_THAT(steps("  - thin: {count: {sweep: [1, $]}}\n"), ElementsAre(HasSubstr("'$' names no parameter")));
+                ElementsAre(AllOf(StartsWith("w:4:18: "), HasSubstr("'$' is not the name of a parameter"))));
+    EXPECT_THAT(steps("  - thin: {count: {sweep: [1, $]}}\n"),
+                ElementsAre(HasSubstr("'$' is not the name of a parameter")));
     Diagnostics diagnostics("--set");
     EXPECT_TRUE(parse_value_expression("$", diagnostics).values.empty());
     EXPECT_TRUE(diagnostics.has_errors());
@@ -153,7 +154,7 @@ TEST_F(Check, Expect_KnowsFactsAndMetricsOfTheStep) {
     EXPECT_THAT(steps("  - thin:\n    expect: {keptt: 1}\n"),
                 ElementsAre(AllOf(StartsWith("w:5:14: "), HasSubstr("did you mean 'kept'?"))));
     EXPECT_THAT(steps("  - thin:\n    expect: {closed: true}\n"),
-                ElementsAre(HasSubstr("nothing is known as 'closed'")));
+                ElementsAre(HasSubstr("has no metric or property 'closed'")));
     EXPECT_THAT(steps("  - tetrahedralise:\n  - solid:\n    expect: {closed: 1, alpha: '< 2', bending: < 40 deg}\n"),
                 ElementsAre(HasSubstr("expect closed: '1' is neither true nor false"),
                             HasSubstr("expect alpha: '2' has no unit")));
@@ -163,8 +164,8 @@ TEST_F(Check, Expect_KnowsFactsAndMetricsOfTheStep) {
     for (const char* other : {">=", "<=", "==", "!=", "=", "≥"})
         EXPECT_THAT(steps(std::string("  - thin:\n    expect: {kept: '") + other + " 3'}\n"),
                     ElementsAre(HasSubstr(std::string("expect kept: '") + other +
-                                          "' is no comparison; expected a value, `< value`, `> value`, or [low, high], "
-                                          "both of which count")));
+                                          "' is not supported; expected a value, `< value`, `> value`, or [low, high], "
+                                          "which includes both ends")));
 }
 
 TEST_F(Check, OutputTemplates_AreCheckedBeforeTheRun) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What feeds a port is found before any scan is opened, and so is what cannot.
+// The source of every port is found before any scan is opened, and so are wrong ones.
 
 #include "engine/plan/workflow_findings.hpp"
 
@@ -56,7 +56,7 @@ TEST_F(CheckWiring, LaterStepAsSource_IsNoEarlierStep) {
 
 TEST_F(CheckWiring, NameOfTwoSteps_StandsForNone) {
     EXPECT_THAT(steps("  - thin: {size: 1 u}\n  - thin: {size: 2 u}\n  - pair:\n    in: {points: thin}\n"),
-                ElementsAre(HasSubstr("'thin' stands for several steps; give the one you mean an id")));
+                ElementsAre(HasSubstr("'thin' is the name of several steps; give the one you mean an id")));
 }
 
 TEST_F(CheckWiring, SeveralValuesForASinglePort_AreAnError) {
@@ -75,7 +75,7 @@ TEST_F(CheckWiring, ListInput_FeedsOnlyListPorts) {
     EXPECT_THAT(findings("scanmill: 1\ninputs: {scans: [points]}\nsteps:\n  - combine:\noutputs: {x.ply: scans}\n"),
                 ElementsAre(AllOf(StartsWith("w:5:"), HasSubstr("'scans' is a list; a file holds one value"))));
     EXPECT_THAT(findings("scanmill: 1\ninputs: {s: {kind: points, frame: '{scan}'}}\nsteps:\n  - thin:\n"),
-                ElementsAre(AllOf(StartsWith("w:2:"), HasSubstr("not part of {stem}"))));
+                ElementsAre(AllOf(StartsWith("w:2:"), HasSubstr("unknown placeholder"))));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/workflow/length_power.hpp"
+#include "scanmill/workflow/sizes.hpp"
 
 namespace scanmill {
 namespace {
@@ -75,12 +75,12 @@ TEST(Expectation, VolumesAndAreas_AreNeverBare) {
 
 TEST(Expectation, Ends_AreInOrderWhereTheyCanBeCompared) {
     EXPECT_THAT(faults("volume", "2 u3", Relation::between, "1 u3"),
-                ElementsAre("expect volume: nothing lies in [2 u3, 1 u3]; expected the lower end first"));
+                ElementsAre("expect volume: the range [2 u3, 1 u3] is empty; expected the lower end first"));
     EXPECT_THAT(faults("edge", "2 mm", Relation::between, "1 mm"), ElementsAre(HasSubstr("the lower end first")));
     EXPECT_THAT(faults("edge", "2 cm", Relation::between, "1 mm"), ElementsAre(HasSubstr("the lower end first")));
     EXPECT_THAT(faults("volume", "1 cm3", Relation::between, "2 mm3"), ElementsAre(HasSubstr("the lower end first")));
     EXPECT_THAT(faults("volume", "2 mm3", Relation::between, "1 cm3"), IsEmpty());
-    EXPECT_THAT(faults("volume", "2 u3", Relation::between, "1 cm3"), IsEmpty()) << "only the scan can tell";
+    EXPECT_THAT(faults("volume", "2 u3", Relation::between, "1 cm3"), IsEmpty()) << "it depends on the scan";
     EXPECT_THAT(faults("volume", "-2 u3", Relation::between, "-1 u3"), IsEmpty());
 }
 

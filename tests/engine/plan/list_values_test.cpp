@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `$name` among the items of a list: what comes in its place, where it may stand, and where a mistake is told.
+// `$name` among the items of a list: its value, where it is allowed, and the position of errors.
 
 #include <gmock/gmock.h>
 
@@ -100,12 +100,13 @@ TEST_F(ListValues, UnknownName_IsToldAtItsPlaceAndIsAUse) {
                             AllOf(StartsWith("w:4:49: "), HasSubstr("no parameter 'so'"))));
     EXPECT_THAT(check_step("size: 1 u", "thresholds: [1 u, $, {sweep: [1 u]}]"),
                 ElementsAre(HasSubstr("no step uses the parameter 'size'"),
-                            AllOf(StartsWith("w:4:36: "), HasSubstr("'$' names no parameter")),
+                            AllOf(StartsWith("w:4:36: "), HasSubstr("'$' is not the name of a parameter")),
                             AllOf(StartsWith("w:4:39: "), HasSubstr("found a map; expected a value or $name"))));
 }
 
 TEST_F(ListValues, NameBesideWhatCannotBeRead_IsUsed) {
-    EXPECT_THAT(check_step("size: 1 u", "thresholds: [$size, $]"), ElementsAre(HasSubstr("'$' names no parameter")));
+    EXPECT_THAT(check_step("size: 1 u", "thresholds: [$size, $]"),
+                ElementsAre(HasSubstr("'$' is not the name of a parameter")));
     EXPECT_THAT(check_step("size: 1 u", "thresholds: [{sweep: [1 u]}, $size]"),
                 ElementsAre(HasSubstr("found a map; expected a value or $name")));
     EXPECT_THAT(check_step("size: 1 u", "thresholds: {sweep: [[$size, [1 u]]]}"),
@@ -127,7 +128,7 @@ TEST_F(ListValues, ValueThatIsNoItem_IsToldWhereTheNameStands) {
 
 TEST_F(ListValues, ListWithinAList_IsRefusedAtItsPlace) {
     const std::string sentence =
-        "$a is a list, which cannot stand within a list; expected a single value, or the whole list as `thresholds: "
+        "$a is a list, which cannot be part of a list; expected a single value, or the whole list as `thresholds: "
         "$a`";
     EXPECT_THAT(check_step("a: [1 u, 2 u]", "thresholds: [3 u, $a]"), ElementsAre("w:4:36: " + sentence));
     EXPECT_THAT(check_step("a: 1 u", "thresholds: [3 u, $a]", set("a", "[1 u]")), ElementsAre("w:4:36: " + sentence));
@@ -137,7 +138,7 @@ TEST_F(ListValues, ListWithinAList_IsRefusedAtItsPlace) {
 
 TEST_F(ListValues, DefaultsAndSettings_CannotReferFromWithinAList) {
     EXPECT_THAT(check_step("a: 1 u, b: [2 u, $a]", "thresholds: $b"),
-                ElementsAre(AllOf(StartsWith("w:3:31: "), HasSubstr("cannot refer to another parameter"))));
+                ElementsAre(AllOf(StartsWith("w:3:31: "), HasSubstr("cannot refer to a parameter"))));
     EXPECT_THAT(rest("set: {s: [1 u, $n]}\n"), ElementsAre(AllOf(StartsWith("b:5:16: "), HasSubstr("cannot refer"))));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parameters that name files: where relative paths begin, and that keys know contents and no names.
+// Parameters that name files: relative paths start at the right folder, and keys contain contents, not names.
 
 #include "scanmill/plan/step_parameters.hpp"
 
@@ -31,7 +31,7 @@ TEST_F(PathParameters, Key_KnowsTheContentAndNotTheName) {
     const std::string key = key_with(folder_.write("p.conf", "one").string());
     EXPECT_EQ(key_with(folder_.write("other/q.conf", "one").string()), key);
     EXPECT_NE(key_with(folder_.write("q.conf", "two").string()), key);
-    EXPECT_NE(key_with(folder_.write("p.json", "one").string()), key) << "an extension may say how to read it";
+    EXPECT_NE(key_with(folder_.write("p.json", "one").string()), key) << "an extension may decide the format";
     EXPECT_NE(key_with(folder_.write("p.conf", "two").string()), key);
     EXPECT_EQ(key_with(folder_.write("p.conf", "one").string()), key);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What checking says of a workflow of filters that exist only as declarations.
+/// The errors of a workflow whose filters exist only as declarations.
 
 #include <gmock/gmock.h>
 
@@ -18,7 +18,7 @@ protected:
         for (const Diagnostic& diagnostic : diagnostics.sorted()) texts.push_back(text(diagnostic, "w"));
         return texts;
     }
-    /// A workflow of the given steps (each line as it stands in the file, from line 4 on).
+    /// A workflow of the given steps (each line as in the file, from line 4 on).
     std::vector<std::string> steps(const std::string& lines) {
         return findings("scanmill: 1\ninputs: {scan: points}\nsteps:\n" + lines);
     }

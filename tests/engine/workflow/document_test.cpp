@@ -138,7 +138,7 @@ TEST(YamlDocument, CommaOutsideAList_IsRefusedOnceAtItsPlace) {
     for (const char* text : {",", "\n,x", "a: 1\n---\n,"}) {
         const Parsed parsed = parse(text);
         ASSERT_EQ(parsed.findings.size(), 1u) << text;
-        EXPECT_THAT(parsed.findings[0].message, HasSubstr("is no YAML")) << text;
+        EXPECT_THAT(parsed.findings[0].message, HasSubstr("invalid YAML")) << text;
         EXPECT_EQ(parsed.findings[0].position.column, 1) << text;
     }
 }

@@ -25,7 +25,8 @@ TEST(Duration, WhatIsNone_SaysWhatWasExpected) {
     EXPECT_EQ(test::sentence_of([] { parse_duration("10"); }),
               "'10' has no unit; expected 500 ms, 30 s, 10 min or 2 h");
     for (const char* text : {"", "s", "-1 s", "inf s", "nan h", "1e308 h", "10 m", "1,5 h", "ten min", " 1 s", "1 s "})
-        EXPECT_THAT(test::sentence_of([&] { parse_duration(text); }), HasSubstr("is no time; expected 500 ms")) << text;
+        EXPECT_THAT(test::sentence_of([&] { parse_duration(text); }), HasSubstr("is not a time; expected 500 ms"))
+            << text;
 }
 
 TEST(Duration, Text_ReadsBack) {
@@ -38,8 +39,8 @@ TEST(ByteSize, EveryUnit_IsBytes) {
     EXPECT_EQ(parse_byte_size("8 GiB"), u64(8) << 30);
     EXPECT_EQ(parse_byte_size("1.5 kB"), 1500u);
     EXPECT_EQ(parse_byte_size("4096"), 4096u);
-    EXPECT_THAT(test::sentence_of([] { parse_byte_size("-1 B"); }), StartsWith("'-1 B' is no size"));
-    EXPECT_THAT(test::sentence_of([] { parse_byte_size("8 Gb"); }), StartsWith("'8 Gb' is no size"));
+    EXPECT_THAT(test::sentence_of([] { parse_byte_size("-1 B"); }), StartsWith("'-1 B' is not a size"));
+    EXPECT_THAT(test::sentence_of([] { parse_byte_size("8 Gb"); }), StartsWith("'8 Gb' is not a size"));
 }
 
 }  // namespace

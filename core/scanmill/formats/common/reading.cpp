@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/formats/common/reading.hpp"
 
-#include "scanmill/data/conversions.hpp"
+#include "scanmill/data/mesh.hpp"
 
 namespace scanmill {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a batch says while it runs, to people and to programs, also with several workers.
+// The messages of a batch during its run, for people and for programs, also with several workers.
 
 #include <cstdlib>
 

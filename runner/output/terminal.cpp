@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "output/table.hpp"
+#include "output/terminal.hpp"
 
 #include <algorithm>
-
-#include "output/printable.hpp"
+#include <nlohmann/json.hpp>
 
 namespace scanmill::runner {
 
 namespace {
 
-/// Characters, not bytes: continuation bytes of UTF-8 take no room.
+std::string escaped(std::string_view text, bool keeps_line_ends) {
+    std::string result;
+    for (const char c : text) {
+        const bool is_control = static_cast<unsigned char>(c) < ' ' || c == 0x7f;
+        if (!is_control || (c == '\n' && keeps_line_ends))
+            result += c;
+        else
+            result += c == '\n' ? "\\n" : c == '\t' ? "\\t" : fmt::format("\\x{:02x}", c);
+    }
+    return result;
+}
+
+/// Counts characters, not bytes: continuation bytes of UTF-8 are skipped.
 std::size_t width_of(const std::string& text) {
     return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xc0) != 0x80; }));
 }
@@ -20,8 +31,17 @@ bool is_numeric(const std::string& text) {
 
 }  // namespace
 
+std::string printable(std::string_view text) { return escaped(text, true); }
+std::string printable_line(std::string_view text) { return escaped(text, false); }
+
+void print_warning(std::string_view text) { print_stderr("warning: {}\n", printable_line(text)); }
+
+void print_json(const nlohmann::ordered_json& json) {
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
 void Table::add(std::vector<std::string> row) {
-    for (std::string& cell : row) cell = printable_line(std::move(cell));
+    for (std::string& cell : row) cell = printable_line(cell);
     rows_.push_back(std::move(row));
 }
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "commands/load.hpp"
-#include "output/stderr_text.hpp"
+#include "commands/common.hpp"
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <set>
 
+#include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/plugin/module.hpp"
-#include "scanmill/workflow/document.hpp"
+#include "scanmill/workflow/sizes.hpp"
 
 namespace scanmill::runner {
 
@@ -16,8 +17,16 @@ FilterLibrary open_library() {
     std::vector<std::string> ignored;
     FilterLibrary library(plugin_folders(&ignored));
     for (const std::string& folder : ignored)
-        tell("warning: SCANMILL_PLUGIN_PATH: '{}' is passed over; only absolute folders are searched\n", folder);
+        print_warning(fmt::format("SCANMILL_PLUGIN_PATH: '{}' is ignored; only absolute folders are searched", folder));
     return library;
+}
+
+const FilterSpec& find_filter(const FilterLibrary& library, const std::string& name) {
+    if (const FilterSpec* spec = library.find(name)) return *spec;
+    for (const UnusableModule& module : library.unusable())
+        if (module.name == name)
+            throw Error("the filter '{}' cannot be used: '{}' {}", name, module.manifest.string(), module.reason);
+    throw Error("there is no filter '{}'{}", name, did_you_mean(name, library.names())).hint("scanmill list");
 }
 
 std::string workflow_file(const std::string& file_or_name) {
@@ -30,10 +39,6 @@ std::string workflow_file(const std::string& file_or_name) {
         if (fs::exists(shipped, ignored)) return shipped.string();
     }
     return file_or_name;
-}
-
-CheckedWorkflow check_workflow(const std::string& file, const FilterLibrary& library, const Settings& settings) {
-    return check_workflow(file, read_workflow_file(file), library, settings);
 }
 
 CheckedWorkflow check_workflow(const std::string& file, const std::string& text, const FilterLibrary& library,
@@ -51,9 +56,8 @@ Settings parse_settings(const std::vector<std::string>& pairs) {
         if (equals == 0 || equals == std::string::npos) throw Error("--set {}: expected NAME=VALUE", pair);
         Diagnostics diagnostics("--set " + pair);
         ValueExpression value = parse_value_expression(pair.substr(equals + 1), diagnostics);
+        refuse_uses(value, "a setting", diagnostics);
         if (value.values.empty() && !diagnostics.has_errors()) diagnostics.error({}, "has no value");
-        for (const WrittenValue& written : value.values)
-            if (!written.uses.empty()) diagnostics.error({}, "cannot refer to another parameter");
         if (diagnostics.has_errors()) throw Error("--set {}: {}", pair, diagnostics.sorted().front().message);
         if (!settings.emplace(pair.substr(0, equals), std::move(value)).second)
             throw Error("--set {} is given twice", pair.substr(0, equals));
@@ -61,11 +65,32 @@ Settings parse_settings(const std::vector<std::string>& pairs) {
     return settings;
 }
 
-LengthUnit parse_unit(const std::string& symbol) {
-    if (symbol.empty()) return LengthUnit::unknown;
-    const std::optional<LengthUnit> unit = length_unit(symbol);
-    if (!unit) throw Error("'{}' is no unit; expected one of {}", symbol, length_unit_symbols());
-    return *unit;
+void add_unit_option(CLI::App& command, const char* name, LengthUnit& unit, const char* help) {
+    const auto read = [&unit](const std::string& symbol) { unit = *length_unit(symbol); };
+    command.add_option_function<std::string>(name, read, help)
+        ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
+}
+
+Warn warning_printer() {
+    return [printed = std::make_shared<std::set<std::string>>()](const std::string& text) {  // shared by all copies
+        if (printed->insert(text).second) print_warning(text);
+    };
+}
+
+CLI::Option* add_cache_options(CLI::App& command, CacheOptions& options) {
+    command
+        .add_option_function<std::string>(
+            "--cache-limit", [&](const std::string& size) { options.limit = parse_byte_size(size); },
+            "Beyond this size the results used longest ago are removed: 500 MiB, 20 GiB")
+        ->default_str(byte_size_text(Cache::default_limit));
+    return command.add_option("--cache", options.folder,
+                              "The cache's folder; without it $XDG_CACHE_HOME/scanmill, else ~/.cache/scanmill");
+}
+
+std::unique_ptr<Cache> open_cache(const CacheOptions& options, const Warn& warn) {
+    return std::make_unique<Cache>(
+        options.folder.empty() ? default_cache_folder() : std::filesystem::absolute(options.folder), options.limit,
+        warn);
 }
 
 }  // namespace scanmill::runner

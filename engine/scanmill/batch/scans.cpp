@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/batch/scans.hpp"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/formats/poses/poses.hpp"
+#include "scanmill/io/mapped_file.hpp"
+#include "scanmill/workflow/grammar.hpp"
+
+namespace scanmill {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t most_names = 1'000'000;
+
+bool has_wildcards(const std::string& name) { return name.find_first_of("*?[") != std::string::npos; }
+
+bool is_file(const fs::path& path) {
+    std::error_code ignored;
+    return fs::is_regular_file(path, ignored);
+}
+
+bool is_folder(const fs::path& path) {
+    std::error_code ignored;
+    return fs::is_directory(path.empty() ? fs::path(".") : path, ignored);
+}
+
+/// The folder's absolute path, for messages.
+std::string shown(const fs::path& folder) {
+    std::error_code trouble;
+    const fs::path absolute = fs::absolute(folder.empty() ? fs::path(".") : folder, trouble).lexically_normal();
+    const std::string text = (trouble ? folder : absolute).string();
+    return text.size() > 1 && text.ends_with('/') ? text.substr(0, text.size() - 1) : text;
+}
+
+/// Matches the components of a pattern against the names in folders.
+class Search {
+public:
+    explicit Search(std::vector<std::string> components) : components_(std::move(components)) {}
+
+    std::vector<fs::path> from(const fs::path& folder) {
+        look(folder, 0);
+        std::ranges::sort(found_, {}, [](const fs::path& path) -> const std::string& { return path.native(); });
+        const auto repeated = std::ranges::unique(found_);  // `**/**` matches a file several times
+        found_.erase(repeated.begin(), repeated.end());
+        return std::move(found_);
+    }
+
+private:
+    void look(const fs::path& folder, std::size_t depth) {
+        const std::string& component = components_[depth];
+        const bool last = depth + 1 == components_.size();
+        if (component == "**") {
+            if (last) throw Error("'**' matches folders; expected a name after it, as '**/*.ply'");
+            look(folder, depth + 1);
+            for (const fs::directory_entry& entry : entries(folder))
+                if (!is_hidden(entry) && !entry.is_symlink() && is_folder(entry.path())) look(entry.path(), depth);
+        } else if (!has_wildcards(component)) {
+            take(folder / component, depth, last);
+        } else {
+            for (const fs::directory_entry& entry : entries(folder))
+                if (::fnmatch(component.c_str(), entry.path().filename().c_str(), FNM_PERIOD | FNM_NOESCAPE) == 0)
+                    take(entry.path(), depth, last);
+        }
+    }
+
+    void take(const fs::path& path, std::size_t depth, bool last) {
+        if (last && is_file(path)) found_.push_back(path);
+        if (!last && is_folder(path)) look(path, depth + 1);
+    }
+
+    static bool is_hidden(const fs::directory_entry& entry) {
+        return entry.path().filename().native().starts_with('.');
+    }
+
+    std::vector<fs::directory_entry> entries(const fs::path& folder) {
+        std::vector<fs::directory_entry> all;
+        std::error_code trouble;
+        for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, trouble), end;
+             !trouble && entry != end; entry.increment(trouble)) {
+            if (++names_ > most_names)
+                throw Error("more than {} names were visited; write the folders in more detail", most_names);
+            all.emplace_back(folder / entry->path().filename());
+        }
+        if (trouble) throw Error("the folder '{}' cannot be read: {}", shown(folder), trouble.message());
+        return all;
+    }
+
+    std::vector<std::string> components_;
+    std::vector<fs::path> found_;
+    std::size_t names_ = 0;
+};
+
+}  // namespace
+
+std::vector<fs::path> scan_files(const fs::path& folder, const std::string& pattern) {
+    if (pattern.empty()) throw Error("the path is empty; expected a file, or several as 'scans/*.ply'");
+    if (pattern.find('\0') != std::string::npos) throw Error("the path has a zero byte");
+    const fs::path whole = folder / pattern;
+    if (is_file(whole)) return {whole};
+    if (is_folder(whole))
+        throw Error("'{}' is a folder; expected files, as '{}'", pattern, (fs::path(pattern) / "*.ply").string());
+    if (std::error_code ignored; fs::exists(whole, ignored))
+        if (const std::optional<Error> other = why_no_file(whole))
+            throw Error("{}; {}", other->sentence(), other->hint());
+    if (!has_wildcards(pattern))
+        throw Error("there is no file '{}' in '{}'", whole.filename().string(), shown(whole.parent_path()));
+
+    // The search begins in the folder before the first wildcard.
+    fs::path begin = fs::path(pattern).is_absolute() ? fs::path() : folder;
+    std::vector<std::string> components;
+    for (const fs::path& part : fs::path(pattern)) {
+        if (components.empty() && !has_wildcards(part.string()))
+            begin /= part;
+        else if (!part.empty())
+            components.push_back(part.string());
+    }
+    if (pattern.ends_with('/')) throw Error("'{}' ends in a slash; expected files, as '{}*.ply'", pattern, pattern);
+    if (!is_folder(begin)) throw Error("no file matches '{}'; there is no folder '{}'", pattern, shown(begin));
+    std::vector<fs::path> found = Search(std::move(components)).from(begin);
+    if (found.empty()) throw Error("no file matches '{}'; looked in '{}'", pattern, shown(begin));
+    return found;
+}
+
+namespace {
+
+/// The path in normal form: `a/../b` becomes `b`, unless a link makes that another file.
+fs::path without_detours(const fs::path& file) {
+    fs::path shorter = file.lexically_normal();
+    std::error_code other;
+    return fs::equivalent(file, shorter, other) && !other ? shorter : file;
+}
+
+const std::string pose_label = "the pose";
+
+/// Reads the numbers of `node` into `values`; false after an error.
+bool read_numbers(const YamlNode& node, std::span<double> values, std::string_view expected, Diagnostics& diagnostics) {
+    if (!require_list(node, expected, diagnostics)) return false;
+    if (node.items.size() != values.size()) {
+        diagnostics.error(node.position, "a list of {}; expected {}", count_text(node.items.size(), "value", "values"),
+                          expected);
+        return false;
+    }
+    bool sound = true;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const YamlNode& item = node.items[i];
+        if (item.is_scalar() && parse_number(item.text, values[i]) && std::isfinite(values[i])) continue;
+        diagnostics.error(item.position, "{} is not a finite number; expected {}", item.described(), expected);
+        sound = false;
+    }
+    return sound;
+}
+
+/// The result of `make`; its Error is reported at `position`.
+template <class Make>
+auto or_report(Position position, Diagnostics& diagnostics, Make&& make) -> std::optional<decltype(make())> {
+    try {
+        return make();
+    } catch (const Error& error) {
+        diagnostics.error(position, error.sentence() + (error.hint().empty() ? "" : "; " + error.hint()));
+        return std::nullopt;
+    }
+}
+
+std::optional<RigidTransform> from_matrix(const YamlNode& node, Diagnostics& diagnostics) {
+    if (node.items.size() != 4) {
+        diagnostics.error(node.position, "a matrix of {}; expected 4 rows of 4 numbers",
+                          count_text(node.items.size(), "row", "rows"));
+        return std::nullopt;
+    }
+    std::array<double, 16> matrix;
+    bool sound = true;
+    for (std::size_t row = 0; row < 4; ++row)
+        sound &=
+            read_numbers(node.items[row], std::span(matrix).subspan(4 * row, 4), "a row of 4 numbers", diagnostics);
+    if (!sound) return std::nullopt;
+    return or_report(node.position, diagnostics, [&] { return motion_of(matrix, pose_label); });
+}
+
+std::optional<RigidTransform> from_parts(const YamlNode& node, Diagnostics& diagnostics) {
+    const std::string forms = "expected {translation: [x, y, z], rotation: [qx, qy, qz, qw]}";
+    std::optional<Eigen::Matrix3d> rotation;
+    std::array<double, 3> along{};
+    bool moves = false;
+    const auto read_translation = [&](const YamlEntry& entry) {
+        moves = read_numbers(entry.value, along, "3 numbers: x, y, z", diagnostics);
+    };
+    const auto read_rotation = [&](const YamlEntry& entry) {
+        std::array<double, 4> quaternion{};
+        if (!read_numbers(entry.value, quaternion, "4 numbers: qx, qy, qz, qw", diagnostics)) return;
+        const Position position = entry.value.position;
+        const auto warn = [&](std::string sentence) { diagnostics.warning(position, std::move(sentence)); };
+        rotation = or_report(position, diagnostics, [&] { return rotation_of(quaternion, pose_label, warn); });
+    };
+    read_mapping(node, "a pose",
+                 {{"translation", read_translation, "the pose has no translation; " + forms},
+                  {"rotation", read_rotation, "the pose has no rotation; " + forms}},
+                 diagnostics);
+    if (!moves || !rotation) return std::nullopt;
+    RigidTransform pose;
+    pose.rotation = *rotation;
+    pose.translation = Vec3(along.data());
+    return pose;
+}
+
+/// Four rows of four numbers, or `{translation: [x, y, z], rotation: [qx, qy, qz, qw]}`; without a unit. Nothing after
+/// an error.
+std::optional<RigidTransform> parse_pose(const YamlNode& node, Diagnostics& diagnostics) {
+    return node.is_sequence() ? from_matrix(node, diagnostics) : from_parts(node, diagnostics);
+}
+
+/// The pose of the scan: the one that names it, or the only one if that names no scan. Throws Error when no pose, or
+/// several, belong to this scan.
+RigidTransform pose_of(const fs::path& scan, const std::vector<ScanPose>& poses, const std::string& file) {
+    std::vector<std::string> names;
+    std::vector<const ScanPose*> fitting;
+    for (const ScanPose& pose : poses) {
+        if (!pose.scan.empty()) names.push_back(pose.scan);
+        if (is_of(pose, scan.filename().string()) || is_of(pose, scan.stem().string())) fitting.push_back(&pose);
+    }
+    const std::string name = scan.filename().string();
+    if (fitting.size() == 1) return fitting.front()->transform;
+    if (fitting.size() > 1) throw Error("'{}': contains {} poses of '{}'; expected one", file, fitting.size(), name);
+    if (poses.size() == 1 && names.empty()) return poses.front().transform;
+    if (names.empty()) throw Error("'{}': contains {} poses, none of which names a scan", file, poses.size());
+    throw Error("'{}': has no pose of '{}'; it has poses of {}{}", file, name, enumerated(names),
+                did_you_mean(name, names));
+}
+
+class ScansParser {
+public:
+    ScansParser(const fs::path& folder, Diagnostics& diagnostics) : folder_(folder), diagnostics_(diagnostics) {}
+
+    std::vector<BatchScan> scans(const YamlNode& node) {
+        if (!require_list(node, "a list of scans, as [scans/*.ply]", diagnostics_)) return {};
+        if (node.items.empty()) diagnostics_.error(node.position, "the list of scans is empty");
+        for (const YamlNode& item : node.items) entry(item);
+        return std::move(scans_);
+    }
+
+private:
+    void entry(const YamlNode& node) {
+        static const char* const expected = "a path, as scans/*.ply, or {path: scans/*.ply, unit: mm}";
+        if (!node.is_map()) {
+            if (const auto path = require_text(node, expected, diagnostics_)) find_files(*path, node.position);
+            return;
+        }
+        const auto scans = [this, first = scans_.size()] { return std::span(scans_).subspan(first); };
+        const auto path = [&](const YamlEntry& found) {
+            if (const auto text = require_text(found.value, "a path, as scans/*.ply", diagnostics_))
+                find_files(*text, found.value.position);
+        };
+        const auto unit = [&](const YamlEntry& found) {
+            LengthUnit declared = LengthUnit::unknown;
+            unit_into(declared, diagnostics_)(found);
+            for (BatchScan& scan : scans()) scan.unit = declared;
+        };
+        const auto frame = [&](const YamlEntry& found) {
+            std::string text;
+            text_into(text, diagnostics_)(found);
+            check_stem_template(text, "the frame", found.value.position, diagnostics_);
+            for (BatchScan& scan : scans()) scan.frame = with_stem(text, scan.file);
+        };
+        const auto set = [&](const YamlEntry& found) {
+            const Settings settings = parse_settings(found.value, diagnostics_);
+            for (BatchScan& scan : scans()) scan.settings = settings;
+        };
+        const auto truth = [&](const YamlEntry& found) {
+            each_file(found, "a file, as truth/{stem}.stl", scans(),
+                      [](BatchScan& scan, const fs::path& file) { scan.truth = file; });
+        };
+        read_mapping(node, "a scan",
+                     {{"path", path, fmt::format("the scan has no path; expected {}", expected)},
+                      {"unit", unit},
+                      {"frame", frame},
+                      {"pose", [&](const YamlEntry& found) { pose(found, scans()); }},
+                      {"truth", truth},
+                      {"set", set}},
+                     diagnostics_);
+    }
+
+    void find_files(const std::string& path, Position position) {
+        try {
+            for (fs::path& file : scan_files(folder_, path)) {
+                const auto [earlier, is_new] = line_of_.emplace(fs::absolute(file).lexically_normal(), position.line);
+                if (is_new) {
+                    scans_.emplace_back();
+                    scans_.back().file = without_detours(file);
+                    scans_.back().position = position;
+                } else {
+                    diagnostics_.error(position, "'{}' is already a scan by line {}; name every file once",
+                                       file.string(), earlier->second);
+                }
+            }
+        } catch (const Error& error) {
+            diagnostics_.error(position, error.sentence());
+        }
+    }
+
+    /// Calls `use` with every scan and its file, a path that may contain {stem}. Missing files and Errors of `use` are
+    /// reported for the first ten scans.
+    template <class Use>
+    void each_file(const YamlEntry& entry, const char* forms, std::span<BatchScan> scans, const Use& use) {
+        const auto text = require_text(entry.value, forms, diagnostics_);
+        if (!text) return;
+        const Position position = entry.value.position;
+        const std::size_t before = diagnostics_.errors();
+        check_stem_template(*text, "the " + entry.key, position, diagnostics_);
+        if (text->empty()) diagnostics_.error(position, "the {} is empty; expected a path", entry.key);
+        if (diagnostics_.errors() > before) return;
+        constexpr std::size_t most = 10;
+        std::size_t wrong = 0;
+        for (BatchScan& scan : scans) {
+            const fs::path file = folder_ / with_stem(*text, scan.file);
+            try {
+                if (const std::optional<Error> other = why_no_file(file))
+                    throw Error("{}; expected the {} of '{}'", other->sentence(), entry.key, scan.file.string());
+                use(scan, file);
+            } catch (const Error& error) {
+                if (++wrong <= most) diagnostics_.error(position, error.sentence());
+            }
+        }
+        if (wrong > most)
+            diagnostics_.error(position, "and {} more: the {} of that many scans is missing or wrong too", wrong - most,
+                               entry.key);
+    }
+
+    void pose(const YamlEntry& entry, std::span<BatchScan> scans) {
+        if (entry.value.is_sequence() || entry.value.is_map()) {
+            const std::optional<RigidTransform> pose = parse_pose(entry.value, diagnostics_);
+            for (BatchScan& scan : scans) {
+                scan.pose = pose;
+                if (pose) scan.pose->unit = scan.unit;
+            }
+            return;
+        }
+        const auto read = [&](BatchScan& scan, const fs::path& file) {
+            const auto warn = [&](std::string text) { diagnostics_.warning(entry.value.position, std::move(text)); };
+            auto poses = poses_.find(file);
+            if (poses == poses_.end()) poses = poses_.emplace(file, read_poses(file, warn)).first;
+            scan.pose = pose_of(scan.file, poses->second, file.string());
+            scan.pose_file = file;
+        };
+        each_file(entry, "a file, as poses/{stem}.json, a matrix of 4 rows or {translation: …, rotation: …}", scans,
+                  read);
+    }
+
+    fs::path folder_;
+    Diagnostics& diagnostics_;
+    std::map<fs::path, std::vector<ScanPose>> poses_;  // each file is read once for all its scans
+    std::vector<BatchScan> scans_;
+    std::map<fs::path, int> line_of_;
+};
+
+}  // namespace
+
+std::vector<BatchScan> parse_scans(const YamlNode& node, const fs::path& folder, Diagnostics& diagnostics) {
+    return ScansParser(folder, diagnostics).scans(node);
+}
+
+Settings parse_settings(const YamlNode& node, Diagnostics& diagnostics) {
+    Settings settings;
+    if (node.is_null() || !require_map(node, "a map of parameters, as {max-error: 0.1 %diag}", diagnostics))
+        return settings;
+    for (const YamlEntry& entry : node.entries) {
+        if (!require_name(entry.key, entry.position, "a parameter", diagnostics)) continue;
+        ValueExpression value = value_expression(entry.value, diagnostics);
+        refuse_uses(value, "a setting", diagnostics);
+        if (value.values.empty()) continue;  // after an error
+        value.position = entry.position;
+        settings.emplace(entry.key, std::move(value));
+    }
+    return settings;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/describe/schemas.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scanmill/batch/batch.hpp"
+#include "scanmill/plan/expectation.hpp"
+#include "scanmill/workflow/sizes.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* length_units = "u|%diag|spacing|um|mm|cm|m|in|ft";
+
+/// The definitions that both grammars use. A literal is not a reference `$name`; `$$` begins a text with one $.
+const char* const common_definitions = R"json({
+"unit": {"enum": ["um", "mm", "cm", "m", "in", "ft"], "description": "The unit of the file's numbers."},
+"frame": {"type": ["string", "number", "boolean"], "description": "The coordinate system's name; may contain {stem}."},
+"literal": {"type": ["string", "number", "boolean"], "pattern": "^(?!\\$(?!\\$))"},
+"value": {"if": {"type": "array"}, "then": {"items": {"$ref": "#/definitions/literal"}},
+          "else": {"$ref": "#/definitions/literal"}},
+"sweep": {"type": "object", "required": ["sweep"], "additionalProperties": false,
+          "properties": {"sweep": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/value"}}}},
+"value-or-sweep": {"if": {"type": "object"}, "then": {"$ref": "#/definitions/sweep"},
+                   "else": {"$ref": "#/definitions/value"}}
+})json";
+
+const char* const workflow_grammar = R"json({
+"$schema": "http://json-schema.org/draft-07/schema#",
+"title": "Scanmill workflow",
+"type": "object", "required": ["scanmill", "steps"], "additionalProperties": false,
+"properties": {
+  "scanmill": {"const": 1, "description": "The version of the grammar."},
+  "name": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$", "description": "The workflow's name."},
+  "summary": {"type": ["string", "number", "boolean"], "description": "What the workflow does, in a sentence."},
+  "inputs": {"type": ["object", "null"], "description": "Files; the scans feed the first, --in the others.",
+             "propertyNames": {"pattern": "^[A-Za-z][A-Za-z0-9_-]*$"},
+             "additionalProperties": {"$ref": "#/definitions/input"}},
+  "parameters": {"type": ["object", "null"], "description": "Values that steps refer to by $name; --set changes them.",
+                 "propertyNames": {"pattern": "^[A-Za-z][A-Za-z0-9_-]*$"},
+                 "additionalProperties": {"$ref": "#/definitions/parameter"}},
+  "steps": {"$ref": "#/definitions/steps"},
+  "outputs": {"type": ["object", "null"], "additionalProperties": {"type": "string"},
+              "description": "Files: names over {scan}, {folder}, {variant} and {workflow}, each with its step."}
+},
+"definitions": {
+  "kind-name": {"enum": ["points", "mesh"], "description": "The kind of value in the file."},
+  "kind": {"if": {"type": "array"},
+           "then": {"items": {"$ref": "#/definitions/kind-name"}, "minItems": 1, "maxItems": 1},
+           "else": {"$ref": "#/definitions/kind-name"}},
+  "input": {"if": {"type": "object"}, "else": {"$ref": "#/definitions/kind"}, "then": {
+    "required": ["kind"], "additionalProperties": false,
+    "properties": {
+      "kind": {"$ref": "#/definitions/kind"},
+      "list": {"type": "boolean", "description": "Takes any number of files."},
+      "unit": {"$ref": "#/definitions/unit"},
+      "frame": {"$ref": "#/definitions/frame"},
+      "help": {"type": ["string", "number", "boolean"], "description": "What the input is for."}}}},
+  "parameter": {"if": {"type": "object", "not": {"required": ["sweep"]}},
+                "else": {"$ref": "#/definitions/value-or-sweep"}, "then": {
+    "required": ["default"], "additionalProperties": false,
+    "properties": {
+      "default": {"$ref": "#/definitions/value-or-sweep"},
+      "help": {"type": ["string", "number", "boolean"], "description": "What the parameter is for."}}}},
+  "steps": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/item"}},
+  "item": {"if": {"type": "object", "required": ["one-of"]}, "then": {"$ref": "#/definitions/one-of"},
+           "else": {"$ref": "#/definitions/step"}},
+  "step": {"type": "object", "additionalProperties": false, "properties": {
+    "id": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$",
+           "description": "How later steps and outputs refer to this step."},
+    "in": {"description": "The values of the ports; without it, the nearest earlier ones."},
+    "expect": {"description": "What must be true of the result, else the scan fails."}}},
+  "one-of": {"required": ["one-of"], "additionalProperties": false, "properties": {
+    "id": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$",
+           "description": "How later steps and outputs refer to the last step of the alternative that ran."},
+    "one-of": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/alternative"},
+               "description": "Alternatives: everything below runs once for each."}}},
+  "alternative": {"if": {"type": "array"}, "then": {"$ref": "#/definitions/steps"},
+                  "else": {"if": {"type": "object", "required": ["steps"]}, "else": {"$ref": "#/definitions/item"},
+                           "then": {"additionalProperties": false, "properties": {
+    "name": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$",
+             "description": "The alternative's part of the names of variants."},
+    "steps": {"$ref": "#/definitions/steps"}}}}}
+}})json";
+
+const char* const batch_grammar = R"json({
+"$schema": "http://json-schema.org/draft-07/schema#",
+"title": "Scanmill batch",
+"type": "object", "required": ["scanmill", "batch", "scans", "workflows"], "additionalProperties": false,
+"properties": {
+  "scanmill": {"const": 1, "description": "The version of the grammar."},
+  "batch": {"type": "string", "pattern": "^[A-Za-z][A-Za-z0-9_-]*$", "description": "The batch's name."},
+  "summary": {"type": ["string", "number", "boolean"], "description": "What the batch is for, in a sentence."},
+  "scans": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/scan"},
+            "description": "The scans; paths count from the batch file's folder."},
+  "workflows": {"description": "The workflows that every scan runs under; paths count from the batch file's folder.",
+                "if": {"type": "string"}, "then": {"$ref": "#/definitions/workflow"},
+                "else": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/workflow"}}},
+  "set": {"$ref": "#/definitions/settings"},
+  "limits": {"type": ["object", "null"], "description": "The most that one scan under one variant may cost.",
+             "additionalProperties": false, "properties": {
+    "memory": {"$ref": "#/definitions/memory"},
+    "time": {"$ref": "#/definitions/time"},
+    "step": {"type": "object", "description": "The same for one step.", "additionalProperties": false,
+             "properties": {"memory": {"$ref": "#/definitions/memory"}, "time": {"$ref": "#/definitions/time"}}},
+    "retries": {"type": "integer", "minimum": 0, "description": "How often failed work is tried again."}}}
+},
+"definitions": {
+  "scan": {"if": {"type": "object"}, "else": {"$ref": "#/definitions/scan-path"}, "then": {
+    "required": ["path"], "additionalProperties": false,
+    "properties": {
+      "path": {"$ref": "#/definitions/scan-path"},
+      "unit": {"$ref": "#/definitions/unit"},
+      "frame": {"$ref": "#/definitions/frame"},
+      "pose": {"$ref": "#/definitions/pose"},
+      "truth": {"type": "string", "minLength": 1, "description": "The correct result: a file; may contain {stem}."},
+      "set": {"$ref": "#/definitions/settings"}}}},
+  "scan-path": {"type": "string", "minLength": 1, "description": "A file, or several by *, ?, […] and **."},
+  "workflow": {"type": "string", "minLength": 1, "description": "A workflow file."},
+  "settings": {"type": ["object", "null"], "description": "Values of the workflows' parameters, by their names.",
+               "additionalProperties": false,
+               "patternProperties": {"^[A-Za-z][A-Za-z0-9_-]*$": {"$ref": "#/definitions/value-or-sweep"}}},
+  "three-numbers": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+  "four-numbers": {"type": "array", "items": {"type": "number"}, "minItems": 4, "maxItems": 4},
+  "pose": {"description": "The scan's position: a file of poses, which may contain {stem}, a matrix in rows, or a motion.",
+           "if": {"type": "object"}, "then": {
+    "required": ["translation", "rotation"], "additionalProperties": false,
+    "properties": {
+      "translation": {"description": "x, y, z in the scan's unit.", "allOf": [{"$ref": "#/definitions/three-numbers"}]},
+      "rotation": {"description": "A quaternion of length 1: qx, qy, qz, qw.",
+                   "allOf": [{"$ref": "#/definitions/four-numbers"}]}}},
+           "else": {"if": {"type": "array"}, "else": {"type": "string", "minLength": 1},
+                    "then": {"items": {"$ref": "#/definitions/four-numbers"}, "minItems": 4, "maxItems": 4}}},
+  "memory": {"type": "string", "pattern": " *([KMGT]iB|[kMGT]?B)$", "examples": ["8 GiB"],
+             "description": "Most memory; work that needs more is stopped."},
+  "time": {"type": "string", "pattern": " *(ms|s|min|h)$", "examples": ["10 min"],
+           "description": "Longest time; work that takes longer is stopped."}
+}})json";
+
+/// The beginning of a text with a unit: a decimal number with the sign and zeros that the lower bound allows.
+std::string number_pattern(const std::optional<Bound>& low) {
+    const bool no_negative = low && low->value >= 0;
+    const bool no_zero = no_negative && !low->inclusive;
+    return std::string("^") + (no_zero ? R"((?![+]?[0.]+([eE]|[^0-9.]|$)))" : "") + (no_negative ? "[+]?" : "[-+]?") +
+           R"(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?)";
+}
+
+Json either(Json condition, Json then, Json otherwise) {
+    return {{"if", std::move(condition)}, {"then", std::move(then)}, {"else", std::move(otherwise)}};
+}
+
+Json list_of(Json item, std::optional<std::size_t> size) {
+    Json list{{"type", "array"}, {"items", std::move(item)}};
+    if (size) list["minItems"] = list["maxItems"] = *size;
+    return list;
+}
+
+/// Editors show the error message in place of the pattern, and propose the examples.
+Json text_with_unit(const std::optional<Bound>& low, const std::string& units, std::string_view expected,
+                    Json examples) {
+    return {{"type", "string"},
+            {"pattern", number_pattern(low) + " *(" + units + ")$"},
+            {"patternErrorMessage", fmt::format("Expected {}.", expected)},
+            {"examples", std::move(examples)}};
+}
+
+/// One value, without words and lists.
+Json scalar_schema(const ParameterSpec& parameter) {
+    const auto text = [&](const char* units, Json examples) {
+        return text_with_unit(parameter.low, units, expectation(parameter), std::move(examples));
+    };
+    const auto number = [&](const char* type) {
+        Json schema{{"type", type}};
+        if (parameter.low) schema[parameter.low->inclusive ? "minimum" : "exclusiveMinimum"] = parameter.low->value;
+        if (parameter.high) schema[parameter.high->inclusive ? "maximum" : "exclusiveMaximum"] = parameter.high->value;
+        return schema;
+    };
+    switch (parameter.type) {
+        case ParameterType::boolean: return {{"type", "boolean"}};
+        case ParameterType::integer: return number("integer");
+        case ParameterType::number: return number("number");
+        case ParameterType::length: return text(length_units, {"0.2 mm", "0.1 %diag", "3 spacing"});
+        case ParameterType::angle: return text("deg|rad", {"40 deg"});
+        case ParameterType::ratio: return either({{"type", "string"}}, text("%", {"5 %"}), number("number"));
+        case ParameterType::text:
+        case ParameterType::path: return {{"type", {"string", "number", "boolean"}}};
+        case ParameterType::choice: break;
+    }
+    Json choices = Json::array();
+    for (const Choice& choice : parameter.choices)
+        choices.push_back({{"const", choice.name}, {"description", choice.help}});
+    return {{"oneOf", std::move(choices)}};
+}
+
+/// A value, with the parameter's word, or a list of `item`.
+Json value_schema(const ParameterSpec& parameter, Json item) {
+    Json value = scalar_schema(parameter);
+    // One value in place of a list is the list of that value, if the list may have that length.
+    if (parameter.list && parameter.size.value_or(1) != 1)
+        value = list_of(std::move(item), parameter.size);
+    else if (parameter.list)
+        value = either({{"type", "array"}}, list_of(std::move(item), parameter.size), std::move(value));
+    if (!parameter.word.empty()) value = {{"anyOf", {{{"const", parameter.word}}, std::move(value)}}};
+    return value;
+}
+
+/// A value, `$name` or `{sweep: […]}`, with the parameter's help, range and default as its description.
+Json parameter_schema(const ParameterSpec& parameter) {
+    const Json reference{{"type", "string"}, {"pattern", R"(^\$[A-Za-z])"}};
+    const Json value = either(reference, Json::object(),
+                              value_schema(parameter, either(reference, Json::object(), scalar_schema(parameter))));
+    const Json sweep{{"description", "Runs everything from here on once for each value."},
+                     {"required", Json::array({"sweep"})},
+                     {"additionalProperties", false},
+                     {"properties", {{"sweep", {{"type", "array"}, {"minItems", 1}, {"items", value}}}}}};
+    const std::string given = text(parameter.default_value);
+    Json schema{{"description", fmt::format("{} Takes {}.{}", parameter.help, expectation(parameter),
+                                            parameter.required ? " Required."
+                                            : given.empty()    ? ""
+                                                               : " Default: " + given + ".")}};
+    schema.update(either({{"type", "object"}}, sweep, value));
+    return schema;
+}
+
+Json filter_schema(const FilterSpec& spec) {
+    Json schema{{"type", "object"},
+                {"additionalProperties", false},
+                {"properties", Json::object()},
+                {"description", spec.summary + " (" + spec.source + ")"}};
+    for (const ParameterSpec& parameter : spec.parameters) {
+        schema["properties"][parameter.name] = parameter_schema(parameter);
+        if (parameter.required) schema["required"].push_back(parameter.name);
+    }
+    if (!schema.contains("required")) schema["type"] = {"object", "null"};
+    return schema;
+}
+
+/// `in:` of a filter: a map from its ports, or a single name if there is one port.
+Json in_schema(const FilterSpec& spec) {
+    const Json source{{"type", "string"}};
+    Json map{{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+    for (const PortSpec& port : spec.inputs) {
+        Json& described = map["properties"][port.name];
+        described = either({{"type", "array"}}, {{"items", source}}, source);
+        described["description"] = kinds_text(port) + ": " + port.help;
+    }
+    return spec.inputs.size() == 1 ? either(source, Json::object(), std::move(map)) : map;
+}
+
+Json expect_schema(const FilterSpec& spec) {
+    Json schema{{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+    for (const MetricSpec& metric : expectable(spec)) {
+        const int power = power_of_length(metric.unit);
+        const std::string digit = std::to_string(power);
+        const Json value =
+            power > 1 ? text_with_unit({}, fmt::format("({})(\\^?{}|{})", length_units, power, power == 2 ? "²" : "³"),
+                                       length_power_examples(power), {"12 mm" + digit, "0.5 u" + digit})
+                      : scalar_schema(written_as(metric.unit));
+        Json expected =
+            either({{"type", "array"}}, list_of(value, 2),
+                   either({{"type", "string"}, {"pattern", "^[<>]"}}, {{"pattern", "^[<>] *[^<>= ]"}}, value));
+        if (metric.numbered) schema["patternProperties"]["^" + metric.name + "@([2-9]|[1-9][0-9]+)$"] = expected;
+        schema["properties"][metric.name] = std::move(expected);
+    }
+    return schema;
+}
+
+std::string with_common_definitions(Json schema) {
+    schema["definitions"].update(Json::parse(common_definitions));
+    return schema.dump(2) + "\n";
+}
+
+}  // namespace
+
+std::string workflow_schema(const FilterLibrary& library) {
+    Json schema = Json::parse(workflow_grammar);
+    Json& step = schema["definitions"]["step"];
+    Json one_filter = Json::array(), names{"id", "in", "expect"};
+    for (const std::string& name : library.names()) {
+        const FilterSpec& spec = *library.find(name);
+        step["properties"][name] = filter_schema(spec);
+        names.push_back(name);
+        one_filter.push_back({{"required", Json::array({name})}});
+        step["allOf"].push_back(
+            {{"if", {{"required", Json::array({name})}}},
+             {"then", {{"properties", {{"in", in_schema(spec)}, {"expect", expect_schema(spec)}}}}}});
+    }
+    // Unknown keys are an error already.
+    step["if"] = {{"propertyNames", {{"enum", std::move(names)}}}};
+    step["then"] = {{"oneOf", std::move(one_filter)}};
+    return with_common_definitions(std::move(schema));
+}
+
+std::string batch_schema() {
+    Json schema = Json::parse(batch_grammar);
+    schema["properties"]["limits"]["properties"]["retries"]["maximum"] = most_retries;
+    for (const char* cap : {"memory", "time"}) {
+        Json& pattern = schema["definitions"][cap]["pattern"];
+        pattern = number_pattern(Bound{0, false}) + pattern.get<std::string>();
+    }
+    return with_common_definitions(std::move(schema));
+}
+
+}  // namespace scanmill

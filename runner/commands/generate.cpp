@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `schema` and `docs`: files generated from the filters' declarations.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "commands/commands.hpp"
+#include "commands/common.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/describe/filter_page.hpp"
+#include "scanmill/describe/schemas.hpp"
+#include "scanmill/io/atomic_file.hpp"
+
+namespace scanmill::runner {
+
+namespace {
+
+struct SchemaOptions {
+    std::string kind = "workflow";
+    std::filesystem::path folder;
+};
+
+struct DocsOptions {
+    std::filesystem::path folder;
+};
+
+/// Writes the file whole or not at all, and makes its folder if it is missing. Throws Error when it cannot be written.
+void write_text(const std::filesystem::path& path, std::string_view text) {
+    std::error_code trouble;
+    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), trouble);
+    if (trouble) throw Error("the folder '{}' cannot be made: {}", path.parent_path().string(), trouble.message());
+    try {
+        AtomicFile file(path);
+        file.write(text);
+        file.commit();
+    } catch (const Error& error) {
+        throw Error("'{}' {}", path.string(), error.sentence()).hint(error.hint());
+    }
+}
+
+int schema(const SchemaOptions& options) {
+    const FilterLibrary library = open_library();
+    if (options.folder.empty()) {
+        fmt::print("{}", options.kind == "batch" ? batch_schema() : workflow_schema(library));
+        return done;
+    }
+    write_text(options.folder / "workflow.schema.json", workflow_schema(library));
+    write_text(options.folder / "batch.schema.json", batch_schema());
+    return done;
+}
+
+/// Throws Error for a file that `scanmill docs` did not write, and for a path that is not a file.
+void require_replaceable(const std::filesystem::path& file) {
+    std::error_code absent;
+    if (!std::filesystem::exists(file, absent)) return;
+    std::string text;
+    if (std::ifstream stream(file); std::filesystem::is_regular_file(file, absent))
+        text.assign(std::istreambuf_iterator<char>(stream), {});
+    if (!is_filter_page(text))
+        throw Error("'{}' exists and was not written by scanmill docs", file.string())
+            .hint("choose another folder, or move it away");
+}
+
+int docs(const DocsOptions& options) {
+    const FilterLibrary library = open_library();
+    std::vector<FilterSpec> specs;
+    for (const std::string& name : library.names()) specs.push_back(*library.find(name));
+    if (options.folder.empty()) {
+        for (const FilterSpec& spec : specs) fmt::print("{}\n", filter_page(spec, library));
+        return done;
+    }
+    std::vector<std::pair<std::filesystem::path, std::string>> pages;
+    for (const FilterSpec& spec : specs)
+        pages.emplace_back(options.folder / (spec.name + ".md"), filter_page(spec, library));
+    pages.emplace_back(options.folder / "README.md", filter_index(specs));
+    for (const auto& [file, page] : pages) require_replaceable(file);
+    for (const auto& [file, page] : pages) write_text(file, page);
+    return done;
+}
+
+}  // namespace
+
+void add_schema_and_docs(CLI::App& app, Action& chosen) {
+    auto [schema_command, schema_options] = add_command<SchemaOptions>(
+        app, chosen, "schema",
+        "Prints the JSON Schema of workflow or batch files, for editors: every installed filter with its parameters",
+        schema);
+    CLI::Option* kind =
+        schema_command.add_option("KIND", schema_options.kind, "Which to print: workflow (the default) or batch")
+            ->check(CLI::IsMember({"workflow", "batch"}));
+    schema_command
+        .add_option("-o,--output", schema_options.folder,
+                    "Write both, workflow.schema.json and batch.schema.json, into this folder instead")
+        ->excludes(kind);
+
+    auto [docs_command, docs_options] =
+        add_command<DocsOptions>(app, chosen, "docs", "Prints a page about every installed filter, in Markdown", docs);
+    docs_command.add_option("-o,--output", docs_options.folder, "Write one file per filter into this folder instead");
+}
+
+}  // namespace scanmill::runner
