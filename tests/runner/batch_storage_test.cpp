@@ -46,7 +46,7 @@ TEST_F(Storage, ScanChangedAfterPlanning_FailsAndIsNotTakenForTheOld) {
     EXPECT_THAT(outputs(), IsEmpty());
 }
 
-TEST_F(Storage, ReadOnlyCache_IsToldOnceAndGivesWhatItHas) {
+TEST_F(Storage, ReadOnlyCache_WarnsOnceAndIsRead) {
     write_workflow();
     write_scans("scan", 2);
     write_batch("scans/*.xyz");

@@ -111,7 +111,7 @@ TEST_F(Hostile, FullDisk_LeavesTheResultOfAnEarlierRun) {
 /// Everyone may look, no one may write.
 void open_to_readers(const fs::path& folder) { fs::permissions(folder, fs::perms(0555)); }
 
-TEST_F(Hostile, OutputFolderThatMayNotBeWritten_IsSaidBeforeAnythingRuns) {
+TEST_F(Hostile, OutputFolderWithoutRights_IsReportedBeforeAnyStepRuns) {
     folder_.write("w.yaml", workflow("{scan}.ply"));
     folder_.write("scan.xyz", four_points);
     fs::create_directory(folder_ / "out");

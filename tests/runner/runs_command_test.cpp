@@ -92,7 +92,7 @@ TEST_F(RunsCommand, DryRun_NamesWhatChangedSinceTheLastRun) {
     EXPECT_THAT(dry(), HasSubstr("the cache does not know it"));
 }
 
-TEST_F(RunsCommand, WhatIsNotThere_IsSaid) {
+TEST_F(RunsCommand, MissingRunsAndFolders_AreReported) {
     const ProgramResult nothing = scanmill({"runs", "nowhere"});
     EXPECT_EQ(nothing.exit_code, 2);
     EXPECT_THAT(nothing.err, AllOf(HasSubstr("there are no records"), HasSubstr("hint")));

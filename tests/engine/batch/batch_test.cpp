@@ -58,7 +58,7 @@ limits: {memory: 8 GiB, time: 10 min, step: {memory: 500 MB, time: 2.5 s}, retri
     EXPECT_EQ(batch_.limits, (Limits{u64(8) << 30, 500'000'000, 600, 2.5, 1}));
 }
 
-TEST_F(BatchFile, WhatIsNotSaid_HasNoLimitAndNoOpinion) {
+TEST_F(BatchFile, MissingKeys_GiveNoLimitsAndNoValues) {
     EXPECT_THAT(rest("set:\nlimits:\n"), IsEmpty());
     EXPECT_EQ(batch_.limits, Limits{});
 }

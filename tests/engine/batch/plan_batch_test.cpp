@@ -52,7 +52,7 @@ TEST_F(PlanBatch, WorkflowsOnlyTakeTheNamesTheyDeclare) {
     EXPECT_EQ(checked_.variants(), 3u);
 }
 
-TEST_F(PlanBatch, BadValue_IsToldWhereItStandsInTheBatch) {
+TEST_F(PlanBatch, BadValue_IsReportedAtItsPositionInTheBatch) {
     const auto found = check(
         "scanmill: 1\nbatch: b\nscans:\n  - {path: scans/a.ply, set: {n: 12}}\n  - scans/b.ply\nworkflows: w.yaml\n"
         "set: {n: {sweep: [1, x]}, s: 0.5}\n");
@@ -63,7 +63,7 @@ TEST_F(PlanBatch, BadValue_IsToldWhereItStandsInTheBatch) {
     EXPECT_TRUE(checked_.has_errors());
 }
 
-TEST_F(PlanBatch, NameThatNoWorkflowDeclares_IsToldWithTheClosest) {
+TEST_F(PlanBatch, NameThatNoWorkflowDeclares_IsReportedWithTheClosest) {
     EXPECT_THAT(
         check("scanmill: 1\nbatch: b\nscans: [{path: scans/a.ply, set: {m: 1}}]\nworkflows: w.yaml\nset: {nn: 1}\n"),
         ElementsAre("b:3:35: none of the workflows has a parameter 'm'; they have n and s",
@@ -77,7 +77,7 @@ TEST_F(PlanBatch, MistakesOfAWorkflow_AreToldInItOnce) {
         ElementsAre(StartsWith("w:4:10: there is no filter 'thinn'")));
 }
 
-TEST_F(PlanBatch, WorkflowThatCannotBeFed_IsToldAtItsPlace) {
+TEST_F(PlanBatch, WorkflowWithoutOneInput_IsReportedAtItsPosition) {
     folder_.write("none.yaml", "scanmill: 1\nsteps: [{make: }]\n");
     folder_.write(
         "two.yaml",

@@ -40,7 +40,7 @@ TEST_F(CheckForks, UnknownWorkflowParameter_HidesNothingBehindIt) {
                             AllOf(StartsWith("w:6:27: "), HasSubstr("'5' has no unit"))));
 }
 
-TEST_F(CheckForks, RequiredParameterByUnknownName_IsNotSaidToBeMissingToo) {
+TEST_F(CheckForks, RequiredParameterByUnknownName_IsNotReportedAsMissingToo) {
     EXPECT_THAT(findings("  - tetrahedralise:\n  - solid:\n  - simplify: {max-error: $nope}\n"),
                 ElementsAre(HasSubstr("no parameter 'nope'")));
 }

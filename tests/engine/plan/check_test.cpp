@@ -77,7 +77,7 @@ TEST_F(Check, TwoFiltersInOneStep_SaysHowToBeginAnotherStep) {
                 ElementsAre(AllOf(StartsWith("w:5:5: "), HasSubstr("found 'make' beside 'thin'"))));
 }
 
-TEST_F(Check, StepsThatCannotBeRead_AreNotSaidToShareAnId) {
+TEST_F(Check, StepsThatCannotBeRead_AreNotReportedToShareAnId) {
     EXPECT_THAT(steps("  - x\n  - y\n"), ElementsAre(HasSubstr("found 'x'"), HasSubstr("found 'y'")));
 }
 

@@ -80,12 +80,12 @@ TEST_F(ListValues, TwoDollars_AreATextThatBeginsWithOne) {
     EXPECT_THAT(values_of("names"), ElementsAre("default: [$a, x, a$a, $$a]"));
 }
 
-TEST_F(ListValues, SweptName_SpansVariantsOnceAndIsToldByItsOwnName) {
+TEST_F(ListValues, SweptName_SpansVariantsOnceAndNamesThem) {
     EXPECT_THAT(check_step("a: {sweep: [1 u, 2 u]}", "thresholds: [$a, 9 u, $a]"), IsEmpty());
     EXPECT_THAT(values_of("thresholds"), ElementsAre("a=1u: [1 u, 9 u, 1 u]", "a=2u: [2 u, 9 u, 2 u]"));
 }
 
-TEST_F(ListValues, SweepOverListsWithNames_IsToldByWhatTheListsHold) {
+TEST_F(ListValues, SweepOverListsWithNames_NamesVariantsByTheirValues) {
     EXPECT_THAT(check_step("a: 1 u", "thresholds: {sweep: [[$a, 5 u], [6 u]]}"), IsEmpty());
     EXPECT_THAT(values_of("thresholds"), ElementsAre("thresholds=1u_5u: [1 u, 5 u]", "thresholds=6u: [6 u]"));
     EXPECT_THAT(check_step("a: {sweep: [1 u, 2 u]}", "thresholds: {sweep: [[$a, 5 u], [$a]]}"), IsEmpty());
@@ -94,7 +94,7 @@ TEST_F(ListValues, SweepOverListsWithNames_IsToldByWhatTheListsHold) {
                             "a=1u+thresholds=1u: [1 u]", "a=2u+thresholds=2u: [2 u]"));
 }
 
-TEST_F(ListValues, UnknownName_IsToldAtItsPlaceAndIsAUse) {
+TEST_F(ListValues, UnknownName_IsReportedAtItsPositionAndIsAUse) {
     EXPECT_THAT(check_step("size: 1 u", "thresholds: [1 u, $siz, $size, $so]"),
                 ElementsAre(AllOf(StartsWith("w:4:36: "), HasSubstr("no parameter 'siz'"), HasSubstr("mean 'size'?")),
                             AllOf(StartsWith("w:4:49: "), HasSubstr("no parameter 'so'"))));
@@ -117,7 +117,7 @@ TEST_F(ListValues, NameBesideWhatCannotBeRead_IsUsed) {
         << "a text that begins with a dollar";
 }
 
-TEST_F(ListValues, ValueThatIsNoItem_IsToldWhereTheNameStands) {
+TEST_F(ListValues, ValueThatIsNotAnItem_IsReportedAtTheName) {
     EXPECT_THAT(check_step("a: 1 yard, b: 1 u", "thresholds: [$b, $a]"),
                 ElementsAre(AllOf(StartsWith("w:4:35: "), HasSubstr("thresholds (from $a): 'yard' is no unit"))));
     EXPECT_THAT(check_step("a: 0 u", "thresholds: [$a]"),
@@ -142,7 +142,7 @@ TEST_F(ListValues, DefaultsAndSettings_CannotReferFromWithinAList) {
     EXPECT_THAT(rest("set: {s: [1 u, $n]}\n"), ElementsAre(AllOf(StartsWith("b:5:16: "), HasSubstr("cannot refer"))));
 }
 
-TEST_F(ListValues, ValueOfABatch_IsToldWhereItStandsInIt) {
+TEST_F(ListValues, ValueOfABatch_IsReportedAtItsPositionThere) {
     folder_.write("w.yaml",
                   "scanmill: 1\ninputs: {scan: points}\nparameters: {n: 1 u}\nsteps: [{lists: {thresholds: [2 u, $n]}}]"
                   "\n");
