@@ -120,35 +120,35 @@ TEST(Readers_BrokenFile, IsRefusedWithWhatAndWhere) {
     }
 }
 
-/// How many broken files are not refused with an Error while hardly any address space is left. Spoils the process.
-int lies_under_a_tight_limit() {
+/// The number of broken files that are not refused with an Error when little address space is left. Spoils the process.
+int accepted_under_a_tight_limit() {
     std::size_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
     const rlim_t limit = pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + (rlim_t(32) << 20);
     const rlimit tight{limit, limit};
     ::setrlimit(RLIMIT_AS, &tight);
-    int lies = 0;
+    int accepted = 0;
     for (const Defect& defect : defects) {
         try {
-            if (sentence_for(data_folder / defect.file) == "it was read") ++lies;
+            if (sentence_for(data_folder / defect.file) == "it was read") ++accepted;
         } catch (const std::bad_alloc&) {
-            ++lies;
+            ++accepted;
         }
     }
     try {
-        // The limit is real: twice of what is left cannot be had.
+        // The limit works: twice the remaining memory cannot be allocated.
         const Array<std::byte> large(std::size_t(64) << 20);
-        lies += 100;
+        accepted += 100;
     } catch (const std::bad_alloc&) {
     }
-    return lies;
+    return accepted;
 }
 
 TEST(Readers_BrokenFile, TakesNoMemoryForWhatItPromises) {
 #ifdef __SANITIZE_ADDRESS__
     GTEST_SKIP() << "skipped: a sanitizer's shadow needs more address space than the limit leaves";
 #endif
-    EXPECT_EXIT(::_exit(lies_under_a_tight_limit()), testing::ExitedWithCode(0), "");
+    EXPECT_EXIT(::_exit(accepted_under_a_tight_limit()), testing::ExitedWithCode(0), "");
 }
 
 /// A valid file of every reader, small enough that damage hits something.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Tables of meshes, and of points in the formats of meshes, that others wrote, and what another program found in them.
+/// Tables of meshes and points in mesh formats, written by other programs, with the content that another reader finds.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -57,7 +57,7 @@ inline void expect_as_stated(const MeshSample& sample, const fs::path& folder) {
         EXPECT_THAT(warnings.sentences, testing::Contains(testing::HasSubstr(sample.warnings)));
 }
 
-/// Every sample as stated; every file of the folder is in the table, so that a new one is not passed over.
+/// Checks every sample, and that every file of the folder is in the table.
 inline void expect_as_stated(const std::vector<MeshSample>& samples, const fs::path& folder) {
     for (const MeshSample& sample : samples) expect_as_stated(sample, folder);
     std::size_t files = 0;

@@ -12,9 +12,9 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Opens `before`, puts `after` into the same file, and asks for everything.
+/// Opens `before`, writes `after` into the same file, and reads everything.
 void expect_reported(const char* name, const std::string& before, const std::string& after) {
-    ASSERT_EQ(before.size(), after.size()) << "a file that is cut short ends the program";
+    ASSERT_EQ(before.size(), after.size()) << "a truncated file would end the program";
     const TemporaryFolder folder;
     const fs::path path = folder.write(name, before);
     const auto stream = open_point_stream(path, {}, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of a mapped file that was touched here and there and given back, nothing counts as memory any longer: also what the
-// system mapped around each touch, pages or whole blocks of 2 MB.
+// After release(), no page of a mapped file counts as memory, also those that the system mapped around each access,
+// single pages or blocks of 2 MB.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -12,7 +12,7 @@
 namespace scanmill::test {
 namespace {
 
-/// Bytes of the file that are resident in this process; nothing where the system does not say.
+/// Bytes of the file that are resident in this process; empty where the system does not report them.
 std::optional<std::size_t> resident_of(const std::filesystem::path& file) {
     std::ifstream mappings("/proc/self/smaps");
     if (!mappings) return std::nullopt;
@@ -29,8 +29,8 @@ std::optional<std::size_t> resident_of(const std::filesystem::path& file) {
 class MappedFileMemory : public testing::Test {
 protected:
     static constexpr std::size_t size = std::size_t(24) << 20;
-    /// Written page by page: the system then keeps it in pages, and maps some around each that is touched. What it
-    /// keeps in larger blocks it gives back as a whole.
+    /// Writes page by page: the system then keeps the file in pages, and maps some around each access. It would release
+    /// larger blocks as a whole.
     MappedFileMemory() : path_(std::filesystem::canonical(folder_.write("large", ""))) {
         constexpr std::size_t page = 4096;
         std::ofstream stream(path_, std::ios::binary);
@@ -48,7 +48,7 @@ TEST_F(MappedFileMemory, BytesTouchedHereAndThere_LeaveNothingWhenGivenBack) {
     volatile char sum = 0;
     for (std::size_t at = 700'000; at < size; at += step) sum = static_cast<char>(sum + file.bytes()[at]);
     const std::optional<std::size_t> touched = resident_of(path_);
-    if (!touched) GTEST_SKIP() << "skipped: the system does not tell what is resident of a file";
+    if (!touched) GTEST_SKIP() << "skipped: the system does not report the resident pages of a file";
     EXPECT_GT(*touched, 0u);
     for (std::size_t at = 700'000; at < size; at += step) file.release(file.bytes().substr(at, 1));
     EXPECT_EQ(resident_of(path_), 0u) << "of " << *touched << " bytes";
@@ -61,7 +61,7 @@ TEST_F(MappedFileMemory, APartThatWasFetched_LeavesNothingWhenGivenBack) {
     volatile char last = part.back();  // where fetching is not to be had
     static_cast<void>(last);
     const std::optional<std::size_t> fetched = resident_of(path_);
-    if (!fetched) GTEST_SKIP() << "skipped: the system does not tell what is resident of a file";
+    if (!fetched) GTEST_SKIP() << "skipped: the system does not report the resident pages of a file";
     EXPECT_GT(*fetched, 0u);
     file.release(part);
     EXPECT_EQ(resident_of(path_), 0u) << "of " << *fetched << " bytes";

@@ -8,13 +8,11 @@ namespace scanmill {
 
 namespace {
 
+/// Removes the first word from the line.
 std::string_view word(std::string_view& line) {
-    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!line.empty() && blank(line.front())) line.remove_prefix(1);
-    std::size_t length = 0;
-    while (length < line.size() && !blank(line[length])) ++length;
-    const std::string_view found = line.substr(0, length);
-    line.remove_prefix(length);
+    line = trimmed(line);
+    const std::string_view found = line.substr(0, line.find_first_of(" \t\r"));
+    line.remove_prefix(found.size());
     return found;
 }
 

@@ -27,7 +27,7 @@ TEST(ColourFractions_EveryByte, ComesBack_RoundedOrCut_InBothPrecisions) {
     }
     EXPECT_EQ(table[0], "0");
     EXPECT_EQ(table[51], "0.2");
-    // 7 / 255 = 0.02745…: 0.027 · 255 = 6.885 would be cut to 6. 85 / 255 = 1/3, every shorter decimal is below it.
+    // 7 / 255 = 0.02745…: 0.027 · 255 = 6.885 truncates to 6. 85 / 255 = 1/3, and every shorter decimal is below it.
     EXPECT_EQ(table[7], "0.0275");
     EXPECT_EQ(table[85], "0.3333334");
     EXPECT_EQ(table[128], "0.502");

@@ -128,7 +128,7 @@ TEST(LasExtraBytes, Undescribed_AreLeftOutAndReported) {
     Warnings warnings;
     points_in(las.file(), "a.las", &warnings);
     EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("6 extra bytes of each point are without a described type")));
-    // Three bytes of type 0 before the one that is described.
+    // Three bytes of type 0 before the described one.
     las.add_record("LASF_Spec", 4, las_extra(0, "opaque", 3) + las_extra(3, "known"));
     warnings.sentences.clear();
     const auto cloud = points_in(las.file(), "a.las", &warnings);

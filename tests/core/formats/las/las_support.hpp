@@ -56,7 +56,7 @@ struct LasBytes {
     }
 };
 
-/// A point of zeros but for its position.
+/// A point of zeros except its position.
 inline std::string las_point(std::size_t size, std::int32_t x, std::int32_t y, std::int32_t z) {
     std::string point(size, '\0');
     put_at(point, 0, x);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LAS, LAZ and E57 files that others wrote: every one in the collection, with what another reader, laspy, finds in it.
+// All LAS, LAZ and E57 files of the collection, written by other programs, with the content that laspy reads.
 #include "core/formats/samples_support.hpp"
 #include "core/formats/support.hpp"
 

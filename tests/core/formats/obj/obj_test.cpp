@@ -57,17 +57,19 @@ TEST(ObjReader_Face, WithAMissingVertex_IsRefusedWithItsLine) {
              {"f 1 2 3///1\n", "line 4: '3///1' is not a corner"},
              {"f 1 2 /3\n", "line 4: '/3' is not a corner"}})
         EXPECT_THAT(refusal_of(right_triangle + face, "a.obj"), HasSubstr(warnings)) << face;
-    // One that is there at the end was only early.
+    // A vertex may follow the face that names it.
     EXPECT_THAT(refusal_of("f 1 2 3\nf 1 2 4\n" + right_triangle, "a.obj"), HasSubstr("line 2: a face names vertex 4"));
 }
 
 TEST(ObjReader_Vertex, WithoutThreeNumbers_IsRefusedWithItsLine) {
     EXPECT_THAT(refusal_of("v 0 0 0\nv 1 0\n", "a.obj"),
                 HasSubstr("line 2: the row ends before a coordinate of a vertex (v)"));
-    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 O 0\n", "a.obj"), HasSubstr("line 2: 'O' is not a number for a coordinate of a vertex (v)"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nv 1 O 0\n", "a.obj"),
+                HasSubstr("line 2: 'O' is not a number for a coordinate of a vertex (v)"));
     EXPECT_THAT(refusal_of("v 0 0 0\nv 1 0 0 1 1 1 1 1\n", "a.obj"), HasSubstr("line 2: more than 4 numbers"));
     EXPECT_THAT(refusal_of("v 0 0 0\nvn 1 0\n", "a.obj"), HasSubstr("line 2: the row ends before a normal (vn)"));
-    EXPECT_THAT(refusal_of("v 0 0 0\nvt\n", "a.obj"), HasSubstr("line 2: the row ends before a texture coordinate (vt)"));
+    EXPECT_THAT(refusal_of("v 0 0 0\nvt\n", "a.obj"),
+                HasSubstr("line 2: the row ends before a texture coordinate (vt)"));
 }
 
 TEST(ObjReader_Vertex, Weight_IsReportedUnlessItIsOne) {
@@ -129,7 +131,7 @@ TEST(ObjReader_Text, BackslashAtALinesEnd_ContinuesIt) {
         EXPECT_EQ(mesh->positions[2], Vec3(0, 1, 0));
         EXPECT_THAT(rows_of(mesh->triangles), ElementsAre(Triangle{0, 1, 2}));
     }
-    // In a comment it is text, inside a line a sign like any other, and at the text's end there is nothing to continue.
+    // In a comment it is text, inside a line an ordinary character, and at the text's end no line follows.
     EXPECT_EQ(
         mesh_in("# C:\\scans\\\n" + right_triangle + "mtllib C:\\a\\b.mtl\nf 1 2 3 \\", "a.obj")->triangles.size(), 1u);
     EXPECT_THAT(refusal_of(right_triangle + "f 1 2\\\n 4\n", "a.obj"), HasSubstr("line 5: a face names vertex 4"));
@@ -150,7 +152,8 @@ TEST(ObjReader_Text, Cut_IsReadOrRefused_ByWhatIsLeft) {
 TEST(ObjReader_WithoutVertices, IsRefused) {
     for (const char* text : {"# nothing here\n", "\n\n", "o a\ng b\n", "vn 0 0 1\n"})
         EXPECT_THAT(refusal_of(text, "a.obj"), AllOf(HasSubstr("holds no points: no row is a vertex (v)"))) << text;
-    EXPECT_THAT(refusal_of("L\x01\x02\n", "a.obj"), HasSubstr("line 1 begins with 'L?\?', which is not an OBJ keyword"));
+    EXPECT_THAT(refusal_of("L\x01\x02\n", "a.obj"),
+                HasSubstr("line 1 begins with 'L?\?', which is not an OBJ keyword"));
 }
 
 TEST(ObjReader_WithoutFaces, IsACloudOfAllVertices) {
@@ -192,7 +195,7 @@ TEST(ObjReader_Content, IsRecognisedWithoutItsExtension) {
     std::string large;
     while (large.size() < 10000) large += "v 1.25 -3.5 0.0625\n";
     EXPECT_EQ(read_bytes(large, "a.ply").format, "OBJ");
-    // Keywords alone do not outdo an extension, a word that OBJ does not know ends the matter.
+    // Keywords alone do not override an extension; an unknown keyword excludes OBJ.
     EXPECT_THAT(refusal_of("g a\no b\n", "a"), HasSubstr("no row is a vertex"));
     EXPECT_THAT(refusal_of("g a\no b\n", "a.xyz"), Not(HasSubstr("no row is a vertex")));
     EXPECT_THAT(refusal_of("v 1 2 3\nDear reader\n", "a.dat"), HasSubstr("is of no known format"));

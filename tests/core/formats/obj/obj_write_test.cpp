@@ -144,7 +144,8 @@ TEST(ObjWriter_Colours, ThatAreNoBytes_ComeBack) {
     Warnings warnings;
     const auto mesh = read_mesh(
         folder.write("a.obj", "v 0 0 0 0.5 0.25 1\nv 1 0 0 0 0.1 0.7\nv 0 1 0 1 1 1\nf 1 2 3\n"), warnings.reading());
-    EXPECT_THAT(warnings.sentences, testing::ElementsAre(testing::HasSubstr("are not bytes; they are kept as columns")));
+    EXPECT_THAT(warnings.sentences,
+                testing::ElementsAre(testing::HasSubstr("are not bytes; they are kept as columns")));
     warnings.sentences.clear();
     write_file(folder / "b.obj", mesh, warnings.writing());
     EXPECT_THAT(warnings.sentences, testing::IsEmpty());

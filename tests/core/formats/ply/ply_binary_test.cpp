@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The same random table, written by hand in the three encodings, must read alike; and the fast way to read positions
-// must give what the plain one gives.
+// The same random table, written by hand in the three encodings, must give equal results, and so must the fast and the
+// general path for positions.
 #include <limits>
 #include <random>
 

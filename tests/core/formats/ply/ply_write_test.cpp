@@ -87,7 +87,7 @@ TEST(PlyWriter_Coordinates, AreFloatOnlyWhenEveryOneIsExactlyAFloat) {
     };
     EXPECT_STREQ(type_written(Vec3::Zero(), Vec3(0.5, -0.25, 0.1f)), "float");
     EXPECT_STREQ(type_written(Vec3::Zero(), Vec3(0.5, -0.25, 0.1)), "double");
-    // Exactly floats each, but not their sum: what counts is the world coordinate.
+    // Position and origin are floats, but their sum, the world coordinate, is not.
     EXPECT_STREQ(type_written(Vec3(0, 0, 16777216), Vec3(0, 0, 1)), "double");
     EXPECT_STREQ(type_written(Vec3(0, 0, 16777216), Vec3(0, 0, 2)), "float");
 }

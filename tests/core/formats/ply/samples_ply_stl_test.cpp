@@ -27,7 +27,8 @@ const std::vector<MeshSample> ply_samples{
     {"odd/pdal_text_extradim.ply", "one point; its blue is signed, and it has a column of its own", 1, 0, 0},
     {"odd/pdal_unsized_dims.ply", "x and y only", 0, 0, 0, "has no property 'z'; positions need x, y and z"},
     {"odd/trimesh_cube_blender_uv.ply", "a cube of quads with texture coordinates", 24, 12, 6, six_quads},
-    {"odd/trimesh_empty.ply", "no vertex, no face", 0, 0, 0, "holds no points: the PLY header declares 'element vertex 0'"},
+    {"odd/trimesh_empty.ply", "no vertex, no face", 0, 0, 0,
+     "holds no points: the PLY header declares 'element vertex 0'"},
     {"odd/trimesh_metadata.ply", "faces with a number after their list", 4, 2, 64},
     {"odd/trimesh_mirror.ply", "a mesh that was mirrored", 143, 286, 1.6270228678953544},
     {"odd/trimesh_multi.ply", "texture and colours by vertex", 4, 2, 4,
@@ -129,7 +130,7 @@ TEST(PlyReader_Samples, ColumnsOfSome_AreThese) {
     EXPECT_EQ(names_of(tetra->edge_columns), "confidence:1");
     EXPECT_EQ(names_of(read_mesh(folder / "odd/trimesh_multi.ply")->vertex_columns), "s:1 t:1 colour:3");
     EXPECT_EQ(names_of(read_mesh(folder / "ok/pcu_truck.ply")->face_columns), "colour:4");
-    // Red is unsigned and blue signed: they do not make a colour, and none of them is lost.
+    // Red is unsigned and blue signed: they are not one colour, and both columns are kept.
     EXPECT_EQ(names_of(read_points(folder / "odd/pdal_text_extradim.ply")->columns),
               "normal:3 red:1 green:1 blue:1 alpha:1 omg:1");
     EXPECT_EQ(world_of(*read_points(folder / "odd/pdal_issue_2421.ply"), 0),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Files of poses: both kinds, and what is wrong with them.
+/// Files of poses: both formats, and errors in them.
 #include "scanmill/formats/poses/poses.hpp"
 
 #include <gmock/gmock.h>
@@ -81,7 +81,7 @@ TEST_F(PoseFiles, Rotations_AreOrthonormalAlthoughDigitsAreFew) {
     const Eigen::Matrix3d r = read("bmesh a 0 0 0 0.00548449 -0.294635 -0.0038555 0.955586\n")[0].transform.rotation;
     EXPECT_LT((r * r.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-15);
     EXPECT_NEAR(r.determinant(), 1, 1e-15);
-    EXPECT_THAT(warnings_, IsEmpty()) << "six digits are what such files have";
+    EXPECT_THAT(warnings_, IsEmpty()) << "such files have six digits";
 }
 
 TEST_F(PoseFiles, QuaternionOfFourDigits_IsScaledAndReported) {

@@ -30,7 +30,7 @@ TEST(PtxReader, OneScan_KeepsPointsIntensityAndColour) {
 }
 
 TEST(PtxReader, Matrix_TurnsRowVectors_AndMovesByItsLastRow) {
-    // A quarter turn about z that takes x to y, as PTX writes it: the first row is where x goes.
+    // A quarter turn about z that maps x to y, as PTX writes it: the first row is the image of x.
     const std::string turn = "0 1 0 0\n-1 0 0 0\n0 0 1 0\n100 200 300 1\n";
     const auto cloud = points_in(scan("1", "2", turn, "1 0 0 0\n0 2 5 0\n"), "a.ptx");
     EXPECT_EQ(world_of(*cloud, 0), Vec3(100, 201, 300));
@@ -100,7 +100,8 @@ TEST(PtxReader, MatrixThatIsNone_IsRefused) {
 TEST(PtxReader, Truncated_IsRefusedWithItsLine) {
     EXPECT_THAT(refusal_of(scan("2", "1", still, "1 2 3 0\n"), "a.ptx"),
                 HasSubstr("the text ends after 1 of 2 cells of scan 0"));
-    EXPECT_THAT(refusal_of("1\n1\n0 0 0\n", "a.ptx"), HasSubstr("the text ends after 3 of 10 lines of the header of scan 0"));
+    EXPECT_THAT(refusal_of("1\n1\n0 0 0\n", "a.ptx"),
+                HasSubstr("the text ends after 3 of 10 lines of the header of scan 0"));
     EXPECT_THAT(refusal_of("2\n", "a.ptx"), HasSubstr("the text ends after 1 of 10 lines of the header of scan 0"));
     EXPECT_THAT(refusal_of(scan("1", "1", still, "1 2 3 0\n") + "1\n", "a.ptx"),
                 HasSubstr("the text ends after 1 of 10 lines of the header of scan 1"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texts that others wrote: every one in the collection, with what another reader counted in it.
+// All texts of the collection, written by other programs, with the counts of another reader.
 #include "core/formats/samples_support.hpp"
 #include "core/formats/support.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names in formats that allow fewer of them: none is lost to another, and what is no text becomes some.
+// Names in formats that allow fewer: they stay distinct, and invalid text becomes valid.
 
 #include "scanmill/formats/common/writing.hpp"
 
@@ -11,14 +11,14 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST(ValidText, KeepsUtf8_AndReplacesEveryByteThatIsNone) {
+TEST(ValidText, KeepsUtf8_AndReplacesEveryInvalidByte) {
     EXPECT_EQ(valid_text("Größe € 𝄞 \"<&"), "Größe € 𝄞 \"<&");
     EXPECT_EQ(valid_text("a\tb\n\x7f"), "a_b__");
-    EXPECT_EQ(valid_text("\xff\x80 \xc3"), "__ _") << "no beginning, no end";
-    EXPECT_EQ(valid_text("\xc0\xaf \xe0\x80\xaf"), "__ ___") << "longer than need be";
+    EXPECT_EQ(valid_text("\xff\x80 \xc3"), "__ _") << "no first byte, no last byte";
+    EXPECT_EQ(valid_text("\xc0\xaf \xe0\x80\xaf"), "__ ___") << "not the shortest form";
     EXPECT_EQ(valid_text("\xed\xa0\x80"), "___") << "a surrogate";
     EXPECT_EQ(valid_text("\xf4\x90\x80\x80"), "____") << "beyond U+10FFFF";
-    EXPECT_EQ(valid_text("\xef\xbf\xbe \xef\xbf\xbd"), "___ \xef\xbf\xbd") << "no character, and the last that is one";
+    EXPECT_EQ(valid_text("\xef\xbf\xbe \xef\xbf\xbd"), "___ \xef\xbf\xbd") << "not a character, and the last valid one";
     EXPECT_EQ(valid_text(std::string_view("a\0b", 3)), "a_b");
     EXPECT_EQ(valid_text("\xe2\x82"), "__") << "cut short";
 }
