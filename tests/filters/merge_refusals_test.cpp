@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "filters/merge_cases.hpp"
+#include "support/poses.hpp"
 #include "support/shapes.hpp"
 #include "support/thrown.hpp"
 
@@ -81,12 +82,12 @@ TEST(MergeRefusals, PosesThatMoveCloudsTooFarApart_AreRefused) {
     RigidTransform pose;
     for (const double far : {2e9, 1.7e308}) {
         pose.translation = Vec3(far, 0, 0);
-        const Error error = refusal({point, point}, posed({pose, pose.inverse()}));
+        const Error error = refusal({point, point}, posed({pose, inverse_of(pose)}));
         EXPECT_THAT(error.sentence(), HasSubstr("at most 1e+09 u is supported")) << far;
         EXPECT_THAT(error.what(), AllOf(HasSubstr("after the clouds were moved"), HasSubstr("hint: check the poses")));
     }
     pose.translation = Vec3(4.9e8, 0, 0);
-    EXPECT_EQ(merged({point, point}, posed({pose, pose.inverse()})).points.size(), 2u);
+    EXPECT_EQ(merged({point, point}, posed({pose, inverse_of(pose)})).points.size(), 2u);
 }
 
 TEST(MergeRefusals, MissingUncertainty_IsNamed) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "filters/merge_cases.hpp"
+#include "support/poses.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill::test {
@@ -105,7 +106,7 @@ TEST(Merge, PoseToADistantPosition_LosesNoDigits) {
 TEST(Merge, PoseAndItsInverse_RestoreTheCloud) {
     const PointCloud cloud = framed(random_sphere(500, 2, 3), {LengthUnit::unknown, Vec3(1000, -2000, 500), ""});
     const PointCloud there = merged({cloud}, posed({oblique()})).points;
-    const PointCloud back = merged({there}, posed({oblique().inverse()})).points;
+    const PointCloud back = merged({there}, posed({inverse_of(oblique())})).points;
     double farthest = 0, moved = 1e9;
     for (std::size_t row = 0; row < cloud.size(); ++row) {
         farthest = std::max(farthest, (world(back, row) - world(cloud, row)).norm());

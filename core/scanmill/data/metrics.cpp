@@ -25,13 +25,10 @@ std::optional<Unit> unit_named(std::string_view name) {
 }
 
 void Metrics::set(std::string_view name, double value, Unit kind) {
-    for (Metric& metric : values)
-        if (metric.name == name) {
-            metric.value = value;
-            metric.unit = kind;
-            return;
-        }
-    values.push_back({std::string(name), value, kind});
+    const auto found = std::ranges::find(values, name, &Metric::name);
+    Metric& metric = found == values.end() ? values.emplace_back(Metric{std::string(name), 0, kind}) : *found;
+    metric.value = value;
+    metric.unit = kind;
 }
 
 const Metric* Metrics::find(std::string_view name) const {

@@ -86,9 +86,12 @@ private:
         } else if (!reads_) {
             json = value;
         } else {
-            if constexpr (std::integral<T> && !std::same_as<T, bool>)  // get() would convert 1.5 and 1e300
-                if (!json.is_number_integer() || !std::in_range<T>(json.get<std::int64_t>()))
-                    throw Error("is not a manifest: '{}' is not an integer, or too large", key);
+            if constexpr (std::integral<T> && !std::same_as<T, bool>) {  // get() would convert 1.5 and 1e300
+                const bool fits = json.is_number_unsigned()
+                                      ? std::in_range<T>(json.get<std::uint64_t>())
+                                      : json.is_number_integer() && std::in_range<T>(json.get<std::int64_t>());
+                if (!fits) throw Error("is not a manifest: '{}' is not an integer, or too large", key);
+            }
             value = json.get<T>();
         }
     }

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
-#include <vector>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/plugin/plugin.hpp"

@@ -19,28 +19,28 @@ TEST(ForEachInOrder, TakesEveryPieceOnceAndInOrder_InThisThread) {
             std::iota(expected.begin(), expected.end(), std::size_t(0));
             const auto here = std::this_thread::get_id();
             for_each_in_order<std::size_t>(
-                threads, count, [](std::size_t piece, std::size_t& room) { room = piece * piece; },
-                [&](std::size_t piece, std::size_t room) {
-                    EXPECT_EQ(room, piece * piece);
+                threads, count, [](std::size_t item, std::size_t& buffer) { buffer = item * item; },
+                [&](std::size_t item, std::size_t buffer) {
+                    EXPECT_EQ(buffer, item * item);
                     EXPECT_EQ(std::this_thread::get_id(), here);
-                    taken.push_back(piece);
+                    taken.push_back(item);
                 });
             EXPECT_EQ(taken, expected) << threads << " threads";
         }
 }
 
 TEST(ForEachInOrder, OneThread_UsesOneRoom) {
-    std::set<const int*> rooms;
+    std::set<const int*> buffers;
     for_each_in_order<int>(
-        1, 20, [&](std::size_t, int& room) { rooms.insert(&room); }, [](std::size_t, int) {});
-    EXPECT_EQ(rooms.size(), 1u);
+        1, 20, [&](std::size_t, int& buffer) { buffers.insert(&buffer); }, [](std::size_t, int) {});
+    EXPECT_EQ(buffers.size(), 1u);
 }
 
 TEST(ForEachInOrder, Exceptions_ReachTheCallerAndEndIt) {
     std::atomic<int> made = 0;
-    const auto make = [&](std::size_t piece, int&) {
+    const auto make = [&](std::size_t item, int&) {
         ++made;
-        if (piece == 10) throw std::runtime_error("ten");
+        if (item == 10) throw std::runtime_error("ten");
     };
     EXPECT_THROW(for_each_in_order<int>(2, 1000, make, [](std::size_t, int) {}), std::runtime_error);
     EXPECT_LE(made, 16);

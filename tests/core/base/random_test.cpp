@@ -118,7 +118,7 @@ TEST(RandomStream, NeighbouringStreamsAndTheirParent_AreUncorrelated) {
         return 12 * sum / draws;
     };
     const Random random(77);
-    ASSERT_GT(correlation(random, random), 0.9) << "the measure sees what is the same";
+    ASSERT_GT(correlation(random, random), 0.9) << "the measure detects equal streams";
     for (const std::uint64_t index : {0u, 1u, 2u, 1000u}) {
         EXPECT_NEAR(correlation(random.stream(index), random.stream(index + 1)), 0, 5 / std::sqrt(draws));
         EXPECT_NEAR(correlation(random, random.stream(index)), 0, 5 / std::sqrt(draws));
@@ -150,7 +150,7 @@ TEST(RandomNormal, Moments_AreTheNormalDistributions) {
 }
 
 TEST(RandomNormal, Numbers_AreThePolarMethodsToTheLastDigits) {
-    // The generator has a logarithm of its own; with the C library's the numbers differ by rounding only.
+    // The generator has its own logarithm; numbers from the C library's logarithm differ by rounding only.
     Random random(21);
     for (int i = 0; i < 2000; ++i) {
         Random copy = random;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The origin of far-away scans: what lets coordinates of 10^6 m keep their micrometres.
+// The origin of distant scans: coordinates of 10^6 m keep their micrometres.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace scanmill::test {
 namespace {
 
-/// What is lost when a - b is rounded to a double (Knuth's two-sum): zero when nothing is.
+/// The rounding error of a - b (Knuth's two-sum).
 double lost_in_difference(double a, double b) {
     const double difference = a - b;
     const double back = difference - a;
@@ -78,7 +78,7 @@ TEST(DistantOrigin, DistantCloud_ComesNearItsOrigin) {
 }
 
 TEST(DistantOrigin, MicrometresAtAMillionMetres_AreKept) {
-    // What the origin is for: near zero, a coordinate can be computed with.
+    // The purpose of the origin: coordinates near zero are accurate in computations.
     const std::vector<Vec3> positions{{1e6, 0, 0}, {1e6 + 1e-6, 0, 0}};
     const Vec3 origin = distant_origin(bounding_box(positions));
     EXPECT_EQ((positions[1] - origin).x() - (positions[0] - origin).x(), (1e6 + 1e-6) - 1e6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lengths, angles and ratios: how they are read and written. What a length becomes on a scan:
+// Reading and writing lengths, angles and ratios. Resolution of lengths on a scan:
 // length_resolution_test.cpp.
 
 #include "scanmill/data/quantity.hpp"

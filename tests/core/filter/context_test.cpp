@@ -19,7 +19,7 @@ TEST(Context, Default_IsAQuietSurroundings) {
     EXPECT_TRUE(context.scratch().empty());
     EXPECT_FALSE(context.cancelled());
     EXPECT_NO_THROW(context.check_cancelled());
-    EXPECT_NO_THROW(context.progress(0.5)) << "nobody listens";
+    EXPECT_NO_THROW(context.progress(0.5)) << "there is no callback";
     EXPECT_TRUE(context.metrics().values.empty());
     EXPECT_TRUE(context.warnings().empty());
 }

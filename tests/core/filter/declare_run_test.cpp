@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From values back to the params struct, and what else a run is handed.
+// From values to the params struct, and the other arguments of a run.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

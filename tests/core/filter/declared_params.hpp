@@ -33,7 +33,7 @@ struct AllParams {
     Length max_error;
 };
 
-inline const char* const help = "As its name says.";
+inline const char* const help = "A parameter for tests.";
 
 inline Declare<AllParams> declaration() {
     using P = AllParams;

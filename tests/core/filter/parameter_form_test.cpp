@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ranges, words, lists, and the round trip through what people write.
+// Ranges, words, lists, and the round trip through the written form.
 
 #include <gtest/gtest.h>
 

@@ -36,7 +36,7 @@ FilterSpec sound_spec() {
     return spec;
 }
 
-/// What require_sound says of the sound spec after `spoil` had its way.
+/// The sentence of require_sound() for the sound spec after `spoil` changed it.
 template <class Spoil>
 std::string verdict(Spoil&& spoil) {
     FilterSpec spec = sound_spec();

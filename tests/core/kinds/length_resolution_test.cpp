@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a length becomes on a scan.
+// Resolution of lengths on a scan.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

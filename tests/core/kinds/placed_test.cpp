@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "support/point_sets.hpp"
+#include "support/poses.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -80,7 +81,7 @@ TEST(Placed, ByAPoseAndItsInverse_ComesBack) {
     pose.rotation << 1, 0, 0, 0, std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle);
     pose.translation = Vec3(12, -7, 0.5);
     const Value before = points({{1, 2, 3}, {-4, 5, 6}, {0, 0, 10}}, {LengthUnit::unknown, Vec3(40, 50, 60), ""});
-    const Value after = placed(placed(before, pose), pose.inverse());
+    const Value after = placed(placed(before, pose), inverse_of(pose));
     for (std::size_t row = 0; row < 3; ++row)
         EXPECT_LT((world(cloud(before), row) - world(cloud(after), row)).norm(), 1e-12 * 100);
 }
@@ -93,7 +94,7 @@ TEST(Placed, Normals_TurnButDoNotMove) {
     const Column& turned = *cloud(value).columns.find("normal");
     EXPECT_EQ(turned.type(), ScalarType::float32);
     EXPECT_THAT(turned.values<float>(), testing::ElementsAre(0, 1, 0, 0, 0, 1));
-    EXPECT_EQ(*cloud(value).columns.find("axis"), *columns.find("axis")) << "what is not known to be a direction stays";
+    EXPECT_EQ(*cloud(value).columns.find("axis"), *columns.find("axis")) << "only columns of directions are rotated";
 }
 
 TEST(Placed, NormalsOfIntegers_BecomeDoubles) {

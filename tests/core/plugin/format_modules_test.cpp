@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Modules of file formats: which files they are asked for, and that one which cannot be used hurts nobody else.
+// Modules of file formats: recognition without code, and unusable modules, which do not affect others.
 
 #include "scanmill/plugin/format_modules.hpp"
 
@@ -37,7 +37,7 @@ TEST(FormatManifest, FormatsThatAreOnlyWritten_ComeBackTheSame) {
     EXPECT_NE(written.spec, manifest.spec);
 }
 
-TEST(FormatManifest, WhatIsNone_IsRefused) {
+TEST(FormatManifest, AnythingElse_IsRefused) {
     EXPECT_THAT(sentence_of([] { parse_format_manifest("{"); }), HasSubstr("is not a manifest"));
     EXPECT_THAT(sentence_of([] { parse_format_manifest("{\"scanmill-format\": 2}"); }), HasSubstr("of version 2"));
     FormatManifest nameless = manifest;
@@ -56,7 +56,7 @@ TEST(FormatModules, Recognition_NeedsNoCode) {
     EXPECT_TRUE(rows[0].has_extension(".ABCD"));
     EXPECT_TRUE(rows[0].writer(kind_of<PointCloud>()));
     EXPECT_FALSE(rows[0].writer(kind_of<TriangleMesh>()));
-    EXPECT_THAT(refusal(rows[0]), HasSubstr("cannot be loaded")) << "only now the module is opened";
+    EXPECT_THAT(refusal(rows[0]), HasSubstr("cannot be loaded")) << "the module is opened only now";
 }
 
 TEST(FormatModules, OnlyWritten_RefusesToReadWithoutItsCode) {
@@ -72,7 +72,7 @@ TEST(FormatModules, OnlyWritten_RefusesToReadWithoutItsCode) {
     EXPECT_THAT(refusal(rows[0]), HasSubstr("ABC is written for other programs, and not read"));
 }
 
-TEST(FormatModules, OnesThatCannotBeUsed_SayWhyToWhomNeedsThem) {
+TEST(FormatModules, UnusableOnes_HaveARowWithTheReason) {
     const TemporaryFolder folder;
     folder.write("scanmill-alone.json", to_json_text(manifest));
     FormatManifest foreign = manifest;
@@ -89,7 +89,7 @@ TEST(FormatModules, OnesThatCannotBeUsed_SayWhyToWhomNeedsThem) {
     EXPECT_TRUE(rows[2].has_extension("torn"));
 }
 
-TEST(FormatModules, ModuleOfAFilter_IsNoFormat) {
+TEST(FormatModules, ModuleOfAFilter_IsNotAFormat) {
     const std::filesystem::path filter = std::filesystem::path(SCANMILL_TEST_PLUGIN_DIR) / "scanmill-test-step.so";
     EXPECT_THAT(
         sentence_of([&] { load_format_module(filter, "test-step"); }),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Folders of modules: which filter counts, and what one that is broken does to the others.
+// Folders of modules: which filter is used, and the effect of a broken one on the others.
 
 #include "scanmill/plugin/library.hpp"
 
@@ -95,7 +95,7 @@ TEST(FilterLibrary, FirstFolderWithAName_Counts) {
     EXPECT_EQ(library.find("sculpt")->summary, "Comes from the first folder.");
     EXPECT_EQ(library.module_file("sculpt"), first / "scanmill-sculpt.so");
     EXPECT_EQ(FilterLibrary({second.path(), first.path()}).find("sculpt")->summary, "Comes from the second folder.");
-    EXPECT_THAT(library.unusable(), IsEmpty()) << "being second is no fault";
+    EXPECT_THAT(library.unusable(), IsEmpty()) << "the second module of a name is ignored, not unusable";
 }
 
 TEST(FilterLibrary, UnusableManifests_AreRememberedWithTheirReasonAndHarmlessToOthers) {
@@ -237,7 +237,7 @@ TEST_F(PluginPath, RelativeEntries_ArePassedOverAndReported) {
     std::vector<std::string> ignored;
     EXPECT_THAT(plugin_folders(&ignored), ElementsAre(installed_plugin_folder(), "/a"));
     EXPECT_THAT(ignored, ElementsAre("plugins", "./here", "..", "~/mine"));
-    EXPECT_EQ(plugin_folders().size(), 2u) << "nobody has to listen";
+    EXPECT_EQ(plugin_folders().size(), 2u) << "the argument is optional";
 }
 
 TEST_F(PluginPath, EmptyEntries_AreNotTheWorkingFolder) {

@@ -73,7 +73,7 @@ Manifest everything() {
     return manifest;
 }
 
-/// What parse_manifest says after `spoil` changed the JSON.
+/// The sentence of parse_manifest() after `spoil` changed the JSON.
 template <class Spoil>
 std::string verdict(Spoil&& spoil) {
     Json json = Json::parse(to_json_text(everything()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One module: what is refused, and why. The modules of unusable/ come from tests/modules.
+// Loading one module: refusals and their reasons. The modules in unusable/ come from tests/modules.
 
 #include "scanmill/plugin/module.hpp"
 
@@ -24,7 +24,7 @@ const std::filesystem::path plugin_folder = SCANMILL_TEST_PLUGIN_DIR;
 
 std::filesystem::path good_module() { return plugin_folder / "scanmill-test-step.so"; }
 
-/// What loading unusable/scanmill-<name>.so as the filter <name> says; it always names the file.
+/// The sentence of the refusal to load unusable/scanmill-<name>.so as the filter <name>; it always names the file.
 std::string refusal(const std::string& name) {
     const std::filesystem::path module = plugin_folder / "unusable" / ("scanmill-" + name + ".so");
     EXPECT_TRUE(std::filesystem::exists(module)) << "tests/modules makes it";

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tests' own filter, called as the engine calls it: through its module. What runs filters is tested with it, so it
-// must do what it says.
+// The filter test-step, called through its module as by the engine. Other tests rely on it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Its declaration throws what is no std::exception.
+// Its declaration throws a type that is not a std::exception.
 
 #include "scanmill/plugin/plugin.hpp"
 

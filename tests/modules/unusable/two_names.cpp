@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Its descriptor says two-names, its declaration something else.
+// Descriptor and declaration have different names.
 
 #include "scanmill/plugin/plugin.hpp"
 

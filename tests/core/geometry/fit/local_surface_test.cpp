@@ -140,7 +140,7 @@ TEST(LocalSurface, FewPoints_MakeAPlaneAndTheirDistancesFromIt) {
     EXPECT_EQ(one.fit_error, 0);
 }
 
-/// At the rim of a hemisphere all neighbours lie on one side of the point.
+/// At the boundary of a hemisphere all neighbours lie on one side of the point.
 TEST(LocalSurface, OriginNearTheCentroid_FitsBetterAtARim) {
     Array<Vec3> half;
     for (const Vec3& p : test::fibonacci_sphere(2600).positions)

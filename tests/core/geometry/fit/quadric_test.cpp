@@ -95,7 +95,7 @@ TEST(Quadric, SamplesOnALineOrTwo_DetermineNone) {
     EXPECT_FALSE(fit_quadric(line));
     EXPECT_FALSE(fit_quadric(two_lines));
     two_lines.push_back({0, 1, 0});
-    EXPECT_TRUE(fit_quadric(two_lines)) << "a third line tells v from v²";
+    EXPECT_TRUE(fit_quadric(two_lines)) << "a third line distinguishes v from v²";
     EXPECT_FALSE(fit_quadric(std::vector<QuadricSample>(4, {1, 1, 1})));
 }
 

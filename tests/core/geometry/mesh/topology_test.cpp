@@ -190,7 +190,7 @@ TEST(Topology, DegenerateTriangle_IsCountedAndMakesNoEdges) {
     EXPECT_EQ(facts.edges, 3u);
     EXPECT_EQ(facts.boundary_edges, 3u);
     EXPECT_EQ(facts.components, 1u);
-    EXPECT_FALSE(facts.genus) << "a mesh with degenerate triangles is no manifold";
+    EXPECT_FALSE(facts.genus) << "a mesh with degenerate triangles is not a manifold";
 }
 
 TEST(Topology, EveryPairOfEqualCorners_IsDegenerate) {

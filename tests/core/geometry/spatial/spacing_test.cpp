@@ -121,7 +121,7 @@ TEST(PointSpacing, RealScan_HasTheBruteForceMedian) {
     ASSERT_GT(count, 9'000u);
     EXPECT_DOUBLE_EQ(point_spacing(mesh->positions.span()), nearest_distances(mesh->positions.span())[count / 2]);
     EXPECT_LE(point_spacing(mesh->positions.span()), edge_spacing(*mesh))
-        << "an edge is no shorter than what is nearest";
+        << "an edge is at least as long as the distance to the nearest point";
 }
 
 TEST(EdgeSpacing, Cube_IsItsEdge) {
