@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "output/error_output.hpp"
 #include "output/printable.hpp"
 #include "output/stderr_text.hpp"
 #include "scanmill/base/error.hpp"
@@ -42,7 +43,7 @@ std::unique_ptr<Cache> open_cache(const CacheOptions& options, const Warn& warn)
     try {
         return std::make_unique<Cache>(default_cache_folder(), limit, warn);
     } catch (const Error& error) {
-        warn(fmt::format("{}; nothing is kept. {}", error.sentence(), error.hint()));
+        warn(fmt::format("{}; nothing is kept. {}", error.sentence(), with_option(error).hint()));
         return nullptr;
     }
 }

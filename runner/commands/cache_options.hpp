@@ -8,7 +8,6 @@
 #include <string>
 
 #include "scanmill/cache/cache.hpp"
-#include "scanmill/cache/keep_rule.hpp"
 
 namespace scanmill::runner {
 

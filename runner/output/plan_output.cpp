@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scanmill/base/text.hpp"
-#include "scanmill/graph/streaming.hpp"
+#include "scanmill/graph/graph.hpp"
 
 namespace scanmill::runner {
 

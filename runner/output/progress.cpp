@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "output/error_output.hpp"
 #include "output/printable.hpp"
 #include "output/stderr_text.hpp"
 
@@ -123,7 +124,7 @@ void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     if (!report.failure) return;
     board_.cell_failed();
     const bool several = graph_.plans[cell.plan]->variants.size() > 1;
-    say(fmt::format("error: {}{}", report.failure.text,
+    say(fmt::format("error: {}{}", with_option(report.failure.whole()).what(),
                     several ? fmt::format("\n  under variant '{}'", graph_.variant(cell).name) : ""));
 }
 

@@ -35,9 +35,9 @@ public:
     /// the file no longer holds what it held when it was opened, as far as that shows: other rows, or coordinates
     /// outside bounds().
     void read(std::size_t piece, Array<Vec3>& room) const;
-    /// One column's rows of a piece. Of what there are, gather() tells. From several threads at once. Cost: one pass
-    /// over the piece, whatever other columns there are. Pre: there is a column of this name.
-    virtual Column read_column(std::size_t piece, std::string_view name) const = 0;
+    /// All columns of a piece, without the positions. Several threads may call it at once. Cost: one pass over the
+    /// piece.
+    virtual ColumnTable read_columns(std::size_t piece) const = 0;
     /// These points with all their columns. Pre: `rows` ascending. Throws Error as read().
     PointCloud gather(std::span<const u32> rows, unsigned threads) const;
 

@@ -55,12 +55,14 @@ bool split(std::string_view text, Dimensioned& result) {
 
 double Length::value() const {
     if (in_ != In::scan_unit)
-        throw Error("the length {} was not resolved into the scan's unit", text())
-            .hint("call params.… = length.resolved(length_scale(scan)) before the algorithm");
+        throw UnresolvedLength(*this, Error("the length {} was not resolved into the scan's unit", text())
+                                          .hint("call length.resolved(length_scale(scan)) before the algorithm"));
     return amount_;
 }
 
-Length Length::resolved(const LengthScale& scale) const {
+UnresolvedLength::~UnresolvedLength() = default;
+
+Length Length::resolved(const LengthScale& scale) const try {
     const auto finite = [&](double length) {
         if (!std::isfinite(length))
             throw Error("{} comes to more than the largest number, {:.3g} u", text(),
@@ -85,9 +87,12 @@ Length Length::resolved(const LengthScale& scale) const {
     if (scale.unit == LengthUnit::unknown)
         throw Error("{} needs a scan of known unit; this scan's unit is not declared", text())
             .hint(
-                "say `--unit mm`, or `inputs: {scan: {kind: points, unit: mm}}` in the workflow, or write the length "
-                "in the scan's own unit, as 0.5 u");
+                "declare it with `inputs: {scan: {kind: points, unit: mm}}` in the workflow, or write the length in "
+                "the scan's own unit, as 0.5 u")
+            .remedy(Remedy::declare_unit);
     return finite(in_unit(amount_, suffix.unit, scale.unit));
+} catch (const Error& error) {
+    throw UnresolvedLength(*this, error);
 }
 
 std::string Length::text() const { return number_text(amount_) + " " + std::string(suffix_of(in_).text); }

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
 
@@ -37,10 +38,10 @@ public:
     constexpr double amount() const { return amount_; }
     constexpr In in() const { return in_; }
 
-    /// In the scan's unit. Throws Error when the length still is relative or in a unit of the world.
+    /// In the scan's unit. Throws UnresolvedLength when the length still is relative or in a unit of the world.
     double value() const;
-    /// The same length in the scan's unit. Throws Error: an absolute length on a scan of unknown unit (saying how to
-    /// declare it), a relative one when the scale is zero.
+    /// The same length in the scan's unit. Throws UnresolvedLength: an absolute length on a scan of unknown unit, a
+    /// relative one when the scale is zero.
     Length resolved(const LengthScale& scale) const;
     /// "0.1 %diag", shortest digits that read back equal.
     std::string text() const;
@@ -51,6 +52,17 @@ public:
 private:
     double amount_ = 0;
     In in_ = In::scan_unit;
+};
+
+/// A length that cannot be resolved against a scan, or that was read before it was resolved.
+class __attribute__((visibility("default"))) UnresolvedLength : public Error {
+public:
+    UnresolvedLength(const Length& length, const Error& reason) : Error(reason), length_(length) {}
+    ~UnresolvedLength() override;
+    const Length& length() const { return length_; }
+
+private:
+    Length length_;
 };
 
 /// "0.2 mm, 0.1 %diag, 3 spacing or 0.5 u": how a length is written, for messages.

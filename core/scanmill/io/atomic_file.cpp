@@ -61,7 +61,7 @@ void AtomicFile::open_named(const fs::path& folder) {
         if (descriptor_ >= 0) return;
         if (errno != EEXIST) {
             temporary_.clear();
-            throw Error("cannot be written in '{}': {}", folder.string(), reason_of(errno));
+            throw Error("cannot be written: {}", reason_of(errno));
         }
     }
 }
@@ -85,7 +85,7 @@ bool AtomicFile::link_to(const fs::path& name) const {
     const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);
     if (::linkat(AT_FDCWD, opened.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
     if (errno == EEXIST) return false;
-    throw Error("cannot be written in '{}': {}", folder_of(name).string(), reason_of(errno));
+    throw Error("cannot be written: {}", reason_of(errno));
 }
 
 void AtomicFile::commit(Sync sync) {

@@ -50,9 +50,10 @@ double resolved_length_power(const Length& written, int power, const LengthScale
     // The unit is resolved, not the amount, which may be 0 or below it.
     if (scale.unit == LengthUnit::unknown && is_absolute(written))
         throw Error("{}{} needs a scan of known unit; this scan's unit is not declared", written.text(), power)
-            .hint(fmt::format("say `--unit mm`, or `inputs: {{scan: {{kind: points, unit: mm}}}}` in the workflow, or "
-                              "write it in the scan's own unit, as 0.5 u{}",
-                              power));
+            .hint(fmt::format("declare it with `inputs: {{scan: {{kind: points, unit: mm}}}}` in the workflow, or "
+                              "write the value in the scan's own unit, as 0.5 u{}",
+                              power))
+            .remedy(Remedy::declare_unit);
     const double unit = Length(1, written.in()).resolved(scale).value();
     return written.amount() * std::pow(unit, power);
 }

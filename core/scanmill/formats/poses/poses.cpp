@@ -79,7 +79,7 @@ std::vector<ScanPose> read_poses(const std::filesystem::path& file, const OnPose
         const MappedFile content(file);
         return parse_poses(content.bytes(), warn_of_file);
     } catch (const Error& error) {
-        throw Error("'{}': {}", file.string(), error.sentence()).hint(error.hint());
+        throw error.reworded(fmt::format("'{}': {}", file.string(), error.sentence()));
     }
 }
 
