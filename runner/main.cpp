@@ -11,7 +11,7 @@
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/worker/serve.hpp"
+#include "scanmill/worker/worker_processes.hpp"
 
 int main(int argc, char** argv) {
     using namespace scanmill::runner;

@@ -11,7 +11,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/batch/batch.hpp"
-#include "scanmill/graph/streaming.hpp"
+#include "scanmill/graph/graph.hpp"
 
 namespace scanmill::runner {
 

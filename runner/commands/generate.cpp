@@ -37,7 +37,7 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
         file.write(text);
         file.commit();
     } catch (const Error& error) {
-        throw Error("'{}' {}", path.string(), error.sentence()).hint(error.hint());
+        throw error.reworded(fmt::format("'{}' {}", path.string(), error.sentence()));
     }
 }
 

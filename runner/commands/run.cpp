@@ -124,7 +124,7 @@ std::unique_ptr<Cache> cache_for(const ExecuteOptions& options, const Warn& warn
     try {
         return open_cache(options.cache, warn);
     } catch (const Error& error) {
-        warn(fmt::format("{}; results are not cached. {}", error.sentence(), error.hint()));
+        warn(fmt::format("{}; results are not cached. {}", error.sentence(), with_option(error).hint()));
         return nullptr;
     }
 }

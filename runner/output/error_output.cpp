@@ -21,7 +21,29 @@ void print_json_line(const Json& json) {
 
 }  // namespace
 
-void print(const Error& error, bool json) {
+Error with_option(const Error& error) {
+    const auto option = [&]() -> std::string_view {
+        switch (error.remedy()) {
+            case Remedy::none: return "";
+            case Remedy::name_scans: return "scanmill run WORKFLOW SCAN…";
+            case Remedy::name_input_files: return "scanmill run … --in NAME=FILE";
+            case Remedy::declare_unit: return "on the command line: --unit mm";
+            case Remedy::convert_unit: return "scanmill convert --to-unit mm IN OUT";
+            case Remedy::drop_invalid_points:
+                return "'scanmill convert --drop-invalid IN OUT' writes a copy without them";
+            case Remedy::choose_output_folder: return "on the command line: -o DIR";
+            case Remedy::choose_cache_folder: return "on the command line: --cache DIR";
+            case Remedy::run_without_workers: return "on the command line: -j 0";
+        }
+        return "";
+    }();
+    Error complete = error;
+    if (!option.empty()) complete.set_hint(error.hint() + (error.hint().empty() ? "" : "; ") + std::string(option));
+    return complete;
+}
+
+void print(const Error& plain, bool json) {
+    const Error error = with_option(plain);
     // Each part on one line: a file's name may contain a line break.
     std::string text = "error: " + printable_line(error.sentence());
     for (const std::string& frame : error.frames()) text += "\n  " + printable_line(frame);

@@ -11,6 +11,9 @@
 
 namespace scanmill::runner {
 
+/// The error with the command-line option for its remedy added to the hint.
+Error with_option(const Error& error);
+
 /// The error on stderr; with `json` also `{"scanmill": 1, "error": {"message", "where", "hint"}}` on stdout.
 void print(const Error& error, bool json);
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cwchar>
 
+#include "output/error_output.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/text.hpp"
 
@@ -213,7 +214,7 @@ void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     if (!report.failure) return;
     board_.cell_failed();
     const bool several = graph_.plans[cell.plan]->variants.size() > 1;
-    print(fmt::format("error: {}{}", report.failure.text,
+    print(fmt::format("error: {}{}", with_option(report.failure.whole()).what(),
                       several ? fmt::format("\n  under variant '{}'", graph_.variant(cell).name) : ""));
 }
 

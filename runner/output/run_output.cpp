@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "output/error_output.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/kinds/document.hpp"
@@ -69,7 +70,7 @@ Json cell_json(const RunGraph& graph, const RunCell& cell) {
 /// Adds `error`, `cause` and, where there is one, `signal` or `exit-code`.
 void add_failure(Json& entry, const Failure& failure) {
     if (!failure) return;
-    entry["error"] = failure.text;
+    entry["error"] = with_option(failure.whole()).what();
     entry["cause"] = name_of(failure.cause);
     if (failure.cause == Cause::signal) entry["signal"] = failure.number;
     if (failure.cause == Cause::exit) entry["exit-code"] = failure.number;

@@ -29,11 +29,12 @@ PointCloud put_together(const PointStream& stream) {
     for (const Column& column : hollow.columns) {
         std::vector<std::byte> bytes;
         for (std::size_t piece = 0; piece + 1 < stream.pieces().size(); ++piece) {
-            const Column part = stream.read_column(piece, column.name());
-            bytes.insert(bytes.end(), part.bytes().begin(), part.bytes().end());
+            const ColumnTable part = stream.read_columns(piece);
+            const Buffer<std::byte>& rows = part.find(column.name())->bytes();
+            bytes.insert(bytes.end(), rows.begin(), rows.end());
         }
         require_law(std::ranges::equal(bytes, cloud.columns.find(column.name())->bytes()),
-                    "a column that is read alone differs");
+                    "a column that is read piece by piece differs");
     }
     return cloud;
 }

@@ -118,7 +118,7 @@ TEST_F(Faults, Retries_AreCounted) {
     const Json step = poisoned("crash", "limits: {retries: 2}\n");
     expect_failure();
     EXPECT_EQ(step["attempts"], 3);
-    EXPECT_THAT(step["error"].get<std::string>(), HasSubstr("it wrote last: about to crash"));
+    EXPECT_THAT(step["error"].get<std::string>(), HasSubstr("its last output: about to crash"));
     EXPECT_THAT(result_.err, HasSubstr("attempt 2 of 3 failed"));
     const Json refused =
         (std::filesystem::remove_all(folder_ / "out"), scans_ = 0, poisoned("fail", "limits: {retries: 2}\n"));

@@ -62,8 +62,8 @@ TEST_F(Storage, ReadOnlyCache_WarnsOnceAndIsRead) {
     if (result.exit_code > 100) GTEST_SKIP() << "skipped: the program may not be run without root's rights here";
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(outputs().size(), 8u);
-    EXPECT_THAT(result.err, HasSubstr("does not keep what is new"));
-    EXPECT_EQ(result.err.find("does not keep"), result.err.rfind("does not keep")) << "several workers, one sentence";
+    EXPECT_THAT(result.err, HasSubstr("does not store new results"));
+    EXPECT_EQ(result.err.find("does not store"), result.err.rfind("does not store")) << "several workers, one sentence";
 }
 
 TEST_F(Storage, FilesThatMayNotGrow_FailWhatCannotBeWritten) {
@@ -79,7 +79,7 @@ TEST_F(Storage, FilesThatMayNotGrow_FailWhatCannotBeWritten) {
     limited.file_limit = 200'000;
     const ProgramResult result = scanmill_program({"batch", "b.yaml", "-o", "out", "--keep", "always"}, limited);
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, AllOf(HasSubstr("scan_02.ply"), HasSubstr("does not keep what is new")));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("scan_02.ply"), HasSubstr("does not store new results")));
     EXPECT_EQ(outputs().size(), 1u) << "the small one, and nothing half-written";
     const Json run = recorded(1);
     EXPECT_EQ(count(run["cells"], "cause", "output"), 1u);

@@ -53,10 +53,10 @@ TEST_F(DryRun, ValueThatIsNotKept_HasTheReasonThatWasAskedFor) {
     write_scans("a", 1);
     const std::string scan = "scans/a_01.xyz";
     ASSERT_EQ(scanmill({"run", "w.yaml", scan, "-o", "out", "--keep", "never"}).exit_code, 0);
-    EXPECT_THAT(path_prefix(scan), HasSubstr("its 'points' is not in the cache: the run that made it did not keep it"));
+    EXPECT_THAT(path_prefix(scan), HasSubstr("its 'points' is not in the cache: an earlier run did not store it"));
     EXPECT_THAT(
         path_prefix(scan, {"--keep", "never"}),
-        AllOf(HasSubstr("will run because its 'points' is not in the cache, and with --keep never none is kept"),
+        AllOf(HasSubstr("will run because its 'points' is not in the cache, and the policy 'never' stores none"),
               Not(HasSubstr("quick"))));
 }
 

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 /// Allocating failed, or more was seen to be resident: whichever came first.
 const auto what_was_reached =
-    ContainsRegex("; [0-9.]+ [KMG]iB were resident at most|it was ended at [0-9.]+ [KMG]iB, ");
+    ContainsRegex("; the largest resident size was [0-9.]+ [KMG]iB|stopped at [0-9.]+ [KMG]iB, ");
 constexpr const char* way_out = "\nhint: raise the limit, or thin the scan first";
 
 class Limits : public Batch {
@@ -41,7 +41,7 @@ TEST_F(Limits, TimeIsOverWhileAScanIsRead_SaysSo) {
     for (const char* bin_size : {"auto", "0.01 u"}) {  // as a whole, and as a stream
         write_thinning(bin_size);
         EXPECT_THAT(error_under("{step: {time: 1 ms}}", "time", "large.xyz"),
-                    AllOf(ContainsRegex("^the time did not suffice: it was ended after [0-9]+\\.[0-9]+ s, the limit of "
+                    AllOf(ContainsRegex("^time limit exceeded: stopped after [0-9]+\\.[0-9]+ s, the limit of "
                                         "a step is 1 ms\n"),
                           HasSubstr("\n  while reading 'large.xyz'\n  on scan 'large.xyz'"), HasSubstr(way_out)));
         EXPECT_THAT(error_under("{time: 1 ms}", "time", "large.xyz"),
@@ -65,7 +65,7 @@ TEST_F(Limits, TimeOfACellIsOverBeforeARetry_SaysWhatIsNotDone) {
     write_scans("a", 1);
     EXPECT_THAT(
         error_under("{time: 400 ms, retries: 1}", "time", "{path: scans/a_01.xyz, set: {mode: loop}}"),
-        AllOf(ContainsRegex("the limit of a cell is 400 ms, [0-9]+\\.[0-9]+ s were spent and this is not done\n"),
+        AllOf(ContainsRegex("the limit of a cell is 400 ms, [0-9]+\\.[0-9]+ s were used and this is not done\n"),
               HasSubstr("\n  in step 'last' (w.yaml:"), HasSubstr("\n  on scan 'scans/a_01.xyz'"), HasSubstr(way_out)));
 }
 
@@ -74,7 +74,7 @@ TEST_F(Limits, MemoryIsNotEnoughToReadAScan_SaysSo) {
     written(folder_ / "large.xyz", without_columns(helix(4'000'000)));  // 96 MB in memory
     write_thinning("auto");
     EXPECT_THAT(error_under("{memory: 64 MiB}", "memory", "large.xyz"),
-                AllOf(HasSubstr("the memory did not suffice"), HasSubstr("the limit is 64.0 MiB"), what_was_reached,
+                AllOf(HasSubstr("memory limit exceeded"), HasSubstr("the limit is 64.0 MiB"), what_was_reached,
                       HasSubstr("\n  while reading 'large.xyz'\n  on scan 'large.xyz'"), HasSubstr(way_out)));
 }
 

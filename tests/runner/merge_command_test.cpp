@@ -86,7 +86,7 @@ TEST_F(MergeCommand, ViewWithoutAUnit_IsTakenToBeInThatOfTheOthers_WhereverItSta
          {std::vector<std::string>{"mm.xyz", "left.xyz"}, std::vector<std::string>{"left.xyz", "mm.xyz"}}) {
         const ProgramResult ran = run({views[0], views[1], "-o", "out"});
         EXPECT_EQ(ran.exit_code, 0);
-        EXPECT_THAT(ran.err, HasSubstr("declares no unit and was taken to be in that of the others: mm"));
+        EXPECT_THAT(ran.err, HasSubstr("declares no unit; the unit of the other inputs is used: mm"));
         EXPECT_EQ(read_points(folder_ / "out/merge-views.ply")->frame.unit, LengthUnit::millimetre);
     }
     EXPECT_THAT(run({"mm.xyz", "left.xyz", "--unit", "mm", "-o", "out"}).err, Not(HasSubstr("declares no unit")));

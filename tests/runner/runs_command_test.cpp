@@ -81,7 +81,7 @@ TEST_F(RunsCommand, DryRun_NamesWhatChangedSinceTheLastRun) {
     EXPECT_THAT(dry(), HasSubstr("0 to compute"));
     write("0.2 u");
     EXPECT_THAT(dry(), AllOf(HasSubstr("will run because bin-size changed 0.1 u → 0.2 u since run 1"),
-                             HasSubstr("will run because what 'first' gives may change since run 1")));
+                             HasSubstr("will run because the result of 'first' may change since run 1")));
     write("0.1 u");
     EXPECT_THAT(dry({"--seed", "3"}), HasSubstr("the seed changed 0 → 3"));
     folder_.write("a.xyz", "0 0 0\n5 0 0\n");
@@ -89,7 +89,7 @@ TEST_F(RunsCommand, DryRun_NamesWhatChangedSinceTheLastRun) {
                 AllOf(HasSubstr("the file, its unit or its frame changed since run 1"), HasSubstr("the scan changed")));
     scanmill({"cache", "clear"});
     folder_.write("a.xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 2\n");
-    EXPECT_THAT(dry(), HasSubstr("the cache does not know it"));
+    EXPECT_THAT(dry(), HasSubstr("it is not in the cache"));
 }
 
 TEST_F(RunsCommand, MissingRunsAndFolders_AreReported) {

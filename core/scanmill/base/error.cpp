@@ -23,6 +23,18 @@ Error&& Error::hint(std::string text) && {
     return std::move(*this);
 }
 
+Error&& Error::remedy(Remedy remedy) && {
+    remedy_ = remedy;
+    return std::move(*this);
+}
+
+Error Error::reworded(std::string sentence) const {
+    Error other = *this;
+    other.sentence_ = std::move(sentence);
+    other.compose();
+    return other;
+}
+
 void Error::compose() {
     text_ = sentence_;
     for (const std::string& frame : frames_) text_ += "\n  " + frame;

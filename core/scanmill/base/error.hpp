@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What the world does to us: one sentence that a user can act on, a way out, and where it happened.
+/// Errors that users cause or meet: one sentence that a user can act on, a hint, and where it happened.
 ///
-/// Whoever throws writes the sentence (what was found, what is needed, with numbers). Each layer that lets the error
-/// pass adds the one thing it knows, innermost first: "in step 'delaunay' (object.yaml:14:5)", "on scan 'plate.ply'".
-/// Our own invariants are asserts, never Errors.
+/// The function that throws writes the sentence (what was found, what is needed, with numbers). Each layer that passes
+/// the error on adds one frame, innermost first: "in step 'delaunay' (object.yaml:14:5)", "on scan 'plate.ply'".
+/// Broken invariants of the program are asserts, never Errors.
 
 #include <fmt/format.h>
 
@@ -14,6 +14,20 @@
 #include <vector>
 
 namespace scanmill {
+
+/// A setting of the program that could help. Core and engine do not name command-line options: the program that calls
+/// them adds its option for a remedy to the hint.
+enum class Remedy {
+    none,
+    name_scans,
+    name_input_files,
+    declare_unit,
+    convert_unit,
+    drop_invalid_points,
+    choose_output_folder,
+    choose_cache_folder,
+    run_without_workers
+};
 
 class __attribute__((visibility("default"))) Error : public std::exception {
 public:
@@ -28,10 +42,14 @@ public:
     Error& set_hint(std::string hint);
     /// For `throw Error(...).hint(...)`.
     Error&& hint(std::string text) &&;
+    Error&& remedy(Remedy remedy) &&;
+    /// The same error with another sentence.
+    Error reworded(std::string sentence) const;
 
     const std::string& sentence() const { return sentence_; }
     const std::vector<std::string>& frames() const { return frames_; }
     const std::string& hint() const { return hint_; }
+    Remedy remedy() const { return remedy_; }
     /// Sentence, frames (each on its line, indented by two) and hint, without a trailing newline.
     const char* what() const noexcept override { return text_.c_str(); }
 
@@ -40,6 +58,7 @@ private:
     std::string sentence_;
     std::vector<std::string> frames_;
     std::string hint_;
+    Remedy remedy_ = Remedy::none;
     std::string text_;
 };
 

@@ -34,9 +34,8 @@ public:
     /// Reads the positions of a piece. Callable from several threads. Throws Error if the file has visibly changed
     /// since it was opened: another number of rows, or coordinates outside bounds().
     void read(std::size_t piece, Array<Vec3>& positions) const;
-    /// A column's rows of a piece; gather() of no rows lists the columns. Callable from several threads. Cost: one pass
-    /// over the piece. Pre: there is a column of this name.
-    virtual Column read_column(std::size_t piece, std::string_view name) const = 0;
+    /// All columns of a piece, without the positions. Callable from several threads. Cost: one pass over the piece.
+    virtual ColumnTable read_columns(std::size_t piece) const = 0;
     /// These points with all their columns. Pre: `rows` ascending. Throws Error as read().
     PointCloud gather(std::span<const u32> rows, unsigned threads) const;
 

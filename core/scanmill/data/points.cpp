@@ -22,7 +22,8 @@ void require_finite(std::span<const Vec3> positions, std::string_view what) {
     const int axis = !std::isfinite(p.x()) ? 0 : !std::isfinite(p.y()) ? 1 : 2;
     throw Error("needs finite coordinates; {} of {} {} {} a NaN or an infinity, the first is number {} ({} is {})", bad,
                 positions.size(), what, by_count(bad, "has", "have"), first, "xyz"[axis], p[axis])
-        .hint("'scanmill convert --drop-invalid IN OUT' writes a copy without them");
+        .hint("remove them from the file")
+        .remedy(Remedy::drop_invalid_points);
 }
 
 Array<u32> finite_rows(std::span<const Vec3> positions) {

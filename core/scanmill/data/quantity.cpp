@@ -51,12 +51,14 @@ Dimensioned split_with_unit(std::string_view text, std::string_view noun, std::s
 
 double Length::value() const {
     if (in_ != In::scan_unit)
-        throw Error("the length {} was not resolved into the scan's unit", text())
-            .hint("call params.… = length.resolved(length_scale(scan)) before the algorithm");
+        throw UnresolvedLength(*this, Error("the length {} was not resolved into the scan's unit", text())
+                                          .hint("call length.resolved(length_scale(scan)) before the algorithm"));
     return amount_;
 }
 
-Length Length::resolved(const LengthScale& scale) const {
+UnresolvedLength::~UnresolvedLength() = default;
+
+Length Length::resolved(const LengthScale& scale) const try {
     const auto in_range = [&](double length) {
         if (!std::isfinite(length) || (length == 0 && amount_ != 0))
             throw Error("{} is outside the range of a length: it is {} u", text(), length);
@@ -77,9 +79,12 @@ Length Length::resolved(const LengthScale& scale) const {
     if (scale.unit == LengthUnit::unknown)
         throw Error("{} needs a scan of known unit; this scan's unit is not declared", text())
             .hint(
-                "say `--unit mm`, or `inputs: {scan: {kind: points, unit: mm}}` in the workflow, or write the length "
-                "in the scan's own unit, as 0.5 u");
+                "declare it with `inputs: {scan: {kind: points, unit: mm}}` in the workflow, or write the length in "
+                "the scan's own unit, as 0.5 u")
+            .remedy(Remedy::declare_unit);
     return in_range(in_unit(amount_, unit, scale.unit));
+} catch (const Error& error) {
+    throw UnresolvedLength(*this, error);
 }
 
 std::string Length::text() const {

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
 
@@ -42,10 +43,10 @@ public:
     constexpr double amount() const { return amount_; }
     constexpr In in() const { return in_; }
 
-    /// In the scan's unit. Throws Error if the length is not resolved.
+    /// In the scan's unit. Throws UnresolvedLength if the length is not resolved.
     double value() const;
-    /// The same length in the scan's unit. Throws Error for an absolute length on a scan of unknown unit (with how to
-    /// declare it) and for a relative one if the reference is zero.
+    /// The same length in the scan's unit. Throws UnresolvedLength for an absolute length on a scan of unknown unit and
+    /// for a relative one if the reference is zero.
     Length resolved(const LengthScale& scale) const;
     /// "0.1 %diag", shortest digits that read back equal.
     std::string text() const;
@@ -56,6 +57,17 @@ public:
 private:
     double amount_ = 0;
     In in_ = In::scan_unit;
+};
+
+/// A length that cannot be resolved against a scan, or that was read before it was resolved.
+class __attribute__((visibility("default"))) UnresolvedLength : public Error {
+public:
+    UnresolvedLength(const Length& length, const Error& reason) : Error(reason), length_(length) {}
+    ~UnresolvedLength() override;
+    const Length& length() const { return length_; }
+
+private:
+    Length length_;
 };
 
 class Angle {

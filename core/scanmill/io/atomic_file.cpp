@@ -63,7 +63,7 @@ void AtomicFile::open_named(const fs::path& folder) {
         if (descriptor_ >= 0) return;
         if (errno != EEXIST) {
             temporary_.clear();
-            throw Error("cannot be written in '{}': {}", folder.string(), reason_of(errno));
+            throw Error("cannot be written: {}", reason_of(errno));
         }
     }
 }

@@ -153,7 +153,8 @@ Vec3 translation_in(LengthUnit unit, const RigidTransform& pose) {
     if (pose.unit == LengthUnit::unknown || pose.unit == unit) return pose.translation;
     if (unit == LengthUnit::unknown)
         throw Error("the pose is in {}; the unit of the scan is not declared", symbol(pose.unit))
-            .hint("declare it: --unit mm, or `unit: mm` at the workflow's input or at the scan in a batch");
+            .hint("declare it with `unit: mm` at the workflow's input, or at the scan in a batch")
+            .remedy(Remedy::declare_unit);
     Vec3 translation;
     for (int axis = 0; axis < 3; ++axis) translation[axis] = in_unit(pose.translation[axis], pose.unit, unit);
     return translation;

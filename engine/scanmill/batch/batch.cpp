@@ -260,13 +260,13 @@ private:
         if (workflow.inputs.empty())
             batch_diagnostics_.error(listed.position,
                                      "'{}' has no inputs, so there is nothing to feed scans to; "
-                                     "run it by itself: scanmill run",
+                                     "run it by itself",
                                      name);
         if (workflow.inputs.size() <= 1) return;
         batch_diagnostics_.error(
             listed.position,
-            "'{}' has {} inputs, and a batch can only feed the first, '{}'; run it over the scans with "
-            "`scanmill run --in {}=FILE`",
+            "'{}' has {} inputs, and a batch can only feed the first, '{}'; run it by itself over the "
+            "scans, with a file for '{}'",
             name, workflow.inputs.size(), workflow.inputs[0].name, workflow.inputs[1].name);
     }
 

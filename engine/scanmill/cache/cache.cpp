@@ -12,8 +12,6 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/hash.hpp"
-#include "scanmill/cache/value_file.hpp"
-#include "scanmill/graph/keys.hpp"
 
 namespace scanmill {
 
@@ -21,37 +19,38 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Grows when a file's layout or a key's meaning changes; other versions are left alone.
 constexpr std::string_view layout = "v1";
 constexpr std::array<std::string_view, 4> kinds{"plans", "steps", "values", "files"};
 
 struct CachedFile {
     fs::path path;
+    std::string_view kind;
     u64 bytes;
-    std::int64_t used;  ///< nanoseconds, the later the younger
+    std::int64_t used;  ///< time of the last use in nanoseconds
 };
 
-/// Marks the file as used now. On a read-only folder nothing happens.
-void touch(const fs::path& file) { ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0); }
+std::int64_t nanoseconds(const timespec& time) { return std::int64_t(time.tv_sec) * 1'000'000'000 + time.tv_nsec; }
 
-/// A file that somebody is about to write; one that nobody finished is an hour old.
-bool is_in_the_making(const fs::path& file, std::int64_t used) {
+/// Whether another process is writing the file. After an hour it counts as abandoned.
+bool is_being_written(const fs::path& file, std::int64_t used) {
     constexpr std::int64_t hour = 3600 * std::int64_t(1'000'000'000);
     timespec now;
     ::clock_gettime(CLOCK_REALTIME, &now);
-    return file.filename().string().starts_with('.') && std::int64_t(now.tv_sec) * 1'000'000'000 - used < hour;
+    return file.filename().string().starts_with('.') && nanoseconds(now) - used < hour;
 }
 
-std::vector<CachedFile> files_of(const fs::path& folder, std::string_view kind) {
+std::vector<CachedFile> all_files(const fs::path& folder) {
     std::vector<CachedFile> files;
-    std::error_code gone;  // others may remove what is listed
-    for (fs::recursive_directory_iterator entry(folder / layout / kind, gone), end; !gone && entry != end;
-         entry.increment(gone)) {
-        struct stat properties;
-        if (::stat(entry->path().c_str(), &properties) != 0 || !S_ISREG(properties.st_mode)) continue;
-        const std::int64_t used = std::int64_t(properties.st_mtim.tv_sec) * 1'000'000'000 + properties.st_mtim.tv_nsec;
-        if (is_in_the_making(entry->path(), used)) continue;
-        files.push_back({entry->path(), static_cast<u64>(properties.st_size), used});
+    for (const std::string_view kind : kinds) {
+        std::error_code gone;  // other processes may remove files meanwhile
+        for (fs::recursive_directory_iterator entry(folder / layout / kind, gone), end; !gone && entry != end;
+             entry.increment(gone)) {
+            struct stat properties;
+            if (::stat(entry->path().c_str(), &properties) != 0 || !S_ISREG(properties.st_mode)) continue;
+            const std::int64_t used = nanoseconds(properties.st_mtim);
+            if (!is_being_written(entry->path(), used))
+                files.push_back({entry->path(), kind, static_cast<u64>(properties.st_size), used});
+        }
     }
     return files;
 }
@@ -61,7 +60,7 @@ u64 remove(const CachedFile& file) {
     return fs::remove(file.path, gone) ? file.bytes : 0;
 }
 
-/// So that backup programs pass the folder over: https://bford.info/cachedir/
+/// Makes backup programs skip the folder: https://bford.info/cachedir/
 void mark_as_cache(const fs::path& folder) {
     const fs::path tag = folder / "CACHEDIR.TAG";
     std::error_code ignored;
@@ -77,7 +76,8 @@ fs::path default_cache_folder() {
     const char* home = std::getenv("HOME");
     if (home && fs::path(home).is_absolute()) return fs::path(home) / ".cache" / "scanmill";
     throw Error("there is no folder for the cache: neither XDG_CACHE_HOME nor HOME is an absolute path")
-        .hint("name one: --cache DIR");
+        .hint("set one of them")
+        .remedy(Remedy::choose_cache_folder);
 }
 
 Cache::Cache(fs::path folder, u64 limit, OnWarning on_warning)
@@ -85,7 +85,7 @@ Cache::Cache(fs::path folder, u64 limit, OnWarning on_warning)
       limit_(limit),
       on_warning_(std::move(on_warning)) {}
 
-fs::path Cache::place(std::string_view kind, std::string_view name) const {
+fs::path Cache::path_of(std::string_view kind, std::string_view name) const {
     return folder_ / layout / kind / name.substr(0, 2) / name;
 }
 
@@ -97,14 +97,14 @@ void Cache::warn(std::string text) const {
 template <class Read>
 auto Cache::read(std::string_view kind, std::string_view name, Read&& read, bool marks_use) const
     -> decltype(read(fs::path())) {
-    const fs::path file = place(kind, name);
+    const fs::path file = path_of(kind, name);
     try {
         auto found = read(file);
-        if (found && marks_use) touch(file);
+        if (found && marks_use) ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);  // now; fails on a read-only folder
         return found;
     } catch (const Error& error) {
         std::error_code trouble;
-        if (!fs::exists(file, trouble)) return std::nullopt;  // somebody else removed it just now
+        if (!fs::exists(file, trouble)) return std::nullopt;  // another process removed it
         const bool removed = fs::remove(file, trouble);
         warn(fmt::format("an entry of the cache {} and counts as missing: {}",
                          removed ? "was removed" : "cannot be removed", error.sentence()));
@@ -126,8 +126,8 @@ std::optional<StepResult> Cache::step(std::string_view run_key) const {
 
 bool Cache::has_value(std::string_view content, u64 bytes) const {
     std::error_code absent;
-    const auto found = fs::file_size(place("values", content), absent);
-    return !absent && (found == bytes || value(content));  // reading tells what is wrong with it, and removes it
+    const auto found = fs::file_size(path_of("values", content), absent);
+    return !absent && (found == bytes || value(content));  // a damaged file is removed with a warning
 }
 
 std::optional<Value> Cache::value(std::string_view content) const {
@@ -140,23 +140,19 @@ std::optional<Value> Cache::value(std::string_view content) const {
 
 template <class Write>
 bool Cache::write(std::string_view kind, std::string_view name, Write&& write, bool replace) {
-    const fs::path file = place(kind, name);
+    const fs::path file = path_of(kind, name);
     try {
         std::error_code trouble;
-        if (!replace && fs::exists(file, trouble)) return true;  // the same bytes: the name says so
+        if (!replace && fs::exists(file, trouble)) return true;  // equal names mean equal bytes
         fs::create_directories(file.parent_path(), trouble);
-        if (trouble) throw Error("the folder '{}' cannot be made: {}", file.parent_path().string(), trouble.message());
+        if (trouble) throw Error("a folder in it cannot be made: {}", trouble.message());
         mark_as_cache(folder_ / layout);
         write(file);
         return true;
     } catch (const Error& error) {
-        const std::scoped_lock one_at_a_time(mutex_);
-        // Without the file's name: the sentence is the same whichever process says it about whichever file.
-        const std::string& sentence = error.sentence();
-        if (!write_failed_ && on_warning_)
-            on_warning_(fmt::format("the cache '{}' does not keep what is new: {}", folder_.string(),
-                                    sentence.substr(sentence.rfind(": ") + 2)));
-        write_failed_ = true;
+        // The sentence does not name the file, so that all worker processes give the same warning.
+        if (!write_failed_.exchange(true))
+            warn(fmt::format("the cache '{}' does not store new results: {}", folder_.string(), error.sentence()));
         return false;
     }
 }
@@ -177,7 +173,7 @@ std::string Cache::file_hash(const fs::path& file) {
     struct stat properties;
     std::error_code unknown;
     const fs::path whole = fs::absolute(file, unknown);
-    if (unknown || ::stat(whole.c_str(), &properties) != 0) return content_hash(file);  // says what is wrong
+    if (unknown || ::stat(whole.c_str(), &properties) != 0) return content_hash(file);  // throws
     const std::string description = fmt::format(
         "{} {} {} {}.{:09} {}.{:09}", properties.st_dev, properties.st_ino, properties.st_size,
         properties.st_mtim.tv_sec, properties.st_mtim.tv_nsec, properties.st_ctim.tv_sec, properties.st_ctim.tv_nsec);
@@ -185,10 +181,10 @@ std::string Cache::file_hash(const fs::path& file) {
     const auto memo = read(
         "files", name, [](const fs::path& of) { return read_checked(of, "file"); }, false);
     if (memo && memo->starts_with(description + " ")) {
-        // By the file system's own clock: ours may be another.
+        // Both times are from the file system's clock.
         struct stat written;
         constexpr time_t settled = 2;
-        if (::stat(place("files", name).c_str(), &written) == 0 &&
+        if (::stat(path_of("files", name).c_str(), &written) == 0 &&
             written.st_mtim.tv_sec - std::max(properties.st_mtim.tv_sec, properties.st_ctim.tv_sec) > settled)
             return memo->substr(description.size() + 1);
     }
@@ -200,23 +196,18 @@ std::string Cache::file_hash(const fs::path& file) {
 
 CacheInfo Cache::info() const {
     CacheInfo info{folder_, 0, 0, 0, limit_};
-    for (const std::string_view kind : kinds) {
-        const std::vector<CachedFile> files = files_of(folder_, kind);
-        if (kind == "steps") info.steps = files.size();
-        if (kind == "values") info.values = files.size();
-        for (const CachedFile& file : files) info.bytes += file.bytes;
+    for (const CachedFile& file : all_files(folder_)) {
+        info.steps += file.kind == "steps";
+        info.values += file.kind == "values";
+        info.bytes += file.bytes;
     }
     return info;
 }
 
 u64 Cache::evict() {
-    std::vector<CachedFile> files;
+    std::vector<CachedFile> files = all_files(folder_);
     u64 total = 0;
-    for (const std::string_view kind : kinds)
-        for (CachedFile& file : files_of(folder_, kind)) {
-            total += file.bytes;
-            files.push_back(std::move(file));
-        }
+    for (const CachedFile& file : files) total += file.bytes;
     if (total <= limit_) return 0;
     std::ranges::sort(files, {}, &CachedFile::used);
     const u64 wanted = limit_ / 10 * 9;
@@ -230,8 +221,7 @@ u64 Cache::evict() {
 
 u64 Cache::clear() {
     u64 removed = 0;
-    for (const std::string_view kind : kinds)
-        for (const CachedFile& file : files_of(folder_, kind)) removed += remove(file);
+    for (const CachedFile& file : all_files(folder_)) removed += remove(file);
     return removed;
 }
 

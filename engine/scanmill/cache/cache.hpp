@@ -2,12 +2,13 @@
 #pragma once
 /// Results of steps, kept for later runs and shared by all runs on the machine.
 ///
-/// Three kinds of files, each named by a 128-bit hash and never changed: plans/ (a step's plan key → its run key),
-/// steps/ (run key → StepResult), values/ (content → value file); and files/, which remembers scans that were hashed.
-/// Any number of processes may read, write, clear and
-/// evict at once: files appear whole, and whoever finds one missing computes it again. What is damaged is removed,
-/// told, and counts as missing. A folder that cannot be written to gives what it has.
+/// There are three kinds of files, each named by a 128-bit hash and never changed: plans/ (a step's plan key → its run
+/// key), steps/ (run key → StepResult) and values/ (content → value file). A fourth, files/, stores the hashes of
+/// scans. Any number of processes may read, write, clear and evict at once: files appear whole, and a missing file is
+/// computed again. A damaged file is removed with a warning and counts as missing. A read-only folder can still be
+/// read.
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -28,6 +29,37 @@ struct CacheInfo {
     u64 limit = 0;
 };
 
+/// Decides which values are stored.
+///
+/// A value is stored when computing it again, together with the inputs that are not stored, takes more than twice as
+/// long as writing it. The writing speed is measured; 500 MB per second are assumed until then.
+class KeepRule {
+public:
+    enum class Policy { never, worth, always };
+
+    explicit KeepRule(Policy policy = Policy::worth) : policy_(policy) {}
+
+    bool is_worth(double seconds_to_make, u64 bytes) const {
+        if (policy_ != Policy::worth) return policy_ == Policy::always;
+        constexpr double margin = 2;
+        return seconds_to_make > margin * static_cast<double>(bytes) / bytes_per_second_;
+    }
+    /// Measures the writing speed. Small files are ignored: creating them dominates.
+    void wrote(u64 bytes, double seconds) {
+        constexpr u64 least = 1 << 20;
+        if (bytes < least || !(seconds > 0)) return;
+        written_ += static_cast<double>(bytes);
+        seconds_ += seconds;
+        bytes_per_second_ = written_ / seconds_;
+    }
+    double bytes_per_second() const { return bytes_per_second_; }
+
+private:
+    Policy policy_;
+    double written_ = 0, seconds_ = 0;
+    double bytes_per_second_ = 5e8;
+};
+
 /// $XDG_CACHE_HOME/scanmill, else ~/.cache/scanmill. Throws Error when neither variable is an absolute path.
 std::filesystem::path default_cache_folder();
 
@@ -36,36 +68,36 @@ public:
     static constexpr u64 default_limit = u64(20) << 30;
     using OnWarning = std::function<void(std::string)>;
 
-    /// Touches nothing yet. Beyond `limit` bytes, evict() removes what was used longest ago.
+    /// Accesses no file yet. `limit`: bytes that evict() leaves.
     explicit Cache(std::filesystem::path folder, u64 limit = default_limit, OnWarning on_warning = {});
 
     std::optional<std::string> run_key(std::string_view plan_key) const;
     std::optional<StepResult> step(std::string_view run_key) const;
-    /// A value file of this content, and of as many bytes as it must have.
+    /// Whether there is a value file of this content and size.
     bool has_value(std::string_view content, u64 bytes) const;
     std::optional<Value> value(std::string_view content) const;
 
-    /// False when it could not be written; the first reason is told once.
+    /// These return false when the file cannot be written. The first time, they warn.
     bool keep_run_key(std::string_view plan_key, std::string_view run_key);
     bool keep_step(std::string_view run_key, const StepResult& result);
     bool keep_value(const EncodedValue& value);
 
-    /// The hash of a file's bytes, as content_hash(). It is remembered with the file's path, size, inode and times, so
-    /// that a file which stayed as it is need not be read again; one that was written within two seconds of being
-    /// hashed is, because its times may not tell a later change. Throws Error as content_hash().
+    /// The hash of a file's bytes, as content_hash(). It is stored with the file's path, size, inode and times, so that
+    /// an unchanged file is not read again. A file that was written within two seconds of being hashed is read again,
+    /// because a later change may not show in its times. Throws Error as content_hash().
     std::string file_hash(const std::filesystem::path& file);
 
     CacheInfo info() const;
-    /// Removes what was used longest ago until the rest is within nine tenths of the limit; returns the bytes removed.
-    /// Does nothing within the limit. Cost: a look at every file.
+    /// If the limit is exceeded, removes the least recently used files until nine tenths of it are used. Returns the
+    /// bytes removed. Cost: one stat() per file.
     u64 evict();
-    /// Removes everything that is the cache's; returns the bytes removed.
+    /// Removes all files of the cache; returns the bytes removed.
     u64 clear();
 
     const std::filesystem::path& folder() const { return folder_; }
 
 private:
-    std::filesystem::path place(std::string_view kind, std::string_view name) const;
+    std::filesystem::path path_of(std::string_view kind, std::string_view name) const;
     template <class Read>
     auto read(std::string_view kind, std::string_view name, Read&& read, bool marks_use = true) const
         -> decltype(read(std::filesystem::path()));
@@ -77,7 +109,7 @@ private:
     u64 limit_;
     OnWarning on_warning_;
     mutable std::mutex mutex_;
-    bool write_failed_ = false;
+    std::atomic<bool> write_failed_ = false;
 };
 
 }  // namespace scanmill

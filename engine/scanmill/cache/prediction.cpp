@@ -9,86 +9,62 @@ namespace scanmill {
 
 namespace {
 
-std::optional<StepResult> remembered(const Cache& cache, const std::string& plan_key) {
+/// The node's cached result, if it has this step's ports and parameters.
+std::optional<StepResult> cached_result(const Cache& cache, const std::string& plan_key, const PlannedStep* step) {
     const std::optional<std::string> run_key = cache.run_key(plan_key);
-    return run_key ? cache.step(*run_key) : std::nullopt;
+    std::optional<StepResult> result = run_key ? cache.step(*run_key) : std::nullopt;
+    if (!result) return result;
+    const auto has_output = [&](const PortSpec& port) { return result->output(port.name) != nullptr; };
+    const auto is_declared = [&](const auto& parameter) { return step->spec.parameter(parameter.first) != nullptr; };
+    const bool is_sound = step ? std::ranges::all_of(step->spec.outputs, has_output) &&
+                                     std::ranges::all_of(result->resolved.values, is_declared)
+                               : result->output("") != nullptr;
+    return is_sound ? result : std::nullopt;
 }
 
-class Seer {
-public:
-    Seer(const RunGraph& graph, const Cache* cache, KeepRule::Policy policy)
-        : graph_(graph),
-          cache_(cache),
-          policy_(policy),
-          nodes_(graph.nodes.size()) {}
-
-    std::vector<NodePrediction> see() {
-        for (const RunCell& cell : graph_.cells)
-            for (const RunOutput& output : cell.outputs) nodes_[output.node].needed.insert(output.port);
-        // A node's inputs stand before it: from the end, everybody who needs its values has spoken.
-        for (std::size_t index = nodes_.size(); index-- > 0;) look_at(index);
-        return std::move(nodes_);
-    }
-
-private:
-    void look_at(std::size_t index) {
-        const RunNode& node = graph_.nodes[index];
-        NodePrediction& seen = nodes_[index];
-        const PlannedStep* step = graph_.step(node);
-        if (step && !step->expectations.empty()) seen.needed.insert(step->spec.outputs.front().name);
-        if (cache_ && !node.is_uncacheable) seen.known = remembered(*cache_, node.key);
-        if (seen.known && !is_sound(*seen.known, step)) seen.known.reset();
-        if (!cache_)
-            seen.why = "there is no cache";
-        else if (node.is_uncacheable)
-            seen.why = "it reads what has no content to be known by";
-        else if (!seen.known)
-            seen.why = step ? "it has not run on such inputs with such parameters" : "it was not read before";
-        else if (const auto missing = std::ranges::find_if(
-                     seen.needed, [&](const std::string& port) { return !is_kept(*seen.known, port); });
-                 missing != seen.needed.end())
-            seen.why = why_missing(*seen.known, *missing);
-        seen.will_run = !seen.why.empty();
-        if (!seen.will_run) return;
-        for (const NodeInput& input : node.inputs) nodes_[input.node].needed.insert(input.from);
-    }
-
-    /// Whether the result speaks of this step's ports and parameters.
-    static bool is_sound(const StepResult& result, const PlannedStep* step) {
-        if (!step) return result.output("") != nullptr;
-        const auto is_there = [&](const PortSpec& port) { return result.output(port.name) != nullptr; };
-        const auto is_known = [&](const auto& parameter) { return step->spec.parameter(parameter.first) != nullptr; };
-        return std::ranges::all_of(step->spec.outputs, is_there) && std::ranges::all_of(result.resolved, is_known);
-    }
-
-    bool is_kept(const StepResult& result, const std::string& port) const {
-        const ResultOutput* output = result.output(port);
-        return output && cache_->has_value(output->content, output->bytes);
-    }
-
-    /// Nobody noted what the run that made the value was to keep, nor how fast its disk was: only what cannot be
-    /// otherwise is said.
-    std::string why_missing(const StepResult& result, const std::string& port) const {
-        const std::string what = port.empty() ? "content" : "'" + port + "'";
-        if (policy_ == KeepRule::Policy::never)
-            return fmt::format("its {} is not in the cache, and with --keep never none is kept", what);
-        const ResultOutput* output = result.output(port);
-        if (output && KeepRule().is_worth(result.seconds, output->bytes))
-            return fmt::format(
-                "its {} is not in the cache: the run that made it did not keep it, or it was removed since", what);
-        return fmt::format("its {} was not kept, being quick to make again", what);
-    }
-
-    const RunGraph& graph_;
-    const Cache* cache_;
-    KeepRule::Policy policy_;
-    std::vector<NodePrediction> nodes_;
-};
+/// The cache does not record which policy an earlier run had, so only certain reasons are given.
+std::string why_missing(const StepResult& result, const std::string& port, KeepRule::Policy policy) {
+    const std::string what = port.empty() ? "content" : "'" + port + "'";
+    if (policy == KeepRule::Policy::never)
+        return fmt::format("its {} is not in the cache, and the policy 'never' stores none", what);
+    const ResultOutput* output = result.output(port);
+    if (output && KeepRule().is_worth(result.seconds, output->bytes))
+        return fmt::format("its {} is not in the cache: an earlier run did not store it, or it was removed since",
+                           what);
+    return fmt::format("its {} was not stored, because it is quick to compute again", what);
+}
 
 }  // namespace
 
 std::vector<NodePrediction> predict(const RunGraph& graph, const Cache* cache, KeepRule::Policy policy) {
-    return Seer(graph, cache, policy).see();
+    std::vector<NodePrediction> predictions(graph.nodes.size());
+    for (const RunCell& cell : graph.cells)
+        for (const RunOutput& output : cell.outputs) predictions[output.node].needed.insert(output.port);
+    // A node comes after its inputs. In reverse order, all steps that need a node's values come before it.
+    for (std::size_t index = predictions.size(); index-- > 0;) {
+        const RunNode& node = graph.nodes[index];
+        NodePrediction& predicted = predictions[index];
+        const PlannedStep* step = graph.step(node);
+        if (step && !step->expectations.empty()) predicted.needed.insert(step->spec.outputs.front().name);
+        if (cache && !node.is_uncacheable) predicted.cached = cached_result(*cache, node.key, step);
+        const auto is_missing = [&](const std::string& port) {
+            const ResultOutput* output = predicted.cached->output(port);
+            return !output || !cache->has_value(output->content, output->bytes);
+        };
+        if (!cache)
+            predicted.why = "there is no cache";
+        else if (node.is_uncacheable)
+            predicted.why = "it reads a folder or a file that cannot be hashed";
+        else if (!predicted.cached)
+            predicted.why = step ? "it has not run on such inputs with such parameters" : "it was not read before";
+        else if (const auto missing = std::ranges::find_if(predicted.needed, is_missing);
+                 missing != predicted.needed.end())
+            predicted.why = why_missing(*predicted.cached, *missing, policy);
+        predicted.will_run = !predicted.why.empty();
+        if (!predicted.will_run) continue;
+        for (const NodeInput& input : node.inputs) predictions[input.node].needed.insert(input.from);
+    }
+    return predictions;
 }
 
 }  // namespace scanmill

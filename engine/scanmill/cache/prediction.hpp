@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What a run will do, known before it begins: which nodes the cache has already, which will run, and why.
+/// Predicts what a run will do: which nodes the cache has, which will run, and why.
 
 #include <optional>
 #include <set>
@@ -8,21 +8,20 @@
 #include <vector>
 
 #include "scanmill/cache/cache.hpp"
-#include "scanmill/cache/keep_rule.hpp"
 #include "scanmill/graph/graph.hpp"
 
 namespace scanmill {
 
 struct NodePrediction {
-    std::optional<StepResult> known;  ///< what the cache remembers of the node, under its plan key
+    std::optional<StepResult> cached;  ///< the node's result in the cache, found by its plan key
     bool will_run = true;
-    std::string why;  ///< it will run, as a part of a sentence; empty for a node that will not
-    std::set<std::string> needed;  ///< output ports whose values somebody needs
+    std::string why;  ///< why it will run, as a part of a sentence; empty for a node that will not run
+    std::set<std::string> needed;  ///< output ports whose values are needed
 };
 
-/// For every node of the graph. Nothing is remembered without a cache. A node runs when the cache does not know it, or
-/// when a value of it is needed that was not kept: by an output to be written, an expectation, or a step that runs.
-/// `policy` is what this run keeps: where a value is missing, the reason depends on it.
+/// For every node of the graph. A node runs if its result is not in the cache, or if a value of it that is needed (for
+/// an output, an expectation or a step that runs) is not in the cache. `policy` of this run is part of the reason why a
+/// value is missing. `cache` may be null.
 std::vector<NodePrediction> predict(const RunGraph& graph, const Cache* cache,
                                     KeepRule::Policy policy = KeepRule::Policy::worth);
 

@@ -3,24 +3,43 @@
 
 #include <fmt/format.h>
 #include <xxhash.h>
+
+#include <array>
 #include <bit>
 #include <cstring>
 #include <fstream>
-#include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/cache/value_fields.hpp"
+#include "scanmill/base/parallel.hpp"
 #include "scanmill/io/atomic_file.hpp"
 #include "scanmill/io/mapped_file.hpp"
+#include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
 
 namespace {
 
+using Json = nlohmann::json;
+using Bytes = std::span<const std::byte>;
+
+std::string_view text_of(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
+std::string hash_of(std::string_view bytes) {
+    XXH128_canonical_t hash;
+    XXH128_canonicalFromHash(&hash, XXH3_128bits(bytes.data(), bytes.size()));
+    return {reinterpret_cast<const char*>(hash.digest), sizeof hash.digest};
+}
+
+std::string hexadecimal(std::string_view bytes) {
+    std::string digits;
+    for (const char byte : bytes) digits += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+    return digits;
+}
+
 std::string head_of(const std::filesystem::path& file, std::string_view kind, std::string_view content) {
-    const XXH128_hash_t hash = XXH3_128bits(content.data(), content.size());
-    return fmt::format("scanmill {} {} {:016x}{:016x}\n", kind, file.filename().string(), hash.high64, hash.low64);
+    return fmt::format("scanmill {} {} {}\n", kind, file.filename().string(), hexadecimal(hash_of(content)));
 }
 
 }  // namespace
@@ -45,93 +64,168 @@ std::optional<std::string> read_checked(const std::filesystem::path& file, std::
     return content;
 }
 
-ArraysHash::ArraysHash() : state_(XXH3_createState()) { XXH3_128bits_reset(state_.get()); }
-ArraysHash::~ArraysHash() = default;
-
-void ArraysHash::Free::operator()(XXH3_state_s* state) const { XXH3_freeState(state); }
-
-void ArraysHash::add(std::span<const std::byte> part) {
-    XXH3_128bits_update(state_.get(), part.data(), part.size());
-    array_bytes_ += part.size();
-}
-
-void ArraysHash::end_array() {
-    constexpr std::array<std::byte, value_alignment> zeros{};
-    XXH3_128bits_update(state_.get(), zeros.data(), aligned(array_bytes_) - array_bytes_);
-    array_bytes_ = 0;
-}
-
-std::array<std::byte, 16> ArraysHash::digest() const {
-    XXH128_canonical_t bytes;
-    XXH128_canonicalFromHash(&bytes, XXH3_128bits_digest(state_.get()));
-    return std::bit_cast<std::array<std::byte, 16>>(bytes);
-}
-
 namespace {
 
-constexpr std::string_view magic = "SMVALUE1";
+constexpr std::size_t alignment = 64;
+constexpr std::array<std::byte, alignment> zeros{};
+
+constexpr std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1) / alignment * alignment; }
+
+Bytes padding(std::size_t bytes) { return std::span(zeros).first(aligned(bytes) - bytes); }
+
+/// Adds every field to the header, and arrays to `arrays`; in the header an array is its index and its element size.
+class FieldWriter : public FieldVisitor {
+public:
+    void frame(const char* name, Frame& frame) override {
+        header[name] = {{"unit", static_cast<int>(frame.unit)}, {"origin", frame.origin}, {"name", frame.name}};
+    }
+    void positions(const char* name, Buffer<Vec3>& positions) override { plain(name, positions); }
+    void directions(const char* name, Buffer<Vec3>& directions) override { plain(name, directions); }
+    void lengths(const char* name, Buffer<double>& lengths, int) override { plain(name, lengths); }
+    void columns(const char* name, ColumnTable& table) override {
+        Json rows = Json::array();
+        for (const Column& column : table)
+            rows.push_back({{"name", column.name()},
+                            {"type", static_cast<int>(column.type())},
+                            {"components", column.components()},
+                            {"length-exponent", column.length_exponent()},
+                            {"data", stored(std::as_bytes(column.bytes().span()), 1)},
+                            {"offsets", stored(std::as_bytes(column.offsets().span()), sizeof(u64))}});
+        header[name] = std::move(rows);
+    }
+
+    Json header = Json::object();
+    std::vector<Bytes> arrays;
+
+private:
+    void bytes_of(const char* name, Buffer<std::byte>& bytes, std::size_t element) override {
+        header[name] = stored(bytes.span(), element);
+    }
+    bool json_of(const char* name, Json& json) override {
+        header[name] = json;
+        return false;
+    }
+    Json stored(Bytes bytes, std::size_t element) {
+        arrays.push_back(bytes);
+        return {arrays.size() - 1, element};
+    }
+};
+
+/// Sets every field from the header and the arrays.
+class FieldReader : public FieldVisitor {
+public:
+    FieldReader(const Json& header, const std::vector<Buffer<std::byte>>& arrays) : header_(header), arrays_(arrays) {}
+
+    void frame(const char* name, Frame& frame) override {
+        const Json& json = header_.at(name);
+        frame.unit = static_cast<LengthUnit>(json.at("unit").get<int>());
+        frame.origin = json.at("origin").get<Vec3>();
+        frame.name = json.at("name").get<std::string>();
+    }
+    void positions(const char* name, Buffer<Vec3>& positions) override { plain(name, positions); }
+    void directions(const char* name, Buffer<Vec3>& directions) override { plain(name, directions); }
+    void lengths(const char* name, Buffer<double>& lengths, int) override { plain(name, lengths); }
+    void columns(const char* name, ColumnTable& table) override {
+        for (const Json& row : header_.at(name)) {
+            const Buffer<std::byte> offsets = stored(row.at("offsets"), sizeof(u64));
+            table.add(Column(row.at("name").get<std::string>(), static_cast<ScalarType>(row.at("type").get<int>()),
+                             row.at("components").get<u32>(), stored(row.at("data"), 1),
+                             Buffer<u64>(offsets.owner(), reinterpret_cast<const u64*>(offsets.data()),
+                                         offsets.size() / sizeof(u64)),
+                             row.at("length-exponent").get<int>()));
+        }
+    }
+
+private:
+    void bytes_of(const char* name, Buffer<std::byte>& bytes, std::size_t element) override {
+        bytes = stored(header_.at(name), element);
+    }
+    bool json_of(const char* name, Json& json) override {
+        json = header_.at(name);
+        return true;
+    }
+    Buffer<std::byte> stored(const Json& where, std::size_t element) const {
+        const auto index = where.at(0).get<std::size_t>();
+        if (index >= arrays_.size() || where.at(1) != element || arrays_[index].size() % element != 0)
+            throw Error("an array of the value file is missing, or has another type");
+        return arrays_[index];
+    }
+
+    const Json& header_;
+    const std::vector<Buffer<std::byte>>& arrays_;
+};
+
+struct ValueFields {
+    std::string header;
+    std::vector<Bytes> arrays;
+};
+
+ValueFields fields_of(const Value& value) {
+    FieldWriter writer;
+    visited(value, writer);
+    writer.header["kind"] = value.kind().name();
+    for (const Bytes& array : writer.arrays) writer.header["arrays"].push_back(array.size());
+    ValueFields fields;
+    Json::to_cbor(writer.header, fields.header);
+    fields.arrays = std::move(writer.arrays);
+    return fields;
+}
+
+constexpr std::string_view magic = "SMVALUE2";
 
 struct Preamble {
     char magic[8];
     u64 header_bytes;
-    XXH128_canonical_t header_hash, arrays_hash;
+    char header_hash[16], arrays_hash[16];
     u64 file_bytes;
     u64 reserved;
+
+    /// `array_hashes`: one digest per array, one after the other.
+    static Preamble of(const ValueFields& fields, std::string_view array_hashes) {
+        Preamble preamble{};
+        std::memcpy(preamble.magic, scanmill::magic.data(), scanmill::magic.size());
+        preamble.header_bytes = fields.header.size();
+        hash_of(fields.header).copy(preamble.header_hash, sizeof preamble.header_hash);
+        hash_of(array_hashes).copy(preamble.arrays_hash, sizeof preamble.arrays_hash);
+        preamble.file_bytes = sizeof preamble + aligned(fields.header.size());
+        for (const Bytes& array : fields.arrays) preamble.file_bytes += aligned(array.size());
+        return preamble;
+    }
+    std::string_view bytes() const { return {reinterpret_cast<const char*>(this), sizeof *this}; }
+    /// The preamble identifies every byte of the file through its two hashes.
+    ValueName name() const { return {hexadecimal(hash_of(bytes())), file_bytes}; }
 };
-static_assert(sizeof(Preamble) == value_alignment);
-
-constexpr std::array<std::byte, value_alignment> zeros{};
-
-std::span<const std::byte> padding(std::size_t bytes) { return std::span(zeros).first(aligned(bytes) - bytes); }
-
-XXH128_canonical_t canonical(XXH128_hash_t hash) {
-    XXH128_canonical_t bytes;
-    XXH128_canonicalFromHash(&bytes, hash);
-    return bytes;
-}
-
-bool equal(const XXH128_canonical_t& a, const XXH128_canonical_t& b) {
-    return std::memcmp(a.digest, b.digest, sizeof a.digest) == 0;
-}
-
-std::string_view text_of(std::span<const std::byte> bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-/// The preamble knows every byte through its two hashes.
-std::string content_text(const Preamble& preamble) {
-    const XXH128_hash_t whole = XXH3_128bits(&preamble, sizeof preamble);
-    return fmt::format("{:016x}{:016x}", whole.high64, whole.low64);
-}
-
-Preamble preamble_of(const ValueFields& fields, const ArraysHash& hash) {
-    Preamble preamble{};
-    std::memcpy(preamble.magic, magic.data(), magic.size());
-    preamble.header_bytes = fields.header.size();
-    preamble.header_hash = canonical(XXH3_128bits(fields.header.data(), fields.header.size()));
-    preamble.arrays_hash = std::bit_cast<XXH128_canonical_t>(hash.digest());
-    preamble.file_bytes = sizeof preamble + aligned(fields.header.size());
-    for (const std::span<const std::byte>& array : fields.arrays) preamble.file_bytes += aligned(array.size());
-    return preamble;
-}
+static_assert(sizeof(Preamble) == alignment);
 
 }  // namespace
 
-ValueName name_of_value(const ValueFields& fields, const ArraysHash& hash) {
-    const Preamble preamble = preamble_of(fields, hash);
-    return {content_text(preamble), preamble.file_bytes};
+ArrayHash::ArrayHash() : state_(XXH3_createState()) { XXH3_128bits_reset(state_.get()); }
+
+void ArrayHash::Free::operator()(XXH3_state_s* state) const { XXH3_freeState(state); }
+
+void ArrayHash::add(Bytes part) {
+    XXH3_128bits_update(state_.get(), part.data(), part.size());
+    bytes_ += part.size();
+}
+
+std::string ArrayHash::digest() {
+    add(padding(bytes_));
+    XXH128_canonical_t hash;
+    XXH128_canonicalFromHash(&hash, XXH3_128bits_digest(state_.get()));
+    return {reinterpret_cast<const char*>(hash.digest), sizeof hash.digest};
 }
 
 EncodedValue::EncodedValue(Value value) : value_(std::move(value)) {
     ValueFields fields = fields_of(value_);
-    ArraysHash hash;
-    for (const std::span<const std::byte>& array : fields.arrays) {
+    std::string hashes;
+    for (const Bytes& array : fields.arrays) {
+        ArrayHash hash;
         hash.add(array);
-        hash.end_array();
+        hashes += hash.digest();
     }
-    const Preamble preamble = preamble_of(fields, hash);
-    name_ = {content_text(preamble), preamble.file_bytes};
-    head_.append(reinterpret_cast<const char*>(&preamble), sizeof preamble);
+    const Preamble preamble = Preamble::of(fields, hashes);
+    name_ = preamble.name();
+    head_ = preamble.bytes();
     head_ += fields.header;
     head_ += text_of(padding(fields.header.size()));
     arrays_ = std::move(fields.arrays);
@@ -140,30 +234,98 @@ EncodedValue::EncodedValue(Value value) : value_(std::move(value)) {
 void EncodedValue::write(const std::filesystem::path& file) const {
     AtomicFile target(file);
     target.write(head_);
-    for (const std::span<const std::byte>& array : arrays_) {
+    for (const Bytes& array : arrays_) {
         target.write(text_of(array));
         target.write(text_of(padding(array.size())));
     }
     target.commit(AtomicFile::Sync::no);
 }
 
-Value read_value(const std::filesystem::path& file, std::string_view content) {
+Value read_value(const std::filesystem::path& file, std::string_view content) try {
     const auto map = std::make_shared<const MappedFile>(file);
     const std::string_view bytes = map->bytes();
     Preamble preamble;
     if (bytes.size() < sizeof preamble || !bytes.starts_with(magic))
-        throw Error("'{}' is no value file", file.string());
+        throw Error("'{}' is not a value file", file.string());
     std::memcpy(&preamble, bytes.data(), sizeof preamble);
     if (preamble.file_bytes != bytes.size() || preamble.header_bytes > bytes.size() - sizeof preamble)
-        throw Error("'{}' has {} bytes and promises {}", file.string(), bytes.size(), preamble.file_bytes);
+        throw Error("'{}' has {} bytes; expected {}", file.string(), bytes.size(), preamble.file_bytes);
+    const Error damaged("'{}' is damaged: its bytes are not those that were written", file.string());
+    const auto require = [&](const char(&expected)[16], std::string_view hashed) {
+        if (hash_of(hashed) != std::string_view(expected, sizeof expected)) throw damaged;
+    };
     const std::string_view header = bytes.substr(sizeof preamble, preamble.header_bytes);
-    const std::string_view arrays = bytes.substr(std::min(bytes.size(), sizeof preamble + aligned(header.size())));
-    if (!equal(preamble.header_hash, canonical(XXH3_128bits(header.data(), header.size()))) ||
-        !equal(preamble.arrays_hash, canonical(XXH3_128bits(arrays.data(), arrays.size()))))
-        throw Error("'{}' is damaged: its bytes are not those that were written", file.string());
-    if (const std::string found = content_text(preamble); !content.empty() && found != content)
+    require(preamble.header_hash, header);
+    const Json json = Json::from_cbor(header);
+    std::size_t begin = std::min(bytes.size(), sizeof preamble + aligned(header.size()));
+    std::string hashes;
+    std::vector<Buffer<std::byte>> arrays;
+    for (const Json& size : json.value("arrays", Json::array())) {
+        const auto length = size.get<std::size_t>();
+        if (length > bytes.size() - begin || aligned(length) > bytes.size() - begin) throw damaged;
+        hashes += hash_of(bytes.substr(begin, aligned(length)));
+        arrays.push_back(
+            length == 0 ? Buffer<std::byte>()
+                        : Buffer<std::byte>(map, reinterpret_cast<const std::byte*>(bytes.data() + begin), length));
+        begin += aligned(length);
+    }
+    require(preamble.arrays_hash, hashes);
+    if (const std::string found = preamble.name().content; !content.empty() && found != content)
         throw Error("'{}' is damaged: it holds the value {}", file.string(), found);
-    return value_of(header, arrays, map);
+    const auto name = json.at("kind").get<std::string>();
+    const std::optional<Kind> kind = kind_named(name);
+    if (!kind) throw Error("'{}' contains a value of the unknown kind {}", file.string(), name);
+    const std::shared_ptr<void> object = kind->info().make();
+    FieldReader reader(json, arrays);
+    kind->info().visit(reader, object.get());
+    return Value(*kind, object);
+} catch (const Json::exception&) {
+    throw Error("the header of '{}' is not one that Scanmill writes", file.string());
+}
+
+namespace {
+
+/// The stream's cloud with arrays of the right size that have no memory.
+PointCloud cloud_without_data(const PointStream& stream) {
+    PointCloud cloud;
+    cloud.frame = stream.frame();
+    cloud.positions = Buffer<Vec3>(nullptr, nullptr, stream.size());
+    const PointCloud without_rows = stream.gather({}, 1);
+    for (const Column& column : without_rows.columns) {
+        const std::size_t bytes = stream.size() * column.components() * size_of(column.type());
+        cloud.columns.add(
+            Column(column.name(), column.type(), column.components(), Buffer<std::byte>(nullptr, nullptr, bytes), {}));
+    }
+    return cloud;
+}
+
+}  // namespace
+
+ValueName StreamedContent::of(const PointStream& stream, unsigned threads, const std::function<void()>& on_piece) {
+    struct Piece {
+        Array<Vec3> positions;
+        ColumnTable columns;
+    };
+    const PointCloud cloud = cloud_without_data(stream);
+    const bool is_moved = stream.frame().origin != Vec3::Zero();
+    if (is_moved) positions_ = {};
+    std::vector<ArrayHash> columns(cloud.columns.size());
+    if (is_moved || !columns.empty())
+        for_each_in_order<Piece>(
+            threads, stream.pieces().size() - 1,
+            [&](std::size_t index, Piece& piece) {
+                if (is_moved) stream.read(index, piece.positions);
+                piece.columns = stream.read_columns(index);
+            },
+            [&](std::size_t, const Piece& piece) {
+                if (on_piece) on_piece();
+                if (is_moved) positions_.add(std::as_bytes(std::span(piece.positions)));
+                auto hash = columns.begin();
+                for (const Column& column : piece.columns) (hash++)->add(column.bytes().span());
+            });
+    std::string hashes = positions_.digest();
+    for (ArrayHash& column : columns) hashes += column.digest() + ArrayHash().digest();  // no offsets
+    return Preamble::of(fields_of(std::make_shared<const PointCloud>(cloud)), hashes).name();
 }
 
 }  // namespace scanmill

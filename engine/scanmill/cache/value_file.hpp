@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Small files that are whole or refused: a line with the kind of thing, the file's name and the hash of the rest, then
-/// the rest.
+/// Files of the cache: small checked files, and values as files of raw arrays, which readers map and do not parse.
+///
+/// Layout of a value file, little-endian: 64 bytes of preamble (magic, length of the header, 128-bit XXH3 hashes of
+/// header and arrays, length of the file), the header (CBOR: kind, frame, the name and shape of every array), zeros up
+/// to a multiple of 64, then the arrays, each on a multiple of 64. The hash of the arrays is the hash of one hash per
+/// array, so that arrays can be hashed side by side. Equal values give equal bytes. Numbers keep their bits.
 
-#include <array>
-#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,64 +16,42 @@
 #include <string_view>
 #include <vector>
 
+#include "scanmill/data/point_stream.hpp"
 #include "scanmill/kinds/value.hpp"
 
 struct XXH3_state_s;
 
 namespace scanmill {
 
-/// Appears whole or not at all, without being synced to the disk. Throws Error.
+/// Writes a line with the kind, the file's name and the hash of the content, then the content. The file appears whole
+/// or not at all, without being synced to the disk. Throws Error.
 void write_checked(const std::filesystem::path& file, std::string_view kind, std::string_view content);
 
-/// Nothing when there is no such file. Throws Error when it is of another kind, was written under another name, or
-/// its bytes are not those that were written.
+/// Nothing if there is no such file. Throws Error if it has another kind, was written under another name, or its bytes
+/// changed.
 std::optional<std::string> read_checked(const std::filesystem::path& file, std::string_view kind);
 
-// The hash of a value's arrays as they lie in its file: one after the other, each followed by zeros up to a multiple
-// of value_alignment. An array may come in one part or in many, so that it never need be in memory as a whole.
-
-class ArraysHash {
+/// The hash of an array that arrives in parts, padded with zeros as in a value file.
+class ArrayHash {
 public:
-    ArraysHash();
-    ArraysHash(ArraysHash&&) = default;
-    ArraysHash& operator=(ArraysHash&&) = default;
-    ~ArraysHash();
-
-    /// The next bytes of the array that was begun last; the first call begins one.
+    ArrayHash();
     void add(std::span<const std::byte> part);
-    /// What is added from now on belongs to the next array.
-    void end_array();
-    /// 128-bit XXH3 of all arrays that were ended, most significant byte first.
-    std::array<std::byte, 16> digest() const;
+    /// 128-bit XXH3 of everything added, most significant byte first. Once.
+    std::string digest();
 
 private:
     struct Free {
         void operator()(XXH3_state_s* state) const;
     };
     std::unique_ptr<XXH3_state_s, Free> state_;
-    std::size_t array_bytes_ = 0;
+    std::size_t bytes_ = 0;
 };
 
-// Values as files of raw arrays, which are mapped and not parsed: how a value passes from one process, or one run, to
-// another.
-//
-// Layout, little-endian: 64 bytes of preamble (magic, length of the header, 128-bit XXH3 hashes of header and arrays,
-// length of the file), the header (CBOR: kind, frame, the name, shape and place of every array), zeros up to a
-// multiple of 64, then the arrays, each on a multiple of 64. Equal values give equal bytes. Every number comes back
-// with its bits.
-
-class ArraysHash;
-struct ValueFields;
-
-/// What a value is known by.
+/// The identity of a value in the cache.
 struct ValueName {
-    /// 32 hexadecimal digits, of everything that the value holds: equal for equal values.
-    std::string content;
-    u64 bytes = 0;  ///< of its file
+    std::string content;  ///< 32 hexadecimal digits, equal for equal values
+    u64 bytes = 0;        ///< of its file
 };
-
-/// Of a value that was taken apart and whose arrays went through `hash`; of fields.arrays only the sizes are asked.
-ValueName name_of_value(const ValueFields& fields, const ArraysHash& hash);
 
 /// A value ready to be written; shares its arrays.
 class EncodedValue {
@@ -81,8 +62,8 @@ public:
     const std::string& content() const { return name_.content; }
     /// Bytes of the file.
     u64 size() const { return name_.bytes; }
-    /// The file appears whole or not at all. It is not synced to the disk: what a power cut tears is found by its hash.
-    /// Throws Error for a folder that cannot be written to and a full disk.
+    /// The file appears whole or not at all. It is not synced to the disk; the hashes reveal what a power cut damages.
+    /// Throws Error for an unwritable folder or a full disk.
     void write(const std::filesystem::path& file) const;
 
 private:
@@ -92,10 +73,23 @@ private:
     ValueName name_;
 };
 
-/// The value in the file, its arrays mapped as long as anybody holds them. Reads every byte once to check the hashes.
-/// Throws Error: no such file, not a value file, of another version, cut short, or with bytes that were changed. Nobody
-/// may shorten the file afterwards; removing it does no harm. With `content` given, also for a value of another
-/// content.
+/// The value in the file. Its arrays are mapped as long as they are in use; the file may be removed meanwhile, but not
+/// shortened. Reads every byte once to check the hashes. Throws Error: no such file, not a value file, truncated, or
+/// changed bytes; with `content` given, also for a value of another content.
 Value read_value(const std::filesystem::path& file, std::string_view content = {});
+
+/// Computes the name that EncodedValue gives to the point cloud in a file, without loading the cloud.
+class StreamedContent {
+public:
+    /// For every piece of positions that open_point_stream() reports: a scan near zero needs no second pass over them.
+    void add_world(std::span<const Vec3> positions) { positions_.add(std::as_bytes(positions)); }
+    /// Pre: add_world() got all positions of this stream; called once. Cost: one pass over the file if the cloud has
+    /// columns or is far from zero; up to four pieces per thread are in memory. `on_piece` is called for every piece,
+    /// from this thread; its exceptions end the pass.
+    ValueName of(const PointStream& stream, unsigned threads, const std::function<void()>& on_piece = {});
+
+private:
+    ArrayHash positions_;
+};
 
 }  // namespace scanmill

@@ -1,23 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Plans laid out over actual scans: the graph of everything that one run computes.
+/// The graph of everything that one run computes: plans applied to scans.
 ///
-/// Nodes are files to read (leaves) and steps to run, identified by their plan key: what two cells have in common, down
-/// to two files of equal content, is one node, also when the cells belong to different workflows. A cell is one scan
-/// under one variant of one workflow. The graph says what will be
-/// written where before anything runs; an executor, or an export to another scheduler, only has to follow it.
+/// Nodes are files to read (leaves) and steps to run, identified by their plan key. Equal keys are one node, also for
+/// two files with equal content and for different workflows. A cell is one scan under one variant of one workflow. The
+/// graph contains all output files before anything runs.
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scanmill/base/hash.hpp"
-#include "scanmill/graph/request.hpp"
+#include "scanmill/data/transform.hpp"
+#include "scanmill/plan/plan.hpp"
+#include "scanmill/plugin/library.hpp"
 
 namespace scanmill {
+
+/// A file, with properties that it may not contain.
+struct ScanFile {
+    ScanFile(std::filesystem::path file) : path(std::move(file)) {}
+
+    std::filesystem::path path;
+    LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the request, the workflow or the file
+    std::string frame;                      ///< empty: from the workflow or the file
+    std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
+};
+
+/// The files that a plan runs over, the part of the plan that runs, and the folder for its outputs.
+struct RunRequest {
+    std::vector<ScanFile> scans;  ///< for the first input: one per run, or all in one run if the input is a list
+    std::map<std::string, std::vector<std::filesystem::path>> inputs;  ///< for the other inputs
+    std::vector<std::filesystem::path> protected_files;  ///< more files that no output may replace
+    std::filesystem::path output_folder;
+    LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: from the workflow or the file
+    std::uint64_t seed = 0;
+    std::vector<std::string> only;  ///< variants; empty: all
+    std::string until;  ///< last step to run, in the variants that have it; empty: all steps
+    std::vector<std::string> save;  ///< steps (or step.port) to write in addition to the outputs
+};
+
+/// Throws Error for inputs that are missing or unknown, and for unknown variants and steps.
+void require_fits(const RunRequest& request, const Plan& plan);
 
 struct NodeInput {
     std::string port;
@@ -25,39 +53,38 @@ struct NodeInput {
     std::string from;  ///< the node's output port; empty for leaves
 };
 
-/// A file that a parameter names, as it was when the run was planned.
+/// A file that a parameter names.
 struct ParameterFile {
     std::filesystem::path path;
-    std::string content;
+    std::string content;  ///< hash of its bytes at planning time
 };
 
-/// A file to read, and as what.
+/// A file to read.
 struct LeafSource {
     std::filesystem::path file;
     std::string content;  ///< hash of the file's bytes
     Kind kind = kind_of<PointCloud>();
-    LengthUnit unit = LengthUnit::unknown;  ///< unknown: what the file says
-    std::string frame;  ///< empty: what the file says
+    LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the file
+    std::string frame;                      ///< empty: from the file
     std::optional<RigidTransform> pose;
-    bool is_streamed = false;  ///< read piece by piece, if the file allows it; in no key: values are the same
+    bool is_streamed = false;  ///< read piece by piece, if the file allows it; in no key, as the values are equal
 };
 
-/// What was declared of the file: unit, frame and pose, as far as there is something, as text.
+/// Declared unit, frame and pose as (name, text).
 std::vector<std::pair<std::string, std::string>> declared_of(const LeafSource& leaf);
 
 struct RunNode {
-    std::string key;  ///< plan key: what identifies the result before anything runs
+    std::string key;   ///< plan key: identifies the result before anything runs
     std::string code;  ///< of a step: hash of filter, builds, seed and the content of files that parameters name
     std::size_t plan = 0;  ///< index into RunGraph::plans
     std::optional<std::size_t> step;  ///< index into Plan::steps; nothing: a leaf
     LeafSource leaf;
     bool is_scan = false;  ///< of a leaf: it feeds the workflow's first input
     std::vector<ParameterFile> parameter_files;  ///< of a step
-    /// It, or something before it, reads what has no content to be known by: a folder, a file that is not there.
-    bool is_uncacheable = false;
+    bool is_uncacheable = false;  ///< it, or a node before it, reads a folder or a file that cannot be hashed
     std::string unreadable;  ///< of a leaf: why its content could not be hashed
     std::vector<NodeInput> inputs;
-    std::size_t scan = 0;  ///< the first cell's
+    std::size_t scan = 0;  ///< of the first cell
 };
 
 struct RunOutput {
@@ -70,13 +97,13 @@ struct RunCell {
     std::size_t plan;  ///< index into RunGraph::plans
     std::size_t scan;
     std::size_t variant;  ///< index into Plan::variants
-    std::vector<std::size_t> nodes;  ///< in an order that can be run
+    std::vector<std::size_t> nodes;  ///< inputs before the steps that need them
     std::vector<RunOutput> outputs;
 };
 
 struct RunGraph {
     std::vector<std::shared_ptr<const Plan>> plans;
-    std::vector<std::string> scan_names;  ///< as given; the workflow's name when scans are not fed one at a time
+    std::vector<std::string> scan_names;  ///< as given; the workflow's name if all scans are one list
     std::vector<RunNode> nodes;
     std::vector<RunCell> cells;
     std::uint64_t seed = 0;
@@ -93,7 +120,6 @@ struct RunGraph {
     std::size_t index(const RunCell& cell) const { return static_cast<std::size_t>(&cell - cells.data()); }
 };
 
-/// A workflow and what it is asked to do.
 struct GraphPart {
     std::shared_ptr<const Plan> plan;
     RunRequest request;
@@ -101,14 +127,27 @@ struct GraphPart {
 
 using HashOfFile = std::function<std::string(const std::filesystem::path&)>;
 
-/// Throws Error, before anything was computed, for a request that does not fit its plan (inputs that are not fed,
-/// unknown variants or steps), for two cells that would write one file, and for outputs that would replace an input or
-/// leave the output folder. Reads every file once, to hash it, also those that path parameters name: a step's key knows
-/// their content and not their names. A scan that cannot be read only marks its node, another file is left to the
-/// filter. `hash` gives the hash of a file's bytes: content_hash(), or one that remembers.
-/// Pre: all parts have one seed and one output folder.
+/// `hash` returns the hash of a file's bytes: content_hash() or Cache::file_hash(). Every file is read once. A scan
+/// that cannot be read only marks its node; a parameter's file that cannot be read is reported by the filter. Throws
+/// Error for a request that does not fit its plan, for two cells that would write one file, and for outputs that would
+/// replace an input or leave the output folder. Pre: all parts have one seed and one output folder.
 RunGraph make_graph(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash = content_hash);
 RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request,
                     const HashOfFile& hash = content_hash);
+
+// Streams. A scan is read piece by piece, and never loaded whole, if all steps that read it can do so. Whether its file
+// allows it is certain only when it is opened; else it is loaded, with the same results.
+
+/// Whether the step can read its scan as a stream: its filter can, the parameters that this requires have values, and
+/// no parameter is in spacings, which need all points at once.
+bool can_stream(const PlannedStep& step);
+
+/// Whether scans of this workflow input are streamed if their files allow it: they are points, at least one step reads
+/// them, all these steps can stream, and they are not outputs themselves.
+bool is_streamed(const Plan& plan, std::size_t input);
+
+/// Sets LeafSource::is_streamed as above, for the steps and outputs in the graph. Leaves with a pose are not streamed,
+/// nor files whose first bytes show that they cannot be.
+void mark_streams(RunGraph& graph);
 
 }  // namespace scanmill

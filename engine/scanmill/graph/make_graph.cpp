@@ -2,39 +2,124 @@
 #include <algorithm>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/hash.hpp"
 #include "scanmill/formats/common/format.hpp"
 #include "scanmill/formats/files.hpp"
-#include "scanmill/graph/file_contents.hpp"
 #include "scanmill/graph/graph.hpp"
-#include "scanmill/graph/keys.hpp"
 #include "scanmill/graph/output_files.hpp"
-#include "scanmill/graph/streaming.hpp"
 #include "scanmill/io/mapped_file.hpp"
 #include "scanmill/plan/step_parameters.hpp"
+#include "scanmill/plugin/module.hpp"
 #include "scanmill/workflow/grammar.hpp"
 
 namespace scanmill {
-
-const FileContent& FileContents::of(const std::filesystem::path& file) {
-    const auto [known, is_new] = known_.try_emplace(file.string());
-    FileContent& content = known->second;
-    if (!is_new) return content;
-    try {
-        if (const std::optional<Error> other = why_no_file(file)) throw *other;
-        content.hash = hash_(file);
-    } catch (const Error& error) {
-        content = {"unreadable " + file.string(), error.sentence() + (error.hint().empty() ? "" : "; " + error.hint())};
-    }
-    return content;
-}
-
-// Plans laid out over scans, cell by cell.
 
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the folder that the file lies in.
+/// Increases when the meaning of a plan key or of a value's content name changes.
+constexpr std::string_view key_scheme = "5";
+
+/// The builds that read files: the core, and the modules of formats.
+std::string builds_of_readers(const std::string& core) {
+    std::string builds = core;
+    for (std::filesystem::path module : module_manifests(installed_format_folder())) {
+        std::error_code absent;
+        if (module.replace_extension(".so"); std::filesystem::is_regular_file(module, absent))
+            builds += " " + content_hash(module);
+    }
+    return builds;
+}
+
+std::string text_of(const RigidTransform& pose) {
+    std::string text = fmt::format("{} {} {}", symbol(pose.unit), pose.from, pose.to);
+    for (const double number : pose.rotation.reshaped()) text += fmt::format(" {:a}", number);
+    for (const double number : pose.translation) text += fmt::format(" {:a}", number);
+    return text;
+}
+
+/// The part of plan keys that is equal for all nodes of a graph. A plan key contains filter, version, builds,
+/// parameters, unit, seed and the keys of everything upstream, but no thread count, path or step name.
+struct KeyBase {
+    std::string core;     ///< build of the core
+    std::string readers;  ///< builds of everything that reads files
+    std::uint64_t seed = 0;
+};
+
+KeyBase key_base(std::uint64_t seed) {
+    const std::string core = content_hash(core_library_file());
+    return {core, builds_of_readers(core), seed};
+}
+
+std::string key_of_leaf(const LeafSource& leaf, const KeyBase& base) {
+    KeyBuilder key;
+    key.field("scheme", key_scheme)
+        .field("content", leaf.content)
+        .field("readers", base.readers)
+        .field("extension", plain_extension(leaf.file.extension().string()))  // readers may depend on it
+        .field("kind", name_of(leaf.kind))
+        .field("unit", symbol(leaf.unit))
+        .field("frame", leaf.frame)
+        .field("pose", leaf.pose ? text_of(*leaf.pose) : "");
+    return key.key();
+}
+
+struct StepKeys {
+    std::string code;  ///< RunNode::code
+    std::string plan;  ///< RunNode::key
+};
+
+/// `module`: build of the step's filter. `inputs`: ports with the keys of their sources.
+StepKeys keys_of_step(const PlannedStep& step, const std::string& module, const KeyBase& base,
+                      const std::function<std::string(const std::filesystem::path&)>& content,
+                      const std::vector<std::pair<std::string, std::string>>& inputs) {
+    KeyBuilder key;
+    key.field("scheme", key_scheme)
+        .field("filter", step.spec.name)
+        .field("version", std::to_string(step.spec.version))
+        .field("module", module)
+        .field("core", base.core)
+        .field("seed", std::to_string(base.seed));
+    for (const auto& [name, value] : step.parameters.values)
+        if (names_files(step.spec, name)) key.field("parameter " + name, key_text_of_paths(value, content));
+    const std::string code = key.key();
+    for (const auto& [name, value] : step.parameters.values)
+        if (!names_files(step.spec, name)) key.field("parameter " + name, canonical_text(value));
+    for (const auto& [port, from] : inputs) key.field("port " + port, from);
+    return {code, key.key()};
+}
+
+/// The content of the files that a graph reads. Hashes each file once.
+class FileContents {
+public:
+    struct Content {
+        std::string hash;  ///< of the file's bytes; unique for a file that cannot be read
+        std::string why_unreadable;  ///< with the hint; empty: it can be read
+    };
+
+    explicit FileContents(const HashOfFile& hash) : hash_(hash) {}
+
+    const Content& of(const fs::path& file) {
+        const auto [found, is_new] = contents_.try_emplace(file.string());
+        Content& content = found->second;
+        if (!is_new) return content;
+        try {
+            if (const std::optional<Error> other = why_no_file(file)) throw *other;
+            content.hash = hash_(file);
+        } catch (const Error& error) {
+            content = {"unreadable " + file.string(),
+                       error.sentence() + (error.hint().empty() ? "" : "; " + error.hint())};
+        }
+        return content;
+    }
+
+private:
+    const HashOfFile& hash_;
+    std::map<std::string, Content> contents_;  // by path
+};
+
+/// The name of the folder that contains the file.
 std::string folder_name(const fs::path& file) {
     std::error_code gone;
     const std::string name = fs::absolute(file, gone).lexically_normal().parent_path().filename().string();
@@ -90,14 +175,14 @@ private:
         for (const ScanFile& scan : request_->scans) add_cells(scan_index(scan.path.string()), &scan);
     }
 
-    /// Scans that several parts name are one.
+    /// Parts that name the same scan share it.
     std::size_t scan_index(const std::string& name) {
-        const auto [known, is_new] = scan_of_name_.emplace(name, graph_.scan_names.size());
+        const auto [found, is_new] = scan_of_name_.emplace(name, graph_.scan_names.size());
         if (is_new) graph_.scan_names.push_back(name);
-        return known->second;
+        return found->second;
     }
 
-    /// `file` is the scan; none when there is none, or a list of them.
+    /// `file`: the scan; null if the workflow has no scan, or a list of scans.
     void add_cells(std::size_t scan, const ScanFile* file) {
         const std::string& scan_name = graph_.scan_names[scan];
         for (std::size_t variant = 0; variant < plan_->variants.size(); ++variant) {
@@ -114,7 +199,7 @@ private:
             const TemplateValues values{file ? file->path.stem().string() : scan_name, planned.name,
                                         workflow_name(*plan_), file ? folder_name(file->path) : scan_name};
             for (const auto& [name, source] : outputs(planned)) {
-                if (source.step && !node_of_step.contains(*source.step)) continue;  // beyond --until
+                if (source.step && !node_of_step.contains(*source.step)) continue;  // after the last step to run
                 const std::size_t node = sources_of(source, node_of_step, scan, file, cell).front();
                 const std::string writer =
                     fmt::format("scan '{}' under variant '{}'{}", scan_name, planned.name,
@@ -137,7 +222,7 @@ private:
         return {variant.steps.begin(), end == variant.steps.end() ? end : end + 1};
     }
 
-    /// The variant's outputs and what --save adds, as file templates.
+    /// The variant's outputs and the steps to save, as file templates.
     std::vector<std::pair<std::string, ValueSource>> outputs(const PlannedVariant& variant) const {
         std::vector<std::pair<std::string, ValueSource>> all;
         for (const PlannedOutput& output : variant.outputs) all.emplace_back(output.file, output.source);
@@ -147,10 +232,11 @@ private:
             if (step == variant.steps_by_name.end()) continue;  // a step of another variant
             const FilterSpec& spec = plan_->steps[step->second].spec;
             const std::string port = dot == std::string::npos ? spec.outputs.front().name : wanted.substr(dot + 1);
-            if (!spec.output(port)) throw Error("--save {}: the step has no output port '{}'", wanted, port);
+            if (!spec.output(port)) throw Error("the step to save, '{}', has no output port '{}'", wanted, port);
             const Kind kind = spec.output(port)->kind;
             const std::string extensions = writable_extensions(kind);
-            if (extensions.empty()) throw Error("--save {}: no file format can hold {}", wanted, name_of(kind));
+            if (extensions.empty())
+                throw Error("the step to save, '{}', gives {}, which no file format can hold", wanted, name_of(kind));
             const std::string variant_part = plan_->variants.size() > 1 ? ".{variant}" : "";
             all.emplace_back("{scan}" + variant_part + "." + wanted + "." + extensions.substr(0, extensions.find(',')),
                              ValueSource{step->second, 0, port});
@@ -166,7 +252,7 @@ private:
         node.step = step;
         node.scan = scan;
         const auto content = [&](const fs::path& parameter) {
-            const FileContent& found = contents_.of(parameter);
+            const FileContents::Content& found = contents_.of(parameter);
             node.parameter_files.push_back({parameter, found.hash});
             node.is_uncacheable = node.is_uncacheable || !found.why_unreadable.empty();
             return found.hash;
@@ -207,7 +293,7 @@ private:
         node.is_scan = input == 0;
         node.scan = scan;
         node.leaf.file = file.path;
-        const FileContent& content = contents_.of(file.path);
+        const FileContents::Content& content = contents_.of(file.path);
         node.leaf.content = content.hash;
         node.unreadable = content.why_unreadable;
         node.leaf.kind = declared.kind;
@@ -224,14 +310,14 @@ private:
     }
 
     std::size_t add_node(RunNode node) {
-        // Steps that do the same and expect different things are not one node.
+        // Equal steps with different expectations are different nodes.
         std::string identity = node.key;
         if (node.step)
             for (const PlannedExpectation& expectation : plan_->steps[*node.step].expectations)
                 identity += "\n" + expectation.text;
-        const auto [known, is_new] = node_of_key_.emplace(std::move(identity), graph_.nodes.size());
+        const auto [found, is_new] = node_of_key_.emplace(std::move(identity), graph_.nodes.size());
         if (is_new) graph_.nodes.push_back(std::move(node));
-        return known->second;
+        return found->second;
     }
 
     static void add_to(RunCell& cell, std::size_t node) {

@@ -34,10 +34,10 @@ OutputFiles::OutputFiles(const fs::path& folder) : folder_(real_path(folder)) {
 
 fs::path OutputFiles::add(const std::string& name, const OutputContent& content, const std::string& writer) {
     const fs::path file = folder_ / name;
-    const auto [known, is_new] = files_.emplace(file, Entry{content, writer});
+    const auto [found, is_new] = files_.emplace(file, Entry{content, writer});
     if (!is_new) {
-        if (known->second.content != content)
-            throw Error("{} and {} would both write '{}'", known->second.writer, writer, file.string())
+        if (found->second.content != content)
+            throw Error("{} and {} would both write '{}'", found->second.writer, writer, file.string())
                 .hint(
                     "put {variant}, {workflow} or {folder}, the name of the scan's folder, into the output's name, or "
                     "rename a scan");
@@ -50,7 +50,8 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
             .hint("a symbolic link below the output folder leads out of it; remove it");
     if (const Identity existing = identity(file); existing != Identity() && inputs_.contains(existing))
         throw Error("'{}' is an input; an output must not replace it", file.string())
-            .hint("choose another output folder with -o");
+            .hint("choose another output folder")
+            .remedy(Remedy::choose_output_folder);
     return file;
 }
 
@@ -63,10 +64,11 @@ void OutputFiles::require_no_clash(const fs::path& file, const std::string& writ
         if (const auto other = files_.find(part); other != files_.end())
             throw Error("{} would write '{}' into a folder that is a file of {}", writer, file.string(),
                         other->second.writer);
-    std::error_code unknown;  // a name too long, say: writing it will fail, and nothing else
+    std::error_code unknown;  // for a name that is too long, writing fails later
     if (fs::is_directory(file, unknown))
         throw Error("the output '{}' is an existing folder", file.string())
-            .hint("remove it, or choose another output folder with -o");
+            .hint("remove it, or choose another output folder")
+            .remedy(Remedy::choose_output_folder);
 }
 
 /// Zeros for what does not exist.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The files that a run will write, checked against each other, the inputs and the output folder before it begins.
+/// The output files of a run, checked before it begins against each other, the inputs and the output folder.
 
 #include <filesystem>
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace scanmill {
 
-/// What a file will hold: one output port of one node, for one scan under one workflow.
+/// The content of an output file: one output port of one node, for one scan under one workflow.
 struct OutputContent {
     std::string node;
     std::string port;
@@ -23,9 +23,9 @@ public:
     /// No output may replace this file. Pre: nothing was added yet.
     void protect(const std::filesystem::path& file) { inputs_.insert(identity(file)); }
 
-    /// The absolute path of `name` (relative to the output folder, in normal form). `writer` says in messages who
-    /// writes it. Throws Error when another content has the same path, when one output's path is another's folder, when
-    /// the file would replace an input, and when it would leave the output folder through a link.
+    /// The absolute path of `name` (relative to the output folder, in normal form). `writer` names the cell in
+    /// messages. Throws Error when another content has the same path, when one output's path is another's folder, when
+    /// the file would replace an input, and when a link leads it out of the output folder.
     std::filesystem::path add(const std::string& name, const OutputContent& content, const std::string& writer);
 
 private:
@@ -40,7 +40,7 @@ private:
 
     std::filesystem::path folder_;
     std::map<std::filesystem::path, Entry> files_;
-    std::map<std::filesystem::path, std::string> folders_;  // a folder of files_ → who writes into it
+    std::map<std::filesystem::path, std::string> folders_;  // folders of files_ and the first writer of each
     std::set<Identity> inputs_;
 };
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/graph/streaming.hpp"
-
 #include <algorithm>
 
 #include "scanmill/formats/files.hpp"
+#include "scanmill/graph/graph.hpp"
 
 namespace scanmill {
 
@@ -27,15 +26,15 @@ bool has_value(const ParameterValue* value) {
     return !one || !std::holds_alternative<Word>(*one);
 }
 
-/// What reads a scan, as far as it was looked at.
+/// The steps and outputs that read one scan.
 struct Readers {
-    bool is_read = false, all_stream = true;
+    std::size_t all = 0, streaming = 0;
 
     void add(bool streams) {
-        is_read = true;
-        all_stream = all_stream && streams;
+        ++all;
+        streaming += streams;
     }
-    bool are_streamed() const { return is_read && all_stream; }
+    bool all_stream() const { return all > 0 && streaming == all; }
 };
 
 }  // namespace
@@ -57,7 +56,7 @@ bool is_streamed(const Plan& plan, std::size_t input) {
     for (const PlannedVariant& variant : plan.variants)
         for (const PlannedOutput& output : variant.outputs)
             if (output.source == scan) readers.add(false);
-    return plan.workflow.inputs[input].kind == kind_of<PointCloud>() && readers.are_streamed();
+    return plan.workflow.inputs[input].kind == kind_of<PointCloud>() && readers.all_stream();
 }
 
 void mark_streams(RunGraph& graph) {
@@ -68,9 +67,8 @@ void mark_streams(RunGraph& graph) {
         for (const RunOutput& output : cell.outputs) readers[output.node].add(false);
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {
         RunNode& node = graph.nodes[index];
-        node.leaf.is_streamed = !node.step && readers[index].are_streamed() &&
-                                node.leaf.kind == kind_of<PointCloud>() && !node.leaf.pose && node.unreadable.empty() &&
-                                may_be_point_stream(node.leaf.file);
+        node.leaf.is_streamed = !node.step && readers[index].all_stream() && node.leaf.kind == kind_of<PointCloud>() &&
+                                !node.leaf.pose && node.unreadable.empty() && may_be_point_stream(node.leaf.file);
     }
 }
 

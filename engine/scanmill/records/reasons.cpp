@@ -27,9 +27,9 @@ public:
 
     void explain_all() {
         for (std::size_t index = 0; index < graph_.nodes.size(); ++index) {
-            NodePrediction& seen = prediction_[index];
-            if (!seen.will_run || seen.known) continue;
-            if (std::string why = reason(index); !why.empty()) seen.why = std::move(why);
+            NodePrediction& predicted = prediction_[index];
+            if (!predicted.will_run || predicted.cached) continue;
+            if (std::string why = reason(index); !why.empty()) predicted.why = std::move(why);
         }
     }
 
@@ -47,11 +47,11 @@ private:
         if (past.empty()) return {};
         const std::int64_t run = past.front().run;
         if (least.empty() && std::ranges::any_of(past, [](const PastStep& step) { return !step.done; }))
-            return fmt::format("it did not come to its end in run {}", run);
+            return fmt::format("it did not complete in run {}", run);
         if (least.empty())
             return fmt::format(
-                "the cache does not know it: none of its parameters changed since run {}, but perhaps the order of its "
-                "inputs, a file that a parameter names, or Scanmill itself; or the cache lost it",
+                "it is not in the cache: none of its parameters changed since run {}, but perhaps the order of its "
+                "inputs, a file that a parameter names, or Scanmill itself; or the cache removed it",
                 run);
         std::string text;
         for (const std::string& difference : least) text += (text.empty() ? "" : ", ") + difference;
@@ -77,9 +77,9 @@ private:
                                             now.empty() ? "nothing" : now));
         if (past.seed != graph_.seed) found.push_back(fmt::format("the seed changed {} → {}", past.seed, graph_.seed));
         for (const NodeInput& input : node.inputs)
-            if (!prediction_[input.node].known) {
+            if (!prediction_[input.node].cached) {
                 const RunNode& from = graph_.nodes[input.node];
-                found.push_back(from.step ? fmt::format("what '{}' gives may change", graph_.label(from))
+                found.push_back(from.step ? fmt::format("the result of '{}' may change", graph_.label(from))
                                           : std::string("the scan changed"));
             }
         return found;

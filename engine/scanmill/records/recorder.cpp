@@ -15,7 +15,7 @@ std::vector<std::pair<std::string, std::string>> texts_of(const ParameterSet& pa
 }
 
 FailureRecord record_of(const Failure& failure) {
-    return {std::string(name_of(failure.cause)), failure.number, failure.text};
+    return {std::string(name_of(failure.cause)), failure.number, failure ? failure.whole().what() : ""};
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Appends to the records what a run reports, while it runs.
+/// Appends the reports of a run to the records while it runs.
 
 #include <chrono>
 #include <filesystem>
@@ -15,15 +15,14 @@
 
 namespace scanmill {
 
-/// Gathers what ends within a second before it writes, so that many small steps cost few syncs; a run that is killed
-/// loses what ended in its last second, and the step that it was at. When the records cannot be opened, the run is not
-/// recorded, which is told. When they cannot be written, because somebody else has locked them or the disk is full,
-/// that is tried again now and then; what could not be written until the end is told, and lost.
+/// Writes at most once a second, so that many small steps cost few syncs; a killed run loses the rows of its last
+/// second. If the database cannot be opened, the run continues unrecorded, with a warning. If it is locked or the disk
+/// is full, writing is tried again until the end of the run; then there is a warning, and the rows are lost.
 class Recorder : public RunObserver {
 public:
     using OnWarning = std::function<void(std::string)>;
 
-    /// `file` need not be there yet. Library and graph must outlive the recorder.
+    /// Creates `file` if needed. Library and graph must outlive the recorder.
     Recorder(std::filesystem::path file, RunStart start, FilterLibrary& library, const RunGraph& graph,
              OnWarning on_warning);
 
@@ -32,10 +31,10 @@ public:
     void node_ended(const RunNode& node, const NodeReport& report) override;
     void cell_ended(const RunCell& cell, const CellReport& report) override;
     void time_passed() override { flush_when_due(); }
-    /// The rest, and how the run ended.
+    /// Writes the remaining rows and the outcome of the run.
     void finish(const RunReport& report);
 
-    /// The run's number; 0 when the records cannot be written.
+    /// The run's number; 0 if the database cannot be opened.
     std::int64_t run() {
         wait_for_begin();
         return run_;
@@ -52,13 +51,13 @@ private:
     FilterLibrary& library_;
     const RunGraph& graph_;
     OnWarning on_warning_;
-    std::optional<RunRecords> records_;  // nothing when they could not be opened
+    std::optional<RunRecords> records_;  // empty if they could not be opened
     std::int64_t run_ = 0;
     std::string trouble_;
     std::vector<StepRecord> steps_;
     std::vector<CellRecord> cells_;
     std::chrono::steady_clock::time_point begin_, flushed_;
-    std::future<void> beginning_;  // the disk takes its time; the work need not wait for it
+    std::future<void> beginning_;  // opens the database beside the first steps
 };
 
 }  // namespace scanmill

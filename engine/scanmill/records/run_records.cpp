@@ -1,14 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/records/run_records.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
+#include <concepts>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <tuple>
 
-#include "scanmill/records/records_database.hpp"
+#include "scanmill/base/error.hpp"
 
 namespace scanmill {
 
 namespace {
 
-/// One for every version of the tables; a file is brought from its version to the last by those in between.
+/// Runs `action`; errors of SQLite become Errors that name the file.
+template <class Action>
+auto about(const std::string& file, Action&& action) {
+    try {
+        return action();
+    } catch (const SQLite::Exception& error) {
+        throw Error("the records '{}': {}", file, error.what());
+    }
+}
+
+/// One per version of the tables. A file of an older version runs those that follow it.
 constexpr std::array<const char*, 2> migrations{R"(
 CREATE TABLE run (id INTEGER PRIMARY KEY, started TEXT NOT NULL, workflow TEXT NOT NULL, file TEXT NOT NULL,
     arguments TEXT NOT NULL, seed TEXT NOT NULL, threads INTEGER NOT NULL, version TEXT NOT NULL, machine TEXT NOT NULL);
@@ -56,6 +75,21 @@ CREATE INDEX log_of_step ON log (step);
 
 }  // namespace
 
+struct RunRecords::Database {
+    Database(const std::filesystem::path& path, int flags) : file(path.string()), sqlite(file, flags, patience) {}
+
+    /// Brings the tables to the last version; creates them in an empty file.
+    void migrate();
+    int version() { return sqlite.execAndGet("PRAGMA user_version").getInt(); }
+    /// Throws Error for tables of a newer Scanmill.
+    void require_known(int version) const;
+
+    static constexpr int patience = 1000;  // milliseconds, while another run writes
+    std::string file;
+    SQLite::Database sqlite;
+    std::map<std::pair<std::int64_t, std::size_t>, std::int64_t> step_ids;  // by run and node
+};
+
 void RunRecords::Database::migrate() {
     if (version() == static_cast<int>(migrations.size())) return;  // writing that again would cost four syncs
     SQLite::Transaction transaction(sqlite, SQLite::TransactionBehavior::IMMEDIATE);
@@ -101,8 +135,7 @@ RunRecords RunRecords::append_to(const std::filesystem::path& file) {
 RunRecords RunRecords::read(const std::filesystem::path& file) {
     return about(file.string(), [&] {
         if (!std::filesystem::exists(file))
-            throw Error("there are no records '{}'", file.string())
-                .hint("name the output folder of a run, the one after -o");
+            throw Error("there are no records '{}'", file.string()).hint("name the output folder of a run");
         auto database = std::make_unique<Database>(file, SQLite::OPEN_READONLY);
         const int version = database->version();
         if (version == 0) throw Error("'{}' holds no records of runs", file.string());
@@ -115,34 +148,146 @@ RunRecords RunRecords::read(const std::filesystem::path& file) {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Texts = std::vector<std::pair<std::string, std::string>>;
+using Words = std::vector<std::string>;
 
-std::string text_of(const std::vector<std::pair<std::string, std::string>>& pairs) {
+std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+void bind_value(SQLite::Statement& statement, int index, std::integral auto number) {
+    statement.bind(index, static_cast<std::int64_t>(number));
+}
+void bind_value(SQLite::Statement& statement, int index, double number) {
+    if (std::isnan(number))
+        statement.bind(index);
+    else
+        statement.bind(index, number);
+}
+void bind_value(SQLite::Statement& statement, int index, const std::string& text) { statement.bind(index, text); }
+void bind_value(SQLite::Statement& statement, int index, const Words& words) { statement.bind(index, dumped(words)); }
+void bind_value(SQLite::Statement& statement, int index, const Texts& texts) {
     Json json = Json::object();
-    for (const auto& [name, value] : pairs) json[name] = value;
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    for (const auto& [name, value] : texts) json[name] = value;
+    statement.bind(index, dumped(json));
 }
 
-void bind(SQLite::Statement& statement, int place, double number) {
-    if (std::isnan(number))
-        statement.bind(place);
-    else
-        statement.bind(place, number);
+template <class... Values>
+void bind_all(SQLite::Statement& statement, const Values&... values) {
+    int index = 0;
+    (bind_value(statement, ++index, values), ...);
+}
+
+void read_value(const SQLite::Column& column, std::integral auto& number) {
+    number = static_cast<std::remove_reference_t<decltype(number)>>(column.getInt64());
+}
+void read_value(const SQLite::Column& column, double& number) {
+    number = column.isNull() ? std::nan("") : column.getDouble();
+}
+void read_value(const SQLite::Column& column, std::string& text) { text = column.getString(); }
+void read_value(const SQLite::Column& column, std::optional<std::string>& text) {
+    if (!column.isNull()) text = column.getString();
+}
+void read_value(const SQLite::Column& column, Words& words) {
+    for (const Json& word : Json::parse(column.getString(), nullptr, false))
+        if (word.is_string()) words.push_back(word.get<std::string>());
+}
+void read_value(const SQLite::Column& column, Texts& texts) {
+    const Json json = Json::parse(column.getString(), nullptr, false);
+    for (const auto& [name, value] : json.items())
+        if (value.is_string()) texts.emplace_back(name, value.get<std::string>());
+}
+
+/// Reads columns from `first` on.
+template <class... Fields>
+void read_row(SQLite::Statement& row, int first, Fields&... fields) {
+    (read_value(row.getColumn(first++), fields), ...);
+}
+
+Metric read_metric(SQLite::Statement& row, int first) {
+    Metric metric{};
+    std::string unit;
+    read_row(row, first, metric.name, metric.value, unit);
+    metric.unit = unit_named(unit).value_or(Unit::number);
+    return metric;
+}
+
+/// Inserts rows into a table, given as "name" or "name (column, …)".
+class Insertion {
+public:
+    Insertion(SQLite::Database& database, std::string table) : database_(database), table_(std::move(table)) {}
+
+    /// Returns the ID of the new row.
+    template <class... Values>
+    std::int64_t add(const Values&... values) {
+        if (!statement_) {
+            std::string marks = "?";
+            for (std::size_t i = 1; i < sizeof...(values); ++i) marks += ", ?";
+            statement_.emplace(database_, "INSERT INTO " + table_ + " VALUES (" + marks + ")");
+        }
+        bind_all(*statement_, values...);
+        statement_->exec();
+        statement_->reset();
+        return database_.getLastInsertRowid();
+    }
+
+private:
+    SQLite::Database& database_;
+    std::string table_;
+    std::optional<SQLite::Statement> statement_;
+};
+
+/// A prepared SELECT.
+class Selection {
+public:
+    Selection(SQLite::Database& database, const std::string& sql) : statement_(database, sql) {}
+
+    /// Binds the keys and calls action(row) for every row.
+    template <class Action, class... Keys>
+    void each(Action&& action, const Keys&... keys) {
+        bind_all(statement_, keys...);
+        while (statement_.executeStep()) action(statement_);
+        statement_.reset();
+    }
+
+private:
+    SQLite::Statement statement_;
+};
+
+// The columns of each table and, in the same order, the fields of its record.
+
+const std::string run_columns = "workflow, file, arguments, threads, jobs, version, machine, libraries";
+template <class Start>
+auto fields_of_run(Start& start) {
+    return std::tie(start.workflow, start.file, start.arguments, start.threads, start.jobs, start.version,
+                    start.machine, start.libraries);
+}
+
+const std::string step_columns =
+    "node, label, filter, filter_version, build, scan, plan_key, origin, why, outcome, error, seconds, cpu_seconds, "
+    "authored, resolved, workflow, cause, cause_number, peak_memory, threads, attempts";
+template <class Step>
+auto fields_of_step(Step& step) {
+    return std::tie(step.node, step.label, step.filter, step.filter_version, step.build, step.scan, step.plan_key,
+                    step.origin, step.why, step.outcome, step.failure.error, step.seconds, step.cpu_seconds,
+                    step.authored, step.resolved, step.workflow, step.failure.cause, step.failure.number,
+                    step.peak_memory, step.threads, step.attempts);
+}
+
+const std::string cell_columns = "scan, variant, outcome, error, seconds, workflow, cause, cause_number";
+template <class Cell>
+auto fields_of_cell(Cell& cell) {
+    return std::tie(cell.scan, cell.variant, cell.outcome, cell.failure.error, cell.seconds, cell.workflow,
+                    cell.failure.cause, cell.failure.number);
 }
 
 }  // namespace
 
 std::int64_t RunRecords::begin(const RunStart& start) {
     return about(database_->file, [&] {
-        SQLite::Statement insert(
-            database_->sqlite,
-            "INSERT INTO run (started, workflow, file, arguments, seed, threads, jobs, version, machine, libraries) "
-            "VALUES (strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-        SQLite::bind(insert, start.workflow, start.file,
-                     Json(start.arguments).dump(-1, ' ', false, Json::error_handler_t::replace),
-                     std::to_string(start.seed), static_cast<std::int64_t>(start.threads),
-                     static_cast<std::int64_t>(start.jobs), start.version, start.machine, start.libraries);
-        insert.exec();
-        return database_->sqlite.getLastInsertRowid();
+        const auto started = database_->sqlite.execAndGet("SELECT strftime('%Y-%m-%dT%H:%M:%SZ', 'now')").getString();
+        Insertion runs(database_->sqlite, "run (started, seed, " + run_columns + ")");
+        return std::apply(
+            [&](const auto&... fields) { return runs.add(started, std::to_string(start.seed), fields...); },
+            fields_of_run(start));
     });
 }
 
@@ -156,70 +301,30 @@ void RunRecords::add(std::int64_t run, const std::vector<StepRecord>& steps, con
 
 void RunRecords::insert(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells) {
     SQLite::Database& sqlite = database_->sqlite;
-    SQLite::Statement step_row(
-        sqlite,
-        "INSERT INTO step (run, node, label, filter, filter_version, build, scan, plan_key, origin, why, outcome, "
-        "error, seconds, cpu_seconds, authored, resolved, workflow, cause, cause_number, peak_memory, threads, "
-        "attempts) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-    SQLite::Statement metric_row(sqlite, "INSERT INTO metric VALUES (?, ?, ?, ?, ?)");
-    SQLite::Statement warning_row(sqlite, "INSERT INTO warning VALUES (?, ?)");
-    SQLite::Statement log_row(sqlite, "INSERT INTO log VALUES (?, ?)");
-    const auto run_row = [](SQLite::Statement& statement) {
-        statement.exec();
-        statement.reset();
-    };
+    Insertion step_rows(sqlite, "step (run, " + step_columns + ")"), metrics(sqlite, "metric"),
+        warnings(sqlite, "warning"), log(sqlite, "log");
     for (const StepRecord& step : steps) {
-        SQLite::bind(step_row, run, static_cast<std::int64_t>(step.node), step.label, step.filter, step.filter_version,
-                     step.build, step.scan, step.plan_key, step.origin, step.why, step.outcome, step.failure.error,
-                     step.seconds, step.cpu_seconds, text_of(step.authored), text_of(step.resolved), step.workflow,
-                     step.failure.cause, step.failure.number, step.peak_memory, static_cast<std::int64_t>(step.threads),
-                     static_cast<std::int64_t>(step.attempts));
-        run_row(step_row);
-        const std::int64_t id = sqlite.getLastInsertRowid();
+        const std::int64_t id =
+            std::apply([&](const auto&... fields) { return step_rows.add(run, fields...); }, fields_of_step(step));
         database_->step_ids[{run, step.node}] = id;
-        for (const Metrics* metrics : {&step.metrics, &step.properties})
-            for (const Metric& metric : metrics->values) {
-                SQLite::bind(metric_row, id, metrics == &step.properties ? 1 : 0, metric.name);
-                bind(metric_row, 4, metric.value);
-                metric_row.bind(5, std::string(name_of(metric.unit)));
-                run_row(metric_row);
-            }
-        for (const std::string& text : step.warnings) {
-            SQLite::bind(warning_row, id, text);
-            run_row(warning_row);
-        }
-        for (const std::string& line : step.log) {
-            SQLite::bind(log_row, id, line);
-            run_row(log_row);
-        }
+        for (const Metrics* list : {&step.metrics, &step.properties})
+            for (const Metric& metric : list->values)
+                metrics.add(id, list == &step.properties, metric.name, metric.value, std::string(name_of(metric.unit)));
+        for (const std::string& text : step.warnings) warnings.add(id, text);
+        for (const std::string& line : step.log) log.add(id, line);
     }
-    SQLite::Statement cell_row(
-        sqlite,
-        "INSERT INTO cell (run, scan, variant, outcome, error, seconds, workflow, cause, cause_number) VALUES (?, "
-        "?, ?, ?, ?, ?, ?, ?, ?)");
-    SQLite::Statement link_row(sqlite, "INSERT INTO cell_step VALUES (?, ?)");
-    SQLite::Statement output_row(sqlite, "INSERT INTO output (cell, file, kind, outcome) VALUES (?, ?, ?, ?)");
-    SQLite::Statement fact_row(sqlite, "INSERT INTO output_fact VALUES (?, ?, ?, ?)");
+    Insertion cell_rows(sqlite, "cell (run, " + cell_columns + ")"), links(sqlite, "cell_step"),
+        outputs(sqlite, "output (cell, file, kind, outcome)"), properties(sqlite, "output_fact");
     for (const CellRecord& cell : cells) {
-        SQLite::bind(cell_row, run, cell.scan, cell.variant, cell.outcome, cell.failure.error, cell.seconds,
-                     cell.workflow, cell.failure.cause, cell.failure.number);
-        run_row(cell_row);
-        const std::int64_t id = sqlite.getLastInsertRowid();
+        const std::int64_t id =
+            std::apply([&](const auto&... fields) { return cell_rows.add(run, fields...); }, fields_of_cell(cell));
         for (const std::size_t node : cell.nodes)
-            if (const auto step = database_->step_ids.find({run, node}); step != database_->step_ids.end()) {
-                SQLite::bind(link_row, id, step->second);
-                run_row(link_row);
-            }
+            if (const auto step = database_->step_ids.find({run, node}); step != database_->step_ids.end())
+                links.add(id, step->second);
         for (const OutputRecord& output : cell.outputs) {
-            SQLite::bind(output_row, id, output.file, output.kind, output.outcome);
-            run_row(output_row);
-            const std::int64_t output_id = sqlite.getLastInsertRowid();
-            for (const Metric& fact : output.properties.values) {
-                SQLite::bind(fact_row, output_id, fact.name);
-                bind(fact_row, 3, fact.value);
-                fact_row.bind(4, std::string(name_of(fact.unit)));
-                run_row(fact_row);
-            }
+            const std::int64_t output_id = outputs.add(id, output.file, output.kind, output.outcome);
+            for (const Metric& property : output.properties.values)
+                properties.add(output_id, property.name, property.value, std::string(name_of(property.unit)));
         }
     }
 }
@@ -231,59 +336,30 @@ void RunRecords::end(std::int64_t run, const std::vector<StepRecord>& steps, con
         insert(run, steps, cells);
         SQLite::Statement ending(database_->sqlite,
                                  "INSERT INTO run_end VALUES (?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, ?)");
-        SQLite::bind(ending, run, outcome, seconds);
+        bind_all(ending, run, outcome, seconds);
         ending.exec();
         transaction.commit();
     });
 }
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-std::vector<std::pair<std::string, std::string>> pairs_of(const std::string& text) {
-    std::vector<std::pair<std::string, std::string>> pairs;
-    const Json json = Json::parse(text, nullptr, false);
-    for (const auto& [name, value] : json.items())
-        if (value.is_string()) pairs.emplace_back(name, value.get<std::string>());
-    return pairs;
-}
-
-Metric metric_from(SQLite::Statement& row, int first) {
-    const SQLite::Column value = row.getColumn(first + 1);
-    return {row.getColumn(first).getString(), value.isNull() ? std::nan("") : value.getDouble(),
-            unit_named(row.getColumn(first + 2).getString()).value_or(Unit::number)};
-}
-
-}  // namespace
-
 std::vector<RunSummary> RunRecords::runs() const {
     return about(database_->file, [&] {
-        SQLite::Statement row(
+        Selection rows(
             database_->sqlite,
             "SELECT run.id, started, workflow, run_end.outcome, COALESCE(run_end.seconds, 0), "
             "(SELECT COUNT(*) FROM cell WHERE cell.run = run.id), "
             "(SELECT COUNT(*) FROM cell WHERE cell.run = run.id AND outcome = 'failed'), "
             "(SELECT COUNT(DISTINCT node) FROM step WHERE step.run = run.id AND origin = 'ran'), "
-            // What was taken over and then had to run all the same counts as run.
+            // A node whose cached value was lost has two rows, and counts as run.
             "(SELECT COUNT(DISTINCT node) FROM step WHERE step.run = run.id AND origin != 'ran' AND node NOT IN "
             "(SELECT node FROM step WHERE step.run = run.id AND origin = 'ran')) "
             "FROM run LEFT JOIN run_end ON run_end.run = run.id ORDER BY run.id");
-        const auto count = [&row](int column) { return static_cast<std::size_t>(row.getColumn(column).getInt64()); };
         std::vector<RunSummary> runs;
-        while (row.executeStep()) {
-            RunSummary summary;
-            summary.id = row.getColumn(0).getInt64();
-            summary.started = row.getColumn(1).getString();
-            summary.workflow = row.getColumn(2).getString();
-            if (!row.getColumn(3).isNull()) summary.outcome = row.getColumn(3).getString();
-            summary.seconds = row.getColumn(4).getDouble();
-            summary.cells = count(5);
-            summary.failed = count(6);
-            summary.ran = count(7);
-            summary.cached = count(8);
-            runs.push_back(std::move(summary));
-        }
+        rows.each([&](SQLite::Statement& row) {
+            RunSummary& run = runs.emplace_back();
+            read_row(row, 0, run.id, run.started, run.workflow, run.outcome, run.seconds, run.cells, run.failed,
+                     run.ran, run.cached);
+        });
         return runs;
     });
 }
@@ -294,111 +370,60 @@ RunDetails RunRecords::run(std::int64_t id) const {
     for (const RunSummary& summary : all)
         if (summary.id == id) details.summary = summary;
     if (details.summary.id != id) {
-        const std::string known = all.empty() ? "there are none" : fmt::format("there are 1 to {}", all.back().id);
-        throw Error("there is no run {} in '{}'; {}", id, database_->file, known);
+        const std::string existing = all.empty() ? "there are none" : fmt::format("there are 1 to {}", all.back().id);
+        throw Error("there is no run {} in '{}'; {}", id, database_->file, existing);
     }
     return about(database_->file, [&] {
         SQLite::Database& sqlite = database_->sqlite;
-        SQLite::Statement start(sqlite,
-                                "SELECT file, arguments, seed, threads, version, machine, jobs, libraries FROM run "
-                                "WHERE id = ?");
-        start.bind(1, id);
-        start.executeStep();
-        details.start.workflow = details.summary.workflow;
-        details.start.file = start.getColumn(0).getString();
-        for (const Json& word : Json::parse(start.getColumn(1).getString(), nullptr, false))
-            if (word.is_string()) details.start.arguments.push_back(word.get<std::string>());
-        details.start.seed = std::stoull(start.getColumn(2).getString());
-        details.start.threads = static_cast<unsigned>(start.getColumn(3).getInt64());
-        details.start.version = start.getColumn(4).getString();
-        details.start.machine = start.getColumn(5).getString();
-        details.start.jobs = static_cast<unsigned>(start.getColumn(6).getInt64());
-        details.start.libraries = start.getColumn(7).getString();
+        const auto read_fields = [](SQLite::Statement& row, const auto& fields) {
+            std::apply([&](auto&... each) { read_row(row, 1, each...); }, fields);
+        };
+        Selection starts(sqlite, "SELECT seed, " + run_columns + " FROM run WHERE id = ?");
+        starts.each(
+            [&](SQLite::Statement& row) {
+                details.start.seed = std::stoull(row.getColumn(0).getString());
+                read_fields(row, fields_of_run(details.start));
+            },
+            id);
 
-        SQLite::Statement steps(sqlite,
-                                "SELECT id, node, label, filter, filter_version, build, scan, plan_key, origin, why, "
-                                "outcome, error, seconds, cpu_seconds, authored, resolved, workflow, cause, "
-                                "cause_number, COALESCE(peak_memory, 0), threads, attempts FROM step WHERE run = ? "
-                                "ORDER BY id");
-        SQLite::Statement metrics(sqlite,
-                                  "SELECT is_fact, name, value, unit FROM metric WHERE step = ? ORDER BY rowid");
-        SQLite::Statement warnings(sqlite, "SELECT text FROM warning WHERE step = ? ORDER BY rowid");
-        SQLite::Statement log(sqlite, "SELECT line FROM log WHERE step = ? ORDER BY rowid");
-        steps.bind(1, id);
-        while (steps.executeStep()) {
-            StepRecord step;
-            const auto text = [&steps](int column) { return steps.getColumn(column).getString(); };
-            step.node = static_cast<std::size_t>(steps.getColumn(1).getInt64());
-            step.label = text(2);
-            step.filter = text(3);
-            step.filter_version = steps.getColumn(4).getInt();
-            step.build = text(5);
-            step.scan = text(6);
-            step.plan_key = text(7);
-            step.origin = text(8);
-            step.why = text(9);
-            step.outcome = text(10);
-            step.failure = {text(17), steps.getColumn(18).getInt(), text(11)};
-            step.seconds = steps.getColumn(12).getDouble();
-            step.cpu_seconds = steps.getColumn(13).getDouble();
-            step.authored = pairs_of(text(14));
-            step.resolved = pairs_of(text(15));
-            step.workflow = text(16);
-            step.peak_memory = steps.getColumn(19).getInt64();
-            step.threads = static_cast<unsigned>(steps.getColumn(20).getInt64());
-            step.attempts = static_cast<unsigned>(steps.getColumn(21).getInt64());
-            metrics.bind(1, steps.getColumn(0).getInt64());
-            while (metrics.executeStep())
-                (metrics.getColumn(0).getInt() ? step.properties : step.metrics)
-                    .values.push_back(metric_from(metrics, 1));
-            metrics.reset();
-            warnings.bind(1, steps.getColumn(0).getInt64());
-            while (warnings.executeStep()) step.warnings.push_back(warnings.getColumn(0).getString());
-            warnings.reset();
-            log.bind(1, steps.getColumn(0).getInt64());
-            while (log.executeStep()) step.log.push_back(log.getColumn(0).getString());
-            log.reset();
-            details.steps.push_back(std::move(step));
-        }
+        Selection steps(sqlite, "SELECT id, " + step_columns + " FROM step WHERE run = ? ORDER BY id");
+        Selection metrics(sqlite, "SELECT is_fact, name, value, unit FROM metric WHERE step = ? ORDER BY rowid");
+        Selection warnings(sqlite, "SELECT text FROM warning WHERE step = ? ORDER BY rowid");
+        Selection log(sqlite, "SELECT line FROM log WHERE step = ? ORDER BY rowid");
+        const auto add_step = [&](SQLite::Statement& row) {
+            StepRecord& step = details.steps.emplace_back();
+            read_fields(row, fields_of_step(step));
+            const auto add_metric = [&](SQLite::Statement& metric) {
+                (metric.getColumn(0).getInt() ? step.properties : step.metrics)
+                    .values.push_back(read_metric(metric, 1));
+            };
+            const std::int64_t step_id = row.getColumn(0).getInt64();
+            metrics.each(add_metric, step_id);
+            warnings.each([&](auto& text) { step.warnings.push_back(text.getColumn(0).getString()); }, step_id);
+            log.each([&](auto& line) { step.log.push_back(line.getColumn(0).getString()); }, step_id);
+        };
+        steps.each(add_step, id);
 
-        SQLite::Statement cells(
-            sqlite,
-            "SELECT id, scan, variant, outcome, error, seconds, workflow, cause, cause_number FROM cell WHERE run = ? "
-            "ORDER BY id");
-        SQLite::Statement nodes(sqlite,
-                                "SELECT node FROM cell_step JOIN step ON step.id = cell_step.step WHERE cell = ? "
-                                "ORDER BY cell_step.rowid");
-        SQLite::Statement outputs(sqlite, "SELECT id, file, kind, outcome FROM output WHERE cell = ? ORDER BY id");
-        SQLite::Statement properties(sqlite,
-                                     "SELECT name, value, unit FROM output_fact WHERE output = ? ORDER BY rowid");
-        cells.bind(1, id);
-        while (cells.executeStep()) {
-            CellRecord cell{
-                cells.getColumn(6).getString(),
-                cells.getColumn(1).getString(),
-                cells.getColumn(2).getString(),
-                cells.getColumn(3).getString(),
-                {cells.getColumn(7).getString(), cells.getColumn(8).getInt(), cells.getColumn(4).getString()},
-                cells.getColumn(5).getDouble(),
-                {},
-                {}};
-            nodes.bind(1, cells.getColumn(0).getInt64());
-            while (nodes.executeStep()) cell.nodes.push_back(static_cast<std::size_t>(nodes.getColumn(0).getInt64()));
-            nodes.reset();
-            outputs.bind(1, cells.getColumn(0).getInt64());
-            while (outputs.executeStep()) {
-                OutputRecord output{outputs.getColumn(1).getString(),
-                                    outputs.getColumn(2).getString(),
-                                    outputs.getColumn(3).getString(),
-                                    {}};
-                properties.bind(1, outputs.getColumn(0).getInt64());
-                while (properties.executeStep()) output.properties.values.push_back(metric_from(properties, 0));
-                properties.reset();
-                cell.outputs.push_back(std::move(output));
-            }
-            outputs.reset();
-            details.cells.push_back(std::move(cell));
-        }
+        Selection cells(sqlite, "SELECT id, " + cell_columns + " FROM cell WHERE run = ? ORDER BY id");
+        Selection nodes(sqlite,
+                        "SELECT node FROM cell_step JOIN step ON step.id = cell_step.step WHERE cell = ? "
+                        "ORDER BY cell_step.rowid");
+        Selection outputs(sqlite, "SELECT id, file, kind, outcome FROM output WHERE cell = ? ORDER BY id");
+        Selection properties(sqlite, "SELECT name, value, unit FROM output_fact WHERE output = ? ORDER BY rowid");
+        const auto add_cell = [&](SQLite::Statement& row) {
+            CellRecord& cell = details.cells.emplace_back();
+            read_fields(row, fields_of_cell(cell));
+            const auto add_output = [&](SQLite::Statement& found) {
+                OutputRecord& output = cell.outputs.emplace_back();
+                read_row(found, 1, output.file, output.kind, output.outcome);
+                properties.each([&](auto& one) { output.properties.values.push_back(read_metric(one, 0)); },
+                                found.getColumn(0).getInt64());
+            };
+            const std::int64_t cell_id = row.getColumn(0).getInt64();
+            nodes.each([&](auto& node) { read_row(node, 0, cell.nodes.emplace_back()); }, cell_id);
+            outputs.each(add_output, cell_id);
+        };
+        cells.each(add_cell, id);
         return details;
     });
 }
@@ -406,19 +431,22 @@ RunDetails RunRecords::run(std::int64_t id) const {
 std::vector<PastStep> RunRecords::last_steps(const std::string& workflow, const std::string& scan,
                                              const std::string& label) const {
     return about(database_->file, [&] {
-        SQLite::Statement row(
+        Selection rows(
             database_->sqlite,
-            "SELECT run.id, seed, filter, build, plan_key, filter_version, authored, outcome FROM step JOIN run ON "
+            "SELECT run.id, seed, outcome, filter, build, plan_key, filter_version, authored FROM step JOIN run ON "
             "run.id = step.run WHERE step.run = "
             "(SELECT MAX(run) FROM step WHERE step.workflow = ?1 AND scan = ?2 AND label = ?3) "
             "AND step.workflow = ?1 AND scan = ?2 AND label = ?3 ORDER BY step.id");
-        SQLite::bind(row, workflow, scan, label);
         std::vector<PastStep> steps;
-        while (row.executeStep())
-            steps.push_back({row.getColumn(0).getInt64(), std::stoull(row.getColumn(1).getString()),
-                             row.getColumn(2).getString(), row.getColumn(3).getString(), row.getColumn(4).getString(),
-                             row.getColumn(5).getInt(), pairs_of(row.getColumn(6).getString()),
-                             row.getColumn(7).getString() == "done"});
+        rows.each(
+            [&](SQLite::Statement& row) {
+                PastStep& step = steps.emplace_back();
+                step.run = row.getColumn(0).getInt64();
+                step.seed = std::stoull(row.getColumn(1).getString());
+                step.done = row.getColumn(2).getString() == "done";
+                read_row(row, 3, step.filter, step.build, step.plan_key, step.filter_version, step.authored);
+            },
+            workflow, scan, label);
         return steps;
     });
 }

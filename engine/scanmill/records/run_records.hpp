@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What was run, with what, and what came of it: one SQLite file per output folder, to which every run appends.
+/// The history of runs: one SQLite file per output folder, to which every run appends.
 ///
-/// Nothing is ever changed or removed. A run without an end was interrupted by force. The file may lie on a network
-/// file system (rollback journal) and be read by any SQLite program; its tables are in run_records.cpp, where each
-/// change is a migration of its own. Not-a-number is stored as NULL.
+/// Rows are never changed or removed. A run without an end was killed. The file may be on a network file system
+/// (rollback journal), and any SQLite program can read it; its tables are in run_records.cpp. NaN is stored as NULL.
 
 #include <filesystem>
 #include <memory>
@@ -25,10 +24,9 @@ struct RunStart {
     std::string version, machine, libraries;
 };
 
-/// What kind of failure it was, and the signal or exit code that came with it.
 struct FailureRecord {
     std::string cause;  ///< empty: none
-    int number = 0;
+    int number = 0;      ///< signal or exit code
     std::string error;  ///< whole text with frames and hint
 };
 
@@ -63,7 +61,7 @@ struct CellRecord {
 struct RunSummary {
     std::int64_t id = 0;
     std::string started, workflow;
-    std::optional<std::string> outcome;  ///< nothing: the run never came to its end
+    std::optional<std::string> outcome;  ///< nothing: the run was killed
     std::size_t cells = 0, failed = 0, ran = 0, cached = 0;
     double seconds = 0;
 };
@@ -75,7 +73,7 @@ struct RunDetails {
     std::vector<StepRecord> steps;
 };
 
-/// A step of an earlier run, as far as telling what changed needs it.
+/// A step of an earlier run, for comparison with the next.
 struct PastStep {
     std::int64_t run = 0;
     std::uint64_t seed = 0;
@@ -90,28 +88,28 @@ inline constexpr const char* records_file = "scanmill.sqlite";
 
 class RunRecords {
 public:
-    /// Opens the records for appending, or makes them. Throws Error: a file that is none, one of a newer Scanmill, a
-    /// folder that cannot be written to.
+    /// Opens the records for appending, or creates them. Throws Error: not such a file, one of a newer Scanmill, or an
+    /// unwritable folder.
     static RunRecords append_to(const std::filesystem::path& file);
-    /// Opens what is there for reading; tables of an older version are brought up to date first.
+    /// Opens records for reading; tables of an older version are migrated first.
     static RunRecords read(const std::filesystem::path& file);
     RunRecords(RunRecords&&) noexcept;
     ~RunRecords();
 
     /// The new run's number.
     std::int64_t begin(const RunStart& start);
-    /// Appends to the run, all or nothing: steps, then cells. Throws Error when the disk is full.
+    /// Appends rows in one transaction. Throws Error if the disk is full.
     void add(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells);
-    /// The last rows and how the run ended, all or nothing.
+    /// Appends the last rows and the outcome of the run in one transaction.
     void end(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells,
              const std::string& outcome, double seconds);
     void end(std::int64_t run, const std::string& outcome, double seconds) { end(run, {}, {}, outcome, seconds); }
 
     /// In the order of their numbers.
     std::vector<RunSummary> runs() const;
-    /// Throws Error when there is no such run, naming those there are.
+    /// Throws Error for an unknown run, naming the existing ones.
     RunDetails run(std::int64_t id) const;
-    /// The steps of this label on this scan in the newest run of the workflow that has some.
+    /// The steps with this label on this scan in the newest run of the workflow that has any.
     std::vector<PastStep> last_steps(const std::string& workflow, const std::string& scan,
                                      const std::string& label) const;
 

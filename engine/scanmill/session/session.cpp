@@ -31,17 +31,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Before the first step rather than after the last.
+/// Checks before the first step that outputs can be written.
 void require_writable(const fs::path& folder) {
     std::error_code trouble;
     fs::create_directories(folder, trouble);
     if (!trouble && ::access(folder.c_str(), W_OK | X_OK) != 0) trouble.assign(errno, std::generic_category());
     if (trouble)
         throw Error("results cannot be put into '{}': {}", folder.string(), trouble.message())
-            .hint("name another output folder: -o DIR");
+            .hint("choose another output folder")
+            .remedy(Remedy::choose_output_folder);
 }
 
-/// Parts of files that an earlier run did not complete.
+/// Removes incomplete files of an earlier run.
 void remove_incomplete_outputs(const RunGraph& graph) {
     std::set<fs::path> folders;
     for (const RunCell& cell : graph.cells)
@@ -85,7 +86,7 @@ std::vector<NodePrediction> Session::predict(const RunGraph& graph, FilterLibrar
     try {
         explain(predictions, library, graph, RunRecords::read(records));
     } catch (const Error& error) {
-        if (*warn_) (*warn_)(fmt::format("what changed since the last run is not known: {}", error.sentence()));
+        if (*warn_) (*warn_)(fmt::format("the changes since the last run are unknown: {}", error.sentence()));
     }
     return predictions;
 }
@@ -129,8 +130,7 @@ RunReport Session::run(const SessionTask& task, FilterLibrary& library, std::vec
     on_start({jobs, run_settings.threads, recorder.run()});
     std::vector<RunObserver*> all = observers;
     all.push_back(&recorder);
-    Observers observing(all);
-    const RunReport report = scanmill::run(library, task.graph, workers, run_settings, observing);
+    const RunReport report = scanmill::run(library, task.graph, workers, run_settings, all);
     if (processes_) processes_->dismiss();
     recorder.finish(report);
     if (cache_) cache_->evict();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// One `run` or `batch`, from a graph to its report: how many worker processes, with how many threads, what is
-/// recorded, and what is removed from the cache afterwards.
+/// One `run` or `batch`, from a graph to its report: chooses the number of worker processes and threads, records the
+/// run, and evicts from the cache.
 
 #include <filesystem>
 #include <functional>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scanmill/batch/batch.hpp"
-#include "scanmill/cache/keep_rule.hpp"
+#include "scanmill/cache/cache.hpp"
 #include "scanmill/run/run.hpp"
 
 namespace scanmill {

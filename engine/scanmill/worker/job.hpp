@@ -1,41 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// One piece of work and everything that doing it needs: whoever does it, in this process or in another, knows no plan
-/// and no graph.
+/// Jobs for workers, their reports, and both as messages between the runner and a worker process.
+///
+/// A job contains everything that a worker needs; workers have neither the plan nor the graph. Messages are CBOR;
+/// numbers keep their bits and file names need not be UTF-8.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "scanmill/cache/step_result.hpp"
 #include "scanmill/graph/graph.hpp"
+#include "scanmill/plugin/library.hpp"
 #include "scanmill/worker/report.hpp"
 
 namespace scanmill {
 
-/// A value that is needed: the doer still holds it from an earlier job, or the cache has it under `content`.
+/// A value that a job needs. The worker has it from an earlier job, or finds it in the cache, or reads it from a file.
 struct JobInput {
-    std::string port;  ///< of the step that takes it
-    std::size_t node = 0;  ///< whose value it is
-    std::string from;  ///< the node's output port; empty for leaves
-    std::string content;  ///< empty: the cache does not have it
-    std::optional<LeafSource> leaf;  ///< it can be read again
+    std::string port;                ///< of the step that takes it
+    std::size_t node = 0;            ///< the node that the value belongs to
+    std::string from;                ///< the node's output port; empty for leaves
+    std::string content;             ///< its name in the cache; empty: not cached
+    std::optional<LeafSource> leaf;  ///< the file, if the node is a leaf
 };
 
-/// How the result is known in the cache.
-struct JobMemory {
-    bool is_used = false;  ///< the cache may be asked, and told
+struct JobCaching {
+    bool is_used = false;  ///< false: the cache is neither read nor written
     std::string plan_key;
     std::string code;
-    bool keep_always = false;  ///< several wait for the values: they are kept whatever they cost
-    double inputs_cost = 0;  ///< seconds to make those inputs again that were not kept
-    std::vector<std::string> needed;  ///< output ports that somebody waits for
+    bool keep_always = false;  ///< several steps need the values: they are stored whatever they cost
+    double inputs_cost = 0;    ///< seconds to compute those inputs again that the cache does not have
+    std::vector<std::string> needed;  ///< output ports that other tasks need
 };
 
 struct ReadWork {
     LeafSource leaf;
-    JobMemory memory;
+    JobCaching caching;
 };
 
 struct StepWork {
@@ -43,10 +46,10 @@ struct StepWork {
     std::string build;  ///< of the module
     std::vector<JobInput> inputs;
     std::vector<ParameterFile> parameter_files;
-    JobMemory memory;
+    JobCaching caching;
 };
 
-/// Only asks whether a result that is known already is what the step expects.
+/// Only checks whether a cached result meets the step's expectations.
 struct ExpectWork {
     std::shared_ptr<const PlannedStep> step;
     Metrics metrics;
@@ -60,35 +63,88 @@ struct WriteWork {
 };
 
 struct Job {
-    std::size_t node = 0;  ///< whose values it makes, asks about or writes
+    std::size_t node = 0;  ///< whose values it computes, checks or writes
     std::variant<ReadWork, StepWork, ExpectWork, WriteWork> work;
-    /// Of its errors, innermost first. None of a reading whose file is the scan.
-    std::vector<std::string> frames;
+    std::string frame;  ///< of its errors; empty: none
+    std::string scan;
     unsigned threads = 1;
     std::uint64_t seed = 0;
-    u64 memory_limit = 0;  ///< bytes; 0: none
+    u64 memory_limit = 0;      ///< bytes; 0: none
     double seconds_limit = 0;  ///< 0: none
-    std::string limit_text;  ///< whose limit of time that is, as a part of a sentence
+    std::string limit_text;    ///< the setting behind seconds_limit, as a part of a sentence
 };
 
 struct JobReport {
     Outcome outcome = Outcome::skipped;  ///< skipped: cancelled, or an input was lost
-    std::vector<JobInput> lost;  ///< inputs that neither memory nor cache has any longer
-    NodeReport node;  ///< failure and effort also of a write
-    StepResult result;  ///< what the cache knows of it now; empty without a cache
-    std::vector<std::string> kept;  ///< ports whose values the cache has
+    std::vector<JobInput> lost;          ///< inputs that neither the worker nor the cache has any longer
+    NodeReport node;                     ///< its failure and effort are also those of a write
+    StepResult result;                   ///< as stored in the cache; empty without a cache
+    std::vector<std::string> kept;       ///< ports whose values the cache has
     OutputReport output;
-    bool was_read_whole = false;  ///< a scan that was to be streamed
-    std::string worn;  ///< why whoever did this should do nothing else; empty: it may
+    bool was_read_whole = false;  ///< a scan that was planned as a stream
+    std::string wear;  ///< why the worker should be replaced; empty: it need not be
 };
 
-/// Filter, parameters and the content of the inputs: what decides the result, whatever else changes. With parameters
-/// as the filter gets them it is the run key; as they are authored, it is equal for steps that will have one run key.
+/// Hash of all that decides the result: filter, parameters, content of the inputs. With resolved parameters it is the
+/// run key; with authored ones, equal keys mean equal run keys.
 std::string work_key(const PlannedStep& step, const std::string& code, const ParameterSet& parameters,
                      const std::vector<JobInput>& inputs);
 
-/// The error with the job's frames, as a failure of this cause. Where a reader did not say it itself, also with the
-/// file that was being read.
+/// The error with the job's frame and scan. Adds the file that was being read unless a reader threw the error.
 Failure failure_of(const Job& job, Cause cause, Error error, int number = 0);
+
+// Messages. Functions that read one throw Error for bytes that are not such a message.
+
+/// The first message to a worker.
+struct WorkerStart {
+    std::string cache_folder;  ///< empty: none
+    int keep_policy = 0;
+    int parent = 0;  ///< process ID; the worker ends with it
+    std::string core_build;
+    std::string scratch;  ///< a folder that only this worker uses
+};
+std::string to_message(const WorkerStart& start);
+WorkerStart start_from(std::string_view message);
+
+/// All further messages to a worker.
+struct JobMessage {
+    std::optional<Job> job;
+    std::vector<std::size_t> forgotten;  ///< nodes whose values the worker drops first
+};
+std::string to_message(const JobMessage& message);
+/// The message contains filters by name; `library` has their declarations.
+JobMessage job_from(std::string_view message, const FilterLibrary& library);
+
+/// A message from a worker; one of these.
+struct WorkerMessage {
+    bool is_ready = false;  ///< once, when the process has started
+    std::optional<std::string> loading = {};  ///< the module that is being loaded; empty: it is loaded
+    std::optional<double> progress = {};
+    std::optional<std::string> warning = {};  ///< of the job
+    std::optional<std::string> note = {};     ///< of the worker's cache
+    std::optional<JobReport> report = {};
+};
+std::string to_message(const WorkerMessage& message);
+WorkerMessage worker_message_from(std::string_view message);
+
+/// Sends a message over a socket: four bytes of length, then the bytes. False when the other process has ended.
+bool send_message(int socket, std::string_view message);
+
+/// Splits the bytes that arrive on a socket into messages.
+class MessageReader {
+public:
+    explicit MessageReader(int socket) : socket_(socket) {}
+
+    enum class Arrival { something, nothing, end };
+    /// Reads what has arrived; with `waits`, blocks until something arrives. `end`: the other side closed the socket.
+    Arrival receive(bool waits);
+    /// The next complete message. Throws Error for an impossible length.
+    std::optional<std::string> next();
+
+private:
+    int socket_;
+    std::string bytes_;
+    std::size_t taken_ = 0;
+};
 
 }  // namespace scanmill

@@ -2,6 +2,7 @@
 #include "scanmill/worker/open_scans.hpp"
 
 #include <ctime>
+#include <tuple>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/hash.hpp"
@@ -11,11 +12,12 @@ namespace scanmill {
 
 namespace {
 
-bool are_equal(const timespec& a, const timespec& b) { return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec; }
-
 bool are_equal(const struct stat& a, const struct stat& b) {
-    return a.st_dev == b.st_dev && a.st_ino == b.st_ino && a.st_size == b.st_size && are_equal(a.st_mtim, b.st_mtim) &&
-           are_equal(a.st_ctim, b.st_ctim);
+    const auto fields = [](const struct stat& file) {
+        return std::tuple(file.st_dev, file.st_ino, file.st_size, file.st_mtim.tv_sec, file.st_mtim.tv_nsec,
+                          file.st_ctim.tv_sec, file.st_ctim.tv_nsec);
+    };
+    return fields(a) == fields(b);
 }
 
 }  // namespace
@@ -29,7 +31,7 @@ UnchangedWhileRead::UnchangedWhileRead(std::filesystem::path file, std::string c
     : file_(std::move(file)),
       content_(std::move(content)),
       before_() {
-    constexpr std::time_t settled = 2;  // no file system's stamps are coarser
+    constexpr std::time_t settled = 2;  // seconds; the coarsest time stamps of file systems
     is_settled_ = ::stat(file_.c_str(), &before_) == 0 && before_.st_ctim.tv_sec < std::time(nullptr) - settled;
     if (is_settled_ && beside)
         beside_ = std::async(std::launch::async | std::launch::deferred, scanmill::require_unchanged, file_, content_);
@@ -47,7 +49,7 @@ void UnchangedWhileRead::require() {
 }
 
 std::shared_ptr<const PointStream> OpenScans::open(std::size_t node, const LeafSource& leaf, unsigned threads,
-                                                   bool is_checked, const std::function<void(std::string)>& on_warning,
+                                                   bool is_checked, const OnWarning& on_warning,
                                                    const OnWorldPositions& on_positions) {
     Scan scan;
     if (is_checked) scan.check.emplace(leaf.file, leaf.content, threads > 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Is a file still what it was when the run was planned? A key knows a file by its content of then; what it holds now
-/// must not be kept under that key.
+/// Scans that a worker reads as streams, and checks that files did not change since the run was planned: keys contain
+/// the content hash of that time, so results of changed content must not be stored under them.
 
 #include <sys/stat.h>
 #include <filesystem>
@@ -12,23 +12,22 @@
 #include <optional>
 #include <string>
 
-#include "scanmill/cache/value_file.hpp"
 #include "scanmill/data/point_stream.hpp"
 #include "scanmill/graph/graph.hpp"
 
 namespace scanmill {
 
-/// Throws Error when the file's content_hash() is another.
+/// Throws Error if the file's content_hash() differs.
 void require_unchanged(const std::filesystem::path& file, const std::string& content);
 
-/// The same for a file that is about to be read: begun beside the reading, ended after it.
+/// The same check for a file that is about to be read.
 class UnchangedWhileRead {
 public:
-    /// `beside`: on another thread, if the system gives one; else all is done in require().
+    /// `beside`: hashes on another thread while the file is read; else require() hashes.
     UnchangedWhileRead(std::filesystem::path file, std::string content, bool beside);
 
-    /// After reading; again after reading more. Throws Error as require_unchanged(). Hashes again when the file's
-    /// stamps say that it was written to since the constructor, or so shortly before that they could not tell.
+    /// Call it after every reading. Throws Error as require_unchanged(). Hashes again if the file's times show a change
+    /// since the constructor, or are too recent to show one.
     void require();
 
 private:
@@ -40,19 +39,15 @@ private:
     std::future<void> beside_;
 };
 
-// The scans that a bench has open as streams: what it holds in place of their values.
-
 class OpenScans {
 public:
-    /// Opens the leaf's file; nullptr when it cannot be read piece by piece. `is_checked`: its content is known by a
-    /// key, and require_unchanged() is to be called once it was read.
+    /// Opens the leaf's file; nullptr if it cannot be streamed. `is_checked`: require_unchanged() compares its content
+    /// with the hash in its key.
     std::shared_ptr<const PointStream> open(std::size_t node, const LeafSource& leaf, unsigned threads, bool is_checked,
-                                            const std::function<void(std::string)>& on_warning,
-                                            const OnWorldPositions& on_positions = {});
-    /// nullptr when it is not open.
+                                            const OnWarning& on_warning, const OnWorldPositions& on_positions = {});
+    /// nullptr if it is not open.
     std::shared_ptr<const PointStream> find(std::size_t node) const;
-    /// Throws Error when a checked file is, or was while it was read, another than the one that was hashed. Pre: it is
-    /// open.
+    /// Throws Error if a checked file changed since it was hashed. Pre: it is open.
     void require_unchanged(std::size_t node);
     void forget(std::size_t node) { scans_.erase(node); }
     bool empty() const { return scans_.empty(); }

@@ -2,40 +2,40 @@
 #include "scanmill/worker/report.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace scanmill {
 
+namespace {
+
+template <std::size_t size, class Enum>
+std::string_view nth(const std::array<std::string_view, size>& names, Enum value) {
+    return names.at(static_cast<std::size_t>(value));
+}
+
+}  // namespace
+
 std::string_view name_of(Outcome outcome) {
-    switch (outcome) {
-        case Outcome::done: return "done";
-        case Outcome::failed: return "failed";
-        case Outcome::skipped: return "skipped";
-    }
-    return "";
+    return nth(std::array<std::string_view, 3>{"done", "failed", "skipped"}, outcome);
 }
 
 std::string_view name_of(Origin origin) {
-    switch (origin) {
-        case Origin::ran: return "ran";
-        case Origin::cached: return "cached";
-        case Origin::same_inputs: return "same inputs";
-    }
-    return "";
+    return nth(std::array<std::string_view, 3>{"ran", "cached", "same inputs"}, origin);
 }
 
 std::string_view name_of(Cause cause) {
-    switch (cause) {
-        case Cause::none: return "";
-        case Cause::refused: return "refused";
-        case Cause::expectation: return "expectation";
-        case Cause::exception: return "exception";
-        case Cause::memory: return "memory";
-        case Cause::time: return "time";
-        case Cause::signal: return "signal";
-        case Cause::exit: return "exit";
-        case Cause::output: return "output";
-    }
-    return "";
+    return nth(std::array<std::string_view, 9>{"", "refused", "expectation", "exception", "memory", "time", "signal",
+                                               "exit", "output"},
+               cause);
+}
+
+Error Failure::whole() const {
+    Error all = error;
+    if (!equal_scan.empty())
+        all.add_frame(fmt::format("on scan '{}', which equals '{}'", scan, equal_scan));
+    else if (!scan.empty())
+        all.add_frame(fmt::format("on scan '{}'", scan));
+    return all;
 }
 
 bool RunReport::all_done() const {

@@ -1,38 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// What became of a run: of every node, every cell and every file that was to be written.
+/// The outcome of a run: of every node, every cell and every output file.
 
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scanmill/base/error.hpp"
 #include "scanmill/filter/parameter.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill {
 
-enum class Outcome { done, failed, skipped };  ///< skipped: something it needs failed, or the run was interrupted
+enum class Outcome { done, failed, skipped };  ///< skipped: an input failed, or the run was interrupted
 std::string_view name_of(Outcome outcome);
 
 /// Where a node's result came from.
 enum class Origin {
     ran,
-    cached,  ///< known before anything ran, by the plan key
-    same_inputs  ///< known when the inputs were, by the run key: something upstream changed and made no difference
+    cached,      ///< found by the plan key, before the run
+    same_inputs  ///< found by the run key, during the run: an upstream change did not change the inputs
 };
 std::string_view name_of(Origin origin);
 
-/// What kind of failure it was.
 enum class Cause {
     none,
-    refused,      ///< the filter, or a reader, said what is wrong
-    expectation,  ///< the result is not what `expect` asks for
-    exception,    ///< something that is no Error was thrown
-    memory,       ///< more memory was asked for than the limit, or the machine, has
-    time,         ///< the limit of time passed
-    signal,       ///< the worker process was ended by a signal
-    exit,         ///< the worker process ended itself
+    refused,      ///< the filter or a reader threw an Error
+    expectation,  ///< the result does not meet `expect`
+    exception,    ///< another exception was thrown
+    memory,       ///< the memory limit, or the machine's memory, was exceeded
+    time,         ///< the time limit was exceeded
+    signal,       ///< a signal ended the worker process
+    exit,         ///< the worker process exited
     output        ///< a file could not be written
 };
 std::string_view name_of(Cause cause);
@@ -40,30 +40,34 @@ std::string_view name_of(Cause cause);
 struct Failure {
     Cause cause = Cause::none;
     int number = 0;  ///< the signal, or the exit code
-    std::string text;  ///< whole, with frames and hint
+    Error error{std::string()};  ///< with frames up to the step
+    std::string scan;  ///< the scan of the cell; empty: the error's sentence names it
+    std::string equal_scan;  ///< another scan with the same content, which the step ran on; empty: the scan itself
 
     explicit operator bool() const { return cause != Cause::none; }
+    /// The error with a frame for the scan.
+    Error whole() const;
 };
 
-/// What doing something cost, and what was heard meanwhile.
+/// Resources that a job used, and what its process wrote.
 struct Effort {
     double seconds = 0;
     double cpu_seconds = 0;  ///< of all threads
-    u64 peak_memory = 0;  ///< most resident bytes of the process; 0: not known
-    unsigned threads = 0;  ///< that it was given
+    u64 peak_memory = 0;     ///< largest resident size of the process in bytes; 0: unknown
+    unsigned threads = 0;    ///< threads that the filter could use
     std::vector<std::string> log;  ///< the last lines on its standard output and error
 };
 
 struct NodeReport {
     Outcome outcome = Outcome::skipped;
     Origin origin = Origin::ran;
-    std::string why;  ///< it ran and was not taken from the cache
+    std::string why;  ///< why it ran and was not taken from the cache
     Failure failure;
     Effort effort;
-    unsigned attempts = 0;  ///< times that it was begun
+    unsigned attempts = 0;
     ParameterSet resolved;  ///< as the filter got them: lengths in the scan's unit
     Metrics metrics;        ///< of the filter, in its declared order
-    Metrics properties;  ///< of the primary output, or of the file that was read; only where something asked for them
+    Metrics properties;     ///< of the primary output, or of the file that was read; empty unless requested
     std::vector<std::string> warnings;
 };
 
@@ -77,8 +81,8 @@ struct OutputReport {
 
 struct CellReport {
     Outcome outcome = Outcome::skipped;
-    Failure failure;  ///< of the first node that failed, or of writing an output
-    double seconds = 0;  ///< of its nodes and of writing; nodes that cells share count for each
+    Failure failure;     ///< of the first node that failed, else of the first output
+    double seconds = 0;  ///< of its nodes and outputs; nodes that cells share count for each
     std::vector<OutputReport> outputs;
 };
 

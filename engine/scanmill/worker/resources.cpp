@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <stdlib.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,6 +19,7 @@
 #include <optional>
 #include <string>
 
+#include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 
 namespace scanmill {
@@ -25,7 +28,7 @@ namespace {
 
 constexpr u64 unlimited = std::numeric_limits<u64>::max();
 
-u64 of_machine() {
+u64 machine_memory() {
     std::ifstream properties("/proc/meminfo");
     for (std::string name, unit; properties >> name;) {
         u64 amount = 0;
@@ -36,14 +39,14 @@ u64 of_machine() {
     return unlimited;
 }
 
-/// Nothing for "max", and where there is no such file.
+/// Nothing for "max" or a missing file.
 std::optional<u64> number_in(const std::string& file) {
     std::ifstream stream(file);
     u64 number = 0;
     return stream >> number ? std::optional(number) : std::nullopt;
 }
 
-u64 of_control_group() {
+u64 control_group_memory() {
     std::ifstream groups("/proc/self/cgroup");
     u64 least = unlimited;
     for (std::string line; std::getline(groups, line);) {
@@ -61,7 +64,7 @@ u64 of_control_group() {
 
 }  // namespace
 
-u64 available_memory() { return std::min(of_machine(), of_control_group()); }
+u64 available_memory() { return std::min(machine_memory(), control_group_memory()); }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 
@@ -93,7 +96,7 @@ MemoryLimit::~MemoryLimit() {
 
 namespace {
 
-/// Of this process until now, all threads together.
+/// CPU time of this process, of all threads.
 double cpu_seconds() {
     rusage used{};
     ::getrusage(RUSAGE_SELF, &used);
@@ -103,7 +106,7 @@ double cpu_seconds() {
     return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-/// The kernel then counts the peak of resident memory from what is resident now.
+/// Makes the kernel restart the peak of resident memory.
 void reset_peak() {
     const int file = ::open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
     if (file < 0) return;
@@ -112,8 +115,8 @@ void reset_peak() {
 }
 
 u64 kibibytes_after(const std::string& text, std::string_view name) {
-    const std::size_t place = text.find(name);
-    return place == std::string::npos ? 0 : std::strtoull(text.c_str() + place + name.size(), nullptr, 10) * 1024;
+    const std::size_t begin = text.find(name);
+    return begin == std::string::npos ? 0 : std::strtoull(text.c_str() + begin + name.size(), nullptr, 10) * 1024;
 }
 
 }  // namespace
@@ -154,7 +157,7 @@ std::size_t count_open_files() {
     return count;
 }
 
-std::string all_of_environment() {
+std::string environment_text() {
     std::string all;
     for (char** entry = environ; entry && *entry; ++entry) all.append(*entry).push_back('\0');
     return all;
@@ -173,7 +176,7 @@ ProcessState ProcessState::now() {
     std::error_code gone;
     state.folder_ = fs::current_path(gone).string();
     state.locale_ = std::setlocale(LC_ALL, nullptr);
-    state.environment_ = all_of_environment();
+    state.environment_ = environment_text();
     state.file_mask_ = file_mask();
     state.rounding_ = std::fegetround();
     state.open_files_ = count_open_files();
@@ -183,7 +186,7 @@ ProcessState ProcessState::now() {
 std::string ProcessState::changes_since(const ProcessState& before) const {
     if (open_files_ > before.open_files_)
         return count_text(open_files_ - before.open_files_, "more file is open", "more files are open");
-    if (open_files_ < before.open_files_) return "files were closed that somebody else had opened";
+    if (open_files_ < before.open_files_) return "files were closed that the filter did not open";
     if (folder_ != before.folder_) return "the working folder changed";
     if (locale_ != before.locale_) return "the locale changed";
     if (environment_ != before.environment_) return "the environment changed";
@@ -192,6 +195,66 @@ std::string ProcessState::changes_since(const ProcessState& before) const {
     return {};
 }
 
-u64 anonymous_memory() { return resident_memory(::getpid()).anonymous; }
+namespace {
+
+constexpr const char* prefix = "scanmill-scratch-";
+
+/// A descriptor of the folder with its lock; -1 if another process has the lock, or the folder cannot be opened.
+int locked(const fs::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+    if (descriptor >= 0) ::close(descriptor);
+    return -1;
+}
+
+void remove_abandoned(const fs::path& parent) {
+    std::error_code gone;
+    for (fs::directory_iterator entry(parent, gone), end; !gone && entry != end; entry.increment(gone)) {
+        const fs::path& folder = entry->path();
+        if (!folder.filename().string().starts_with(prefix)) continue;
+        std::error_code ignored;
+        // A new folder is not locked yet.
+        constexpr std::chrono::minutes settled(1);
+        const auto written = fs::last_write_time(folder, ignored);
+        if (ignored || fs::file_time_type::clock::now() - written < settled) continue;
+        if (const int lock = locked(folder); lock >= 0) {
+            fs::remove_all(folder, ignored);
+            ::close(lock);
+        }
+    }
+}
+
+}  // namespace
+
+ScratchFolder::ScratchFolder() {
+    std::error_code unusable;
+    const fs::path parent = fs::temp_directory_path(unusable);
+    if (!unusable) remove_abandoned(parent);
+    std::string name = (parent / (std::string(prefix) + "XXXXXX")).string();
+    if (unusable || !::mkdtemp(name.data())) {
+        const char* folder = std::getenv("TMPDIR");
+        throw Error("no scratch folder could be made in '{}'", folder ? folder : "/tmp")
+            .hint("set TMPDIR to a folder that can be written to");
+    }
+    path_ = name;
+    lock_ = locked(path_);
+}
+
+ScratchFolder::~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    if (lock_ >= 0) ::close(lock_);
+}
+
+fs::path ScratchFolder::folder(const std::string& name) const {
+    const fs::path folder = path_ / name;
+    std::error_code trouble;
+    fs::remove_all(folder, trouble);
+    fs::create_directory(folder, trouble);
+    if (trouble)
+        throw Error("no scratch folder could be made in '{}': {}", path_.string(), trouble.message())
+            .hint("set TMPDIR to a folder with room");
+    return folder;
+}
 
 }  // namespace scanmill

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// How much memory there is to be had.
+/// Resources of this process and the machine: memory, time, scratch folder, and process state that filters can change.
 
 #include <chrono>
+#include <filesystem>
 #include <string>
 
 #include "scanmill/data/array.hpp"
@@ -10,14 +11,12 @@
 
 namespace scanmill {
 
-/// Bytes that new work can take without others being pushed out, by the kernel's own estimate and the limit of the
-/// control group that this process is in (cgroup v2).
+/// Bytes that new work can use without swapping: the kernel's estimate, within the limits of the control groups of this
+/// process (cgroup v2).
 u64 available_memory();
 
-// The most memory that this process may ask for, for as long as the object lives: beyond it allocating fails.
-
-/// Counts what belongs to no file; the stacks of `threads`, hardly used, come on top. 0: no limit. Under
-/// AddressSanitizer, which takes more than anybody would allow, nothing is limited.
+/// Limits the memory of this process as long as the object lives: allocations beyond it fail. Mapped files do not
+/// count; the stacks of `threads` are added. 0: no limit. Does nothing under AddressSanitizer, which needs much more.
 class MemoryLimit {
 public:
     MemoryLimit(u64 bytes, unsigned threads);
@@ -30,9 +29,8 @@ private:
     u64 before_ = 0;
 };
 
-// What this process uses, from one moment to another.
-
-/// Begins to measure when it is made. Only one can measure the peak of memory at a time.
+/// Measures the time and memory of this process from its construction on. Only one object can measure the peak at a
+/// time.
 class ResourceUse {
 public:
     ResourceUse();
@@ -43,21 +41,20 @@ private:
     double cpu_seconds_;
 };
 
-/// Bytes of a process that are in memory: now, the most since it began or ResourceUse last did, and now without what
-/// belongs to files. Zeros when it is gone.
+/// Resident bytes of a process. Zeros when it has ended.
 struct ResidentMemory {
-    u64 now = 0, peak = 0, anonymous = 0;
+    u64 now = 0;
+    u64 peak = 0;  ///< since the process, or its last ResourceUse, began
+    u64 anonymous = 0;  ///< now, without mapped files
 };
 ResidentMemory resident_memory(int process);
 
-// What a filter can leave behind in its process that the next one would feel.
-
+/// State of this process that a filter can change and that would affect the next one.
 class ProcessState {
 public:
-    /// As it is now.
     static ProcessState now();
 
-    /// What differs since `before`, as a part of a sentence: "3 more files are open"; empty: nothing.
+    /// The first difference to `before`, as a part of a sentence: "3 more files are open"; empty: none.
     std::string changes_since(const ProcessState& before) const;
 
 private:
@@ -67,7 +64,22 @@ private:
     std::size_t open_files_ = 0;
 };
 
-/// Bytes of this process that belong to no file.
-u64 anonymous_memory();
+/// A folder for temporary files in the system's temporary folder, removed at the end with its content. The constructor
+/// removes folders that killed processes left behind.
+class ScratchFolder {
+public:
+    /// Throws Error if it cannot be made.
+    ScratchFolder();
+    ~ScratchFolder();
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+    /// An empty folder in it.
+    std::filesystem::path folder(const std::string& name) const;
+
+private:
+    std::filesystem::path path_;
+    int lock_ = -1;  // held while the folder is in use
+};
 
 }  // namespace scanmill

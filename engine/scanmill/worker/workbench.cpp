@@ -7,14 +7,12 @@
 #include <optional>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/cache/streamed_content.hpp"
+#include "scanmill/cache/value_file.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/graph/output_files.hpp"
-#include "scanmill/graph/streaming.hpp"
 #include "scanmill/kinds/value.hpp"
 #include "scanmill/plan/step_parameters.hpp"
 #include "scanmill/worker/file_description.hpp"
-#include "scanmill/worker/open_scans.hpp"
 #include "scanmill/worker/resources.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
@@ -24,10 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Thrown when an input is neither here nor in the cache; the report names it.
+/// Thrown when the worker can get an input from nowhere; the report contains it.
 struct InputLost {};
 
-/// Thrown by what asks for expectations.
+/// Thrown when a result does not meet the step's expectations.
 struct Unmet {
     Error error;
 };
@@ -40,12 +38,11 @@ fs::path emptied(const fs::path& folder) {
 }
 
 Error out_of_memory(u64 limit, u64 peak) {
-    const std::string reached =
-        fmt::format("{} were resident at most, mapped files counted, when more was asked for", byte_size_text(peak));
+    const std::string used = fmt::format("the largest resident size was {}, with mapped files", byte_size_text(peak));
     if (limit == 0)
-        return Error("the machine's memory did not suffice: {}", reached)
+        return Error("the machine is out of memory: {}", used)
             .hint("thin the scan first, or use a machine with more memory");
-    return Error("the memory did not suffice: the limit is {}; {}", byte_size_text(limit), reached)
+    return Error("memory limit exceeded: the limit is {}; {}", byte_size_text(limit), used)
         .hint("raise the limit, or thin the scan first");
 }
 
@@ -71,8 +68,12 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
         const MemoryLimit limit(job.memory_limit, job.threads);
         if (const auto* reading = std::get_if<ReadWork>(&job.work)) read(job, *reading, listener, report);
         if (const auto* step = std::get_if<StepWork>(&job.work)) run(job, *step, listener, report);
-        if (const auto* asking = std::get_if<ExpectWork>(&job.work)) expect(job, *asking, report);
-        if (const auto* writing = std::get_if<WriteWork>(&job.work)) write(job, *writing, report);
+        if (const auto* expecting = std::get_if<ExpectWork>(&job.work)) {
+            report.node.metrics = expecting->metrics;
+            check_expectations(*expecting->step, fetch(expecting->primary, report),
+                               {expecting->primary.node, expecting->primary.from}, report.node);
+        }
+        if (const auto* writing = std::get_if<WriteWork>(&job.work)) write(*writing, report);
         report.outcome = Outcome::done;
     } catch (const Cancelled&) {
     } catch (const InputLost&) {
@@ -85,10 +86,10 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     } catch (const std::exception& error) {
         fail(Cause::exception, Error("an unexpected error: {}", error.what()));
     } catch (...) {
-        fail(Cause::exception, Error("something was thrown that is no error and says nothing of itself"));
+        fail(Cause::exception, Error("an unexpected error: something other than a std::exception was thrown"));
     }
     std::error_code gone;
-    if (fs::current_path(gone) != folder_) fs::current_path(folder_, gone);  // relative paths count from there
+    if (fs::current_path(gone) != folder_) fs::current_path(folder_, gone);  // the base of relative paths
     report.node.effort = use.until_now();
     report.node.effort.threads = job.threads;
     report.node.outcome = report.outcome;
@@ -100,9 +101,7 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     const std::shared_ptr<const PointStream> scan = stream_for(work, job.threads);
     std::vector<StepInput> inputs;
     if (!scan)
-        for (const JobInput& input : work.inputs)
-            if (std::optional<Value> value = fetch(input, report)) inputs.push_back({input.port, std::move(*value)});
-    if (!report.lost.empty()) throw InputLost{};
+        for (const JobInput& input : work.inputs) inputs.push_back({input.port, fetch(input, report)});
 
     const PlannedStep& step = *work.step;
     ContextOptions options;
@@ -115,17 +114,20 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     std::string run_key;
     auto start = std::chrono::steady_clock::now();
     const Recall recall = [&](const ParameterSet& resolved, NodeReport&) -> std::optional<Outputs> {
-        if (!uses_cache(work.memory)) return std::nullopt;
-        run_key = work_key(step, work.memory.code, resolved, work.inputs);
-        std::optional<Outputs> known = recalled(work, run_key, listener, report);
+        if (!uses_cache(work.caching)) return std::nullopt;
+        run_key = work_key(step, work.caching.code, resolved, work.inputs);
+        std::optional<Outputs> outputs = recalled(work, run_key, listener, report);
         start = std::chrono::steady_clock::now();
-        return known;
+        return outputs;
     };
     const auto filter = [&]() -> const FilterDeclaration& {
         if (library_.build_id(step.spec.name) != work.build)
             throw Error("the filter {} was built again while the run was going on", step.spec.name)
                 .hint("run it again");
-        return library_.load(step.spec.name);
+        if (listener.on_loading) listener.on_loading(library_.module_file(step.spec.name).string());
+        const FilterDeclaration& declaration = library_.load(step.spec.name);
+        if (listener.on_loading) listener.on_loading({});
+        return declaration;
     };
     const Outputs outputs = [&] {
         if (!scan) return run_step(step, filter, inputs, std::move(options), recall, report.node);
@@ -134,46 +136,38 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
         } catch (const Cancelled&) {
             throw;
         } catch (...) {
-            scans_.require_unchanged(work.inputs.front().node);  // if it changed, that is why
+            scans_.require_unchanged(work.inputs.front().node);  // a change explains the failure
             throw;
         }
     }();
     const double seconds = seconds_since(start);
     if (scan) scans_.require_unchanged(work.inputs.front().node);
-    if (uses_cache(work.memory))
+    if (uses_cache(work.caching))
         for (const ParameterFile& file : work.parameter_files) require_unchanged(file.path, file.content);
     std::vector<StepInput>& values = values_[job.node] = {};
     for (const auto& [port, value] : outputs) values.push_back({port, value});
     if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
-    if (report.node.origin == Origin::ran) remember(job, work.memory, run_key, "", seconds, report);
+    if (report.node.origin == Origin::ran) store(job, work.caching, run_key, "", seconds, report);
     if (step.expectations.empty()) return;
     const std::string& primary = step.spec.outputs.front().name;
     check_expectations(step, *find(job.node, primary), {job.node, primary}, report.node);
 }
 
-void Workbench::expect(const Job&, const ExpectWork& work, JobReport& report) {
-    const std::optional<Value> primary = fetch(work.primary, report);
-    if (!primary) throw InputLost{};
-    report.node.metrics = work.metrics;
-    check_expectations(*work.step, *primary, {work.primary.node, work.primary.from}, report.node);
-}
-
-void Workbench::check_expectations(const PlannedStep& step, const Value& primary, const Place& place,
+void Workbench::check_expectations(const PlannedStep& step, const Value& primary, const Slot& slot,
                                    NodeReport& report) {
     try {
         require_expectations(step, primary, report);
     } catch (const Error& error) {
         throw Unmet{error};
     }
-    properties_[place] = report.properties;
+    properties_[slot] = report.properties;
 }
 
-void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
+void Workbench::write(const WriteWork& work, JobReport& report) {
     OutputReport& written = report.output;
     written.file = work.file;
-    const std::optional<Value> value = fetch(work.value, report);
-    if (!value) throw InputLost{};
-    written.kind = kind_of(*value);
+    const Value value = fetch(work.value, report);
+    written.kind = kind_of(value);
     std::error_code trouble;
     fs::create_directories(work.file.parent_path(), trouble);
     if (trouble) throw Error("the folder '{}' cannot be made: {}", work.file.parent_path().string(), trouble.message());
@@ -181,22 +175,22 @@ void Workbench::write(const Job&, const WriteWork& work, JobReport& report) {
     options.on_warning = [&](std::string text) { written.warnings.push_back(std::move(text)); };
     Sha256 hash;
     options.on_bytes = [&](std::string_view bytes) { hash.add(bytes); };
-    write_file(work.file, *value, options);
-    const auto known = properties_.find({work.value.node, work.value.from});
-    written.properties = known != properties_.end() ? known->second : properties_of(*value);
+    write_file(work.file, value, options);
+    const auto found = properties_.find({work.value.node, work.value.from});
+    written.properties = found != properties_.end() ? found->second : properties_of(value);
     constexpr std::size_t longest_name = NAME_MAX;
     if (description_of(work.file).filename().native().size() <= longest_name)
-        write_description(work.file, hash.text(), work.made_how, *value, written.properties);
+        write_description(work.file, hash.text(), work.made_how, value, written.properties);
     else
         options.on_warning(fmt::format("'{}' has no description: its name would be too long", work.file.string()));
     written.outcome = Outcome::done;
 }
 
-// What a bench has and gets: files read or opened, values found again.
+// Inputs: files that are read or opened, and values from memory or the cache.
 
 namespace {
 
-/// For what is read again: what there is to be said was said when it was read first.
+/// For files that are read again; their warnings were reported the first time.
 void ignore_warning(std::string) {}
 
 }  // namespace
@@ -210,47 +204,46 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     report.was_read_whole = work.leaf.is_streamed;
     const auto start = std::chrono::steady_clock::now();
     std::optional<UnchangedWhileRead> check;
-    if (uses_cache(work.memory)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
+    if (uses_cache(work.caching)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
     Value value = read_leaf(work.leaf, on_warning);
     if (check) check->require();
     if (is_geometric(value.kind()))
         report.node.properties.set("points", static_cast<double>(positions_of(value).size()), Unit::count);
     values_[job.node] = {{"", std::move(value)}};
-    remember(job, work.memory, work.memory.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
+    store(job, work.caching, work.caching.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
 }
 
-/// The scan stays open in place of its value, and is known as the value would be. False when its file must be read as a
-/// whole.
+/// Opens the scan as a stream, and stores in the cache the result that reading its value would give. False if the file
+/// must be read as a whole.
 bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener,
-                               const std::function<void(std::string)>& on_warning, JobReport& report) {
+                               const OnWarning& on_warning, JobReport& report) {
     const auto start = std::chrono::steady_clock::now();
-    const JobMemory& memory = work.memory;
-    std::optional<StepResult> known = uses_cache(memory) ? cache_->step(memory.plan_key) : std::nullopt;
-    if (known && !known->output("")) known.reset();
+    const JobCaching& caching = work.caching;
+    std::optional<StepResult> cached = uses_cache(caching) ? cache_->step(caching.plan_key) : std::nullopt;
+    if (cached && !cached->output("")) cached.reset();
     StreamedContent content;
-    const bool learns = uses_cache(memory) && !known;
+    const bool is_hashed = uses_cache(caching) && !cached;
     const auto check_cancelled = [&] {
         if (listener.is_cancelled && listener.is_cancelled()) throw Cancelled{};
     };
-    const auto look = [&](std::span<const Vec3> positions) {
+    const auto on_positions = [&](std::span<const Vec3> positions) {
         check_cancelled();
-        if (learns) content.add_world(positions);
+        if (is_hashed) content.add_world(positions);
     };
-    const auto scan = scans_.open(job.node, work.leaf, job.threads, uses_cache(memory), on_warning, look);
+    const auto scan = scans_.open(job.node, work.leaf, job.threads, uses_cache(caching), on_warning, on_positions);
     if (!scan) return false;
     report.node.properties.set("points", static_cast<double>(scan->size()), Unit::count);
     std::vector<ResultOutput> outputs;
-    if (known) {
-        outputs = known->outputs;
-    } else if (learns) {
+    if (cached) {
+        outputs = cached->outputs;
+    } else if (is_hashed) {
         const ValueName name = content.of(*scan, job.threads, check_cancelled);
         outputs = {{"", kind_of<PointCloud>(), name.content, name.bytes}};
     }
     scans_.require_unchanged(job.node);
     report.result.outputs = std::move(outputs);
-    for (const ResultOutput& output : report.result.outputs)
-        if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
-    remember(job, memory, memory.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
+    add_kept(report);
+    store(job, caching, caching.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
     return true;
 }
 
@@ -261,86 +254,85 @@ const Value* Workbench::find(std::size_t node, const std::string& port) const {
     return found == of_node->second.end() ? nullptr : &found->value;
 }
 
-std::optional<Value> Workbench::at_hand(const JobInput& input) {
-    if (const Value* value = find(input.node, input.from)) return *value;
-    std::optional<Value> value = cache_ && !input.content.empty() ? cache_->value(input.content) : std::nullopt;
-    if (value) values_[input.node].push_back({input.from, *value});
-    return value;
-}
-
 std::shared_ptr<const PointStream> Workbench::stream_for(const StepWork& work, unsigned threads) {
     if (work.inputs.size() != 1 || !can_stream(*work.step)) return nullptr;
     const JobInput& input = work.inputs.front();
     if (!input.leaf || !input.leaf->is_streamed) return nullptr;
     if (const auto scan = scans_.find(input.node)) return scan;
-    if (find(input.node, input.from)) return nullptr;  // its file had to be read as a whole
+    if (find(input.node, input.from)) return nullptr;  // its file was read as a whole
     return scans_.open(input.node, *input.leaf, threads, cache_ != nullptr, ignore_warning);
 }
 
-std::optional<Value> Workbench::fetch(const JobInput& input, JobReport& report) {
-    if (std::optional<Value> value = at_hand(input)) return value;
-    std::optional<Value> value;
-    if (input.leaf) {
+Value Workbench::fetch(const JobInput& input, JobReport& report) {
+    if (const Value* value = find(input.node, input.from)) return *value;
+    std::optional<Value> value = cache_ && !input.content.empty() ? cache_->value(input.content) : std::nullopt;
+    if (!value && input.leaf) {
         value = read_leaf(*input.leaf, ignore_warning);
         if (cache_) require_unchanged(input.leaf->file, input.leaf->content);
     }
-    if (value)
-        values_[input.node].push_back({input.from, *value});
-    else
+    if (!value) {
         report.lost.push_back(input);
-    return value;
+        throw InputLost{};
+    }
+    values_[input.node].push_back({input.from, *value});
+    return *value;
 }
 
 std::string path_prefix(const std::filesystem::path& file) { return "'" + file.string() + "': "; }
 
-// What a bench and the cache know from each other: results remembered and recalled, values kept.
+// The cache: results and values that are stored and found.
 
-/// What the cache knows under the run key, if all values that are needed were kept.
+/// Reports the outputs whose values the cache has.
+void Workbench::add_kept(JobReport& report) const {
+    for (const ResultOutput& output : report.result.outputs)
+        if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
+}
+
+/// The outputs stored under the run key, if the cache has all values that are needed.
 std::optional<Outputs> Workbench::recalled(const StepWork& work, const std::string& run_key,
                                            const JobListener& listener, JobReport& report) const {
     std::optional<StepResult> result = cache_->step(run_key);
     if (!result) return std::nullopt;
     Outputs outputs;
-    for (const std::string& port : work.memory.needed) {
+    for (const std::string& port : work.caching.needed) {
         const ResultOutput* output = result->output(port);
         std::optional<Value> value = output ? cache_->value(output->content) : std::nullopt;
         if (!value) return std::nullopt;
         outputs.set(port, std::move(*value));
     }
-    cache_->keep_run_key(work.memory.plan_key, run_key);
+    cache_->keep_run_key(work.caching.plan_key, run_key);
     adopt(*result, work.step.get(), "", report.node);
     report.node.origin = Origin::same_inputs;
     for (const std::string& warning : report.node.warnings) listener.on_warning(warning);
-    for (const ResultOutput& output : result->outputs)
-        if (cache_->has_value(output.content, output.bytes)) report.kept.push_back(output.port);
     report.result = std::move(*result);
+    add_kept(report);
     return outputs;
 }
 
-/// Hands the result to the cache, and its values where that is worth it.
-void Workbench::remember(const Job& job, const JobMemory& memory, const std::string& run_key,
-                         const std::string& path_prefix, double seconds, JobReport& report) {
-    if (!uses_cache(memory)) return;
+/// Stores the result, and the values that are worth it.
+void Workbench::store(const Job& job, const JobCaching& caching, const std::string& run_key,
+                      const std::string& path_prefix, double seconds, JobReport& report) {
+    if (!uses_cache(caching)) return;
     StepResult& result = report.result;
     const auto* work = std::get_if<StepWork>(&job.work);
     for (const auto& [name, value] : report.node.resolved.values)
         if (!std::holds_alternative<std::monostate>(value) && !names_files(work->step->spec, name))
-            result.resolved.emplace_back(name, written(value));
+            result.resolved.values.emplace_back(name, value);
     result.metrics = report.node.metrics;
     result.properties = report.node.properties;
-    // Equal files of other names share the result: what is said of reading begins with the name.
+    // Files with equal content share the result, so warnings are stored without the file's name.
     for (const std::string& warning : report.node.warnings)
         result.warnings.push_back(warning.starts_with(path_prefix) ? warning.substr(path_prefix.size()) : warning);
     result.seconds = seconds;
-    keep_values(job.node, memory, memory.inputs_cost + seconds, report);
-    if (cache_->keep_step(run_key, result)) cache_->keep_run_key(memory.plan_key, run_key);
+    store_values(job.node, caching, caching.inputs_cost + seconds, report);
+    if (cache_->keep_step(run_key, result)) cache_->keep_run_key(caching.plan_key, run_key);
 }
 
-void Workbench::keep_values(std::size_t node, const JobMemory& memory, double cost, JobReport& report) {
+void Workbench::store_values(std::size_t node, const JobCaching& caching, double cost, JobReport& report) {
     for (const auto& [port, value] : values_[node]) {
         const EncodedValue encoded(value);
         bool kept = cache_->has_value(encoded.content(), encoded.size());
-        if (!kept && (memory.keep_always || rule_.is_worth(cost, encoded.size()))) {
+        if (!kept && (caching.keep_always || rule_.is_worth(cost, encoded.size()))) {
             const auto start = std::chrono::steady_clock::now();
             kept = cache_->keep_value(encoded);
             if (kept) rule_.wrote(encoded.size(), seconds_since(start));
@@ -359,8 +351,7 @@ void adopt(const StepResult& result, const PlannedStep* step, const std::string&
     report.resolved = {};
     for (const auto& [name, value] : step->parameters.values)
         if (names_files(step->spec, name)) report.resolved.values.emplace_back(name, value);
-    for (const auto& [name, text] : result.resolved)
-        report.resolved.values.emplace_back(name, parse(*step->spec.parameter(name), text));
+    for (const auto& parameter : result.resolved.values) report.resolved.values.push_back(parameter);
 }
 
 }  // namespace scanmill

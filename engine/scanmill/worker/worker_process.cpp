@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scanmill/worker/worker_process.hpp"
-
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/resource.h>
@@ -15,7 +13,7 @@
 #include <cstring>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/worker/serve.hpp"
+#include "scanmill/worker/worker_processes.hpp"
 
 namespace scanmill {
 
@@ -25,10 +23,11 @@ constexpr std::size_t log_lines = 50, longest_line = 1000;
 
 [[noreturn]] void fail(int reason) {
     throw Error("no worker process can be started: {}", std::strerror(reason))
-        .hint("-j 0 works without any, and without protection from crashes");
+        .hint("a run without worker processes works, without protection from crashes")
+        .remedy(Remedy::run_without_workers);
 }
 
-/// What a new process begins with: its descriptors, its signals, a group of its own.
+/// The descriptors, signals and process group of a new process.
 class SpawnPlan {
 public:
     SpawnPlan(int channel, int log) {
@@ -68,7 +67,7 @@ private:
     posix_spawnattr_t attributes_;
 };
 
-/// A descriptor that is closed at the end of a scope, and lies beyond those that a new process gets.
+/// Closes a descriptor at the end of a scope. Its number is above those that SpawnPlan assigns.
 class OwnDescriptor {
 public:
     explicit OwnDescriptor(int descriptor) : descriptor_(descriptor) {
@@ -94,15 +93,15 @@ private:
 WorkerProcess::WorkerProcess(const std::vector<std::string>& command) {
     int sockets[2], pipes[2];
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0) fail(errno);
-    OwnDescriptor here(sockets[0]), there(sockets[1]);
-    if (here.get() < 0 || there.get() < 0) fail(EMFILE);
+    OwnDescriptor channel(sockets[0]), worker_end(sockets[1]);
+    if (channel.get() < 0 || worker_end.get() < 0) fail(EMFILE);
     if (::pipe2(pipes, O_CLOEXEC) != 0) fail(errno);
-    OwnDescriptor log(pipes[0]), log_there(pipes[1]);
-    if (log.get() < 0 || log_there.get() < 0) fail(EMFILE);
+    OwnDescriptor log(pipes[0]), log_end(pipes[1]);
+    if (log.get() < 0 || log_end.get() < 0) fail(EMFILE);
     ::fcntl(log.get(), F_SETFL, O_NONBLOCK);
-    process_ = SpawnPlan(there.get(), log_there.get()).start(command);
+    process_ = SpawnPlan(worker_end.get(), log_end.get()).start(command);
     descriptor_ = static_cast<int>(::syscall(SYS_pidfd_open, process_, 0));
-    channel_ = here.release();
+    channel_ = channel.release();
     log_pipe_ = log.release();
     reader_ = MessageReader(channel_);
     if (descriptor_ < 0) {
@@ -124,7 +123,7 @@ void WorkerProcess::read_log() {
     if (log_pipe_ < 0) return;
     std::array<char, 1 << 14> block;
     ssize_t length = 0;
-    // Not without end: what writes all the time must not keep us from everything else.
+    // Limited: a process that writes without pause must not block this one.
     for (int blocks = 0; blocks < 64 && (length = ::read(log_pipe_, block.data(), block.size())) > 0; ++blocks) {
         for (const char c : std::string_view(block.data(), static_cast<std::size_t>(length))) {
             if (c != '\n') {
@@ -136,7 +135,7 @@ void WorkerProcess::read_log() {
             if (lines_.size() > log_lines) lines_.pop_front();
         }
     }
-    if (length == 0) {  // it has closed both ends
+    if (length == 0) {  // the process has closed standard output and error
         ::close(log_pipe_);
         log_pipe_ = -1;
     }
@@ -164,7 +163,7 @@ ProcessEnd WorkerProcess::end(bool kills) {
     siginfo_t ended;
     while (::waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
     }
-    ::kill(-process_, SIGKILL);  // whatever it started; the group's number is still its own
+    ::kill(-process_, SIGKILL);  // the processes that it started; the group's number is not reused yet
     int status = 0;
     rusage used{};
     while (::wait4(process_, &status, 0, &used) < 0 && errno == EINTR) {

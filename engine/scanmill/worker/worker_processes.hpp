@@ -1,29 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Workers that are processes: whatever a filter does to its own, the others and this one go on.
+/// Worker processes. A filter that crashes its process affects neither this process nor other workers.
 ///
-/// A worker is started for its first job, used again, and replaced when it ended, had to be ended, or is asked to be.
-/// A job that takes longer than its limit, or whose process has more memory than its limit, ends with its process.
-/// Memory is limited twice: allocating beyond the limit fails inside the process (RLIMIT_DATA), and what is resident is
-/// looked at several times a second.
+/// A process is started for its first job, reused, and replaced when it has ended or replace() is called. A process
+/// that exceeds its job's limit of time or memory is killed. Memory is limited twice: allocations beyond the limit fail
+/// in the process (RLIMIT_DATA), and the resident size is checked several times a second.
 
+#include <deque>
 #include <memory>
 #include <optional>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/worker/messages.hpp"
-#include "scanmill/worker/scratch_folder.hpp"
-#include "scanmill/worker/worker_process.hpp"
+#include "scanmill/worker/resources.hpp"
 #include "scanmill/worker/workers.hpp"
 
 namespace scanmill {
 
+/// The descriptor of the channel to the runner in a worker process.
+inline constexpr int worker_channel = 3;
+
+/// The main function of a worker process: does jobs until the runner closes the channel or ends. Returns the exit code.
+int serve_as_worker();
+
+struct ProcessEnd {
+    int signal = 0;  ///< that ended the process; 0: it exited
+    int exit_code = 0;
+    u64 peak_memory = 0;
+};
+
+class WorkerProcess {
+public:
+    /// Starts `command` in a new process group, with its end of a channel at worker_channel and its standard output and
+    /// error as the log. Throws Error if it cannot be started.
+    explicit WorkerProcess(const std::vector<std::string>& command);
+    /// Kills it and the processes that it started.
+    ~WorkerProcess();
+    WorkerProcess(const WorkerProcess&) = delete;
+    WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+    /// False if it has ended.
+    bool send(std::string_view message) { return send_message(channel_, message); }
+    MessageReader& reader() { return reader_; }
+    /// Adds what it wrote meanwhile to log().
+    void read_log();
+    /// The last lines, at most 50.
+    std::vector<std::string> log() const;
+    void clear_log();
+
+    void signal(int number) const;
+    /// Waits for its end; with `kills`, kills it first.
+    ProcessEnd end(bool kills);
+    ResidentMemory memory() const { return resident_memory(process_); }
+
+    int channel() const { return channel_; }
+    int log_pipe() const { return log_pipe_; }
+    /// Readable once the process has ended.
+    int descriptor() const { return descriptor_; }
+
+private:
+    int process_ = -1, channel_ = -1, log_pipe_ = -1, descriptor_ = -1;
+    bool has_ended_ = false;
+    ProcessEnd end_;
+    MessageReader reader_{-1};
+    std::deque<std::string> lines_;
+    std::string line_;  // the last line, which is incomplete
+};
+
 struct WorkerProcessSettings {
-    std::vector<std::string> command;  ///< the program, by its absolute path, and what makes it call serve_as_worker()
+    std::vector<std::string> command;  ///< absolute path and arguments of a program that calls serve_as_worker()
     std::size_t count = 1;
     std::string cache_folder;  ///< empty: none
     int keep_policy = 0;
-    /// What a worker says of its surroundings, its cache. Equal sentences of several workers come once.
+    /// Receives warnings about the cache. Equal warnings of several workers are passed on once.
     std::function<void(std::string)> on_note;
 };
 
@@ -33,50 +81,50 @@ public:
 
     explicit WorkerProcesses(WorkerProcessSettings settings);
 
-    std::size_t size() const override { return places_.size(); }
+    std::size_t size() const override { return slots_.size(); }
     bool has_room(u64 memory_limit) const override;
     void start(std::size_t worker, Job job) override;
     void forget(std::size_t worker, std::size_t node) override;
     void replace(std::size_t worker) override;
     void wait(const WorkerListener& listener, std::chrono::milliseconds patience) override;
     void cancel() override;
-    /// Starts the first process before there is a job for it, so that it is ready by then.
+    /// Starts the first process, so that it is ready when its first job comes.
     void start_early() { ensure(0); }
-    /// Begins to end all processes: no more jobs are to come. Whoever lets go of this object waits for their ends.
+    /// Kills all processes without waiting for their ends; the destructor waits. Pre: no more jobs.
     void dismiss();
-    /// From now on there are so many. Pre: no job was begun.
+    /// Changes the number of workers. Pre: no job was started.
     void resize(std::size_t count);
 
 private:
-    struct Place {
+    struct Slot {
         std::unique_ptr<WorkerProcess> process;
         std::optional<Job> job;
-        Clock::time_point begun, looked_at;
+        Clock::time_point begun, checked;
         bool is_ready = false;  ///< its process has started
-        bool is_silenced = false;  ///< it was ended because it closed the channel
-        bool is_gone = false;  ///< no process can be started for it
+        bool has_closed_channel = false;  ///< its process was killed for that
+        bool cannot_start = false;
         u64 peak_memory = 0;
-        std::vector<std::size_t> forgotten;  ///< told with the next job
+        std::string loading;  ///< the module that its process is loading; empty: none
+        std::vector<std::size_t> forgotten;  ///< sent with the next job
     };
 
     void ensure(std::size_t worker);
-    void look_at(std::size_t worker, const WorkerListener& listener);
+    void check(std::size_t worker, const WorkerListener& listener);
     void take_messages(std::size_t worker, const WorkerListener& listener);
     void enforce_limits(std::size_t worker, const WorkerListener& listener);
-    Clock::duration until_next_look(std::chrono::milliseconds patience) const;
+    Clock::duration until_next_check(std::chrono::milliseconds patience) const;
 
-    // worker_processes_ends.cpp
     void take_report(std::size_t worker, const WorkerListener& listener, JobReport report);
     void end_of_process(std::size_t worker, const WorkerListener& listener);
-    void end_by_force(std::size_t worker, const WorkerListener& listener, Cause cause, Error error, int number);
-    void report_gone(std::size_t worker, const WorkerListener& listener);
-    u64 peak_of(const Place& place, const ProcessEnd& end) const;
+    void kill(std::size_t worker, const WorkerListener& listener, Cause cause, Error error, int number);
+    void report_start_failure(std::size_t worker, const WorkerListener& listener);
+    u64 peak_of(const Slot& slot, const ProcessEnd& end) const;
     void report_end(std::size_t worker, const WorkerListener& listener, JobReport report, bool lost_values);
 
     WorkerProcessSettings settings_;
     WorkerStart start_;
-    ScratchFolder scratch_;  // one folder in it for each worker
-    std::vector<Place> places_;
+    ScratchFolder scratch_;  // with one folder per worker
+    std::vector<Slot> slots_;
     std::vector<std::string> notes_;
     std::optional<Clock::time_point> cancelled_;
     std::optional<Error> start_failure_;

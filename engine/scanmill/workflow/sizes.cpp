@@ -120,9 +120,10 @@ double resolved_length_power(const Length& written, int power, const LengthScale
     // Only the unit is resolved: the amount may be 0 or negative.
     if (scale.unit == LengthUnit::unknown && is_absolute(written))
         throw Error("{}{} needs a scan of known unit; this scan's unit is not declared", written.text(), power)
-            .hint(fmt::format("give `--unit mm`, or `inputs: {{scan: {{kind: points, unit: mm}}}}` in the workflow, or "
-                              "write it in the scan's own unit, as 0.5 u{}",
-                              power));
+            .hint(fmt::format("declare it with `inputs: {{scan: {{kind: points, unit: mm}}}}` in the workflow, or "
+                              "write the value in the scan's own unit, as 0.5 u{}",
+                              power))
+            .remedy(Remedy::declare_unit);
     const double unit = Length(1, written.in()).resolved(scale).value();
     return written.amount() * std::pow(unit, power);
 }

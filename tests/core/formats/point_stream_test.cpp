@@ -62,7 +62,8 @@ std::string text(std::size_t count, double middle = 0) {
 bool same_columns(const PointStream& stream, const Column& gathered) {
     std::string bytes;
     for (std::size_t piece = 0; piece + 1 < stream.pieces().size(); ++piece) {
-        const Column part = stream.read_column(piece, gathered.name());
+        const ColumnTable columns = stream.read_columns(piece);
+        const Column& part = *columns.find(gathered.name());
         EXPECT_EQ(part.name(), gathered.name());
         EXPECT_EQ(part.type(), gathered.type());
         EXPECT_EQ(part.components(), gathered.components());

@@ -90,7 +90,7 @@ TEST(LengthResolution, ResolvedLength_StaysAsItIs) {
 TEST(LengthResolution, AbsoluteOnAScanOfUnknownUnit_IsRefusedAndSaysHowToDeclareIt) {
     const Error error = error_of([] { on(scan_in(LengthUnit::unknown), "5 mm"); });
     EXPECT_EQ(error.sentence(), "5 mm needs a scan of known unit; this scan's unit is not declared");
-    EXPECT_THAT(error.hint(), HasSubstr("--unit mm"));
+    EXPECT_EQ(error.remedy(), Remedy::declare_unit);
     EXPECT_THAT(error.hint(), HasSubstr("unit: mm}"));
 }
 

@@ -88,7 +88,7 @@ TEST_F(PlanBatch, WorkflowWithoutOneInput_IsReportedAtItsPosition) {
     EXPECT_THAT(
         check("scanmill: 1\nbatch: b\nscans: [scans/a.ply]\nworkflows: [none.yaml, two.yaml, b2.yaml, big.yaml]\n"),
         ElementsAre(AllOf(StartsWith("b:4:13: "), HasSubstr("none.yaml' has no inputs")),
-                    AllOf(StartsWith("b:4:24: "), HasSubstr("has 2 inputs"), HasSubstr("--in target=FILE")),
+                    AllOf(StartsWith("b:4:24: "), HasSubstr("has 2 inputs"), HasSubstr("with a file for 'target'")),
                     AllOf(StartsWith("b:4:34: "), HasSubstr("b2.yaml' is a batch")),
                     AllOf(StartsWith("b:4:43: "), HasSubstr("has more than 16777216 bytes"))));
 }

@@ -44,7 +44,8 @@ StepResult some_result() {
     StepResult result;
     result.outputs = {{"points", kind_of<PointCloud>(), std::string(32, 'c'), 1234},
                       {"mesh", kind_of<TriangleMesh>(), "", 0}};
-    result.resolved = {{"bin-size", {{"0.1 u"}, false}}, {"axis", {{"0", "1"}, true}}};
+    result.resolved.values = {{"bin-size", Length(0.1)},
+                              {"axis", std::vector<ParameterScalar>{0.1 + 0.2, Word{"auto"}}}};
     result.metrics = {{{"kept", 17, Unit::count}, {"rms", std::numeric_limits<double>::quiet_NaN(), Unit::length}}};
     result.properties = {{{"points", 17, Unit::count}}};
     result.warnings = {"one", "two\n\xff"};
@@ -101,8 +102,7 @@ TEST_F(CacheTest, WhatWasKept_ComesBackToAnotherProcess) {
     EXPECT_EQ(result.outputs, some_result().outputs);
     EXPECT_EQ(result.output("points")->bytes, 1234u);
     EXPECT_EQ(result.output("nothing"), nullptr);
-    EXPECT_EQ(result.resolved[1].second.items, (std::vector<std::string>{"0", "1"}));
-    EXPECT_TRUE(result.resolved[1].second.list);
+    EXPECT_EQ(result.resolved.values, some_result().resolved.values);
     EXPECT_EQ(result.metrics.find("kept")->value, 17);
     EXPECT_TRUE(std::isnan(result.metrics.find("rms")->value));
     EXPECT_EQ(result.properties.values, some_result().properties.values);
@@ -196,7 +196,7 @@ TEST_F(CacheTest, FolderThatCannotBeMade_IsToldOnceAndDoesNoHarm) {
     EXPECT_FALSE(cache.keep_value(EncodedValue(line_of_points(10))));
     EXPECT_FALSE(cache.run_key(key));
     ASSERT_EQ(told_.size(), 1u);
-    EXPECT_THAT(told_[0], HasSubstr("does not keep what is new"));
+    EXPECT_THAT(told_[0], HasSubstr("does not store new results"));
 }
 
 TEST_F(CacheTest, ManyThreadsWithTheSameEntries_AgreeAndLeaveNoPieces) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which values are worth a place in the cache.
 
-#include "scanmill/cache/keep_rule.hpp"
+#include "scanmill/cache/cache.hpp"
 
 #include <gtest/gtest.h>
 

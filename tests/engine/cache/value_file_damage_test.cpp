@@ -42,7 +42,7 @@ TEST_F(ValueFile, CutShortAnywhere_IsRefused) {
 
 TEST_F(ValueFile, WhatIsNone_IsRefused) {
     folder_.write("scan.ply", "ply\nformat ascii 1.0\n" + std::string(100, ' '));
-    EXPECT_THAT(sentence_of([&] { read_value(folder_ / "scan.ply"); }), HasSubstr("is no value file"));
+    EXPECT_THAT(sentence_of([&] { read_value(folder_ / "scan.ply"); }), HasSubstr("is not a value file"));
     EXPECT_THAT(sentence_of([&] { read_value(folder_ / "absent"); }), HasSubstr("there is no such file"));
 }
 

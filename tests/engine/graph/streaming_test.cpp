@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What decides whether a scan is streamed, before it is opened.
-#include "scanmill/graph/streaming.hpp"
+#include "scanmill/graph/graph.hpp"
 
 #include <gtest/gtest.h>
 

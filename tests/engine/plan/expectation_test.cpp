@@ -109,7 +109,7 @@ TEST(Expectation, AnAbsoluteVolumeOnAScanOfUnknownUnit_IsRefusedWithAHint) {
         FAIL() << "accepted";
     } catch (const Error& error) {
         EXPECT_THAT(error.sentence(), HasSubstr("1 mm3 needs a scan of known unit"));
-        EXPECT_THAT(error.hint(), AllOf(HasSubstr("--unit mm"), HasSubstr("as 0.5 u3")));
+        EXPECT_THAT(error.hint(), AllOf(HasSubstr("unit: mm"), HasSubstr("as 0.5 u3")));
     }
 }
 

@@ -50,7 +50,7 @@ TEST_F(ListInput, OneBadScan_FailsTheRunAndIsNamed) {
     const RunReport report = run(step, {scan("a.xyz"), (folder_ / "missing.xyz").string()}, "", views);
     ASSERT_EQ(report.cells.size(), 1u);
     EXPECT_EQ(report.cells[0].outcome, Outcome::failed);
-    EXPECT_THAT(report.cells[0].failure.text, AllOf(HasSubstr("missing.xyz"), HasSubstr("on scan 'w'")));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), AllOf(HasSubstr("missing.xyz"), HasSubstr("on scan 'w'")));
 }
 
 TEST_F(ListInput, WithoutScans_IsRefused) {
@@ -60,7 +60,7 @@ TEST_F(ListInput, WithoutScans_IsRefused) {
 TEST_F(ListInput, FirstInputFedByName_SaysThatScansFeedIt) {
     request_.inputs = {{"views", {"x.xyz"}}};
     EXPECT_THAT(test::sentence_of([&] { prepare(step, {scan("a.xyz")}, "", views); }),
-                HasSubstr("--in views: the first input is fed by the scans"));
+                HasSubstr("'views' is the workflow's first, which the scans feed"));
 }
 
 TEST_F(ListInput, FramesNamedByStem_AreThoseOfTheFiles) {
@@ -74,7 +74,7 @@ TEST_F(ListInput, FrameOfTheFile_IsReplacedAndTold) {
     const RunReport report = run("  - test-step:\n", {scan("a.xyz", "# frame lab\n" + test::small_scan)}, "",
                                  "{scan: {kind: points, frame: '{stem}'}}");
     ASSERT_TRUE(report.all_done());
-    EXPECT_THAT(report.nodes[0].warnings, ElementsAre(HasSubstr("'lab' of the file is called 'a' by the workflow")));
+    EXPECT_THAT(report.nodes[0].warnings, ElementsAre(HasSubstr("'lab' was renamed to 'a'")));
 }
 
 TEST_F(ListInput, OutputThatIsAnInput_IsThatInputsFile) {

@@ -84,7 +84,7 @@ TEST_F(CachedRun, CacheThatCannotBeWritten_CostsNothingButTime) {
     folder_.write("cache", "a file in its place");
     EXPECT_TRUE(run_two("factor: 2", "factor: 3").all_done());
     EXPECT_TRUE(run_two("factor: 2", "factor: 3").all_done());
-    EXPECT_THAT(told_, ElementsAre(HasSubstr("does not keep what is new")));
+    EXPECT_THAT(told_, ElementsAre(HasSubstr("does not store new results")));
 }
 
 }  // namespace

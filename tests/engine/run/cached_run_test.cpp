@@ -65,14 +65,14 @@ TEST_F(CachedRun, AnotherContentUnderTheSameName_IsAnotherScan) {
     fs::remove(folder_ / "a.xyz");
     scan("a.xyz", "0 0 0\n7 0 0\n");
     prepare("  - test-step: {factor: 2}\n", {(folder_ / "a.xyz").string()});
-    EXPECT_FALSE(predict(graph_, &cache_)[0].known);
+    EXPECT_FALSE(predict(graph_, &cache_)[0].cached);
 }
 
 TEST_F(CachedRun, ScanThatChangesAfterPlanning_Fails) {
     prepare("  - test-step:\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-step}\n");
     scan("a.xyz", "0 0 0\n7 0 0\n");
     const RunReport report = run_graph();
-    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("changed while the run was going on"));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("changed while the run was going on"));
     EXPECT_FALSE(fs::exists(folder_ / "out/a.ply"));
 }
 
@@ -90,7 +90,8 @@ TEST_F(CachedRun, ExpectationsOfWhatIsCached_AreAskedAgain) {
     };
     EXPECT_TRUE(expecting("4").all_done());
     const RunReport unmet = expecting("'> 4'");
-    EXPECT_THAT(unmet.cells[0].failure.text, testing::AllOf(HasSubstr("points"), HasSubstr("in step 'test-step'")));
+    EXPECT_THAT(unmet.cells[0].failure.whole().what(),
+                testing::AllOf(HasSubstr("points"), HasSubstr("in step 'test-step'")));
     EXPECT_EQ(unmet.nodes[1].origin, cached);
     EXPECT_TRUE(expecting("4").all_done());
 }
@@ -99,7 +100,7 @@ TEST_F(CachedRun, FileOfAParameterThatChangesMeanwhile_FailsTheStep) {
     // The step itself changes it: it appends to its log.
     folder_.write("log", "");
     const RunReport report = run("  - test-step: {log: " + log() + "}\n", {scan("a.xyz")});
-    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("log' changed while the run was going on"));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("log' changed while the run was going on"));
     EXPECT_FALSE(cache_.run_key(graph_.nodes[1].key));
 }
 
@@ -109,7 +110,7 @@ TEST_F(CachedRun, StepThatReadsWhatHasNoContent_IsNeverCached) {
     fs::remove(folder_ / "log");
     const RunReport again = run(steps, {scan("a.xyz")});
     EXPECT_EQ(again.nodes[1].origin, ran);
-    EXPECT_THAT(again.nodes[1].why, HasSubstr("no content to be known by"));
+    EXPECT_THAT(again.nodes[1].why, HasSubstr("a folder or a file that cannot be hashed"));
 }
 
 TEST_F(CachedRun, WarningsOfReading_NameTheFileThatWasRead) {
@@ -127,7 +128,7 @@ TEST_F(CachedRun, EqualStepsThatExpectOtherThings_AreAskedEach) {
         run("  - id: one\n    test-step:\n    in: {points: scan}\n    expect: {points: 4}\n"
             "  - id: two\n    test-step:\n    in: {points: other}\n    expect: {points: '> 4'}\n",
             {scan("a.xyz")}, "", "{scan: points, other: points}");
-    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("in step 'two'"));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("in step 'two'"));
 }
 
 TEST_F(CachedRun, VariantsAndScans_ShareWhatIsEqual) {

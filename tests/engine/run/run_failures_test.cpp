@@ -25,10 +25,10 @@ TEST_F(Run, FailingAlternative_LeavesTheOthersAlone) {
     ASSERT_EQ(report.cells.size(), 4u);
     EXPECT_EQ(report.cells[0].outcome, Outcome::done);
     for (int failed = 1; failed < 4; ++failed) EXPECT_EQ(report.cells[failed].outcome, Outcome::failed);
-    EXPECT_THAT(report.cells[1].failure.text,
+    EXPECT_THAT(report.cells[1].failure.whole().what(),
                 AllOf(HasSubstr("in step 'bad' (w.yaml:8:19)"), HasSubstr("a.xyz'"), HasSubstr("hint: ")));
-    EXPECT_THAT(report.cells[2].failure.text, HasSubstr("an unexpected error: "));
-    EXPECT_THAT(report.cells[3].failure.text, HasSubstr("memory did not suffice"));
+    EXPECT_THAT(report.cells[2].failure.whole().what(), HasSubstr("an unexpected error: "));
+    EXPECT_THAT(report.cells[3].failure.whole().what(), HasSubstr("the machine is out of memory"));
     EXPECT_EQ(runs_logged(), 1u) << "nothing runs on what failed";
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out/a-good.xyz"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/a-bad.xyz"));
@@ -40,13 +40,13 @@ TEST_F(Run, BadScan_FailsItsCellOnly) {
             "outputs: {'{scan}.xyz': test-step}\n");
     EXPECT_EQ(report.cells[0].outcome, Outcome::failed);
     EXPECT_EQ(report.cells[1].outcome, Outcome::failed);
-    EXPECT_THAT(report.cells[1].failure.text, HasSubstr("missing.xyz"));
+    EXPECT_THAT(report.cells[1].failure.whole().what(), HasSubstr("missing.xyz"));
     EXPECT_EQ(report.cells[2].outcome, Outcome::done);
 }
 
 TEST_F(Run, EmptyMesh_IsAnError) {
     const RunReport report = run("  - test-step: {mode: empty}\n", {scan("a.xyz")});
-    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("the result has no triangles"));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("the result has no triangles"));
 }
 
 TEST_F(Run, Expectations_AreComparedWithMetricsAndFacts) {
@@ -57,7 +57,7 @@ TEST_F(Run, Expectations_AreComparedWithMetricsAndFacts) {
     const RunReport unmet =
         run("  - test-step:\n    expect: {points: '> 4'}\n", {scan("a.xyz")}, "outputs: {'{scan}.xyz': test-step}\n");
     EXPECT_EQ(unmet.cells[0].outcome, Outcome::failed);
-    EXPECT_THAT(unmet.cells[0].failure.text, HasSubstr("expected points > 4, found 4"));
+    EXPECT_THAT(unmet.cells[0].failure.whole().what(), HasSubstr("expected points > 4, found 4"));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out/a.xyz"));
 }
 

@@ -24,13 +24,13 @@ protected:
         return run_graph();
     }
     RunReport run_graph() {
-        RunObserver nobody;
-        return run_graph(nobody);
+        RunObserver none;
+        return run_graph(none);
     }
     /// In this process.
     RunReport run_graph(RunObserver& observer) {
         InProcessWorker worker(library_, settings_.cache, keep_, settings_.is_cancelled);
-        return scanmill::run(library_, graph_, worker, settings_, observer);
+        return scanmill::run(library_, graph_, worker, settings_, {&observer});
     }
     /// All of it but running.
     void prepare(const std::string& steps, const std::vector<std::string>& scans, const std::string& tail = "",

@@ -30,8 +30,8 @@ TEST_F(Run, Lengths_AreResolvedOnceAgainstTheFirstInput) {
 
 TEST_F(Run, AbsoluteLengthOnAScanOfUnknownUnit_Fails) {
     const RunReport report = run("  - test-step: {length: 1 mm}\n", {scan("a.xyz")});
-    EXPECT_THAT(report.cells[0].failure.text,
-                AllOf(HasSubstr("unit is not declared"), HasSubstr("--unit mm"), HasSubstr("'length'")));
+    EXPECT_THAT(report.cells[0].failure.whole().what(),
+                AllOf(HasSubstr("unit is not declared"), HasSubstr("unit: mm"), HasSubstr("'length'")));
     request_.unit = LengthUnit::metre;
     EXPECT_DOUBLE_EQ(run("  - test-step: {length: 1 mm}\n", {scan("a.xyz")}).nodes[1].metrics.find("length")->value,
                      0.001);
@@ -52,7 +52,7 @@ TEST_F(Run, InputsOfDifferentUnits_AreRefused) {
     const RunReport report =
         run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz", "# unit mm\n" + test::small_scan)},
             "", "{scan: points, others: [points]}");
-    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("different units: mm at 'points', m at 'more'"));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("different units: mm at 'points', m at 'more'"));
 }
 
 TEST_F(Run, DistantScan_KeepsItsCoordinatesThroughSteps) {

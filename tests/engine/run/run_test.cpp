@@ -60,7 +60,7 @@ TEST_F(Run, ListInput_ReachesThePortWhole) {
     request_.inputs = {{"others", {scan("b.xyz", "5 5 5\n6 6 6\n"), scan("c.xyz", "7 7 7\n8 8 8\n9 9 9\n")}}};
     const RunReport report = run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz")}, "",
                                  "{scan: points, others: [points]}");
-    EXPECT_TRUE(report.all_done()) << report.cells[0].failure.text;
+    EXPECT_TRUE(report.all_done()) << report.cells[0].failure.whole().what();
     EXPECT_EQ(graph_.nodes.back().inputs.size(), 3u);
 }
 
@@ -90,7 +90,7 @@ TEST_F(Run, Cancelling_EndsTheRunAndKeepsWhatWasFinished) {
     const RunReport report = run("  - test-step: {mode: wait}\n", {scan("a.xyz"), scan("b.xyz", "0 0 0\n1 1 1\n")});
     EXPECT_TRUE(report.interrupted);
     EXPECT_FALSE(report.all_done());
-    EXPECT_THAT(report.cells[0].failure.text, IsEmpty());
+    EXPECT_THAT(report.cells[0].failure.whole().what(), IsEmpty());
 }
 
 TEST_F(Run, Warnings_AreKeptWithTheirStep) {

@@ -14,9 +14,9 @@ TEST_F(StreamedRun, ScanThatChangesAfterPlanning_Fails) {
     prepare("  - test-stream: {length: 1 u}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-stream}\n");
     scan("a.xyz", "0 0 0\n7 0 0\n");
     const RunReport report = run_graph();
-    EXPECT_THAT(report.nodes[0].failure.text, HasSubstr("changed while the run was going on"));
+    EXPECT_THAT(report.nodes[0].failure.whole().what(), HasSubstr("changed while the run was going on"));
     EXPECT_FALSE(fs::exists(folder_ / "out/a.ply"));
-    EXPECT_FALSE(predict(graph_, cache_.get())[0].known) << "under the key of what it held before";
+    EXPECT_FALSE(predict(graph_, cache_.get())[0].cached) << "under the key of what it held before";
 }
 
 TEST_F(StreamedRun, ScanThatChangesBetweenOpeningAndTheStep_Fails) {
@@ -29,7 +29,7 @@ TEST_F(StreamedRun, ScanThatChangesBetweenOpeningAndTheStep_Fails) {
     } changer;
     changer.change = [&] { scan("a.xyz", "0 0 0\n9 0 0\n0 9 0\n1 2 2\n"); };
     const RunReport report = run_graph(changer);
-    EXPECT_THAT(report.cells[0].failure.text, HasSubstr("changed while the run was going on"));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("changed while the run was going on"));
 }
 
 TEST_F(StreamedRun, ScanThatLosesRowsBetweenOpeningAndTheStep_FailsInWords) {
@@ -44,9 +44,9 @@ TEST_F(StreamedRun, ScanThatLosesRowsBetweenOpeningAndTheStep_FailsInWords) {
         if (!has_cache) settings_.cache = nullptr;
         prepare("  - voxel-thin: {bin-size: 0.5 u}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': voxel-thin}\n");
         const RunReport report = run_graph(changer);
-        EXPECT_THAT(report.cells[0].failure.text,
+        EXPECT_THAT(report.cells[0].failure.whole().what(),
                     HasSubstr(has_cache ? "changed while the run was going on" : "changed while it was read"));
-        EXPECT_THAT(report.cells[0].failure.text, HasSubstr("run it again"));
+        EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("run it again"));
     }
 }
 

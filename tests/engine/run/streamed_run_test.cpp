@@ -36,16 +36,16 @@ TEST_F(StreamedRun, RefusesWhatReadingWholeRefuses) {
     expect_the_same(ply, "bin-size: 0.1 u, min-points: 1000");
     expect_the_same(ply, "bin-size: 0.1 u, rule: adaptive");
     expect_the_same(scan("one.xyz", "1 2 3\n"), "bin-size: 1 %diag");
-    EXPECT_THAT(run_thin("bin-size: 1e-9 u", ply).cells[0].failure.text, HasSubstr("voxels"));
+    EXPECT_THAT(run_thin("bin-size: 1e-9 u", ply).cells[0].failure.whole().what(), HasSubstr("voxels"));
     expect_the_same(scan("same.xyz", "1 2 3\n1 2 3\n"), "bin-size: 1 %diag");
-    EXPECT_THAT(run_thin("bin-size: 1 %diag", scan("one.xyz", "1 2 3\n")).cells[0].failure.text,
+    EXPECT_THAT(run_thin("bin-size: 1 %diag", scan("one.xyz", "1 2 3\n")).cells[0].failure.whole().what(),
                 HasSubstr("the diagonal is 0"));
 }
 
 TEST_F(StreamedRun, FileThatTurnsOutToNeedIt_IsReadWhole) {
     const std::string nan = scan("nan.xyz", small_scan + "1 2 nan\n");
     expect_the_same(nan, "bin-size: 0.1 u");
-    EXPECT_THAT(run_thin("bin-size: 0.1 u", nan).cells[0].failure.text, HasSubstr("NaN"));
+    EXPECT_THAT(run_thin("bin-size: 0.1 u", nan).cells[0].failure.whole().what(), HasSubstr("NaN"));
     expect_the_same(scan("late.xyz", small_scan + "1 2 3 4\n"), "bin-size: 0.1 u");
     const std::string mixed = scan("mixed.xyz", small_scan + "1, 2 3\n");
     expect_the_same(mixed, "bin-size: 0.1 u");
@@ -58,7 +58,7 @@ TEST_F(StreamedRun, FileThatTurnsOutToNeedIt_IsReadWhole) {
 
 TEST_F(StreamedRun, HandsTheFilterAStream) {
     const RunReport report = run_logging(scan("a.xyz"));
-    EXPECT_TRUE(report.all_done()) << report.cells[0].failure.text;
+    EXPECT_TRUE(report.all_done()) << report.cells[0].failure.whole().what();
     EXPECT_EQ(logged(), "stream 0.03 u 4\n") << "the diagonal is 3";
     EXPECT_EQ(report.nodes[0].properties.find("points")->value, 4);
 }

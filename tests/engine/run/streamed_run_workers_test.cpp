@@ -51,10 +51,9 @@ TEST_F(StreamedRun, Workers_HandTheFilterAStreamAndGiveTheSame) {
     WorkerProcesses workers(std::move(command));
     workers.resize(2);
     settings_.shares_values = true;
-    RunObserver nobody;
-    const RunReport there = scanmill::run(library_, graph_, workers, settings_, nobody);
+    const RunReport there = scanmill::run(library_, graph_, workers, settings_);
     ::unsetenv("SCANMILL_PLUGIN_PATH");
-    ASSERT_TRUE(there.all_done()) << there.cells[0].failure.text;
+    ASSERT_TRUE(there.all_done()) << there.cells[0].failure.whole().what();
     EXPECT_THAT(logged(), testing::AnyOf("stream 0.03 u 4\nstream 0.06 u 4\n", "stream 0.06 u 4\nstream 0.03 u 4\n"));
     use_cache("other");
     expect_equal(there, run_graph());
@@ -72,9 +71,8 @@ TEST_F(StreamedRun, HelperThatOpenedAScan_GoesOnHelping) {
         {scan("a.xyz")}, "outputs: {'{scan}.ply': both}\n", "{scan: points, other: points}");
     settings_.shares_values = true;
     TwoBenches workers(library_, *cache_, keep_);
-    RunObserver nobody;
-    const RunReport report = scanmill::run(library_, graph_, workers, settings_, nobody);
-    ASSERT_TRUE(report.all_done()) << report.cells[0].failure.text;
+    const RunReport report = scanmill::run(library_, graph_, workers, settings_);
+    ASSERT_TRUE(report.all_done()) << report.cells[0].failure.whole().what();
     EXPECT_EQ(workers.steps_of_second, 1u);
 }
 

@@ -10,7 +10,6 @@
 #include "engine/run/run_fixture.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/plan/expectation.hpp"
-#include "scanmill/worker/messages.hpp"
 #include "support/thrown.hpp"
 
 namespace scanmill::test {
@@ -27,8 +26,7 @@ protected:
         WorkerProcessSettings settings;
         settings.command = command;
         WorkerProcesses workers(std::move(settings));
-        RunObserver nobody;
-        return scanmill::run(library_, graph_, workers, settings_, nobody);
+        return scanmill::run(library_, graph_, workers, settings_);
     }
 };
 
@@ -38,10 +36,10 @@ const std::string output = "outputs: {'{scan}.ply': test-step.points}\n";
 TEST_F(WorkerProcessesTest, Worker_GivesWhatThisProcessGives) {
     const RunReport here = run(step, {scan("a.xyz")}, output);
     const std::string file = content_of(folder_ / "out/a.ply");
-    ASSERT_TRUE(here.all_done()) << here.cells[0].failure.text;
+    ASSERT_TRUE(here.all_done()) << here.cells[0].failure.whole().what();
     std::filesystem::remove_all(folder_ / "out");
     const RunReport there = run_with({SCANMILL_PROGRAM, "worker"});
-    ASSERT_TRUE(there.all_done()) << there.cells[0].failure.text;
+    ASSERT_TRUE(there.all_done()) << there.cells[0].failure.whole().what();
     EXPECT_EQ(content_of(folder_ / "out/a.ply"), file);
     for (std::size_t i = 0; i < here.nodes.size(); ++i) {
         EXPECT_EQ(there.nodes[i].metrics.values, here.nodes[i].metrics.values);
@@ -71,12 +69,28 @@ TEST_F(WorkerProcessesTest, ProcessesThatAreNoWorkers_FailTheirJobs) {
         const RunReport report = run_with(stranger.command);
         for (const CellReport& cell : report.cells) {
             EXPECT_EQ(cell.outcome, Outcome::failed) << stranger.command.back();
-            EXPECT_EQ(cell.failure.cause, stranger.cause) << stranger.command.back() << cell.failure.text;
+            EXPECT_EQ(cell.failure.cause, stranger.cause) << stranger.command.back() << cell.failure.whole().what();
         }
     }
     const RunReport none = run_with({"/no/such/program"});
     EXPECT_EQ(none.cells[1].failure.cause, Cause::exit);
-    EXPECT_THAT(none.cells[1].failure.text, HasSubstr("no worker process can be started"));
+    EXPECT_THAT(none.cells[1].failure.whole().what(), HasSubstr("no worker process can be started"));
+}
+
+TEST_F(WorkerProcessesTest, ModuleThatEndsItsProcessAtLoad_FailsTheCellAndIsNamed) {
+    for (const char* file : {"scanmill-test-step.so", "scanmill-test-step.json"})
+        std::filesystem::copy(std::filesystem::path(SCANMILL_TEST_PLUGIN_DIR) / file, folder_ / file);
+    std::filesystem::copy(std::filesystem::path(SCANMILL_TEST_PLUGIN_DIR) / "unusable/scanmill-exiting-at-load.so",
+                          folder_ / "scanmill-test-step.so", std::filesystem::copy_options::overwrite_existing);
+    ::setenv("SCANMILL_PLUGIN_PATH", folder_.path().c_str(), 1);
+    library_ = FilterLibrary({folder_.path()});
+    prepare("  - test-step:\n", {scan("a.xyz")});
+    const RunReport report = run_with({SCANMILL_PROGRAM, "worker"});
+    EXPECT_EQ(report.cells[0].failure.cause, Cause::exit);
+    EXPECT_EQ(report.cells[0].failure.number, 3);
+    const std::string module = (folder_ / "scanmill-test-step.so").string();
+    EXPECT_THAT(report.cells[0].failure.error.frames(),
+                testing::ElementsAre("while loading the module '" + module + "'", HasSubstr("in step 'test-step'")));
 }
 
 TEST_F(WorkerProcessesTest, JobMessage_BringsEverythingOfAStep) {
@@ -86,7 +100,8 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsEverythingOfAStep) {
         {scan("a.xyz")});
     Job job;
     job.node = 7;
-    job.frames = {"in step 'x'", "on scan '\xff'"};
+    job.frame = "in step 'x'";
+    job.scan = "\xff";
     job.threads = 3;
     job.seed = ~std::uint64_t(0);
     job.memory_limit = u64(1) << 40;
@@ -97,13 +112,14 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsEverythingOfAStep) {
     work.inputs = {{"points", 3, "mesh", "c", {}},
                    {"more", 4, "", "d", LeafSource{"/a", "d", kind_of<PointCloud>(), {}, "", {}}}};
     work.parameter_files = {{"/a path", "content"}};
-    work.memory = {true, "plan", "code", true, 0.1, {"points", "mesh"}};
+    work.caching = {true, "plan", "code", true, 0.1, {"points", "mesh"}};
     job.work = work;
-    const ReceivedJob received = job_from(to_message(job, {1, 2}), library_);
+    const JobMessage received = job_from(to_message(JobMessage{job, {1, 2}}), library_);
     EXPECT_EQ(received.forgotten, (std::vector<std::size_t>{1, 2}));
     ASSERT_TRUE(received.job);
     EXPECT_EQ(received.job->node, 7u);
-    EXPECT_EQ(received.job->frames, job.frames);
+    EXPECT_EQ(received.job->frame, job.frame);
+    EXPECT_EQ(received.job->scan, job.scan);
     EXPECT_EQ(received.job->threads, 3u);
     EXPECT_EQ(received.job->seed, job.seed);
     EXPECT_EQ(received.job->memory_limit, job.memory_limit);
@@ -117,13 +133,13 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsEverythingOfAStep) {
     EXPECT_FALSE(arrived.inputs[0].leaf);
     ASSERT_TRUE(arrived.inputs[1].leaf);
     EXPECT_EQ(arrived.inputs[1].leaf->file, "/a");
-    EXPECT_FALSE(job_from(to_message(std::vector<std::size_t>{9}), library_).job);
+    EXPECT_FALSE(job_from(to_message(JobMessage{{}, {9}}), library_).job);
     EXPECT_EQ(arrived.parameter_files[0].path, "/a path");
-    EXPECT_EQ(arrived.memory.plan_key, "plan");
-    EXPECT_EQ(arrived.memory.code, "code");
-    EXPECT_TRUE(arrived.memory.is_used && arrived.memory.keep_always);
-    EXPECT_EQ(arrived.memory.inputs_cost, 0.1);
-    EXPECT_EQ(arrived.memory.needed, work.memory.needed);
+    EXPECT_EQ(arrived.caching.plan_key, "plan");
+    EXPECT_EQ(arrived.caching.code, "code");
+    EXPECT_TRUE(arrived.caching.is_used && arrived.caching.keep_always);
+    EXPECT_EQ(arrived.caching.inputs_cost, 0.1);
+    EXPECT_EQ(arrived.caching.needed, work.caching.needed);
     const PlannedStep &sent = *work.step, &step_there = *arrived.step;
     EXPECT_EQ(step_there.label, sent.label);
     ASSERT_EQ(step_there.parameters.values.size(), sent.parameters.values.size());
@@ -149,7 +165,7 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsAFileToRead_AndItsPose) {
     pose.to = "lab";
     Job job;
     job.work = ReadWork{{"/a \xff.ply", "hash", kind_of<TriangleMesh>(), LengthUnit::inch, "part", pose}, {}};
-    const ReceivedJob received = job_from(to_message(job, {}), library_);
+    const JobMessage received = job_from(to_message(JobMessage{job, {}}), library_);
     const LeafSource& leaf = std::get<ReadWork>(received.job->work).leaf;
     EXPECT_EQ(leaf.file, "/a \xff.ply");
     EXPECT_EQ(leaf.content, "hash");
@@ -166,7 +182,7 @@ TEST_F(WorkerProcessesTest, JobMessage_BringsAFileToRead_AndItsPose) {
 TEST_F(WorkerProcessesTest, MessagesThatAreNone_AreErrors) {
     for (const std::string& bytes : {std::string(), std::string("x"), std::string("\xa0"), std::string("\x80")}) {
         EXPECT_THAT(sentence_of([&] { job_from(bytes, library_); }), HasSubstr("message"));
-        EXPECT_THAT(sentence_of([&] { worker_message_from(bytes, nullptr); }), HasSubstr("message"));
+        EXPECT_THAT(sentence_of([&] { worker_message_from(bytes); }), HasSubstr("message"));
     }
 }
 

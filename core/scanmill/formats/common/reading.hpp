@@ -27,10 +27,7 @@ auto with_file_name(const std::filesystem::path& path, Action&& action) {
     try {
         return action();
     } catch (const Error& error) {
-        Error named("'{}': {}", path.string(), error.sentence());
-        for (const std::string& frame : error.frames()) named.add_frame(frame);
-        named.set_hint(error.hint());
-        throw named;
+        throw error.reworded(fmt::format("'{}': {}", path.string(), error.sentence()));
     }
 }
 

@@ -29,28 +29,18 @@ public:
         return true;
     }
 
-    Column read_column(std::size_t piece, std::string_view name) const override {
+    ColumnTable read_columns(std::size_t piece) const override {
         PlyElement part = vertex_;
         part.count = pieces_[piece + 1] - pieces_[piece];
-        const std::vector<std::string> own = properties_of(name);
-        std::vector<std::string_view> others;
-        for (const PlyProperty& property : part.properties)
-            if (std::ranges::find(own, property.name) == own.end()) others.push_back(property.name);
-        PlyTable table(part, header_.comments, others);
+        PlyTable table(part, header_.comments, ply_axes);
         const std::string_view rows = bytes_of(pieces_[piece], part.count);
         file_->fetch(rows);
         decode(rows, table.slots());
         file_->release(rows);
-        return *table.take(name);
+        return table.columns();
     }
 
 private:
-    std::vector<std::string> properties_of(std::string_view column) const {
-        PlyElement none = vertex_;
-        none.count = 0;
-        return ply_component_names(*PlyTable(none, header_.comments, ply_axes).take(column));
-    }
-
     /// Finds world_. False when a coordinate is not finite.
     bool read_all(unsigned threads, const OnWorldPositions& on_positions) {
         struct Room {

@@ -282,9 +282,8 @@ public:
         return true;
     }
 
-    Column read_column(std::size_t, std::string_view name) const override {
-        throw std::logic_error("no column in a streamed text: " + std::string(name));
-    }
+    /// A streamed text has only its three coordinates.
+    ColumnTable read_columns(std::size_t) const override { return {}; }
 
 private:
     /// Divides the text into pieces. False when a line is too long.
