@@ -125,7 +125,7 @@ private:
 }  // namespace
 
 template <>
-struct KindTraits<FeatureGraph> : KindDefaults<FeatureGraph> {
+struct KindTraits<FeatureGraph> : FromPositions<FeatureGraph>, NoProperties<FeatureGraph> {
     static constexpr std::string_view name = "features";
     static void visit(FieldVisitor& visitor, FeatureGraph& graph) {
         visitor.frame("frame", graph.frame);

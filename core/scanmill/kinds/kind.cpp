@@ -12,7 +12,7 @@
 namespace scanmill {
 
 template <>
-struct KindTraits<PointCloud> : KindDefaults<PointCloud> {
+struct KindTraits<PointCloud> : FromPositions<PointCloud>, NoJson<PointCloud> {
     static constexpr std::string_view name = "points";
     static void visit(FieldVisitor& visitor, PointCloud& cloud) {
         visitor.frame("frame", cloud.frame);
@@ -27,7 +27,7 @@ struct KindTraits<PointCloud> : KindDefaults<PointCloud> {
 };
 
 template <>
-struct KindTraits<TriangleMesh> : KindDefaults<TriangleMesh> {
+struct KindTraits<TriangleMesh> : FromPositions<TriangleMesh>, NoJson<TriangleMesh> {
     static constexpr std::string_view name = "mesh";
     static void visit(FieldVisitor& visitor, TriangleMesh& mesh) {
         visitor.frame("frame", mesh.frame);
@@ -65,7 +65,7 @@ struct KindTraits<TriangleMesh> : KindDefaults<TriangleMesh> {
 };
 
 template <>
-struct KindTraits<TetMesh> : KindDefaults<TetMesh> {
+struct KindTraits<TetMesh> : FromPositions<TetMesh>, NoJson<TetMesh> {
     static constexpr std::string_view name = "tets";
     static void visit(FieldVisitor& visitor, TetMesh& tets) {
         visitor.frame("frame", tets.frame);
@@ -82,6 +82,7 @@ struct KindTraits<TetMesh> : KindDefaults<TetMesh> {
     static std::vector<std::optional<double>> property_values(const TetMesh& tets) {
         return {tets.positions.size(), tets.cells.size()};
     }
+    static void require_usable(const TetMesh&) {}
 };
 
 template Kind kind_of<PointCloud>();
@@ -92,8 +93,9 @@ namespace {
 
 struct KindTable {
     std::mutex mutex;
-    std::vector<Kind> kinds{kind_of<PointCloud>(),   kind_of<TriangleMesh>(),   kind_of<TetMesh>(),
-                            kind_of<FeatureGraph>(), kind_of<RigidTransform>(), kind_of<Metrics>()};
+#define SCANMILL_KIND_OF(Type) kind_of<Type>(),
+    std::vector<Kind> kinds{SCANMILL_ALL_KINDS(SCANMILL_KIND_OF)};
+#undef SCANMILL_KIND_OF
 };
 
 KindTable& kind_table() {

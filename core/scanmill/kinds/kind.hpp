@@ -3,8 +3,8 @@
 /// The kinds of values that flow between steps.
 ///
 /// A kind is a C++ type with a specialisation of KindTraits (kind_traits.hpp). To add a kind, write its type, its
-/// traits in a source file of this folder, and its line in the two lists below and in kind.cpp: cache, JSON, wiring,
-/// `info`, poses and units follow from the traits.
+/// traits in a source file of this folder, and its line in the list below: cache, JSON, wiring, `info`, poses and units
+/// follow from the traits.
 
 #include <functional>
 #include <memory>
@@ -18,6 +18,17 @@
 #include "scanmill/data/metrics.hpp"
 
 namespace scanmill {
+
+/// Every kind, in the order in which messages list them.
+// clang-format off
+#define SCANMILL_ALL_KINDS(KIND) \
+    KIND(PointCloud)             \
+    KIND(TriangleMesh)           \
+    KIND(TetMesh)                \
+    KIND(FeatureGraph)           \
+    KIND(RigidTransform)         \
+    KIND(Metrics)
+// clang-format on
 
 class FieldVisitor;
 

@@ -45,34 +45,47 @@ private:
     virtual bool json_of(const char* /*name*/, nlohmann::json&) { return false; }
 };
 
-/// Specialised for every kind, derived from KindDefaults. Required members:
+/// Specialised for every kind. A missing member does not compile; the bases below provide members for common cases.
 ///
-///     static constexpr std::string_view name = "points";
-///     static void visit(FieldVisitor& visitor, PointCloud& cloud);
+///     template <>
+///     struct KindTraits<PointCloud> : FromPositions<PointCloud>, NoJson<PointCloud> {
+///         static constexpr std::string_view name = "points";
+///         static void visit(FieldVisitor& visitor, PointCloud& cloud);
+///         /// Counts and topology that `expect` may test and summaries show.
+///         static std::vector<PropertySpec> property_specs();
+///         /// In the order of property_specs(); empty where a property is not defined.
+///         static std::vector<std::optional<double>> property_values(const PointCloud& cloud);
+///         /// Throws Error if a filter's result of this kind is empty or inconsistent.
+///         static void require_usable(const PointCloud& cloud);
+///     };
 template <class T>
 struct KindTraits;
 
-/// The other members of KindTraits; a specialisation hides those that differ.
+/// Members of the traits of types with a frame and positions.
 template <class T>
-struct KindDefaults {
-    /// Whether objects have a frame and positions.
-    static constexpr bool is_geometric = requires(T object) { object.positions; };
-    /// The lengths that `%diag` and `spacing` refer to. Pre: is_geometric.
-    static BoundingBox box(const T& object) {
-        if constexpr (is_geometric) return bounding_box(object.positions.span());
-        return {};
-    }
-    static double spacing(const T& object) {
-        if constexpr (is_geometric) return point_spacing(object.positions.span());
-        return 0;
-    }
-    /// Counts and topology that `expect` may test and summaries show.
+struct FromPositions {
+    static constexpr bool is_geometric = true;
+    /// The lengths that `%diag` and `spacing` refer to.
+    static BoundingBox box(const T& object) { return bounding_box(object.positions.span()); }
+    static double spacing(const T& object) { return point_spacing(object.positions.span()); }
+};
+/// Members of the traits of types without positions.
+template <class T>
+struct NotGeometric {
+    static constexpr bool is_geometric = false;
+    static BoundingBox box(const T&) { return {}; }
+    static double spacing(const T&) { return 0; }
+};
+/// Members of the traits of types without properties, of which every object is usable.
+template <class T>
+struct NoProperties {
     static std::vector<PropertySpec> property_specs() { return {}; }
-    /// In the order of property_specs(); empty where a property is not defined.
     static std::vector<std::optional<double>> property_values(const T&) { return {}; }
-    /// Throws Error if a filter's result of this kind is empty or inconsistent.
     static void require_usable(const T&) {}
-    /// The JSON form. `json_member` is a member that only documents of this kind have; empty: no JSON form.
+};
+/// Members of the traits of types without a JSON form. `json_member` is a member that only documents of a kind have.
+template <class T>
+struct NoJson {
     static constexpr std::string_view json_member = "";
     static void to_json(const T&, nlohmann::ordered_json&) {}
     static T from_json(const nlohmann::ordered_json&, const OnWarning&) { return {}; }
@@ -107,13 +120,10 @@ template <class T>
 Kind kind_of() {
     return Kind(kind_info<T>);
 }
-// In the source files with their traits.
-extern template Kind kind_of<PointCloud>();
-extern template Kind kind_of<TriangleMesh>();
-extern template Kind kind_of<TetMesh>();
-extern template Kind kind_of<FeatureGraph>();
-extern template Kind kind_of<RigidTransform>();
-extern template Kind kind_of<Metrics>();
+// Instantiated in the source files with the traits.
+#define SCANMILL_DECLARE_KIND(Type) extern template Kind kind_of<Type>();
+SCANMILL_ALL_KINDS(SCANMILL_DECLARE_KIND)
+#undef SCANMILL_DECLARE_KIND
 
 }  // namespace scanmill
 

@@ -39,7 +39,7 @@ Json metrics_json(const Metrics& metrics) {
 }
 
 template <>
-struct KindTraits<Metrics> : KindDefaults<Metrics> {
+struct KindTraits<Metrics> : NotGeometric<Metrics>, NoProperties<Metrics> {
     static constexpr std::string_view name = "metrics";
     static void visit(FieldVisitor& visitor, Metrics& metrics) {
         visitor.small("values", metrics.values);

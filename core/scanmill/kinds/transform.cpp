@@ -123,7 +123,7 @@ std::vector<ScanPose> poses_from_json(const Json& document, const OnWarning& war
 }
 
 template <>
-struct KindTraits<RigidTransform> : KindDefaults<RigidTransform> {
+struct KindTraits<RigidTransform> : NotGeometric<RigidTransform>, NoProperties<RigidTransform> {
     static constexpr std::string_view name = "transform";
     static void visit(FieldVisitor& visitor, RigidTransform& transform) {
         std::array<Vec3, 3> rows;

@@ -17,7 +17,7 @@ struct Markers {
 };
 
 template <>
-struct KindTraits<Markers> : KindDefaults<Markers> {
+struct KindTraits<Markers> : FromPositions<Markers> {
     static constexpr std::string_view name = "markers";
     static void visit(FieldVisitor& visitor, Markers& markers) {
         visitor.frame("frame", markers.frame);
@@ -26,6 +26,7 @@ struct KindTraits<Markers> : KindDefaults<Markers> {
     }
     static std::vector<PropertySpec> property_specs() { return {{"markers", Unit::count, "Markers."}}; }
     static std::vector<std::optional<double>> property_values(const Markers& markers) { return {markers.names.size()}; }
+    static void require_usable(const Markers&) {}
     static constexpr std::string_view json_member = "markers";
     static void to_json(const Markers& markers, Json& document) {
         document = {{"scanmill", 1}, {"unit", unit_json(markers.frame.unit)}, {"markers", Json::array()}};

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
-#include <stdexcept>
 
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/quantity.hpp"
