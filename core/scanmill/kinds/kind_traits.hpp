@@ -129,12 +129,14 @@ SCANMILL_ALL_KINDS(SCANMILL_DECLARE_KIND)
 
 namespace nlohmann {
 
-/// A vector as a list of numbers.
-template <>
-struct adl_serializer<scanmill::Vec3> {
-    static void to_json(json& value, const scanmill::Vec3& vector) { value = {vector.x(), vector.y(), vector.z()}; }
-    static void from_json(const json& value, scanmill::Vec3& vector) {
-        for (int axis = 0; axis < 3; ++axis) vector[axis] = value.at(static_cast<std::size_t>(axis)).get<double>();
+/// A vector or matrix as a list of numbers, column by column.
+template <int rows, int columns>
+struct adl_serializer<Eigen::Matrix<double, rows, columns>> {
+    static void to_json(json& value, const Eigen::Matrix<double, rows, columns>& matrix) {
+        value = std::vector<double>(matrix.data(), matrix.data() + matrix.size());
+    }
+    static void from_json(const json& value, Eigen::Matrix<double, rows, columns>& matrix) {
+        for (int i = 0; i < rows * columns; ++i) matrix.data()[i] = value.at(static_cast<std::size_t>(i)).get<double>();
     }
 };
 

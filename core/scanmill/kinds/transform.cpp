@@ -126,10 +126,7 @@ template <>
 struct KindTraits<RigidTransform> : NotGeometric<RigidTransform>, NoProperties<RigidTransform> {
     static constexpr std::string_view name = "transform";
     static void visit(FieldVisitor& visitor, RigidTransform& transform) {
-        std::array<Vec3, 3> rows;
-        for (int row = 0; row < 3; ++row) rows[row] = transform.rotation.row(row);
-        visitor.small("rotation", rows);
-        for (int row = 0; row < 3; ++row) transform.rotation.row(row) = rows[row];
+        visitor.small("rotation", transform.rotation);
         visitor.small("translation", transform.translation);
         visitor.small("unit", transform.unit);
         visitor.small("from", transform.from);
