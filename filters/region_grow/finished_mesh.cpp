@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill::growing {
 
