@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/kinds/document.hpp"
@@ -10,16 +11,12 @@
 
 namespace scanmill {
 
-/// For the cache: a row of name, value, unit.
-static void to_json(nlohmann::json& json, const Metric& metric) {
-    json = {metric.name, metric.value, static_cast<int>(metric.unit)};
-}
-static void from_json(const nlohmann::json& json, Metric& metric) {
-    metric = {json.at(0).get<std::string>(), json.at(1).get<double>(), static_cast<Unit>(json.at(2).get<int>())};
-}
-
 void KindTraits<Metrics>::visit(FieldVisitor& visitor, Metrics& metrics) {
-    visitor.small("values", metrics.values);
+    std::vector<std::tuple<std::string, double, int>> rows;
+    for (const auto& [name, value, unit] : metrics.values) rows.emplace_back(name, value, static_cast<int>(unit));
+    visitor.small("values", rows);
+    metrics.values.clear();
+    for (const auto& [name, value, unit] : rows) metrics.values.push_back({name, value, static_cast<Unit>(unit)});
     visitor.small("unit", metrics.unit);
 }
 
