@@ -10,20 +10,13 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/kind_traits.hpp"
 
 namespace scanmill {
-
-/// For the cache: a row of name, value, unit.
-static void to_json(nlohmann::json& json, const Metric& metric) {
-    json = {metric.name, metric.value, static_cast<int>(metric.unit)};
-}
-static void from_json(const nlohmann::json& json, Metric& metric) {
-    metric = {json.at(0).get<std::string>(), json.at(1).get<double>(), static_cast<Unit>(json.at(2).get<int>())};
-}
 
 Json metrics_json(const Metrics& metrics) {
     Json json = Json::object();
@@ -42,7 +35,11 @@ template <>
 struct KindTraits<Metrics> : NotGeometric<Metrics>, NoProperties<Metrics> {
     static constexpr std::string_view name = "metrics";
     static void visit(FieldVisitor& visitor, Metrics& metrics) {
-        visitor.small("values", metrics.values);
+        std::vector<std::tuple<std::string, double, int>> rows;
+        for (const auto& [name, value, unit] : metrics.values) rows.emplace_back(name, value, static_cast<int>(unit));
+        visitor.small("values", rows);
+        metrics.values.clear();
+        for (const auto& [name, value, unit] : rows) metrics.values.push_back({name, value, static_cast<Unit>(unit)});
         visitor.small("unit", metrics.unit);
     }
     static constexpr std::string_view json_member = "metrics";

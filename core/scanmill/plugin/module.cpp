@@ -2,8 +2,13 @@
 #include "scanmill/plugin/module.hpp"
 
 #include <dlfcn.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -17,8 +22,47 @@ namespace {
 
 constexpr std::string_view module_prefix = "scanmill-";
 
+/// The module that is being loaded. A static object in it may crash or end this process: then its name is the last
+/// thing that this process writes to stderr. Signal handlers reach no other state.
+std::atomic<const char*> module_being_loaded = nullptr;
+constexpr std::array fatal_signals{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV};
+
+void name_module_being_loaded() {
+    const char* const module = module_being_loaded.exchange(nullptr);
+    if (!module) return;
+    for (const std::string_view text : {std::string_view("error: this process ended while it loaded the module '"),
+                                        std::string_view(module), std::string_view("'\n")})
+        if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;
+}
+
+class NamedIfFatal {
+public:
+    explicit NamedIfFatal(const char* module) {
+        static const int registered = std::atexit(name_module_being_loaded);
+        static_cast<void>(registered);
+        module_being_loaded = module;
+        struct sigaction action {};
+        action.sa_handler = [](int signal) {
+            name_module_being_loaded();
+            ::signal(signal, SIG_DFL);
+            ::raise(signal);
+        };
+        for (std::size_t i = 0; i < fatal_signals.size(); ++i) ::sigaction(fatal_signals[i], &action, &before_[i]);
+    }
+    ~NamedIfFatal() {
+        module_being_loaded = nullptr;
+        for (std::size_t i = 0; i < fatal_signals.size(); ++i) ::sigaction(fatal_signals[i], &before_[i], nullptr);
+    }
+    NamedIfFatal(const NamedIfFatal&) = delete;
+    NamedIfFatal& operator=(const NamedIfFatal&) = delete;
+
+private:
+    std::array<struct sigaction, fatal_signals.size()> before_{};
+};
+
 /// noexcept: an exception of a static object's constructor must not pass through the loader.
 void* open_library(const std::filesystem::path& module) noexcept {
+    const NamedIfFatal named(module.c_str());
     return ::dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);  // local: two modules may define the same symbol
 }
 

@@ -12,7 +12,7 @@ namespace scanmill {
 /// Loads the module and writes its declaration to `declaration`, whose type follows from `magic`. `noun` is the word
 /// for such a module in messages: "filter". Throws Error naming the file: not a module, another magic, another ABI
 /// (both texts), another name, any exception while it declares itself. A module may crash or end the process while it
-/// is loaded: only workers load the modules of a run.
+/// is loaded; the process then first writes the module's name to stderr. Only workers load the modules of a run.
 void load_declaration(const std::filesystem::path& module, std::string_view magic, std::string_view noun,
                       const std::string& expected_name, void* declaration);
 

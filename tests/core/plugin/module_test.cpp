@@ -85,6 +85,18 @@ TEST(LoadModule, DeclarationThatThrowsANumber_IsRefused) {
     EXPECT_THAT(refusal("throwing-a-number"), EndsWith("with an exception of a foreign type"));
 }
 
+TEST(LoadModuleDeathTest, StaticObjectThatThrows_EndsTheProcessWithTheModulesName) {
+    const auto module = plugin_folder / "unusable" / "scanmill-throwing-at-load.so";
+    EXPECT_DEATH(load_module(module, "throwing-at-load"),
+                 "the licence has run out.*this process ended while it loaded the module '" + module.string() + "'");
+}
+
+TEST(LoadModuleDeathTest, StaticObjectThatExits_EndsTheProcessWithTheModulesName) {
+    const auto module = plugin_folder / "unusable" / "scanmill-exiting-at-load.so";
+    EXPECT_EXIT(load_module(module, "exiting-at-load"), testing::ExitedWithCode(3),
+                "this process ended while it loaded the module '" + module.string() + "'");
+}
+
 TEST(LoadModule, DeclarationOfAnotherName_IsRefused) {
     EXPECT_THAT(refusal("two-names"), EndsWith("declares the filter 'another-name', not 'two-names'"));
 }

@@ -245,7 +245,7 @@ TEST(DefaultCacheFolder, FollowsTheEnvironment) {
     ::setenv("HOME", "/home/me", 1);
     EXPECT_EQ(default_cache_folder(), "/home/me/.cache/scanmill");
     ::unsetenv("HOME");
-    EXPECT_THAT(error_of([] { default_cache_folder(); }).hint(), HasSubstr("--cache"));
+    EXPECT_EQ(error_of([] { default_cache_folder(); }).remedy(), Remedy::choose_cache_folder);
     ::unsetenv("XDG_CACHE_HOME");
     if (home) ::setenv("HOME", old_home.c_str(), 1);
 }

@@ -38,7 +38,7 @@ TEST_F(CachedRun, DamagedValues_AreMadeAgainAndTold) {
     const RunReport again = run_two("factor: 2", "factor: 3");
     EXPECT_TRUE(again.all_done());
     EXPECT_EQ(again.nodes[2].origin, ran);
-    EXPECT_THAT(again.nodes[2].why, HasSubstr("has lost its value"));
+    EXPECT_THAT(again.nodes[2].why, HasSubstr("its value was removed from the cache"));
     EXPECT_EQ(content_of(folder_ / "out/a.ply"), first);
     EXPECT_THAT(told_, testing::Each(HasSubstr("counts as missing")));
     EXPECT_FALSE(told_.empty());

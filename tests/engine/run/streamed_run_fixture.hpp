@@ -66,7 +66,7 @@ protected:
         for (std::size_t i = 0; i < whole.nodes.size(); ++i) {
             const NodeReport &a = streamed.nodes[i], &b = whole.nodes[i];
             EXPECT_EQ(a.outcome, b.outcome);
-            EXPECT_EQ(a.failure.whole().what(), b.failure.whole().what());
+            EXPECT_STREQ(a.failure.whole().what(), b.failure.whole().what());
             EXPECT_EQ(a.metrics.values, b.metrics.values);
             EXPECT_EQ(a.properties.values, b.properties.values);
             EXPECT_EQ(a.warnings, b.warnings);
@@ -74,7 +74,7 @@ protected:
             for (std::size_t p = 0; p < a.resolved.values.size(); ++p)
                 EXPECT_EQ(text(a.resolved.values[p].second), text(b.resolved.values[p].second));
         }
-        EXPECT_EQ(streamed.cells[0].failure.whole().what(), whole.cells[0].failure.whole().what());
+        EXPECT_STREQ(streamed.cells[0].failure.whole().what(), whole.cells[0].failure.whole().what());
     }
     /// Thins the file both ways, each with a cache of its own.
     void expect_the_same(const std::string& file, const std::string& parameters,
