@@ -14,8 +14,8 @@
 #include <numeric>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/formats/common/writing.hpp"
 #include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
 
 namespace scanmill::vtk {
 

@@ -75,7 +75,8 @@ TEST(MergeRefusals, PosesInAUnitThatTheScansLack_AreRefusedWithAHint) {
     pose.unit = LengthUnit::metre;
     const Error error = refusal({point}, posed({pose}));
     EXPECT_THAT(error.sentence(), HasSubstr("the pose is in m; the unit of the scan is not declared"));
-    EXPECT_THAT(error.hint(), HasSubstr("--unit"));
+    EXPECT_THAT(error.hint(), HasSubstr("unit: mm"));
+    EXPECT_EQ(error.remedy(), Remedy::declare_unit);
 }
 
 TEST(MergeRefusals, PosesThatMoveCloudsTooFarApart_AreRefused) {

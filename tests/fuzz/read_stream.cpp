@@ -30,8 +30,8 @@ PointCloud put_together(const PointStream& stream) {
         std::vector<std::byte> bytes;
         for (std::size_t piece = 0; piece + 1 < stream.pieces().size(); ++piece) {
             const ColumnTable part = stream.read_columns(piece);
-            const Buffer<std::byte>& rows = part.find(column.name())->bytes();
-            bytes.insert(bytes.end(), rows.begin(), rows.end());
+            const Buffer<std::byte>& column_bytes = part.find(column.name())->bytes();
+            bytes.insert(bytes.end(), column_bytes.begin(), column_bytes.end());
         }
         require_law(std::ranges::equal(bytes, cloud.columns.find(column.name())->bytes()),
                     "a column that is read piece by piece differs");

@@ -32,7 +32,7 @@ TEST_F(Faults, ForeignException_IsNoCrash) {
     const Json step = poisoned("throw-number");
     expect_failure();
     EXPECT_EQ(step["cause"], "exception");
-    EXPECT_THAT(step["error"].get<std::string>(), HasSubstr("says nothing of itself"));
+    EXPECT_THAT(step["error"].get<std::string>(), HasSubstr("something other than a std::exception was thrown"));
 }
 
 TEST_F(Faults, EndlessLoop_IsEndedAtTheLimitOfTheStep) {
@@ -86,7 +86,7 @@ TEST_F(Faults, Exit_IsNoSuccess) {
     const Json step = poisoned("exit");
     expect_failure();
     EXPECT_EQ(step["cause"], "exit");
-    EXPECT_THAT(step["error"].get<std::string>(), HasSubstr("exit code 0"));
+    EXPECT_THAT(step["error"].get<std::string>(), HasSubstr("exited with code 0"));
 }
 
 TEST_F(Faults, WritingToStandardOutput_DoesNoHarmAndIsKept) {

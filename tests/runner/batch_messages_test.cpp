@@ -145,7 +145,7 @@ TEST_F(Batch, NoBatch_IsRefusedWithTheWayOut) {
     const ProgramResult nothing = run_batch();
     EXPECT_EQ(nothing.exit_code, 2);
     EXPECT_THAT(nothing.err, HasSubstr("b.yaml:3:"));
-    EXPECT_THAT(scanmill({"worker"}).err, HasSubstr("is started by scanmill itself"));
+    EXPECT_THAT(scanmill({"worker"}).err, HasSubstr("only scanmill itself starts workers"));
     EXPECT_THAT(scanmill({"--help"}).out, Not(HasSubstr("worker ")));
 }
 

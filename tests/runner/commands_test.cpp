@@ -174,7 +174,7 @@ outputs:
     EXPECT_THAT(checked.out, IsEmpty());
     EXPECT_THAT(
         checked.err,
-        AllOf(HasSubstr("w.yaml:5:5: there is not a filter 'voxel-thinn'"), HasSubstr("did you mean 'voxel-thin'?"),
+        AllOf(HasSubstr("w.yaml:5:5: there is no filter 'voxel-thinn'"), HasSubstr("did you mean 'voxel-thin'?"),
               HasSubstr("w.yaml:6:18: voxel-thin has no parameter 'bin-siz'"), HasSubstr("did you mean 'bin-size'?"),
               HasSubstr("w.yaml:6:46: bin-size: '0.5' has no unit"), HasSubstr("w.yaml:8:29: coverage: 300 %"),
               HasSubstr("w.yaml:9:16: 'scan' is points"), HasSubstr("w.yaml:11:5: the key 'delaunay'"),

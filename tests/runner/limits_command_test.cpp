@@ -55,7 +55,7 @@ TEST_F(Limits, TimeIsOverInAStep_SaysWhichAndHowLongItTook) {
     write_scans("a", 1);
     EXPECT_THAT(
         error_under("{step: {time: 300 ms}}", "time", "{path: scans/a_01.xyz, set: {mode: loop}}"),
-        AllOf(ContainsRegex("it was ended after [0-9]+\\.[0-9]+ s, the limit of a step is 300 ms\n"),
+        AllOf(ContainsRegex("stopped after [0-9]+\\.[0-9]+ s, the limit of a step is 300 ms\n"),
               HasSubstr("\n  in step 'last' (w.yaml:"), HasSubstr("\n  on scan 'scans/a_01.xyz'"), HasSubstr(way_out)));
 }
 

@@ -98,7 +98,7 @@ const std::vector<Mistake> mistakes{
     {steps("  - thin: {size: 0.5}\n"), "steps 0 thin size: Value type not permitted", "size: '0.5' has no unit"},
     {steps("  - thin: {size: 0 mm}\n"), "steps 0 thin size: Failed to match regex", "size: 0 mm is out of range"},
     {steps("  - thin: {size: -1 mm}\n"), "steps 0 thin size: Failed to match regex", "size: -1 mm is out of range"},
-    {steps("  - thin: {size: 1 yard}\n"), "steps 0 thin size: Failed to match regex", "'yard' is no unit"},
+    {steps("  - thin: {size: 1 yard}\n"), "steps 0 thin size: Failed to match regex", "'yard' is not a unit"},
     {steps("  - thin: {size: mm}\n"), "steps 0 thin size: Failed to match regex", "'mm' is not a length"},
     {steps("  - thin: {count: 0}\n"), "steps 0 thin count: Expected number greater than or equal to 1",
      "count: 0 is out of range"},

@@ -119,7 +119,7 @@ TEST_F(ListValues, NameBesideWhatCannotBeRead_IsUsed) {
 
 TEST_F(ListValues, ValueThatIsNotAnItem_IsReportedAtTheName) {
     EXPECT_THAT(check_step("a: 1 yard, b: 1 u", "thresholds: [$b, $a]"),
-                ElementsAre(AllOf(StartsWith("w:4:35: "), HasSubstr("thresholds (from $a): 'yard' is no unit"))));
+                ElementsAre(AllOf(StartsWith("w:4:35: "), HasSubstr("thresholds (from $a): 'yard' is not a unit"))));
     EXPECT_THAT(check_step("a: 0 u", "thresholds: [$a]"),
                 ElementsAre(AllOf(StartsWith("w:4:31: "), HasSubstr("thresholds (from $a): 0 u is out of range"))));
     EXPECT_THAT(check_step("a: 1 u", "thresholds: [$a, 5]"),
@@ -147,7 +147,7 @@ TEST_F(ListValues, ValueOfABatch_IsReportedAtItsPositionThere) {
                   "scanmill: 1\ninputs: {scan: points}\nparameters: {n: 1 u}\nsteps: [{lists: {thresholds: [2 u, $n]}}]"
                   "\n");
     EXPECT_THAT(check(head + "set: {n: 3 yard}\n"),
-                ElementsAre(AllOf(StartsWith("b:5:10: $n is one of the thresholds of lists: 'yard' is no unit"))));
+                ElementsAre(AllOf(StartsWith("b:5:10: $n is one of the thresholds of lists: 'yard' is not a unit"))));
 }
 
 TEST_F(ListValues, Paths_CountFromTheFileThatEachStandsIn) {

@@ -90,7 +90,7 @@ TEST_F(ReaderStep, DefaultWithoutAMeasure_IsNotMissedWhereItIsNotRead) {
 TEST_F(ReaderStep, DefaultWithoutAMeasure_IsRefusedWhereItIsReadForItsOwnReason) {
     set("reads", std::string("tolerance"));
     const Error tolerance = refusal(one_place_);
-    EXPECT_THAT(tolerance.sentence(), HasSubstr("the diagonal is 0, as all 2 points are at one place"));
+    EXPECT_THAT(tolerance.sentence(), HasSubstr("the diagonal is 0, because all 2 points are at one position"));
     EXPECT_THAT(tolerance.frames(), ElementsAre("in the parameter 'tolerance'"));
     set("reads", std::string("thresholds"));
     const Error thresholds = refusal(one_place_);
