@@ -29,6 +29,7 @@ function(scanmill_add_filter folder)
   file(GLOB sources CONFIGURE_DEPENDS ${source}/*.cpp)
   list(REMOVE_ITEM sources ${source}/plugin.cpp)
   add_library(scanmill-${name}-algorithm STATIC ${sources})
+  set_property(GLOBAL APPEND PROPERTY SCANMILL_FILTER_ALGORITHMS scanmill-${name}-algorithm)
   set_target_properties(scanmill-${name}-algorithm PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                                                               POSITION_INDEPENDENT_CODE ON)
   target_include_directories(scanmill-${name}-algorithm PUBLIC ${source}/..)

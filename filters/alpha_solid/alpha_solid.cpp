@@ -83,7 +83,7 @@ void describe_cells(AlphaSolidResult& result, Selection& selection, unsigned thr
     result.tets.inside = std::move(selection.labels);
 }
 
-/// The number of different solids at `value` and above.
+/// The number of different solids that the sweep reaches at `value` and above.
 std::size_t spectrum_from(const SweepResult& sweep, double value) {
     std::size_t count = 1;
     for (std::size_t i = 0; i < sweep.values.size() && sweep.values[i] > value; ++i)

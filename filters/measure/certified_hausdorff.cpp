@@ -200,7 +200,7 @@ public:
         drop_last();
     }
 
-    /// About the first parts, at most `most`; empty if all are near enough.
+    /// Removes up to `most` parts from the front of the queue. Empty when every part is near enough.
     std::vector<TrianglePart> take(std::size_t most) {
         std::vector<TrianglePart> taken;
         while (!waiting_.empty() && taken.size() < most) {

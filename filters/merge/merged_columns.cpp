@@ -41,7 +41,8 @@ Column as_doubles(std::span<const Column> parts) {
         visit_scalar(part.type(), [&](auto zero) {
             for (const auto value : part.values<decltype(zero)>()) values.push_back(static_cast<double>(value));
         });
-    return {parts.front().name(), parts.front().components(), Buffer<double>(std::move(values))};
+    return Column(parts.front().name(), parts.front().components(), Buffer<double>(std::move(values)))
+        .with_length_exponent(parts.front().length_exponent());
 }
 
 /// The rows of all parts, end to end. Pre: at least one part; all are lists of one type, or all have the same number of
@@ -52,8 +53,12 @@ Column joined(std::span<const Column> parts) {
         assert(!first.is_list());
         return as_doubles(parts);
     }
-    return {first.name(), first.type(), first.components(), bytes_end_to_end(parts),
-            first.is_list() ? offsets_end_to_end(parts) : Buffer<u64>()};
+    return {first.name(),
+            first.type(),
+            first.components(),
+            bytes_end_to_end(parts),
+            first.is_list() ? offsets_end_to_end(parts) : Buffer<u64>(),
+            first.length_exponent()};
 }
 
 const std::string newest = "source";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Sculpting: removes single cells of a solid until every point is on its boundary and the boundary bends less.
+/// Sculpting: removes single cells of a solid until every point is on its boundary and the boundary is smoother.
 ///
 /// The alpha-solid fills everything narrower than its ball: cells bridge concave edges and grooves, and the points
 /// there are in the interior. Every step removes one cell so that the boundary stays a closed 2-manifold of the same

@@ -175,7 +175,8 @@ void require_apart(const Vec3& size, double large_radius, double small_radius) {
     if (!(small_radius < room))
         throw Error("the small holes of radius {} u touch the large one or the sides of the block of {} x {} u",
                     small_radius, size.x(), size.y())
-            .hint(fmt::format("beside a large hole of radius {} u theirs must be below {} u", large_radius, room));
+            .hint(fmt::format("with a large hole of radius {} u, the small radius must be below {} u", large_radius,
+                              room));
 }
 
 /// The hole that contains the point, its wall excluded; else nullptr.

@@ -129,10 +129,10 @@ Candidate<Number> located(const Vec3& point, u32 row, const VoxelGrid& grid) {
     return {distance, static_cast<Number>(number), row};
 }
 
-// Points are processed in waves. In a wave, chunks are sorted by partition in parallel, then partitions are filled in
-// parallel. A chunk and the table of a partition fit the cache of one core, a wave fits the shared cache.
+// Points are processed in blocks. In a block, chunks are sorted by partition in parallel, then partitions are filled in
+// parallel. A chunk and the table of a partition fit the cache of one core, a block fits the shared cache.
 constexpr std::size_t partitions = 64;
-constexpr std::size_t chunks_per_wave = 16;
+constexpr std::size_t chunks_per_block = 16;
 
 std::size_t partition_of(u64 voxel) { return hash_of(voxel) >> 58; }
 static_assert(partitions == 1 << (64 - 58));
@@ -176,18 +176,18 @@ template <class Number>
 std::vector<VoxelTable<Number>> winners_by_partition(const PointChunks& points, const VoxelGrid& grid, bool counts,
                                                      Context& context) {
     std::vector<VoxelTable<Number>> tables(partitions, VoxelTable<Number>(counts));
-    std::vector<SortedChunk<Number>> wave(chunks_per_wave);
+    std::vector<SortedChunk<Number>> block(chunks_per_block);
     const std::size_t chunks = points.begin.size() - 1;
-    for (std::size_t first = 0; first < chunks; first += chunks_per_wave) {
+    for (std::size_t first = 0; first < chunks; first += chunks_per_block) {
         context.check_cancelled();
         context.progress(static_cast<double>(points.begin[first]) / static_cast<double>(points.size()));
-        wave.resize(std::min(chunks_per_wave, chunks - first));
-        for_each_chunk(context.threads(), wave.size(), 1, [&](std::size_t i, std::size_t) {
+        block.resize(std::min(chunks_per_block, chunks - first));
+        for_each_chunk(context.threads(), block.size(), 1, [&](std::size_t i, std::size_t) {
             const std::size_t chunk = first + i;
-            sort_chunk(points.read(chunk, wave[i].buffer), points.begin[chunk], grid, wave[i]);
+            sort_chunk(points.read(chunk, block[i].buffer), points.begin[chunk], grid, block[i]);
         });
         for_each_chunk(context.threads(), partitions, 1, [&](std::size_t partition, std::size_t) {
-            for (const SortedChunk<Number>& chunk : wave)
+            for (const SortedChunk<Number>& chunk : block)
                 offer_all(std::span(chunk.candidates)
                               .subspan(chunk.begin[partition], chunk.begin[partition + 1] - chunk.begin[partition]),
                           tables[partition]);

@@ -7,8 +7,8 @@
 #include <limits>
 #include <optional>
 
-#include "scanmill/formats/common/writing.hpp"
 #include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
 
 namespace scanmill::glb {
 

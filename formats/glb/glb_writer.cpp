@@ -8,8 +8,8 @@
 #include "glb/attributes.hpp"
 #include "glb/glb.hpp"
 #include "scanmill/base/error.hpp"
-#include "scanmill/formats/common/writing.hpp"
 #include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
 #include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill::glb {

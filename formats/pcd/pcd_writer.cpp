@@ -4,8 +4,8 @@
 
 #include "pcd/pcd.hpp"
 #include "pcd/pcd_header.hpp"
-#include "scanmill/formats/common/writing.hpp"
 #include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/writing.hpp"
 #include "scanmill/io/output_buffer.hpp"
 
 namespace scanmill::pcd {

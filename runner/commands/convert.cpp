@@ -35,7 +35,8 @@ Value warn_dropped(Cleaned<T> cleaned) {
 
 Value without_invalid(const Value& value) {
     if (const auto* mesh = value.find<TriangleMesh>()) return warn_dropped(without_invalid_points(*mesh));
-    return warn_dropped(without_invalid_points(*value.get<PointCloud>()));
+    if (const auto* cloud = value.find<PointCloud>()) return warn_dropped(without_invalid_points(*cloud));
+    throw Error("--drop-invalid needs points or a mesh; the input contains {}", name_of(value.kind()));
 }
 
 int convert(const Options& options) {
@@ -49,7 +50,10 @@ int convert(const Options& options) {
         Value value = read_file(options.from, read).value;
         if (options.drop_invalid) value = without_invalid(value);
         if (options.to_unit != LengthUnit::unknown) {
-            if (frame_of(value)->unit == LengthUnit::unknown)
+            const std::optional<Frame> frame = frame_of(value);
+            if (!frame)
+                throw Error("--to-unit converts values with positions; the input contains {}", name_of(value.kind()));
+            if (frame->unit == LengthUnit::unknown)
                 throw Error("--to-unit {}: the unit of the input is not known", symbol(options.to_unit))
                     .hint("give it with --unit");
             value = in_unit(value, options.to_unit);

@@ -188,13 +188,14 @@ int Execution::run(const SessionTask& task, bool streams_events) {
     std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
-    Progress progress(graph, predictions, std::max(1u, session_.jobs(graph)), options_.quiet);
+    const unsigned jobs = session_.jobs(graph);
+    Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet);
     session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
     std::optional<EventStream> events;
     std::vector<RunObserver*> observers{&progress};
     if (options_.json && streams_events) observers.push_back(&events.emplace(graph));
     const RunReport report =
-        session_.run(task, library_, std::move(predictions), observers, [&](const RunStarted& run) {
+        session_.run(task, jobs, library_, std::move(predictions), observers, [&](const RunStarted& run) {
             if (events) events->begin(task.name, run.jobs, run.threads, run.run);
         });
     progress.finish();

@@ -42,13 +42,16 @@ Error with_option(const Error& error) {
     return complete;
 }
 
-void print(const Error& plain, bool json) {
-    const Error error = with_option(plain);
-    // Each part on one line: a file's name may contain a line break.
+std::string error_text(const Error& error) {
     std::string text = "error: " + printable_line(error.sentence());
     for (const std::string& frame : error.frames()) text += "\n  " + printable_line(frame);
     if (!error.hint().empty()) text += "\nhint: " + printable_line(error.hint());
-    print_stderr("{}\n", text);
+    return text;
+}
+
+void print(const Error& plain, bool json) {
+    const Error error = with_option(plain);
+    print_stderr("{}\n", error_text(error));
     if (!json) return;
     Json described{{"message", error.sentence()}, {"where", error.frames()}};
     if (!error.hint().empty()) described["hint"] = error.hint();

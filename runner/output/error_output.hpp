@@ -14,6 +14,9 @@ namespace scanmill::runner {
 /// The error with the command-line option for its remedy added to the hint.
 Error with_option(const Error& error);
 
+/// "error: …", the frames and the hint, each on one line: a file's name may contain a line break.
+std::string error_text(const Error& error);
+
 /// The error on stderr; with `json` also `{"scanmill": 1, "error": {"message", "where", "hint"}}` on stdout.
 void print(const Error& error, bool json);
 

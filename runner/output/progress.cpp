@@ -214,8 +214,8 @@ void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     if (!report.failure) return;
     board_.cell_failed();
     const bool several = graph_.plans[cell.plan]->variants.size() > 1;
-    print(fmt::format("error: {}{}", with_option(report.failure.whole()).what(),
-                      several ? fmt::format("\n  under variant '{}'", graph_.variant(cell).name) : ""));
+    print(error_text(with_option(report.failure.whole())) +
+          (several ? fmt::format("\n  under variant '{}'", graph_.variant(cell).name) : ""));
 }
 
 void Progress::print_beside(const std::function<void()>& print) {

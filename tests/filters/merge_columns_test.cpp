@@ -36,6 +36,13 @@ TEST(MergeColumns, OfEqualType_AreCarriedInOrder) {
     EXPECT_THAT(result.warnings, IsEmpty());
 }
 
+TEST(MergeColumns, OfLengths_KeepTheirExponent) {
+    const Column narrow = Column("size", 1, Buffer<float>{1, 2}).with_length_exponent(1);
+    const Column wide = Column("size", 1, Buffer<double>{3, 4}).with_length_exponent(1);
+    for (const Column& second : {narrow, wide})
+        EXPECT_EQ(merged({two_points(narrow), two_points(second)}).points.columns.find("size")->length_exponent(), 1);
+}
+
 TEST(MergeColumns, OfDroppedPoints_AreDropped) {
     const PointCloud a = two_points(Column("b", 1, Buffer<u8>{1, 2}));
     PointCloud b = cloud_of({{1, 0, 0}, {5, 0, 0}});

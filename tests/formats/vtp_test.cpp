@@ -154,7 +154,7 @@ TEST(VtpWriter_Refuses, KindsThatItCannotHold_WithTheFormatsThatCan) {
     EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("tets cannot be written with the extension '.vtp'"),
                                              HasSubstr("extensions for it: vtu")));
     EXPECT_THAT(sentence_of([] { write_bytes("a.vtp", std::make_shared<const TriangleMesh>()); }),
-                HasSubstr("without a single point"));
+                HasSubstr("has no points"));
     PointCloud huge = two_points();
     huge.frame.origin = Vec3::Constant(1e308);
     huge.positions = {Vec3::Constant(1e308)};

@@ -39,8 +39,7 @@ TEST_F(Storage, ScanChangedAfterPlanning_FailsAndIsNotTakenForTheOld) {
     std::filesystem::remove(folder_ / "scans/scan_03.xyz");
     const ProgramResult result = batch.wait();
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err,
-                AllOf(HasSubstr("scan_02.xyz' changed while the run was going on"), HasSubstr("scan_03.xyz")));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("scan_02.xyz' changed during the run"), HasSubstr("scan_03.xyz")));
     const Json run = recorded(1);
     EXPECT_EQ(count(run["cells"], "outcome", "failed"), 3u);
     EXPECT_THAT(outputs(), IsEmpty());

@@ -89,13 +89,13 @@ TEST_F(RunsCommand, DryRun_NamesWhatChangedSinceTheLastRun) {
                 AllOf(HasSubstr("the file, its unit or its frame changed since run 1"), HasSubstr("the scan changed")));
     scanmill({"cache", "clear"});
     folder_.write("a.xyz", "0 0 0\n1 0 0\n0 2 0\n1 2 2\n");
-    EXPECT_THAT(dry(), HasSubstr("it is not in the cache"));
+    EXPECT_THAT(dry(), HasSubstr("its result is not in the cache"));
 }
 
 TEST_F(RunsCommand, MissingRunsAndFolders_AreReported) {
     const ProgramResult nothing = scanmill({"runs", "nowhere"});
     EXPECT_EQ(nothing.exit_code, 2);
-    EXPECT_THAT(nothing.err, AllOf(HasSubstr("there are no records"), HasSubstr("hint")));
+    EXPECT_THAT(nothing.err, AllOf(HasSubstr("does not exist"), HasSubstr("hint")));
     scanmill({"run", "w.yaml", "a.xyz", "-o", "out"});
     EXPECT_THAT(scanmill({"runs", "out", "show", "5"}).err, HasSubstr("there is no run 5"));
     EXPECT_THAT(scanmill({"runs", "out", "show", "x"}).err, HasSubstr("'x' is not the number of a run"));

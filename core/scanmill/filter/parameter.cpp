@@ -43,6 +43,7 @@ std::vector<std::string> choice_names(const ParameterSpec& spec) {
 struct TypeRow {
     std::string_view name, noun, example;
     ParameterScalar (*parse)(const ParameterSpec& spec, const std::string& text);
+    bool parse_names_expected;  ///< its errors already contain what was expected
 };
 
 ParameterScalar parse_boolean(const ParameterSpec&, const std::string& text) {
@@ -79,15 +80,15 @@ ParameterScalar parse_quantity(const ParameterSpec&, const std::string& text) {
 
 /// By ParameterType.
 constexpr std::array<TypeRow, 9> types{{
-    {"boolean", "true or false", "", parse_boolean},
-    {"integer", "a whole number", "", parse_integer},
-    {"number", "a number", "", parse_plain_number},
-    {"choice", "one of ", "", parse_choice},
-    {"text", "a text", "", parse_text},
-    {"path", "a path", "", parse_text},
-    {"length", "a length", length_examples, parse_quantity<Length>},
-    {"angle", "an angle", angle_examples, parse_quantity<Angle>},
-    {"ratio", "a ratio", ratio_examples, parse_quantity<Ratio>},
+    {"boolean", "true or false", "", parse_boolean, false},
+    {"integer", "a whole number", "", parse_integer, false},
+    {"number", "a number", "", parse_plain_number, false},
+    {"choice", "one of ", "", parse_choice, true},
+    {"text", "a text", "", parse_text, false},
+    {"path", "a path", "", parse_text, false},
+    {"length", "a length", length_examples, parse_quantity<Length>, true},
+    {"angle", "an angle", angle_examples, parse_quantity<Angle>, true},
+    {"ratio", "a ratio", ratio_examples, parse_quantity<Ratio>, true},
 }};
 
 const TypeRow& row_of(ParameterType type) { return types[static_cast<std::size_t>(type)]; }
@@ -181,14 +182,15 @@ ParameterValue parse(const ParameterSpec& spec, const WrittenParameter& written)
     if (written.list && !spec.list) throw Error("is a list; expected {}", expectation(spec));
     // A single value in place of a list is a list of one.
     const auto item = [&](const std::string& text) {
+        bool is_parsed = false;
         try {
             const ParameterScalar value = row_of(spec.type).parse(spec, text);
+            is_parsed = true;
             require_item_in_range(spec, value);
             return value;
-        } catch (Error& error) {
+        } catch (const Error& error) {
             std::string sentence = error.sentence();
-            if (sentence.find("; expected ") == std::string::npos && spec.type != ParameterType::choice)
-                sentence += "; expected " + expectation(spec);
+            if (!is_parsed && !row_of(spec.type).parse_names_expected) sentence += "; expected " + expectation(spec);
             if (!spec.word.empty()) {
                 const std::vector<std::string> words{spec.word};
                 sentence += did_you_mean(text, words);

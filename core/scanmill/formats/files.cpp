@@ -24,14 +24,14 @@ Format::Write writer_for(const std::filesystem::path& path, const Value& value) 
         const Format::Write write = format.has_extension(extension) ? format.writer(kind) : nullptr;
         if (!write) continue;
         if (is_geometric(kind) && !value.find<FeatureGraph>() && positions_of(value).empty())
-            throw Error("nothing to write: the {} without a single point", name_of(kind));
+            throw Error("nothing to write: the {} has no points", name_of(kind));
         return write;
     }
     const std::string choices = writable_extensions(kind);
     if (const std::string reason = why_unusable(extension); !reason.empty())
         throw Error("{} cannot be written with the extension '{}': {}", name_of(kind), extension, reason);
     throw Error("{} cannot be written with the extension '{}'", name_of(kind), extension)
-        .hint(choices.empty() ? "no format here carries this kind" : "extensions for it: " + choices);
+        .hint(choices.empty() ? "no file format can hold this kind" : "extensions for it: " + choices);
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path,
     const TriangleMesh* mesh = loaded.value.find<TriangleMesh>();
     if (!mesh)
         throw Error("'{}': points are needed; the file contains {}", path.string(), name_of(loaded.value.kind()));
-    warn(options.on_warning, "'{}': points were asked for; {} left out", path.string(),
+    warn(options.on_warning, "'{}': read as points; {} left out", path.string(),
          count_text(mesh->triangles.size(), "triangle was", "triangles were"));
     return std::make_shared<const PointCloud>(points_of(*mesh));
 }
@@ -64,7 +64,7 @@ std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path,
     const PointCloud* points = loaded.value.find<PointCloud>();
     if (!points)
         throw Error("'{}': a mesh is needed; the file contains {}", path.string(), name_of(loaded.value.kind()));
-    throw Error("'{}': a mesh is needed; the file holds {} and not a single face", path.string(),
+    throw Error("'{}': a mesh is needed; the file has {} and no faces", path.string(),
                 count_text(points->size(), "point", "points"))
         .hint("make a surface of the points first, with a workflow whose filters turn points into a mesh");
 }

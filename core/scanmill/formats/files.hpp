@@ -59,6 +59,8 @@ bool can_write(std::string_view extension, Kind kind);
 /// Why the module for files with this extension cannot be used; empty when it can, and for other extensions.
 std::string why_unusable(std::string_view extension);
 
+/// Names of the kinds that read_file() returns: points, mesh, and those with a JSON form.
+std::vector<std::string> readable_kinds();
 /// The extensions that can_write(), for messages: "ply, stl, off, obj". Empty for kinds that no format carries.
 std::string writable_extensions(Kind kind);
 

@@ -74,7 +74,7 @@ const Format& format_of(const FileBytes& file) {
     for (const Format& format : formats())
         if (!format.is_refused) readable.push_back(format.name);
     constexpr std::size_t shown = 16;
-    throw Error("is of no known format: it begins with {} and has {}", quote(head.substr(0, shown)),
+    throw Error("is in an unknown format: it begins with {} and has {}", quote(head.substr(0, shown)),
                 extension.empty() ? std::string("no extension") : "the extension '" + extension + "'")
         .hint(fmt::format("formats that are read: {}", fmt::join(readable, ", ")));
 }
@@ -88,6 +88,14 @@ std::string why_unusable(std::string_view extension) {
     for (const Format& format : formats())
         if (format.has_extension(extension) && !format.unusable.empty()) return format.unusable;
     return {};
+}
+
+std::vector<std::string> readable_kinds() {
+    std::vector<std::string> names;
+    for (const Kind kind : all_kinds())
+        if (kind == kind_of<PointCloud>() || kind == kind_of<TriangleMesh>() || kind.has_json())
+            names.emplace_back(kind.name());
+    return names;
 }
 
 std::string writable_extensions(Kind kind) {

@@ -121,7 +121,9 @@ Kind kind_of() {
     return Kind(kind_info<T>);
 }
 // Instantiated in the source files with the traits.
-#define SCANMILL_DECLARE_KIND(Type) extern template Kind kind_of<Type>();
+#define SCANMILL_DECLARE_KIND(Type) \
+    struct Type;                    \
+    extern template Kind kind_of<Type>();
 SCANMILL_ALL_KINDS(SCANMILL_DECLARE_KIND)
 #undef SCANMILL_DECLARE_KIND
 

@@ -259,7 +259,7 @@ private:
         const std::string name = listed.file.string();
         if (workflow.inputs.empty())
             batch_diagnostics_.error(listed.position,
-                                     "'{}' has no inputs, so there is nothing to feed scans to; "
+                                     "'{}' has no inputs, so a batch cannot run it over scans; "
                                      "run it by itself",
                                      name);
         if (workflow.inputs.size() <= 1) return;

@@ -296,8 +296,8 @@ private:
                     scans_.back().file = without_detours(file);
                     scans_.back().position = position;
                 } else {
-                    diagnostics_.error(position, "'{}' is already a scan by line {}; name every file once",
-                                       file.string(), earlier->second);
+                    diagnostics_.error(position, "'{}' is listed twice; line {} lists it too", file.string(),
+                                       earlier->second);
                 }
             }
         } catch (const Error& error) {

@@ -293,8 +293,8 @@ PointCloud cloud_without_data(const PointStream& stream) {
     const PointCloud without_rows = stream.gather({}, 1);
     for (const Column& column : without_rows.columns) {
         const std::size_t bytes = stream.size() * column.components() * size_of(column.type());
-        cloud.columns.add(
-            Column(column.name(), column.type(), column.components(), Buffer<std::byte>(nullptr, nullptr, bytes), {}));
+        cloud.columns.add(Column(column.name(), column.type(), column.components(),
+                                 Buffer<std::byte>(nullptr, nullptr, bytes), {}, column.length_exponent()));
     }
     return cloud;
 }

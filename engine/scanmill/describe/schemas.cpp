@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scanmill/batch/batch.hpp"
+#include "scanmill/formats/files.hpp"
 #include "scanmill/plan/expectation.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
@@ -49,7 +50,7 @@ const char* const workflow_grammar = R"json({
               "description": "Files: names over {scan}, {folder}, {variant} and {workflow}, each with its step."}
 },
 "definitions": {
-  "kind-name": {"enum": ["points", "mesh"], "description": "The kind of value in the file."},
+  "kind-name": {"description": "The kind of value in the file."},
   "kind": {"if": {"type": "array"},
            "then": {"items": {"$ref": "#/definitions/kind-name"}, "minItems": 1, "maxItems": 1},
            "else": {"$ref": "#/definitions/kind-name"}},
@@ -279,6 +280,7 @@ std::string with_common_definitions(Json schema) {
 
 std::string workflow_schema(const FilterLibrary& library) {
     Json schema = Json::parse(workflow_grammar);
+    schema["definitions"]["kind-name"]["enum"] = readable_kinds();
     Json& step = schema["definitions"]["step"];
     Json one_filter = Json::array(), names{"id", "in", "expect"};
     for (const std::string& name : library.names()) {

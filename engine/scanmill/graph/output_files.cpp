@@ -22,7 +22,7 @@ bool lies_below(const fs::path& path, const fs::path& folder) {
 fs::path real_path(const fs::path& path) {
     std::error_code trouble;
     fs::path real = fs::weakly_canonical(fs::absolute(path), trouble);
-    if (trouble) throw Error("results cannot be put into '{}': {}", path.string(), trouble.message());
+    if (trouble) throw Error("results cannot be written to '{}': {}", path.string(), trouble.message());
     return real;
 }
 

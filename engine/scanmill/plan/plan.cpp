@@ -240,7 +240,7 @@ private:
         for (const WorkflowOutput& output : plan_.workflow.outputs) {
             const std::string folder = output.file + "/";
             if (const auto file = files.lower_bound(folder); file != files.end() && file->starts_with(folder))
-                diagnostics_.error(output.position, "'{}' would be a file, and the folder of '{}' too", output.file,
+                diagnostics_.error(output.position, "'{}' is an output and also the folder of '{}'", output.file,
                                    *file);
         }
     }

@@ -33,8 +33,8 @@ std::vector<std::string> differences(const std::vector<NodePrediction>& predicti
         found.push_back(fmt::format("{} was built again", past.filter));
     for (const auto& [name, value] : step.parameters.values)
         if (const std::string now = text(value), before = value_in(past.authored, name); now != before)
-            found.push_back(fmt::format("{} changed {} → {}", name, before.empty() ? "nothing" : before,
-                                        now.empty() ? "nothing" : now));
+            found.push_back(fmt::format("{} changed {} → {}", name, before.empty() ? "(not set)" : before,
+                                        now.empty() ? "(not set)" : now));
     if (past.seed != graph.seed) found.push_back(fmt::format("the seed changed {} → {}", past.seed, graph.seed));
     for (const NodeInput& input : node.inputs)
         if (!prediction[input.node].cached) {
@@ -63,8 +63,8 @@ std::string reason(const std::vector<NodePrediction>& prediction, FilterLibrary&
         return fmt::format("it did not complete in run {}", run);
     if (least.empty())
         return fmt::format(
-            "it is not in the cache: none of its parameters changed since run {}, but perhaps the order of its "
-            "inputs, a file that a parameter names, or Scanmill itself; or the cache removed it",
+            "its result is not in the cache although no parameter changed since run {}; the order of its inputs, a "
+            "file named by a parameter or Scanmill may have changed, or the cache removed it",
             run);
     std::string text;
     for (const std::string& difference : least) text += (text.empty() ? "" : ", ") + difference;

@@ -103,8 +103,9 @@ void RunRecords::Database::migrate() {
 
 void RunRecords::Database::require_known(int found) const {
     if (found >= 0 && static_cast<std::size_t>(found) <= migrations.size()) return;
-    throw Error("the records '{}' were written by a newer Scanmill: their tables are of version {}, this one knows {}",
-                file, found, migrations.size())
+    throw Error(
+        "the records '{}' were written by a newer Scanmill: their tables are of version {}, this one reads up to {}",
+        file, found, migrations.size())
         .hint("use that Scanmill, or another output folder");
 }
 
@@ -117,7 +118,8 @@ static void require_in_its_folder(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::is_symlink(file, ignored)) return;
     const std::filesystem::path folder = std::filesystem::weakly_canonical(file.parent_path(), ignored);
-    const std::filesystem::path target = std::filesystem::weakly_canonical(file, ignored);
+    const std::filesystem::path target =
+        std::filesystem::weakly_canonical(folder / std::filesystem::read_symlink(file, ignored), ignored);
     if (target.parent_path() != folder)
         throw Error("'{}' is a symbolic link to '{}', outside the output folder", file.string(), target.string())
             .hint("remove the link, or choose another output folder");
@@ -135,10 +137,10 @@ RunRecords RunRecords::append_to(const std::filesystem::path& file) {
 RunRecords RunRecords::read(const std::filesystem::path& file) {
     return about(file.string(), [&] {
         if (!std::filesystem::exists(file))
-            throw Error("there are no records '{}'", file.string()).hint("name the output folder of a run");
+            throw Error("the file '{}' does not exist", file.string()).hint("name the output folder of a run");
         auto database = std::make_unique<Database>(file, SQLite::OPEN_READONLY);
         const int version = database->version();
-        if (version == 0) throw Error("'{}' holds no records of runs", file.string());
+        if (version == 0) throw Error("'{}' contains no run records", file.string());
         database->require_known(version);
         if (static_cast<std::size_t>(version) < migrations.size()) return append_to(file);  // brings them up to date
         return RunRecords(std::move(database));

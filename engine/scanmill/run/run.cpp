@@ -480,7 +480,7 @@ private:
             if (failures <= settings_.limits.retries) {
                 notify(&RunObserver::node_warning, graph_.nodes[task.node],
                        fmt::format("attempt {} of {} failed: {}", failures, settings_.limits.retries + 1,
-                                   report.node.failure.whole().what()));
+                                   report.node.failure.error.sentence()));
                 for (const std::size_t cell : cells_of(task)) charge(cell, report.node.effort.seconds);
                 to_consider_.push_back(task);
                 return;

@@ -37,7 +37,7 @@ void require_writable(const fs::path& folder) {
     fs::create_directories(folder, trouble);
     if (!trouble && ::access(folder.c_str(), W_OK | X_OK) != 0) trouble.assign(errno, std::generic_category());
     if (trouble)
-        throw Error("results cannot be put into '{}': {}", folder.string(), trouble.message())
+        throw Error("results cannot be written to '{}': {}", folder.string(), trouble.message())
             .hint("choose another output folder")
             .remedy(Remedy::choose_output_folder);
 }
@@ -97,15 +97,14 @@ unsigned Session::jobs(const RunGraph& graph) const {
     return static_cast<unsigned>(std::clamp<u64>(std::min<u64>(graph.cells.size(), held), 1, usable_cores()));
 }
 
-RunReport Session::run(const SessionTask& task, FilterLibrary& library, std::vector<NodePrediction> predictions,
-                       const std::vector<RunObserver*>& observers,
+RunReport Session::run(const SessionTask& task, unsigned jobs, FilterLibrary& library,
+                       std::vector<NodePrediction> predictions, const std::vector<RunObserver*>& observers,
                        const std::function<void(const RunStarted&)>& on_start) {
     require_writable(settings_.output_folder);
     remove_incomplete_outputs(task.graph);
     const std::function<void(std::string)> warn = [warn = warn_](std::string text) {
         if (*warn) (*warn)(std::move(text));
     };
-    const unsigned jobs = this->jobs(task.graph);
     if (jobs == 0 && (task.limits.cell_seconds > 0 || task.limits.step_seconds > 0))
         warn("limits of time are not enforced without worker processes");
     RunSettings run_settings;

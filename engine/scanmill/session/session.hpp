@@ -20,7 +20,8 @@ class WorkerProcesses;
 
 struct SessionSettings {
     std::filesystem::path output_folder;
-    std::optional<unsigned> jobs;  ///< worker processes; 0: everything runs in this process; nothing: default_jobs()
+    std::optional<unsigned>
+        jobs;  ///< worker processes; 0: everything runs in this process; nothing: see Session::jobs()
     unsigned threads = 0;          ///< inside a filter; 0: the cores shared among the jobs
     bool fail_fast = false;
     KeepRule::Policy keep = KeepRule::Policy::worth;
@@ -58,9 +59,11 @@ public:
     unsigned jobs(const RunGraph& graph) const;
 
     /// Runs the graph, records the run, and evicts from the cache what exceeds its limit. Throws Error when results
-    /// cannot be written to the output folder. `on_start` is called once, before the first step.
-    RunReport run(const SessionTask& task, FilterLibrary& library, std::vector<NodePrediction> predictions,
-                  const std::vector<RunObserver*>& observers, const std::function<void(const RunStarted&)>& on_start);
+    /// cannot be written to the output folder. `on_start` is called once, before the first step. `jobs`: from jobs(),
+    /// which depends on the free memory.
+    RunReport run(const SessionTask& task, unsigned jobs, FilterLibrary& library,
+                  std::vector<NodePrediction> predictions, const std::vector<RunObserver*>& observers,
+                  const std::function<void(const RunStarted&)>& on_start);
 
 private:
     SessionSettings settings_;

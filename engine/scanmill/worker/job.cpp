@@ -67,7 +67,7 @@ static void from_json(const nlohmann::json& json, PlannedStep& step) {
 static void declare(std::shared_ptr<const PlannedStep>& step, const FilterLibrary& library) {
     const FilterSpec* spec = library.find(step->spec.name);
     if (!spec || spec->version != step->spec.version)
-        throw Error("the filter {} changed while the run was going on", step->spec.name).hint("run it again");
+        throw Error("the filter {} changed during the run", step->spec.name).hint("run it again");
     PlannedStep declared = *step;
     declared.spec = *spec;
     for (std::size_t i = 0; i < spec->outputs.size(); ++i)

@@ -23,8 +23,7 @@ bool are_equal(const struct stat& a, const struct stat& b) {
 }  // namespace
 
 void require_unchanged(const std::filesystem::path& file, const std::string& content) {
-    if (content_hash(file) != content)
-        throw Error("'{}' changed while the run was going on", file.string()).hint("run it again");
+    if (content_hash(file) != content) throw Error("'{}' changed during the run", file.string()).hint("run it again");
 }
 
 UnchangedWhileRead::UnchangedWhileRead(std::filesystem::path file, std::string content, bool beside)

@@ -64,7 +64,8 @@ std::string memory_leak(u64 at_start) {
     if (anonymous_memory() < at_start + tolerable) return {};
     ::malloc_trim(0);
     const u64 now = anonymous_memory();
-    return now < at_start + tolerable ? "" : fmt::format("{} of memory stay in use", byte_size_text(now - at_start));
+    return now < at_start + tolerable ? ""
+                                      : fmt::format("{} of memory was not released", byte_size_text(now - at_start));
 }
 
 int serve(MessageReader& reader) {
@@ -86,7 +87,7 @@ int serve(MessageReader& reader) {
     FilterLibrary library(plugin_folders());
     Workbench bench(library, cache.get(), static_cast<KeepRule::Policy>(start.keep_policy), start.scratch);
     if (content_hash(core_library_file()) != start.core_build)
-        throw Error("Scanmill was installed anew while the run was going on; run it again");
+        throw Error("Scanmill was reinstalled during the run; run it again");
     const u64 memory_at_start = anonymous_memory();
     const JobListener listener{[&](double fraction) { sender.send_progress(fraction); },
                                [&](std::string_view text) { sender.send({.warning = std::string(text)}); },

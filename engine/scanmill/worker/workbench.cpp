@@ -38,7 +38,8 @@ fs::path emptied(const fs::path& folder) {
 }
 
 Error out_of_memory(u64 limit, u64 peak) {
-    const std::string used = fmt::format("the largest resident size was {}, with mapped files", byte_size_text(peak));
+    const std::string used =
+        fmt::format("the largest resident size was {}, including mapped files", byte_size_text(peak));
     if (limit == 0)
         return Error("the machine is out of memory: {}", used)
             .hint("thin the scan first, or use a machine with more memory");
@@ -122,8 +123,7 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     };
     const auto filter = [&]() -> const FilterDeclaration& {
         if (library_.build_id(step.spec.name) != work.build)
-            throw Error("the filter {} was built again while the run was going on", step.spec.name)
-                .hint("run it again");
+            throw Error("the filter {} was built again during the run", step.spec.name).hint("run it again");
         if (listener.on_loading) listener.on_loading(library_.module_file(step.spec.name).string());
         const FilterDeclaration& declaration = library_.load(step.spec.name);
         if (listener.on_loading) listener.on_loading({});

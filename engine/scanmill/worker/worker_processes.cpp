@@ -205,7 +205,7 @@ void WorkerProcesses::cancel() {
     if (cancelled_) return;
     cancelled_ = Clock::now();
     for (const Slot& slot : slots_)
-        if (slot.job) slot.process->signal(SIGTERM);
+        if (slot.job && slot.process) slot.process->signal(SIGTERM);
 }
 
 // How jobs end: with a report, by a limit, or with their process.
@@ -275,6 +275,7 @@ void WorkerProcesses::kill(std::size_t worker, const WorkerListener& listener, C
     if (!slot.job) return slot.process.reset();
     JobReport report;
     report.outcome = Outcome::failed;
+    if (!slot.loading.empty()) error.add_frame(fmt::format("while loading the module '{}'", slot.loading));
     report.node.failure = failure_of(*slot.job, cause, std::move(error), number);
     report.node.effort.peak_memory = peak_of(slot, end);
     report_end(worker, listener, std::move(report), true);

@@ -66,9 +66,14 @@ Extent extent_of(const YamlNode& node) {
 
 /// Explains syntax errors that unquoted placeholders and wildcards cause.
 std::string quoting_hint(const std::string& message) {
-    if (message.find("flow") != std::string::npos)
+    using namespace YAML::ErrorMsg;
+    const auto is_one_of = [&](std::initializer_list<std::string_view> known) {
+        return std::ranges::find(known, message) != known.end();
+    };
+    if (is_one_of({END_OF_MAP_FLOW, END_OF_SEQ_FLOW, FLOW_END}))
         return "; within { } and [ ] a text with braces, brackets or commas needs quotes, as \"{stem}.ply\"";
-    if (message.find("anchor") != std::string::npos || message.find("alias") != std::string::npos)
+    if (is_one_of({ALIAS_NOT_FOUND, ANCHOR_NOT_FOUND, CHAR_IN_ALIAS, CHAR_IN_ANCHOR, UNKNOWN_ANCHOR, INVALID_ANCHOR,
+                   INVALID_ALIAS, ALIAS_CONTENT, MULTIPLE_ANCHORS, MULTIPLE_ALIASES}))
         return "; a text that begins with * or & needs quotes, as \"*.ply\"";
     return "";
 }

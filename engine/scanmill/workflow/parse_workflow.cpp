@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "scanmill/base/text.hpp"
+#include "scanmill/formats/files.hpp"
 #include "scanmill/workflow/grammar.hpp"
 #include "scanmill/workflow/workflow.hpp"
 
@@ -140,11 +141,9 @@ private:
         if (!text) return;
         const std::optional<Kind> kind = kind_named(*text);
         input.kind = kind.value_or(kind_of<PointCloud>());
-        std::vector<std::string> kinds, readable{"points", "mesh"};
-        for (const Kind each : all_kinds()) {
-            kinds.emplace_back(each.name());
-            if (each.has_json()) readable.emplace_back(each.name());
-        }
+        const std::vector<std::string> readable = readable_kinds();
+        std::vector<std::string> kinds;
+        for (const Kind each : all_kinds()) kinds.emplace_back(each.name());
         if (!kind)
             diagnostics_.error(scalar->position, "'{}' is not a kind; expected one of {}{}", *text, kind_names(),
                                did_you_mean(*text, kinds));

@@ -52,7 +52,7 @@ const std::vector<Defect> defects{
     {"colour_beyond_a_byte.ply", "line 9: '256'"},
     {"edge_index_too_large.ply", "edge 0 names vertex 7"},
     {"garbage.ply", "line 1: a PLY file begins with 'ply'"},
-    {"garbage.bin", "is of no known format"},
+    {"garbage.bin", "is in an unknown format"},
     {"truncated_binary.stl", "promises 2 facets of 50 bytes; the 80 bytes that follow hold 1"},
     {"facets_2_to_32.stl", "promises 4294967295 facets"},
     {"no_facets_binary.stl", "holds no points"},

@@ -125,7 +125,7 @@ TEST_F(BatchScans, EntriesKeepTheirOrder_FilesWithinOneAreSorted) {
 
 TEST_F(BatchScans, FileOfTwoEntries_IsRefusedNamingBothLines) {
     EXPECT_THAT(scans("\n  - scans/a.ply\n  - scans/../scans/*.ply"),
-                ElementsAre(AllOf(StartsWith("b:5:5: "), HasSubstr("a.ply' is already a scan by line 4"))));
+                ElementsAre(AllOf(StartsWith("b:5:5: "), HasSubstr("a.ply' is listed twice; line 4"))));
     EXPECT_THAT(names(), SizeIs(2));
 }
 

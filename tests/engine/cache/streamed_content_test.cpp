@@ -37,6 +37,13 @@ TEST(StreamedContent, OfColumns_IsThatOfTheValue) {
     expect_the_values_name(written(folder / "one.ply", helix(1)));
 }
 
+TEST(StreamedContent, OfAColumnOfLengths_IsThatOfTheValue) {
+    const TemporaryFolder folder;
+    PointCloud cloud = without_columns(helix(1000));
+    cloud.columns.add(Column("bin-size", 1, Buffer<double>(Array<double>(1000, 0.5))).with_length_exponent(1));
+    expect_the_values_name(written(folder / "a.ply", cloud));
+}
+
 TEST(StreamedContent, FarFromZero_IsThatOfTheValueNearItsOrigin) {
     const TemporaryFolder folder;
     const PointCloud far = helix(150'000, Vec3(4e6, 5e6, -7e6));

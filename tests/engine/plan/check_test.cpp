@@ -180,7 +180,7 @@ TEST_F(Check, OutputTemplates_AreCheckedBeforeTheRun) {
     EXPECT_THAT(findings(head + "  '{scan}.ply': tetrahedralise\n"), ElementsAre(HasSubstr("is tets")));
     EXPECT_THAT(findings(head + "  'a//b/../{scan}.ply': thin\n"), ElementsAre(HasSubstr("expected 'a/{scan}.ply'")));
     EXPECT_THAT(findings(head + "  '{scan}.ply': thin\n  '{scan}.ply/x/y.ply': thin\n"),
-                ElementsAre(AllOf(StartsWith("w:5:3: "), HasSubstr("and the folder of '{scan}.ply/x/y.ply' too"))));
+                ElementsAre(AllOf(StartsWith("w:5:3: "), HasSubstr("and also the folder of '{scan}.ply/x/y.ply'"))));
     EXPECT_THAT(findings(head + "  '{scan}.ply': thn\n"), ElementsAre(HasSubstr("did you mean 'thin'?")));
 }
 
@@ -196,7 +196,7 @@ TEST_F(Check, OutputNamesLongerThanAnyFileSystemTakes_AreErrors) {
 TEST_F(Check, OutputThatIsAnothersFolder_IsAnError) {
     const std::string head = "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - thin:\noutputs:\n";
     EXPECT_THAT(findings(head + "  'a.ply': thin\n  'a.ply/b.ply': thin\n  'a.ply!.ply': thin\n"),
-                ElementsAre(HasSubstr("'a.ply' would be a file, and the folder of 'a.ply/b.ply' too")));
+                ElementsAre(HasSubstr("'a.ply' is an output and also the folder of 'a.ply/b.ply'")));
 }
 
 TEST_F(Check, VariantsThatWouldWriteOneFile_AskForVariantInTheName) {

@@ -180,11 +180,22 @@ TEST_F(Records, OfANewerScanmill_AreLeftAlone) {
     SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
     for (const bool append : {false, true})
         EXPECT_THAT(sentence_of([&] { append ? RunRecords::append_to(file()) : RunRecords::read(file()); }),
-                    HasSubstr("tables are of version 99, this one knows 2"));
+                    HasSubstr("tables are of version 99, this one reads up to 2"));
+}
+
+TEST_F(Records, LinkOutOfTheFolder_IsRefusedAndNotFollowed) {
+    const TemporaryFolder elsewhere;
+    for (const char* target : {"absent.sqlite", "present.sqlite"}) {
+        if (target[0] == 'p') elsewhere.write(target, "");
+        std::filesystem::remove(file());
+        std::filesystem::create_symlink(elsewhere / target, file());
+        EXPECT_THAT(sentence_of([&] { RunRecords::append_to(file()); }), HasSubstr("outside the output folder"));
+    }
+    EXPECT_FALSE(std::filesystem::exists(elsewhere / "absent.sqlite"));
 }
 
 TEST_F(Records, WhatIsNone_IsRefused) {
-    EXPECT_THAT(sentence_of([&] { RunRecords::read(file()); }), HasSubstr("there are no records"));
+    EXPECT_THAT(sentence_of([&] { RunRecords::read(file()); }), HasSubstr("does not exist"));
     folder_.write("records.sqlite", "this is text, and long enough to be looked at as a database file of its own kind");
     EXPECT_THAT(sentence_of([&] { RunRecords::read(file()); }), HasSubstr("not a database"));
     EXPECT_THAT(sentence_of([&] { RunRecords::append_to(file()); }), HasSubstr("not a database"));

@@ -72,7 +72,7 @@ TEST_F(CachedRun, ScanThatChangesAfterPlanning_Fails) {
     prepare("  - test-step:\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-step}\n");
     scan("a.xyz", "0 0 0\n7 0 0\n");
     const RunReport report = run_graph();
-    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("changed while the run was going on"));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("changed during the run"));
     EXPECT_FALSE(fs::exists(folder_ / "out/a.ply"));
 }
 
@@ -100,7 +100,7 @@ TEST_F(CachedRun, FileOfAParameterThatChangesMeanwhile_FailsTheStep) {
     // The step itself changes it: it appends to its log.
     folder_.write("log", "");
     const RunReport report = run("  - test-step: {log: " + log() + "}\n", {scan("a.xyz")});
-    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("log' changed while the run was going on"));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("log' changed during the run"));
     EXPECT_FALSE(cache_.run_key(graph_.nodes[1].key));
 }
 

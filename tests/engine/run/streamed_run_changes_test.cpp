@@ -14,7 +14,7 @@ TEST_F(StreamedRun, ScanThatChangesAfterPlanning_Fails) {
     prepare("  - test-stream: {length: 1 u}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-stream}\n");
     scan("a.xyz", "0 0 0\n7 0 0\n");
     const RunReport report = run_graph();
-    EXPECT_THAT(report.nodes[0].failure.whole().what(), HasSubstr("changed while the run was going on"));
+    EXPECT_THAT(report.nodes[0].failure.whole().what(), HasSubstr("changed during the run"));
     EXPECT_FALSE(fs::exists(folder_ / "out/a.ply"));
     EXPECT_FALSE(predict(graph_, cache_.get())[0].cached) << "under the key of what it held before";
 }
@@ -29,7 +29,7 @@ TEST_F(StreamedRun, ScanThatChangesBetweenOpeningAndTheStep_Fails) {
     } changer;
     changer.change = [&] { scan("a.xyz", "0 0 0\n9 0 0\n0 9 0\n1 2 2\n"); };
     const RunReport report = run_graph(changer);
-    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("changed while the run was going on"));
+    EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("changed during the run"));
 }
 
 TEST_F(StreamedRun, ScanThatLosesRowsBetweenOpeningAndTheStep_FailsInWords) {
@@ -45,7 +45,7 @@ TEST_F(StreamedRun, ScanThatLosesRowsBetweenOpeningAndTheStep_FailsInWords) {
         prepare("  - voxel-thin: {bin-size: 0.5 u}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': voxel-thin}\n");
         const RunReport report = run_graph(changer);
         EXPECT_THAT(report.cells[0].failure.whole().what(),
-                    HasSubstr(has_cache ? "changed while the run was going on" : "changed while it was read"));
+                    HasSubstr(has_cache ? "changed during the run" : "changed while it was read"));
         EXPECT_THAT(report.cells[0].failure.whole().what(), HasSubstr("run it again"));
     }
 }

@@ -28,7 +28,7 @@ TEST(UnchangedWhileRead, FileThatChangedBefore_IsRefused) {
     for (const std::filesystem::path& file : {folder.write("fresh", "1 2 3"), core_library_file()})
         for (const bool beside : {false, true})
             EXPECT_THAT(sentence_of([&] { UnchangedWhileRead(file, std::string(32, '0'), beside).require(); }),
-                        HasSubstr("changed while the run was going on"));
+                        HasSubstr("changed during the run"));
 }
 
 TEST(UnchangedWhileRead, FileThatChangesAfterItWasHashed_IsRefused) {
@@ -40,7 +40,7 @@ TEST(UnchangedWhileRead, FileThatChangesAfterItWasHashed_IsRefused) {
         UnchangedWhileRead check(file, content, beside);
         std::this_thread::sleep_for(std::chrono::milliseconds(100));  // hashed by then, if beside
         folder.write("scan", "1 2 4");
-        EXPECT_THAT(sentence_of([&] { check.require(); }), HasSubstr("changed while the run was going on"));
+        EXPECT_THAT(sentence_of([&] { check.require(); }), HasSubstr("changed during the run"));
         folder.write("scan", "1 2 3");
         std::this_thread::sleep_for(std::chrono::milliseconds(beside ? 0 : 3100));
     }

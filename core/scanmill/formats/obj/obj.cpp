@@ -236,7 +236,7 @@ private:
     void require_vertices() const {
         if (positions_.empty()) throw Error("holds no points: no row is a vertex (v){}", left_out_.first_unknown());
         require_countable(positions_.size(), "vertices");
-        // The first missing one is larger than all before it, so it is in the list.
+        // `ahead_` holds every index that was larger than all before it, so it holds the first missing one.
         for (const Ahead& ahead : ahead_)
             if (ahead.index >= positions_.size())
                 throw Error("line {}: a face names vertex {}; there {} {}, numbered from 1", ahead.line,

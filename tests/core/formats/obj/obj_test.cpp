@@ -198,8 +198,8 @@ TEST(ObjReader_Content, IsRecognisedWithoutItsExtension) {
     // Keywords alone do not override an extension; an unknown keyword excludes OBJ.
     EXPECT_THAT(refusal_of("g a\no b\n", "a"), HasSubstr("no row is a vertex"));
     EXPECT_THAT(refusal_of("g a\no b\n", "a.xyz"), Not(HasSubstr("no row is a vertex")));
-    EXPECT_THAT(refusal_of("v 1 2 3\nDear reader\n", "a.dat"), HasSubstr("is of no known format"));
-    EXPECT_THAT(refusal_of(std::string("\x7f\0\x01v 1 2 3\n", 11), "a.dat"), HasSubstr("is of no known format"));
+    EXPECT_THAT(refusal_of("v 1 2 3\nDear reader\n", "a.dat"), HasSubstr("is in an unknown format"));
+    EXPECT_THAT(refusal_of(std::string("\x7f\0\x01v 1 2 3\n", 11), "a.dat"), HasSubstr("is in an unknown format"));
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST(TextNames_Refusals, SayTheLine) {
 
 TEST(TextNames_Text, UnknownExtension_IsATableWhenItsNamesSaySo) {
     EXPECT_EQ(read_bytes("X,Y,Z\n1,2,3\n", "scan.dat").format, "XYZ");
-    EXPECT_THAT(refusal_of("A,B,C\n1,2,3\n", "scan.dat"), HasSubstr("no known format"));
+    EXPECT_THAT(refusal_of("A,B,C\n1,2,3\n", "scan.dat"), HasSubstr("an unknown format"));
 }
 
 }  // namespace

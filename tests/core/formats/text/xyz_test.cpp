@@ -85,7 +85,7 @@ TEST(XyzReader_Coordinates, BelowTheNormalNumbers_AreKept) {
 
 TEST(XyzReader_Content, OfUnknownExtension_IsATableWhenItLooksLikeOne) {
     EXPECT_EQ(read_bytes("1 2 3\n", "scan.dat").format, "XYZ");
-    EXPECT_THAT(refusal_of("1 2\n", "scan.dat"), HasSubstr("no known format: it begins with '1 2?'"));
+    EXPECT_THAT(refusal_of("1 2\n", "scan.dat"), HasSubstr("an unknown format: it begins with '1 2?'"));
 }
 
 TEST(XyzWriter_Points, WithNormals_ComeBackExactly_WithUnitAndName) {
