@@ -208,29 +208,28 @@ public:
     template <class T, class Owner, class... Constraints>
         requires std::derived_from<Params, Owner>
     Declare& param(std::string name, T Owner::*field, std::string help, const Constraints&... constraints) {
-        ParameterSpec spec;
+        ParameterSpec& spec = add_parameter(std::move(name), std::move(help));
         detail::describe(spec, Params{}.*field);
         (constraints(spec), ...);
-        bind(std::move(spec), std::move(name), std::move(help),
-             [field](Params& params, const ParameterValue& value) { detail::assign(params.*field, value); });
+        setters_.emplace_back(
+            spec.name, [field](Params& params, const ParameterValue& value) { detail::assign(params.*field, value); });
         return *this;
     }
     template <class Enum, class Owner>
         requires std::derived_from<Params, Owner>
     Declare& choice(std::string name, Enum Owner::*field,
                     std::vector<Alternative<std::type_identity_t<Enum>>> alternatives, std::string help) {
-        ParameterSpec spec;
+        ParameterSpec& spec = add_parameter(std::move(name), std::move(help));
         spec.type = ParameterType::choice;
         for (const auto& alternative : alternatives) {
             spec.choices.push_back({alternative.name, alternative.help});
             if (alternative.value == Params{}.*field) spec.default_value = ParameterScalar(alternative.name);
         }
-        bind(std::move(spec), std::move(name), std::move(help),
-             [field, alternatives](Params& params, const ParameterValue& value) {
-                 const auto& chosen = std::get<std::string>(std::get<ParameterScalar>(value));
-                 for (const auto& alternative : alternatives)
-                     if (alternative.name == chosen) params.*field = alternative.value;
-             });
+        setters_.emplace_back(spec.name, [field, alternatives](Params& params, const ParameterValue& value) {
+            const auto& chosen = std::get<std::string>(std::get<ParameterScalar>(value));
+            for (const auto& alternative : alternatives)
+                if (alternative.name == chosen) params.*field = alternative.value;
+        });
         return *this;
     }
     template <std::same_as<MetricOption>... Options>
@@ -281,11 +280,11 @@ private:
         return *this;
     }
 
-    void bind(ParameterSpec spec, std::string name, std::string help, Setter setter) {
-        spec.name = name;
+    ParameterSpec& add_parameter(std::string name, std::string help) {
+        ParameterSpec& spec = declaration_.spec.parameters.emplace_back();
+        spec.name = std::move(name);
         spec.help = std::move(help);
-        declaration_.spec.parameters.push_back(std::move(spec));
-        setters_.emplace_back(std::move(name), std::move(setter));
+        return spec;
     }
 
     FilterDeclaration declaration_;
