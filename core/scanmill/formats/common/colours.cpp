@@ -9,7 +9,7 @@ namespace {
 
 constexpr double full = 255;
 
-/// Digits after the point; 0 with an exponent, which nobody writes into a colour by hand.
+/// Digits after the point; 0 for numbers with an exponent, which colours do not have.
 std::size_t digits_after_point(std::string_view spelling) {
     const std::size_t point = spelling.find('.');
     if (point == std::string_view::npos || spelling.find_first_of("eE") != std::string_view::npos) return 0;
