@@ -39,7 +39,7 @@ def begun(one, options):
 
 def judged(report, cell):
     """The result for one object from the report: counts, topology, and the total seconds of the three filters."""
-    if cell["outcome"] != "done":
+    if cell["outcome"] not in ("ok", "doubtful"):
         return {"failure": cell.get("error", cell["outcome"])}
     steps = scanmill.steps(report, cell)
     missing = [name for name in FILTERS if name not in steps]

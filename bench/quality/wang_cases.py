@@ -41,7 +41,7 @@ def round_holes(features):
 
 def judged(report, cell):
     """The result of one run from the report: counts, topology, distances, and total seconds of the three filters."""
-    if cell["outcome"] != "done":
+    if cell["outcome"] not in ("ok", "doubtful"):
         return {"failure": cell.get("error", cell["outcome"])}
     steps = scanmill.steps(report, cell)
     missing = [name for name in (*FILTERS, "measure") if name not in steps]

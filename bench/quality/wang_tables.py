@@ -31,7 +31,7 @@ def thinned(report):
     """The voxel size and the number of kept points, by the settings of the variant."""
     found = {}
     for cell in report["cells"]:
-        if cell["outcome"] != "done":
+        if cell["outcome"] not in ("ok", "doubtful"):
             raise scanmill.Broken(f"{cell['scan']}: {cell.get('error', cell['outcome'])}")
         step = scanmill.steps(report, cell)["voxel-thin"]
         settings = step["parameters"]

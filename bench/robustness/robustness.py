@@ -80,11 +80,12 @@ def fill_in(trial, report, cell, genus):
     trial.update(
         verdict=verdict.judge(outcome, cause, metrics, genus, trial["bound"]),
         # The alpha-solid may have been measured although a later step failed.
-        before=verdict.judge("done" if before else outcome, cause, before, genus, trial["bound"]),
+        before=verdict.judge("ok" if before else outcome, cause, before, genus, trial["bound"]),
         inside_before=int(solid["interior-points"]) if "interior-points" in solid else None,
         error=cell.get("error", "").partition("\n")[0],  # the other lines contain paths of this run
         inside=None if None in counts else int(sum(counts)),
-        warned=any(steps.get(name, {}).get("warnings") for name in ("delaunay", "alpha-solid", "sculpt")),
+        warned=any(steps.get(name, {}).get(key) for key in ("warnings", "doubts")
+                   for name in ("delaunay", "alpha-solid", "sculpt")),
         hausdorff=metrics.get("hausdorff"),
         mean=metrics.get("mean"),
         closed=metrics.get("closed"),

@@ -26,7 +26,7 @@ def bound(spacing):
 def judge(outcome, cause, metrics, genus, largest_distance):
     """Returns SUCCESS or a name of FAILURES. `outcome` and `cause` come from the cell, `metrics` from measure (empty if
     it did not run). A missing metric or NaN is never a success."""
-    if outcome != "done":
+    if outcome not in ("ok", "doubtful"):
         return "refused" if cause == "refused" else "crashed"
     if not metrics:
         return "crashed"

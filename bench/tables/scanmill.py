@@ -68,7 +68,7 @@ def named(report, cell):
 
 def mesh(cell):
     """The mesh among the outputs of a cell. Raises Broken unless there is exactly one."""
-    meshes = [output for output in cell["outputs"] if output["kind"] == "mesh" and output["outcome"] == "done"]
+    meshes = [output for output in cell["outputs"] if output["kind"] == "mesh" and output["outcome"] == "ok"]
     if len(meshes) != 1:
         raise Broken(f"{cell['scan']}: the workflow wrote {len(meshes)} meshes instead of one")
     return meshes[0]
@@ -77,7 +77,7 @@ def mesh(cell):
 def features(cell):
     """The features that the cell wrote as JSON. Raises Broken if there are none."""
     for output in cell["outputs"]:
-        if output["kind"] == "features" and output["outcome"] == "done" and output["file"].endswith(".json"):
+        if output["kind"] == "features" and output["outcome"] == "ok" and output["file"].endswith(".json"):
             with open(output["file"]) as file:
                 return json.load(file)
     raise Broken(f"{cell['scan']}: the workflow wrote no features as JSON")

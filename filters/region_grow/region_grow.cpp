@@ -157,27 +157,39 @@ void report_metrics(const RegionGrowResult& result, Context& context) {
                                    result.passes, [](u8 pass) { return pass > 0 && pass < closing_pass; })));
 }
 
-void warn_of_unused(const RegionGrowResult& result, const Surface& surface, Context& context) {
+void doubt_unused(const RegionGrowResult& result, const Surface& surface, Context& context) {
     const std::size_t points = surface.points.size(), unused = result.unused_points;
     if (200 * unused > points)
-        context.warn(fmt::format(
+        context.doubt(fmt::format(
             "{} of {} distinct points are in no triangle; thin the scan, or remove its noise first", unused, points));
 }
 
-void warn_of_seams(const Surface& surface, Context& context) {
+/// Creases of an object are long polylines: on the clean scans of the tests there is at most one per 80 edges. Noise
+/// makes creases of one or two edges everywhere: one per 11 edges at a noise of 0.05 % of the diagonal.
+void doubt_roughness(const RegionGrowResult& result, Context& context) {
+    constexpr std::size_t edges_per_crease = 20;
+    const std::size_t edges = 3 * result.mesh.triangles.size() / 2;
+    if (edges_per_crease * result.creases > edges)
+        context.doubt(fmt::format(
+            "{} creases on {} edges: the surface is rough at the distance of its points, as that of a noisy scan is; "
+            "thin the scan with larger voxels, or smooth it first",
+            result.creases, edges));
+}
+
+void doubt_seams(const Surface& surface, Context& context) {
     if (!surface.oriented) return;
     if (const std::size_t points = points_at_seams(surface); points > 2)
-        context.warn(
+        context.doubt(
             fmt::format("the surface ends at {} points where the normals of the column 'normal' reverse from one point "
                         "to the next, "
                         "as normals oriented towards a camera do; drop the column if the surface continues there",
                         points));
 }
 
-void warn_of_thin_parts(const RegionGrowResult& result, const ThinParts& thin, Context& context) {
+void doubt_thin_parts(const RegionGrowResult& result, const ThinParts& thin, Context& context) {
     if (thin.loops == 0) return;
     const std::string_view unit = symbol(result.mesh.frame.unit);
-    context.warn(fmt::format(
+    context.doubt(fmt::format(
         "{} of {} boundary loops {} where two sides or layers are less than {} voxels apart, the nearest {:.3g} {} "
         "with "
         "voxels of {:.3g} {}: the surface may continue there; use smaller voxels where the object is thin, larger ones "
@@ -256,10 +268,11 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.duplicates = points.repeats.size();
     result.unused_points = points.size() - result.rows.size();
     report_metrics(result, context);
-    warn_of_unused(result, surface, context);
+    doubt_unused(result, surface, context);
+    doubt_roughness(result, context);
     for (std::string& sentence : doubts(lines.counts)) context.warn(std::move(sentence));
-    warn_of_seams(surface, context);
-    warn_of_thin_parts(result, thin, context);
+    doubt_seams(surface, context);
+    doubt_thin_parts(result, thin, context);
     context.progress(1);
     return result;
 }

@@ -105,7 +105,7 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
             result.deep_points.size(), tets.positions.size(), by_count(result.deep_points.size(), "stays", "stay"),
             positions_of_first(tets, result.deep_points), by_count(result.deep_points.size(), "it", "them")));
     if (static_cast<double>(result.removals.size()) > most_removed * static_cast<double>(cells_before))
-        context.warn(fmt::format(
+        context.doubt(fmt::format(
             "{} of {} cells had to be removed: the points fill the solid rather than sample its surface, or the "
             "solid is far too large for them; check the result before using it",
             result.removals.size(), cells_before));

@@ -27,7 +27,7 @@ struct ExecuteOptions {
     SessionSettings session;
     CacheOptions cache;
     std::uint64_t seed = 0;
-    bool no_cache = false, dry_run = false, json = false, quiet = false;
+    bool no_cache = false, strict = false, dry_run = false, json = false, quiet = false;
 };
 
 struct RunOptions {
@@ -113,6 +113,7 @@ void add_execute_options(CLI::App& command, ExecuteOptions& options) {
         ->default_str("worth")
         ->check(CLI::IsMember({"worth", "always", "never"}));
     command.add_flag("--fail-fast", options.session.fail_fast, "Start no new step after a failure");
+    command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
     command.add_flag("--dry-run", options.dry_run,
                      "Print the steps to run with reasons, the cached steps and the output files, and stop");
     command.add_flag("-q,--quiet", options.quiet, "No progress on stderr");
@@ -216,7 +217,7 @@ int Execution::run(const SessionTask& task, bool streams_events) {
         print_stderr("interrupted; all files written so far are complete\n");
         return interrupted;
     }
-    return report.all_done() ? done : some_failed;
+    return report.outcome() < (options_.strict ? Outcome::doubtful : Outcome::failed) ? done : some_failed;
 }
 
 std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std::vector<std::string>& pairs) {

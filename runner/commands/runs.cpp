@@ -20,9 +20,10 @@ namespace {
 std::string outcome_of(const RunSummary& run) { return run.outcome.value_or("unfinished"); }
 
 Json to_json(const RunSummary& run) {
-    return {{"id", run.id},          {"started", run.started}, {"workflow", run.workflow}, {"outcome", outcome_of(run)},
-            {"cells", run.cells},    {"failed", run.failed},   {"ran", run.ran},           {"cached", run.cached},
-            {"seconds", run.seconds}};
+    return {
+        {"id", run.id},         {"started", run.started},   {"workflow", run.workflow}, {"outcome", outcome_of(run)},
+        {"cells", run.cells},   {"doubtful", run.doubtful}, {"failed", run.failed},     {"ran", run.ran},
+        {"cached", run.cached}, {"seconds", run.seconds}};
 }
 
 Json to_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
@@ -52,6 +53,7 @@ Json to_json(const RunDetails& run) {
         Json entry{{"scan", cell.scan},       {"workflow", cell.workflow}, {"variant", cell.variant},
                    {"outcome", cell.outcome}, {"seconds", cell.seconds},   {"steps", cell.nodes},
                    {"outputs", Json::array()}};
+        if (!cell.doubts.empty()) entry["doubts"] = cell.doubts;
         add_failure(entry, cell.failure);
         for (const OutputRecord& output : cell.outputs)
             entry["outputs"].push_back({{"file", output.file},
@@ -97,11 +99,12 @@ int list_runs(const RunRecords& records, bool json) {
         print_json(all);
         return done;
     }
-    Table table({"run", "started", "workflow", "cells", "failed", "computed", "cached", "seconds", "outcome"});
+    Table table(
+        {"run", "started", "workflow", "cells", "doubtful", "failed", "computed", "cached", "seconds", "outcome"});
     for (const RunSummary& run : runs)
         table.add({std::to_string(run.id), run.started, run.workflow, std::to_string(run.cells),
-                   std::to_string(run.failed), std::to_string(run.ran), std::to_string(run.cached),
-                   fmt::format("{:.2f}", run.seconds), outcome_of(run)});
+                   std::to_string(run.doubtful), std::to_string(run.failed), std::to_string(run.ran),
+                   std::to_string(run.cached), fmt::format("{:.2f}", run.seconds), outcome_of(run)});
     fmt::print("{}", table.text());
     return done;
 }
@@ -125,6 +128,9 @@ int show_run(const RunRecords& records, std::int64_t id, bool json) {
     fmt::print("{}", steps.text());
     for (const CellRecord& cell : run.cells)
         if (!cell.failure.error.empty()) fmt::print("\n{}\n", printable(cell.failure.error));
+    for (const CellRecord& cell : run.cells)
+        for (const std::string& doubt : cell.doubts)
+            fmt::print("\ndoubt: {}: {}\n", printable_line(cell.scan), printable_line(doubt));
     return done;
 }
 

@@ -191,7 +191,7 @@ void Progress::node_ended(const RunNode& node, const NodeReport& report) {
     ++ended_;
     board_.ended(&node);
     board_.step_ended(report.origin != Origin::cached);
-    if (quiet_ || terminal_ || report.outcome != Outcome::done) return;
+    if (quiet_ || terminal_ || report.outcome != Outcome::ok) return;
     const std::string took =
         report.origin == Origin::ran ? fmt::format("{:.2f} s", report.effort.seconds) : std::string("cached");
     print_stderr("[{}/{}] {} {}\n", ended_, graph_.nodes.size(), label(node), took);
@@ -211,6 +211,10 @@ void Progress::output_written(const RunCell& cell, const OutputReport& report) {
 
 void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     const std::scoped_lock lock(mutex_);
+    for (const std::string& doubt : report.doubts) {
+        const std::string text = fmt::format("doubt: {}: {}", graph_.scan_names[cell.scan], doubt);
+        if (printed_doubts_.insert(text).second) print(printable_line(text));  // variants share steps
+    }
     if (!report.failure) return;
     board_.cell_failed();
     const bool several = graph_.plans[cell.plan]->variants.size() > 1;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,7 @@ private:
     std::size_t ended_ = 0;
     std::size_t painted_ = 0;  // lines on the terminal
     std::chrono::steady_clock::time_point begin_, last_;
+    std::set<std::string> printed_doubts_;
     std::mutex mutex_;
 };
 

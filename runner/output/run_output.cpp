@@ -42,7 +42,7 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
                 shown.set(metric.name, found->value, found->unit);
     }
     for (const OutputReport& output : report.cells[cell].outputs)
-        if (output.kind == kind_of<TriangleMesh>() && output.outcome == Outcome::done) {
+        if (output.kind == kind_of<TriangleMesh>() && output.outcome == Outcome::ok) {
             for (const std::string_view name : {"triangles", "closed", "genus"})
                 if (const Metric* property = output.properties.find(name))
                     shown.set(name, property->value, property->unit);
@@ -150,11 +150,12 @@ std::string report_text(const RunGraph& graph, const RunReport& report) {
     if (several_workflows) headers.push_back("workflow");
     if (several_variants) headers.push_back("variant");
     headers.insert(headers.end(), columns.begin(), columns.end());
-    headers.insert(headers.end(), {"seconds", "result"});
+    headers.insert(headers.end(), {"seconds", "outcome", "files"});
     Table table(std::move(headers));
-    std::size_t failed = 0;
+    std::size_t doubtful = 0, failed = 0;
     for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
         const CellReport& done = report.cells[cell];
+        if (done.outcome == Outcome::doubtful) ++doubtful;
         if (done.outcome == Outcome::failed) ++failed;
         std::vector<std::string> row{
             std::filesystem::path(graph.scan_names[graph.cells[cell].scan]).filename().string()};
@@ -165,13 +166,16 @@ std::string report_text(const RunGraph& graph, const RunReport& report) {
             row.push_back(metric ? display(*metric) : "-");
         }
         row.push_back(fmt::format("{:.2f}", done.seconds));
-        std::string result = done.outcome == Outcome::done ? "" : std::string(name_of(done.outcome));
+        row.emplace_back(name_of(done.outcome));
+        std::string files;
         for (const OutputReport& output : done.outputs)
-            if (output.outcome == Outcome::done) result += (result.empty() ? "" : ", ") + shown_path(output.file);
-        row.push_back(result.empty() ? "done" : result);
+            if (output.outcome == Outcome::ok) files += (files.empty() ? "" : ", ") + shown_path(output.file);
+        row.push_back(files.empty() ? "-" : files);
         table.add(std::move(row));
     }
     std::string text = table.text();
+    if (doubtful > 0)
+        text += fmt::format("{} of {} doubtful; the reasons are on stderr\n", doubtful, graph.cells.size());
     if (failed > 0) text += fmt::format("{} of {} failed; the reasons are on stderr\n", failed, graph.cells.size());
     return text;
 }
@@ -211,6 +215,7 @@ Json report_json(const RunGraph& graph, const RunReport& report) {
                       {"seconds", done.seconds},
                       {"steps", graph.cells[cell].nodes},
                       {"outputs", Json::array()}});
+        if (!done.doubts.empty()) entry["doubts"] = done.doubts;
         add_failure(entry, done.failure);
         for (const OutputReport& output : done.outputs) {
             Json file{{"file", output.file.string()},
@@ -313,6 +318,7 @@ void EventStream::cell_ended(const RunCell& cell, const CellReport& report) {
     json.update(cell_json(graph_, cell));
     json["outcome"] = name_of(report.outcome);
     json["seconds"] = report.seconds;
+    if (!report.doubts.empty()) json["doubts"] = report.doubts;
     add_failure(json, report.failure);
     print(json);
 }
@@ -320,7 +326,7 @@ void EventStream::cell_ended(const RunCell& cell, const CellReport& report) {
 void EventStream::end(const RunReport& report) {
     Json json = event("run-ended");
     json["interrupted"] = report.interrupted;
-    for (const Outcome outcome : {Outcome::done, Outcome::failed, Outcome::skipped})
+    for (const Outcome outcome : {Outcome::ok, Outcome::doubtful, Outcome::failed, Outcome::skipped})
         json[std::string(name_of(outcome))] = std::ranges::count(report.cells, outcome, &CellReport::outcome);
     print(json);
 }

@@ -8,7 +8,7 @@ import verdict
 GOOD = {"closed": 1.0, "components": 1.0, "genus": 1.0, "hausdorff": 0.3}
 
 
-def judged(outcome="done", cause=None, genus=1, largest=0.3, **metrics):
+def judged(outcome="ok", cause=None, genus=1, largest=0.3, **metrics):
     return verdict.judge(outcome, cause, {**GOOD, **metrics}, genus, largest)
 
 
@@ -27,14 +27,14 @@ class VerdictTest(unittest.TestCase):
         for cause in ("signal", "time", "memory", "exit", "exception", None):
             self.assertEqual(judged(outcome="failed", cause=cause), "crashed")
         self.assertEqual(judged(outcome="skipped"), "crashed")
-        self.assertEqual(verdict.judge("done", None, {}, 1, 9.0), "crashed")
+        self.assertEqual(verdict.judge("ok", None, {}, 1, 9.0), "crashed")
 
     def test_what_is_not_told_or_no_number_is_no_success(self):
         for name, expected in (("closed", "open"), ("components", "pieces"), ("genus", "genus"), ("hausdorff", "far")):
             for value in (None, float("nan")):
                 self.assertEqual(judged(**{name: value}), expected)
             without = {other: value for other, value in GOOD.items() if other != name}
-            self.assertEqual(verdict.judge("done", None, without, 1, 0.3), expected)
+            self.assertEqual(verdict.judge("ok", None, without, 1, 0.3), expected)
 
     def test_bound_is_a_number_of_spacings_whatever_the_noise(self):
         self.assertEqual(verdict.bound(0.5), verdict.LARGEST * 0.5)

@@ -22,8 +22,8 @@ REPORT = {
         step("sculpt", 0.125, **{"removed": 400.0, "removed-exposing": 48.0, "interior-points": 2.0}),
     ],
     "cells": [{
-        "scan": "femur.off", "outcome": "done", "steps": [0, 1, 2, 3],
-        "outputs": [{"file": "out/femur.stl", "kind": "mesh", "outcome": "done", "properties": {
+        "scan": "femur.off", "outcome": "ok", "steps": [0, 1, 2, 3],
+        "outputs": [{"file": "out/femur.stl", "kind": "mesh", "outcome": "ok", "properties": {
             "closed": True, "components": 1.0, "genus": 1.0, "triangles": 1994.0}}],
     }],
 }

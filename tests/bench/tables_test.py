@@ -57,8 +57,8 @@ class StepsTest(unittest.TestCase):
                          {"read": {"facts": 2}, "sculpt": {"filter": "sculpt", "n": 2}})
 
     def test_only_a_written_mesh_is_the_mesh(self):
-        good = {"kind": "mesh", "outcome": "done"}
-        others = [{"kind": "tets", "outcome": "done"}, {"kind": "mesh", "outcome": "skipped"}]
+        good = {"kind": "mesh", "outcome": "ok"}
+        others = [{"kind": "tets", "outcome": "ok"}, {"kind": "mesh", "outcome": "skipped"}]
         self.assertIs(scanmill.mesh({"scan": "a", "outputs": [*others, good]}), good)
         with self.assertRaisesRegex(scanmill.Broken, "a: the workflow wrote 0 meshes"):
             scanmill.mesh({"scan": "a", "outputs": others})

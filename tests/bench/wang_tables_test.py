@@ -31,7 +31,7 @@ REPORT = {
              boundary_loops=1.0, nonmanifold_edges=0.0, nonmanifold_vertices=0.0, misoriented_edges=0.0,
              self_intersections=0.0, p95=0.5, max=1.0, beyond_borders=20.0, diagonal=5.0),
     ],
-    "cells": [{"scan": "plate.ply", "outcome": "done", "steps": [0, 1, 2, 3, 4], "outputs": []}],
+    "cells": [{"scan": "plate.ply", "outcome": "ok", "steps": [0, 1, 2, 3, 4], "outputs": []}],
 }
 
 
@@ -88,7 +88,7 @@ class ReportTest(unittest.TestCase):
         found = bench.thinned({"steps": [
             {"filter": "voxel-thin", "parameters": {"derivatives": how, "origin": "nearest"},
              "metrics": {"bin-size": size, "kept": 5.0}} for how, size in (("exact", 0.5), ("thesis", 0.75))],
-            "cells": [{"scan": "a", "outcome": "done", "steps": [number]} for number in (0, 1)]})
+            "cells": [{"scan": "a", "outcome": "ok", "steps": [number]} for number in (0, 1)]})
         self.assertEqual(found, {"exact, nearest": {"bin_size": 0.5, "kept": 5},
                                  "thesis, nearest": {"bin_size": 0.75, "kept": 5}})
 
@@ -101,8 +101,8 @@ class ReportTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "a.json"
             file.write_text(json.dumps({"polylines": []}))
-            outputs = [{"kind": "features", "outcome": "done", "file": "a.vtp"},
-                       {"kind": "features", "outcome": "done", "file": str(file)}]
+            outputs = [{"kind": "features", "outcome": "ok", "file": "a.vtp"},
+                       {"kind": "features", "outcome": "ok", "file": str(file)}]
             self.assertEqual(scanmill.features({"scan": "a", "outputs": outputs}), {"polylines": []})
         with self.assertRaisesRegex(scanmill.Broken, "a: the workflow wrote no features"):
             scanmill.features({"scan": "a", "outputs": outputs[:1]})

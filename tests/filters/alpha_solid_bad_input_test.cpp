@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "filters/alpha_solid_cases.hpp"
+#include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 
@@ -33,7 +34,7 @@ Outcome through_both(const PointCloud& cloud, const AlphaSolidParams& params = {
     } catch (const Error& error) {
         outcome.refused = error.what();
     }
-    outcome.warnings = context.warnings();
+    outcome.warnings = sentences_of(context);
     return outcome;
 }
 

@@ -6,6 +6,7 @@
 
 #include "filters/alpha_solid_cases.hpp"
 #include "scanmill/base/random.hpp"
+#include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 
@@ -22,7 +23,7 @@ using testing::Not;
 std::vector<std::string> warnings_of(const TetMesh& tets, const AlphaSolidParams& params) {
     Context context;
     alpha_solid(tets, params, context);
-    return context.warnings();
+    return sentences_of(context);
 }
 
 AlphaSolidParams given(double alpha, double percent, AlphaComponents components = AlphaComponents::single) {

@@ -9,6 +9,7 @@
 
 #include "alpha_solid/selection.hpp"
 #include "filters/alpha_solid_cases.hpp"
+#include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 
@@ -23,7 +24,7 @@ using testing::IsEmpty;
 std::vector<std::string> warnings_of(const TetMesh& tets, const AlphaSolidParams& params) {
     Context context;
     alpha_solid(tets, params, context);
-    return context.warnings();
+    return sentences_of(context);
 }
 
 /// The number after "valid one is".

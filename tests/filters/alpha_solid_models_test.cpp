@@ -10,6 +10,7 @@
 #include "filters/known_models.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/mesh/topology.hpp"
+#include "support/doubts.hpp"
 #include "support/shapes.hpp"
 
 namespace scanmill {
@@ -27,7 +28,7 @@ Reconstruction reconstructed(const std::filesystem::path& path) {
     options.threads = 2;
     Context context(options);
     const TetMesh tets = delaunay(*read_points(path), {}, context).tets;
-    return {alpha_solid(tets, {}, context), context.warnings()};
+    return {alpha_solid(tets, {}, context), sentences_of(context)};
 }
 
 /// One closed, outward manifold through every point but those inside.

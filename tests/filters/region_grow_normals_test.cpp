@@ -8,6 +8,7 @@
 
 #include "filters/region_grow_cases.hpp"
 #include "region_grow/normals.hpp"
+#include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 
 namespace scanmill {
@@ -32,7 +33,7 @@ PointCloud with_normals(PointCloud cloud, NormalAt&& normal_at) {
 std::vector<std::string> warnings_of(const PointCloud& cloud) {
     Context context;
     region_grow(cloud, {}, context);
-    return context.warnings();
+    return sentences_of(context);
 }
 
 TEST(RegionGrow_NormalsInTheSurface, AreRefusedAsSuch) {

@@ -21,7 +21,7 @@ TEST_F(Batch, TwentyScansUnderFourVariants_ThreePoisoned_LoseOnlyThose) {
     EXPECT_EQ(first.exit_code, 1);
     const Json run = recorded(1);
     ASSERT_EQ(run["cells"].size(), 80u);
-    EXPECT_EQ(count(run["cells"], "outcome", "done"), 68u);
+    EXPECT_EQ(count(run["cells"], "outcome", "ok"), 68u);
     EXPECT_EQ(count(run["cells"], "outcome", "failed"), 12u);
     EXPECT_EQ(count(run["cells"], "cause", "signal"), 8u);
     EXPECT_EQ(count(run["cells"], "number", SIGSEGV), 4u);
@@ -30,12 +30,12 @@ TEST_F(Batch, TwentyScansUnderFourVariants_ThreePoisoned_LoseOnlyThose) {
     EXPECT_EQ(outputs().size(), 68u);
     const std::vector<Json> shared = of_step(run, "shared");
     EXPECT_EQ(shared.size(), 20u) << "each is computed once, for four variants";
-    EXPECT_EQ(count(shared, "outcome", "done"), 20u);
+    EXPECT_EQ(count(shared, "outcome", "ok"), 20u);
     EXPECT_EQ(count(shared, "origin", "ran"), 20u);
 
     EXPECT_EQ(run_batch({"-j", "2"}).exit_code, 1);
     const Json again = recorded(2);
-    EXPECT_EQ(count(again["cells"], "outcome", "done"), 68u);
+    EXPECT_EQ(count(again["cells"], "outcome", "ok"), 68u);
     for (const Json& step : again["steps"])
         EXPECT_EQ(step["origin"], step["outcome"] == "failed" ? "ran" : "cached") << step;
     EXPECT_EQ(count(again["steps"], "outcome", "failed"), 12u);

@@ -67,7 +67,7 @@ TEST_F(Faults, MemoryOfAStepThatFailed_IsThereForTheNextScan) {
     EXPECT_EQ(run_batch({"-j", "1", "--no-cache"}).exit_code, 1);
     const Json run = recorded(1);
     EXPECT_EQ(count(run["cells"], "cause", "memory"), 1u);
-    EXPECT_EQ(count(run["cells"], "outcome", "done"), 1u);
+    EXPECT_EQ(count(run["cells"], "outcome", "ok"), 1u);
 }
 
 TEST_F(Faults, WarningsWithoutEnd_AreCutShort) {

@@ -29,7 +29,7 @@ TEST_F(Killed, Interrupt_EndsWhatWillNotEnd_AndKeepsWhatWasDone) {
     EXPECT_EQ(outputs().size(), 2u) << "scans of equal settings come together: the first and the third";
     const Json run = recorded(1);
     EXPECT_EQ(run["run"]["outcome"], "interrupted");
-    EXPECT_EQ(count(run["cells"], "outcome", "done"), 2u);
+    EXPECT_EQ(count(run["cells"], "outcome", "ok"), 2u);
 }
 
 TEST_F(Killed, Runner_KilledAtAnyMoment_LeavesARunThatIsFinishedByTheNext) {
@@ -101,7 +101,7 @@ TEST_F(Killed, WorkerKilledFromOutside_FailsWhatItWasDoing) {
     for (const int worker : children_of(batch.process())) ::kill(worker, SIGKILL);
     EXPECT_EQ(batch.wait().exit_code, 1);
     const Json run = recorded(1);
-    EXPECT_EQ(count(run["cells"], "outcome", "done"), 2u);
+    EXPECT_EQ(count(run["cells"], "outcome", "ok"), 2u);
     EXPECT_EQ(count(run["cells"], "number", SIGKILL), 1u);
 }
 
@@ -116,7 +116,7 @@ TEST_F(Killed, WorkerAskedToEndByOthers_IsNoInterrupt) {
     for (const int worker : children_of(batch.process())) ::kill(worker, SIGTERM);
     EXPECT_EQ(batch.wait().exit_code, 1);
     const Json run = recorded(1);
-    EXPECT_EQ(count(run["cells"], "outcome", "done"), 2u);
+    EXPECT_EQ(count(run["cells"], "outcome", "ok"), 2u);
     EXPECT_EQ(count(run["cells"], "number", SIGTERM), 1u);
 }
 

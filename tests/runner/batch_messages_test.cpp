@@ -50,7 +50,7 @@ TEST_F(Batch, Json_IsALineForEverythingThatHappens) {
     EXPECT_EQ(lines.front()["scanmill"], 1);
     EXPECT_EQ(lines.front()["run"], 1);
     EXPECT_EQ(lines.back()["event"], "run-ended");
-    EXPECT_EQ(lines.back()["done"], 2);
+    EXPECT_EQ(lines.back()["ok"], 2);
     EXPECT_EQ(lines.back()["failed"], 2);
     EXPECT_EQ(events["step-started"], 8u);
     EXPECT_EQ(events["step-ended"], 8u);

@@ -108,7 +108,7 @@ TEST(RunCommand, RunJson_IsJsonWithKeysMetricsAndFiles) {
     EXPECT_EQ(report.at("scanmill"), 1);
     ASSERT_EQ(report.at("cells").size(), 1u);
     const json& cell = report.at("cells").at(0);
-    EXPECT_EQ(cell.at("outcome"), "done");
+    EXPECT_EQ(cell.at("outcome"), "ok");
     EXPECT_EQ(cell.at("outputs").at(0).at("properties").at("closed"), true);
     for (const json& step : report.at("steps")) EXPECT_EQ(step.at("key").get<std::string>().size(), 32u);
 }

@@ -35,14 +35,14 @@ TEST_F(RunsCommand, EveryRun_IsALine) {
     scanmill({"run", "w.yaml", "a.xyz", "missing.xyz", "-o", "out"});
     const json runs = json::parse(scanmill({"runs", "out", "--json"}).out)["runs"];
     ASSERT_EQ(runs.size(), 2u);
-    EXPECT_EQ(runs[0]["outcome"], "done");
+    EXPECT_EQ(runs[0]["outcome"], "ok");
     EXPECT_EQ(runs[0]["ran"], 2);
     EXPECT_EQ(runs[0]["cached"], 0);
     EXPECT_EQ(runs[1]["outcome"], "failed");
     EXPECT_EQ(runs[1]["cells"], 2);
     EXPECT_EQ(runs[1]["failed"], 1);
     EXPECT_EQ(runs[1]["cached"], 2) << "what the first run kept";
-    EXPECT_THAT(scanmill({"runs", "out"}).out, AllOf(HasSubstr("run"), HasSubstr("failed"), HasSubstr("done")));
+    EXPECT_THAT(scanmill({"runs", "out"}).out, AllOf(HasSubstr("run"), HasSubstr("failed"), HasSubstr("ok")));
 }
 
 TEST_F(RunsCommand, Show_SaysEverythingOfOne) {

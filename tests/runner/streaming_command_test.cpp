@@ -58,7 +58,7 @@ TEST_F(StreamingCommand, ScanLargerThanTheLimit_IsThinned) {
     write_thinning("1 %diag");
     const ProgramResult result = run_batch({"-j", "1"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(recorded(1)["cells"][0]["outcome"], "done");
+    EXPECT_EQ(recorded(1)["cells"][0]["outcome"], "ok");
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     // Copied as well, it has to be read as a whole.
     write_thinning("1 %diag", ", '{scan}.copy.ply': scan");

@@ -19,6 +19,11 @@ void Context::warn(std::string text) {
     warnings_.push_back(std::move(text));
 }
 
+void Context::doubt(std::string text, std::string port) {
+    const std::scoped_lock lock(mutex_);
+    if (doubts_.size() < most_warnings) doubts_.push_back({std::move(text), std::move(port)});
+}
+
 void Context::metric(std::string_view name, double value, Unit unit) {
     const std::scoped_lock lock(mutex_);
     metrics_.set(name, value, unit);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The surroundings of a running filter: an Execution, and warnings, metrics, random numbers and a scratch folder. A
-/// C++ program that calls an algorithm directly creates a `Context context;`.
+/// The surroundings of a running filter: an Execution, and warnings, doubts, metrics, random numbers and a scratch
+/// folder. A C++ program that calls an algorithm directly creates a `Context context;`.
 
 #include <filesystem>
 #include <functional>
@@ -23,6 +23,11 @@ struct ContextOptions : ExecutionOptions {
     std::function<void(std::string_view text)> on_warning;
 };
 
+struct Doubt {
+    std::string text;
+    std::string port;  ///< empty: all outputs
+};
+
 class Context : public Execution {
 public:
     explicit Context(ContextOptions options = {});
@@ -30,6 +35,9 @@ public:
     /// Reports one sentence about a valid but remarkable result; callable from any thread. After most_warnings
     /// sentences, one more reports that there were more.
     void warn(std::string text);
+    /// Reports one sentence on why the result is probably not what the user wants. The cells that use the result end
+    /// as doubtful. `port`: the output that the doubt is about; empty: all outputs. Callable from any thread.
+    void doubt(std::string text, std::string port = {});
     void metric(std::string_view name, double value, Unit unit = Unit::count);
     /// A generator for this run's seed; every call returns the same state, so split it with stream().
     Random random() const { return Random(seed_); }
@@ -39,6 +47,7 @@ public:
 
     const Metrics& metrics() const { return metrics_; }
     const std::vector<std::string>& warnings() const { return warnings_; }
+    const std::vector<Doubt>& doubts() const { return doubts_; }
 
 private:
     std::uint64_t seed_;
@@ -46,6 +55,7 @@ private:
     std::function<void(std::string_view)> on_warning_;
     Metrics metrics_;
     std::vector<std::string> warnings_;
+    std::vector<Doubt> doubts_;
 };
 
 }  // namespace scanmill

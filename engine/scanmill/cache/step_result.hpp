@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scanmill/data/metrics.hpp"
+#include "scanmill/filter/context.hpp"
 #include "scanmill/filter/parameter.hpp"
 #include "scanmill/kinds/value.hpp"
 
@@ -78,6 +79,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ParameterSet, values)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Metric, name, value, unit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Metrics, values, unit)
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Doubt, text, port)
+
 struct ResultOutput {
     std::string port;
     Kind kind = kind_of<PointCloud>();
@@ -95,11 +98,12 @@ struct StepResult {
     Metrics metrics;
     Metrics properties;  ///< of the primary output; empty unless requested
     std::vector<std::string> warnings;
+    std::vector<Doubt> doubts;
     double seconds = 0;  ///< run time of the filter
 
     const ResultOutput* output(std::string_view port) const;
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StepResult, outputs, resolved, metrics, properties, warnings, seconds)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StepResult, outputs, resolved, metrics, properties, warnings, doubts, seconds)
 
 std::string to_bytes(const nlohmann::json& json);
 /// Throws Error for bytes that are not a serialised StepResult.

@@ -76,6 +76,7 @@ void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
     record.failure = record_of(report.failure);
     record.seconds = report.seconds;
     record.nodes = cell.nodes;
+    record.doubts = report.doubts;
     for (const OutputReport& output : report.outputs)
         record.outputs.push_back({output.file.string(), std::string(name_of(output.kind)),
                                   std::string(name_of(output.outcome)), output.properties});
@@ -90,7 +91,7 @@ Recorder::~Recorder() {
 
 void Recorder::finish(const RunReport& report) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
-    const std::string outcome = report.interrupted ? "interrupted" : report.all_done() ? "done" : "failed";
+    const std::string outcome = report.interrupted ? "interrupted" : std::string(name_of(report.outcome()));
     if (!attempt([&] { records_->end(run_, steps_, cells_, outcome, seconds.count()); }) && records_)
         warn(fmt::format("this run is not recorded to its end: {}", trouble_));
     steps_.clear();

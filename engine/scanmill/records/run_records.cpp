@@ -28,7 +28,7 @@ auto about(const std::string& file, Action&& action) {
 }
 
 /// One per version of the tables. A file of an older version runs those that follow it.
-constexpr std::array<const char*, 2> migrations{R"(
+constexpr std::array<const char*, 3> migrations{R"(
 CREATE TABLE run (id INTEGER PRIMARY KEY, started TEXT NOT NULL, workflow TEXT NOT NULL, file TEXT NOT NULL,
     arguments TEXT NOT NULL, seed TEXT NOT NULL, threads INTEGER NOT NULL, version TEXT NOT NULL, machine TEXT NOT NULL);
 CREATE TABLE run_end (run INTEGER PRIMARY KEY REFERENCES run, ended TEXT NOT NULL, outcome TEXT NOT NULL,
@@ -71,6 +71,14 @@ UPDATE step SET workflow = (SELECT workflow FROM run WHERE run.id = step.run);
 UPDATE cell SET workflow = (SELECT workflow FROM run WHERE run.id = cell.run);
 CREATE TABLE log (step INTEGER NOT NULL REFERENCES step, line TEXT NOT NULL);
 CREATE INDEX log_of_step ON log (step);
+)",
+                                                R"(
+CREATE TABLE doubt (cell INTEGER NOT NULL REFERENCES cell, text TEXT NOT NULL);
+CREATE INDEX doubt_of_cell ON doubt (cell);
+UPDATE run_end SET outcome = 'ok' WHERE outcome = 'done';
+UPDATE step SET outcome = 'ok' WHERE outcome = 'done';
+UPDATE cell SET outcome = 'ok' WHERE outcome = 'done';
+UPDATE output SET outcome = 'ok' WHERE outcome = 'done';
 )"};
 
 }  // namespace
@@ -316,13 +324,15 @@ void RunRecords::insert(std::int64_t run, const std::vector<StepRecord>& steps, 
         for (const std::string& line : step.log) log.add(id, line);
     }
     Insertion cell_rows(sqlite, "cell (run, " + cell_columns + ")"), links(sqlite, "cell_step"),
-        outputs(sqlite, "output (cell, file, kind, outcome)"), properties(sqlite, "output_fact");
+        doubts(sqlite, "doubt"), outputs(sqlite, "output (cell, file, kind, outcome)"),
+        properties(sqlite, "output_fact");
     for (const CellRecord& cell : cells) {
         const std::int64_t id =
             std::apply([&](const auto&... fields) { return cell_rows.add(run, fields...); }, fields_of_cell(cell));
         for (const std::size_t node : cell.nodes)
             if (const auto step = database_->step_ids.find({run, node}); step != database_->step_ids.end())
                 links.add(id, step->second);
+        for (const std::string& text : cell.doubts) doubts.add(id, text);
         for (const OutputRecord& output : cell.outputs) {
             const std::int64_t output_id = outputs.add(id, output.file, output.kind, output.outcome);
             for (const Metric& property : output.properties.values)
@@ -350,6 +360,7 @@ std::vector<RunSummary> RunRecords::runs() const {
             database_->sqlite,
             "SELECT run.id, started, workflow, run_end.outcome, COALESCE(run_end.seconds, 0), "
             "(SELECT COUNT(*) FROM cell WHERE cell.run = run.id), "
+            "(SELECT COUNT(*) FROM cell WHERE cell.run = run.id AND outcome = 'doubtful'), "
             "(SELECT COUNT(*) FROM cell WHERE cell.run = run.id AND outcome = 'failed'), "
             "(SELECT COUNT(DISTINCT node) FROM step WHERE step.run = run.id AND origin = 'ran'), "
             // A node whose cached value was lost has two rows, and counts as run.
@@ -359,8 +370,8 @@ std::vector<RunSummary> RunRecords::runs() const {
         std::vector<RunSummary> runs;
         rows.each([&](SQLite::Statement& row) {
             RunSummary& run = runs.emplace_back();
-            read_row(row, 0, run.id, run.started, run.workflow, run.outcome, run.seconds, run.cells, run.failed,
-                     run.ran, run.cached);
+            read_row(row, 0, run.id, run.started, run.workflow, run.outcome, run.seconds, run.cells, run.doubtful,
+                     run.failed, run.ran, run.cached);
         });
         return runs;
     });
@@ -410,6 +421,7 @@ RunDetails RunRecords::run(std::int64_t id) const {
         Selection nodes(sqlite,
                         "SELECT node FROM cell_step JOIN step ON step.id = cell_step.step WHERE cell = ? "
                         "ORDER BY cell_step.rowid");
+        Selection doubts(sqlite, "SELECT text FROM doubt WHERE cell = ? ORDER BY rowid");
         Selection outputs(sqlite, "SELECT id, file, kind, outcome FROM output WHERE cell = ? ORDER BY id");
         Selection properties(sqlite, "SELECT name, value, unit FROM output_fact WHERE output = ? ORDER BY rowid");
         const auto add_cell = [&](SQLite::Statement& row) {
@@ -423,6 +435,7 @@ RunDetails RunRecords::run(std::int64_t id) const {
             };
             const std::int64_t cell_id = row.getColumn(0).getInt64();
             nodes.each([&](auto& node) { read_row(node, 0, cell.nodes.emplace_back()); }, cell_id);
+            doubts.each([&](auto& text) { cell.doubts.push_back(text.getColumn(0).getString()); }, cell_id);
             outputs.each(add_output, cell_id);
         };
         cells.each(add_cell, id);
@@ -445,7 +458,7 @@ std::vector<PastStep> RunRecords::last_steps(const std::string& workflow, const 
                 PastStep& step = steps.emplace_back();
                 step.run = row.getColumn(0).getInt64();
                 step.seed = std::stoull(row.getColumn(1).getString());
-                step.done = row.getColumn(2).getString() == "done";
+                step.done = row.getColumn(2).getString() == "ok";
                 read_row(row, 3, step.filter, step.build, step.plan_key, step.filter_version, step.authored);
             },
             workflow, scan, label);

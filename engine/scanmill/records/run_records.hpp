@@ -56,13 +56,14 @@ struct CellRecord {
     double seconds = 0;
     std::vector<std::size_t> nodes;  ///< of the run's graph; their steps were recorded before
     std::vector<OutputRecord> outputs;
+    std::vector<std::string> doubts;
 };
 
 struct RunSummary {
     std::int64_t id = 0;
     std::string started, workflow;
     std::optional<std::string> outcome;  ///< nothing: the run was killed
-    std::size_t cells = 0, failed = 0, ran = 0, cached = 0;
+    std::size_t cells = 0, doubtful = 0, failed = 0, ran = 0, cached = 0;
     double seconds = 0;
 };
 

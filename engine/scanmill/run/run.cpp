@@ -238,12 +238,12 @@ private:
         const RunNode& node = graph_.nodes[index];
         NodeReport report;
         report.origin = Origin::cached;
-        report.outcome = Outcome::done;
+        report.outcome = Outcome::ok;
         scanmill::adopt(*prediction_[index].cached, graph_.step(node), node.step ? "" : path_prefix(node.leaf.file),
                         report);
         for (const std::string& warning : report.warnings) notify(&RunObserver::node_warning, node, warning);
         JobReport done;
-        done.outcome = Outcome::done;
+        done.outcome = Outcome::ok;
         done.node = std::move(report);
         finish_node(index, std::move(done));
     }
@@ -425,8 +425,10 @@ private:
         job.scan = graph_.scan_names[node.scan];
         if (task.write > 0) {
             const Write& write = writes_[task.write - 1];
-            job.work = WriteWork{write.file, made_how(graph_, write.cells, write.source.node, report_.nodes),
-                                 input_from(write.source, "")};
+            job.work = WriteWork{
+                write.file,
+                made_how(graph_, write.cells, {write.file, write.source.node, write.source.port}, report_.nodes),
+                input_from(write.source, "")};
             job.frame = fmt::format("while writing '{}'", write.file.string());
             job.scan = graph_.scan_names[graph_.cells[write.cells.front()].scan];
             return job;
@@ -531,7 +533,7 @@ private:
             report.origin = Origin::cached;
             report.outcome = done.outcome;
             report.failure = std::move(done.node.failure);
-            if (done.outcome == Outcome::done) report.properties = std::move(done.node.properties);
+            if (done.outcome == Outcome::ok) report.properties = std::move(done.node.properties);
         }
         if (predicted.will_run) {
             report.why = predicted.why;
@@ -546,7 +548,7 @@ private:
                 state.cost = cost;
             }
         }
-        state.state = report.outcome == Outcome::done ? State::done : State::failed;
+        state.state = report.outcome == Outcome::ok ? State::done : State::failed;
         notify(&RunObserver::node_ended, node, report);
         for (const Source& source : used) release(source);
         for (const Task& waiting : state.waiting) to_consider_.push_back(waiting);
@@ -708,7 +710,7 @@ private:
         cells_[index].has_ended = true;
         bool is_done = true;
         for (const std::size_t node : cell.nodes) {
-            is_done = is_done && report_.nodes[node].outcome == Outcome::done;
+            is_done = is_done && report_.nodes[node].outcome == Outcome::ok;
             if (!report.failure && report_.nodes[node].failure) {
                 report.failure = report_.nodes[node].failure;
                 const std::string &own = graph_.scan_names[cell.scan],
@@ -721,13 +723,17 @@ private:
         }
         for (const std::size_t index_of_write : writes_of_cell_[index]) {
             const Write& write = writes_[index_of_write];
-            is_done = is_done && write.report.outcome == Outcome::done;
+            is_done = is_done && write.report.outcome == Outcome::ok;
             if (!report.failure) report.failure = write.failure;
             report.outputs.push_back(write.report);
             report.outputs.back().file = write.file;
         }
         if (!report.failure && cells_[index].is_out_of_time && !is_done) report.failure = out_of_time(index);
-        report.outcome = report.failure ? Outcome::failed : is_done ? Outcome::done : Outcome::skipped;
+        report.doubts = doubts_about(cell.outputs, cell.nodes, graph_, report_.nodes);
+        report.outcome = report.failure          ? Outcome::failed
+                         : !is_done              ? Outcome::skipped
+                         : report.doubts.empty() ? Outcome::ok
+                                                 : Outcome::doubtful;
         notify(&RunObserver::cell_ended, cell, report);
     }
 
@@ -737,12 +743,12 @@ private:
         Error error("time limit exceeded: the limit of a cell is {}, {:.3f} s were used and this is not done",
                     duration_text(settings_.limits.cell_seconds), report_.cells[index].seconds);
         const auto left = std::ranges::find_if(
-            cell.nodes, [&](std::size_t node) { return report_.nodes[node].outcome != Outcome::done; });
+            cell.nodes, [&](std::size_t node) { return report_.nodes[node].outcome != Outcome::ok; });
         if (left != cell.nodes.end())
             error.add_frame(frame_of(*left));
         else
             for (const OutputReport& output : report_.cells[index].outputs)
-                if (output.outcome != Outcome::done) {
+                if (output.outcome != Outcome::ok) {
                     error.add_frame(fmt::format("while writing '{}'", output.file.string()));
                     break;
                 }

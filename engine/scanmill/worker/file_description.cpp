@@ -76,7 +76,7 @@ std::set<std::size_t> ancestry(const RunGraph& graph, std::size_t node) {
 
 }  // namespace
 
-std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, std::size_t node,
+std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, const RunOutput& output,
                      const std::vector<NodeReport>& reports) {
     const RunCell& cell = graph.cells[cells.front()];
     Json json{{"scanmill", 1},
@@ -86,11 +86,14 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
               {"scan", graph.scan_names[cell.scan]},
               {"seed", graph.seed},
               {"expected", Json::array()},
+              {"doubts", Json::array()},
               {"steps", Json::array()}};
     for (const std::size_t each : cells) json["variants"].push_back(graph.variant(graph.cells[each]).name);
-    if (const PlannedStep* step = graph.step(graph.nodes[node]))
+    if (const PlannedStep* step = graph.step(graph.nodes[output.node]))
         for (const PlannedExpectation& expectation : step->expectations) json["expected"].push_back(expectation.text);
-    for (const std::size_t each : ancestry(graph, node)) {
+    const std::set<std::size_t> all = ancestry(graph, output.node);
+    json["doubts"] = doubts_about({output}, {all.begin(), all.end()}, graph, reports);
+    for (const std::size_t each : all) {
         const RunNode& made = graph.nodes[each];
         Json entry{{"step", graph.label(made)}, {"key", made.key}};
         if (const PlannedStep* step = graph.step(made)) {

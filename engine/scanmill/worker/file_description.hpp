@@ -32,8 +32,8 @@ private:
 
 /// How an output comes about, as JSON: workflow and variants, scan, seed, the program's version, what the step that
 /// made it was expected to give, and of every step from the scan to it filter, version, build, key, parameters and
-/// metrics. `cells`: all that share the file.
-std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, std::size_t node,
+/// metrics, and the doubts about them. `cells`: all that share the file.
+std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, const RunOutput& output,
                      const std::vector<NodeReport>& reports);
 
 /// Writes the description of a file that was written: `how` (of made_how()), with the file's name, bytes and `sha256`

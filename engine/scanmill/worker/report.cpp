@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 namespace scanmill {
 
@@ -16,7 +17,7 @@ std::string_view nth(const std::array<std::string_view, size>& names, Enum value
 }  // namespace
 
 std::string_view name_of(Outcome outcome) {
-    return nth(std::array<std::string_view, 3>{"done", "failed", "skipped"}, outcome);
+    return nth(std::array<std::string_view, 4>{"ok", "doubtful", "failed", "skipped"}, outcome);
 }
 
 std::string_view name_of(Origin origin) {
@@ -38,8 +39,24 @@ Error Failure::whole() const {
     return all;
 }
 
-bool RunReport::all_done() const {
-    return std::ranges::all_of(cells, [](const CellReport& cell) { return cell.outcome == Outcome::done; });
+std::vector<std::string> doubts_about(const std::vector<RunOutput>& outputs, const std::vector<std::size_t>& nodes,
+                                      const RunGraph& graph, const std::vector<NodeReport>& reports) {
+    std::set<std::pair<std::size_t, std::string>> used;  // node and port
+    for (const RunOutput& output : outputs) used.emplace(output.node, output.port);
+    for (const std::size_t node : nodes)
+        for (const NodeInput& input : graph.nodes[node].inputs) used.emplace(input.node, input.from);
+    std::vector<std::string> doubts;
+    for (const std::size_t node : nodes)
+        for (const Doubt& doubt : reports[node].doubts)
+            if (doubt.port.empty() || used.contains({node, doubt.port}))
+                doubts.push_back(fmt::format("{}: {}", graph.label(graph.nodes[node]), doubt.text));
+    return doubts;
+}
+
+Outcome RunReport::outcome() const {
+    Outcome worst = Outcome::ok;
+    for (const CellReport& cell : cells) worst = std::max(worst, std::min(cell.outcome, Outcome::failed));
+    return worst;
 }
 
 }  // namespace scanmill

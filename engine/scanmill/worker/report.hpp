@@ -8,12 +8,19 @@
 #include <vector>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/filter/context.hpp"
 #include "scanmill/filter/parameter.hpp"
+#include "scanmill/graph/graph.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill {
 
-enum class Outcome { done, failed, skipped };  ///< skipped: an input failed, or the run was interrupted
+enum class Outcome {
+    ok,
+    doubtful,  ///< of a cell: complete, but a filter doubts its result
+    failed,
+    skipped  ///< an input failed, or the run was interrupted
+};
 std::string_view name_of(Outcome outcome);
 
 /// Where a node's result came from.
@@ -69,6 +76,7 @@ struct NodeReport {
     Metrics metrics;        ///< of the filter, in its declared order
     Metrics properties;     ///< of the primary output, or of the file that was read; empty unless requested
     std::vector<std::string> warnings;
+    std::vector<Doubt> doubts;
 };
 
 struct OutputReport {
@@ -84,6 +92,7 @@ struct CellReport {
     Failure failure;     ///< of the first node that failed, else of the first output
     double seconds = 0;  ///< of its nodes and outputs; nodes that cells share count for each
     std::vector<OutputReport> outputs;
+    std::vector<std::string> doubts;  ///< from doubts_about()
 };
 
 struct RunReport {
@@ -91,7 +100,13 @@ struct RunReport {
     std::vector<CellReport> cells;  ///< by index into RunGraph::cells
     bool interrupted = false;
 
-    bool all_done() const;
+    /// That of its worst cell; skipped cells count as failed; ok without cells.
+    Outcome outcome() const;
 };
+
+/// The doubts about these outputs and about all values that they are made from, each with the label of its step.
+/// Pre: `nodes` contains all nodes that the outputs are made from.
+std::vector<std::string> doubts_about(const std::vector<RunOutput>& outputs, const std::vector<std::size_t>& nodes,
+                                      const RunGraph& graph, const std::vector<NodeReport>& reports);
 
 }  // namespace scanmill

@@ -129,6 +129,7 @@ Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDe
     Context context(std::move(options));
     const auto record = [&] {
         report.warnings = context.warnings();
+        report.doubts = context.doubts();
         for (const MetricSpec& declared : step.spec.metrics)
             for (const Metric& metric : context.metrics().values)
                 if (step.spec.metric(metric.name) == &declared)

@@ -75,7 +75,7 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
                                {expecting->primary.node, expecting->primary.from}, report.node);
         }
         if (const auto* writing = std::get_if<WriteWork>(&job.work)) write(*writing, report);
-        report.outcome = Outcome::done;
+        report.outcome = Outcome::ok;
     } catch (const Cancelled&) {
     } catch (const InputLost&) {
     } catch (const Unmet& unmet) {
@@ -183,7 +183,7 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
         write_description(work.file, hash.text(), work.made_how, value, written.properties);
     else
         options.on_warning(fmt::format("'{}' has no description: its name would be too long", work.file.string()));
-    written.outcome = Outcome::done;
+    written.outcome = Outcome::ok;
 }
 
 // Inputs: files that are read or opened, and values from memory or the cache.
@@ -323,6 +323,7 @@ void Workbench::store(const Job& job, const JobCaching& caching, const std::stri
     // Files with equal content share the result, so warnings are stored without the file's name.
     for (const std::string& warning : report.node.warnings)
         result.warnings.push_back(warning.starts_with(path_prefix) ? warning.substr(path_prefix.size()) : warning);
+    result.doubts = report.node.doubts;
     result.seconds = seconds;
     store_values(job.node, caching, caching.inputs_cost + seconds, report);
     if (cache_->keep_step(run_key, result)) cache_->keep_run_key(caching.plan_key, run_key);
@@ -345,6 +346,7 @@ void Workbench::store_values(std::size_t node, const JobCaching& caching, double
 void adopt(const StepResult& result, const PlannedStep* step, const std::string& path_prefix, NodeReport& report) {
     report.metrics = result.metrics;
     report.properties = result.properties;
+    report.doubts = result.doubts;
     report.warnings.clear();
     for (const std::string& warning : result.warnings) report.warnings.push_back(path_prefix + warning);
     if (!step) return;

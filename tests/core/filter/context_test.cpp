@@ -54,6 +54,17 @@ TEST(Context, Warnings_AreKeptInOrderAndHandedOn) {
     EXPECT_THAT(context.warnings(), ElementsAre("first", "second"));
 }
 
+TEST(Context, Doubts_AreKeptInOrderWithTheirPorts) {
+    Context context;
+    context.doubt("far too large");
+    context.doubt("not closed", "mesh");
+    ASSERT_EQ(context.doubts().size(), 2u);
+    EXPECT_EQ(context.doubts()[0].text, "far too large");
+    EXPECT_EQ(context.doubts()[0].port, "");
+    EXPECT_EQ(context.doubts()[1].port, "mesh");
+    EXPECT_TRUE(context.warnings().empty());
+}
+
 TEST(Context, Metric_CountsUnlessToldOtherwise) {
     Context context;
     context.metric("kept", 3);

@@ -24,7 +24,7 @@ protected:
 TEST_F(ListInput, First_TakesAllScansInOneRunOfTheWorkflowsName) {
     const RunReport report = run(step, {scan("c.xyz", "0 0 0\n1 1 1\n"), scan("a.xyz"), scan("b.xyz", "2 2 2\n")},
                                  "outputs: {'{scan}.ply': test-step}\n", views);
-    EXPECT_TRUE(report.all_done());
+    EXPECT_TRUE(report.outcome() == Outcome::ok);
     ASSERT_EQ(graph_.cells.size(), 1u);
     EXPECT_THAT(graph_.scan_names, ElementsAre("w"));
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out/w.ply"));
@@ -73,7 +73,7 @@ TEST_F(ListInput, FramesNamedByStem_AreThoseOfTheFiles) {
 TEST_F(ListInput, FrameOfTheFile_IsReplacedAndTold) {
     const RunReport report = run("  - test-step:\n", {scan("a.xyz", "# frame lab\n" + test::small_scan)}, "",
                                  "{scan: {kind: points, frame: '{stem}'}}");
-    ASSERT_TRUE(report.all_done());
+    ASSERT_TRUE(report.outcome() == Outcome::ok);
     EXPECT_THAT(report.nodes[0].warnings, ElementsAre(HasSubstr("'lab' was renamed to 'a'")));
 }
 

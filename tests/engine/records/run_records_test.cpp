@@ -40,7 +40,7 @@ StepRecord some_step(std::size_t node) {
     step.plan_key = "key";
     step.origin = "ran";
     step.why = "it is new";
-    step.outcome = "done";
+    step.outcome = "ok";
     step.seconds = 0.1 + 0.2;
     step.cpu_seconds = 0.5;
     step.authored = {{"bin-size", "1 %diag"}};
@@ -68,7 +68,7 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
         const std::int64_t run = records.begin(some_start());
         records.add(run, {some_step(0), some_step(2)}, {});
         CellRecord cell{"thinning", "a.ply", "alpha=1", "failed", {"time", 0, "what went wrong"}, 1.5, {0, 2}, {}};
-        cell.outputs = {{"out/a.ply", "mesh", "done", {{{"triangles", 12, Unit::count}}}}};
+        cell.outputs = {{"out/a.ply", "mesh", "ok", {{{"triangles", 12, Unit::count}}}}};
         records.add(run, {}, {cell});
         records.end(run, "failed", 2.5);
     }
@@ -129,6 +129,8 @@ TEST_F(Records, TablesOfTheFirstVersion_AreBroughtUpToDate) {
         EXPECT_EQ(run.summary.failed, 1u);
         ASSERT_EQ(run.cells.size(), 2u);
         EXPECT_EQ(run.cells[0].workflow, "quickstart");
+        EXPECT_EQ(run.cells[0].outcome, "ok");
+        EXPECT_EQ(run.steps[1].outcome, "ok");
         EXPECT_THAT(run.cells[1].failure.error, HasSubstr("bad.xyz"));
         ASSERT_EQ(run.steps.size(), 5u);
         EXPECT_EQ(run.steps[0].peak_memory, 0);
@@ -146,12 +148,12 @@ TEST_F(Records, RunsAfterEachOther_AreNumbered_AndAKilledOneHasNoEnd) {
     }
     RunRecords records = RunRecords::append_to(file());
     const std::int64_t second = records.begin(some_start());
-    records.end(second, "done", 1);
+    records.end(second, "ok", 1);
     const std::vector<RunSummary> runs = records.runs();
     ASSERT_EQ(runs.size(), 2u);
     EXPECT_FALSE(runs[0].outcome);
     EXPECT_EQ(runs[0].ran, 1u);
-    EXPECT_EQ(runs[1].outcome, "done");
+    EXPECT_EQ(runs[1].outcome, "ok");
     EXPECT_THAT(records.run(second).steps, IsEmpty());
     EXPECT_THAT(sentence_of([&] { records.run(9); }), HasSubstr("there is no run 9 in"));
 }
@@ -211,7 +213,7 @@ TEST_F(Run, Recorder_WritesWhatTheRunReports) {
     Recorder recorder(file, some_start(), library_, graph_, [&](std::string text) { told.push_back(text); });
     recorder.finish(run_graph(recorder));
     const RunDetails run = RunRecords::read(file).run(recorder.run());
-    EXPECT_EQ(run.summary.outcome, "done");
+    EXPECT_EQ(run.summary.outcome, "ok");
     ASSERT_EQ(run.steps.size(), 2u);
     EXPECT_EQ(run.steps[0].label, "read");
     EXPECT_EQ(run.steps[1].filter, "test-step");
@@ -221,6 +223,19 @@ TEST_F(Run, Recorder_WritesWhatTheRunReports) {
     ASSERT_EQ(run.cells.size(), 1u);
     EXPECT_EQ(run.cells[0].outputs[0].kind, "points");
     EXPECT_THAT(told, IsEmpty());
+}
+
+TEST_F(Run, Recorder_WritesDoubts) {
+    prepare("  - test-step: {mode: doubt}\n", {scan("a.xyz")}, "outputs: {'{scan}.ply': test-step}\n");
+    const std::filesystem::path file = folder_ / "records.sqlite";
+    Recorder recorder(file, some_start(), library_, graph_, {});
+    recorder.finish(run_graph(recorder));
+    const RunDetails run = RunRecords::read(file).run(recorder.run());
+    EXPECT_EQ(run.summary.outcome, "doubtful");
+    EXPECT_EQ(run.summary.doubtful, 1u);
+    EXPECT_EQ(run.summary.failed, 0u);
+    EXPECT_EQ(run.cells[0].outcome, "doubtful");
+    EXPECT_THAT(run.cells[0].doubts, ElementsAre("test-step: was asked to doubt"));
 }
 
 TEST_F(Run, RecorderWithoutAPlaceForRecords_TellsItOnce) {

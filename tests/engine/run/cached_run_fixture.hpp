@@ -16,7 +16,7 @@ protected:
     std::vector<Origin> origins(const RunReport& report) {
         std::vector<Origin> all;
         for (const NodeReport& node : report.nodes) {
-            EXPECT_EQ(node.outcome, Outcome::done) << node.failure.whole().what();
+            EXPECT_EQ(node.outcome, Outcome::ok) << node.failure.whole().what();
             all.push_back(node.origin);
         }
         return all;

@@ -36,7 +36,7 @@ TEST_F(CachedRun, DamagedValues_AreMadeAgainAndTold) {
         folder_.write(fs::relative(file, folder_.path()).string(), bytes);
     }
     const RunReport again = run_two("factor: 2", "factor: 3");
-    EXPECT_TRUE(again.all_done());
+    EXPECT_TRUE(again.outcome() == Outcome::ok);
     EXPECT_EQ(again.nodes[2].origin, ran);
     EXPECT_THAT(again.nodes[2].why, HasSubstr("its value was removed from the cache"));
     EXPECT_EQ(content_of(folder_ / "out/a.ply"), first);
@@ -52,10 +52,10 @@ TEST_F(CachedRun, LostValueThatOthersWereMadeWith_IsMadeAgainWithoutLosingTheirs
                        "}\n    in: {points: scan, more: [scan, first.points]}\n",
                    {scan("a.xyz")}, "outputs: {'{scan}.ply': last.points}\n");
     };
-    EXPECT_TRUE(diamond("3").all_done());
+    EXPECT_TRUE(diamond("3").outcome() == Outcome::ok);
     for (const fs::path& file : values()) fs::resize_file(file, fs::file_size(file) - 1);
     const RunReport again = diamond("4");
-    EXPECT_TRUE(again.all_done());
+    EXPECT_TRUE(again.outcome() == Outcome::ok);
     EXPECT_EQ(again.nodes[2].metrics.find("more")->value, 8);
     EXPECT_EQ(world_of_second_point(), Vec3(4, 0, 0));
 }
@@ -74,7 +74,7 @@ TEST_F(CachedRun, EntriesOfOtherNames_AreNotTrusted) {
             folder_.write(fs::relative(files[i], folder_.path()).string(),
                           i + 1 < files.size() ? content_of(files[i + 1]) : kept);
         told_.clear();
-        EXPECT_TRUE(run_two("factor: 2", "factor: 3").all_done());
+        EXPECT_TRUE(run_two("factor: 2", "factor: 3").outcome() == Outcome::ok);
         EXPECT_EQ(content_of(folder_ / "out/a.ply"), first) << kind;
         EXPECT_FALSE(told_.empty()) << kind;
     }
@@ -82,8 +82,8 @@ TEST_F(CachedRun, EntriesOfOtherNames_AreNotTrusted) {
 
 TEST_F(CachedRun, CacheThatCannotBeWritten_CostsNothingButTime) {
     folder_.write("cache", "a file in its place");
-    EXPECT_TRUE(run_two("factor: 2", "factor: 3").all_done());
-    EXPECT_TRUE(run_two("factor: 2", "factor: 3").all_done());
+    EXPECT_TRUE(run_two("factor: 2", "factor: 3").outcome() == Outcome::ok);
+    EXPECT_TRUE(run_two("factor: 2", "factor: 3").outcome() == Outcome::ok);
     EXPECT_THAT(told_, ElementsAre(HasSubstr("does not store new results")));
 }
 

@@ -22,7 +22,7 @@ TEST_F(CachedRun, TheSameAgain_ComputesNothingAndWritesTheSame) {
     fs::remove(folder_ / "out/a.ply");
     const RunReport again = run_two("factor: 2", "factor: 3, mode: warn");
     EXPECT_THAT(origins(again), ElementsAre(cached, cached, cached));
-    EXPECT_TRUE(again.all_done());
+    EXPECT_TRUE(again.outcome() == Outcome::ok);
     EXPECT_EQ(content_of(folder_ / "out/a.ply"), first);
     EXPECT_EQ(again.nodes[2].metrics.find("points")->value, 4);
     EXPECT_EQ(again.nodes[0].properties.find("points")->value, 4);
@@ -88,12 +88,12 @@ TEST_F(CachedRun, ExpectationsOfWhatIsCached_AreAskedAgain) {
     const auto expecting = [&](const std::string& points) {
         return run("  - test-step: {factor: 2}\n    expect: {points: " + points + "}\n", {scan("a.xyz")});
     };
-    EXPECT_TRUE(expecting("4").all_done());
+    EXPECT_TRUE(expecting("4").outcome() == Outcome::ok);
     const RunReport unmet = expecting("'> 4'");
     EXPECT_THAT(unmet.cells[0].failure.whole().what(),
                 testing::AllOf(HasSubstr("points"), HasSubstr("in step 'test-step'")));
     EXPECT_EQ(unmet.nodes[1].origin, cached);
-    EXPECT_TRUE(expecting("4").all_done());
+    EXPECT_TRUE(expecting("4").outcome() == Outcome::ok);
 }
 
 TEST_F(CachedRun, FileOfAParameterThatChangesMeanwhile_FailsTheStep) {
@@ -106,7 +106,7 @@ TEST_F(CachedRun, FileOfAParameterThatChangesMeanwhile_FailsTheStep) {
 
 TEST_F(CachedRun, StepThatReadsWhatHasNoContent_IsNeverCached) {
     const std::string steps = "  - test-step: {log: " + log() + "}\n";
-    EXPECT_TRUE(run(steps, {scan("a.xyz")}).all_done());  // the log is not there yet
+    EXPECT_TRUE(run(steps, {scan("a.xyz")}).outcome() == Outcome::ok);  // the log is not there yet
     fs::remove(folder_ / "log");
     const RunReport again = run(steps, {scan("a.xyz")});
     EXPECT_EQ(again.nodes[1].origin, ran);

@@ -23,7 +23,7 @@ TEST_F(Run, FailingAlternative_LeavesTheOthersAlone) {
                 log() + "}\n",
             {scan("a.xyz")}, "outputs: {'{scan}-{variant}.xyz': after}\n");
     ASSERT_EQ(report.cells.size(), 4u);
-    EXPECT_EQ(report.cells[0].outcome, Outcome::done);
+    EXPECT_EQ(report.cells[0].outcome, Outcome::ok);
     for (int failed = 1; failed < 4; ++failed) EXPECT_EQ(report.cells[failed].outcome, Outcome::failed);
     EXPECT_THAT(report.cells[1].failure.whole().what(),
                 AllOf(HasSubstr("in step 'bad' (w.yaml:8:19)"), HasSubstr("a.xyz'"), HasSubstr("hint: ")));
@@ -41,7 +41,7 @@ TEST_F(Run, BadScan_FailsItsCellOnly) {
     EXPECT_EQ(report.cells[0].outcome, Outcome::failed);
     EXPECT_EQ(report.cells[1].outcome, Outcome::failed);
     EXPECT_THAT(report.cells[1].failure.whole().what(), HasSubstr("missing.xyz"));
-    EXPECT_EQ(report.cells[2].outcome, Outcome::done);
+    EXPECT_EQ(report.cells[2].outcome, Outcome::ok);
 }
 
 TEST_F(Run, EmptyMesh_IsAnError) {
@@ -50,10 +50,10 @@ TEST_F(Run, EmptyMesh_IsAnError) {
 }
 
 TEST_F(Run, Expectations_AreComparedWithMetricsAndFacts) {
-    EXPECT_TRUE(run("  - test-step:\n    expect: {points: 4}\n", {scan("a.xyz")}).all_done());
+    EXPECT_TRUE(run("  - test-step:\n    expect: {points: 4}\n", {scan("a.xyz")}).outcome() == Outcome::ok);
     EXPECT_TRUE(
         run("  - test-step: {length: 10 %diag}\n    expect: {points: [3, 5], length: '< 0.31 u'}\n", {scan("a.xyz")})
-            .all_done());
+            .outcome() == Outcome::ok);
     const RunReport unmet =
         run("  - test-step:\n    expect: {points: '> 4'}\n", {scan("a.xyz")}, "outputs: {'{scan}.xyz': test-step}\n");
     EXPECT_EQ(unmet.cells[0].outcome, Outcome::failed);

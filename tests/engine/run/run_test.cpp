@@ -20,7 +20,7 @@ TEST_F(Run, StepsSharedByVariants_RunOnce) {
     const RunReport report = run("  - test-step: {factor: 2, log: " + log() +
                                      "}\n  - id: b\n    test-step: {factor: {sweep: [3, 4, 5]}, log: " + log() + "}\n",
                                  {scan("a.xyz")}, "outputs: {'{scan}-{variant}.xyz': b}\n");
-    EXPECT_TRUE(report.all_done());
+    EXPECT_TRUE(report.outcome() == Outcome::ok);
     EXPECT_EQ(report.cells.size(), 3u);
     EXPECT_EQ(runs_logged(), 4u) << "one shared step and three of its own";
     const auto points = read_points(folder_ / "out/a-factor=4.xyz");
@@ -49,7 +49,7 @@ TEST_F(Run, TwoFilesOfEqualContent_AreComputedOnceAndWrittenTwice) {
     const RunReport report =
         run("  - test-step: {log: " + log() + "}\n", {scan("a.xyz"), scan("b.xyz"), scan("c.xyz", "0 0 0\n1 1 1\n")},
             "outputs: {'{scan}.xyz': test-step}\n");
-    EXPECT_TRUE(report.all_done());
+    EXPECT_TRUE(report.outcome() == Outcome::ok);
     EXPECT_EQ(runs_logged(), 2u);
     EXPECT_EQ(test::content_of(folder_ / "out/a.xyz"), test::content_of(folder_ / "out/b.xyz"));
     EXPECT_NE(test::content_of(folder_ / "out/a.xyz"), test::content_of(folder_ / "out/c.xyz"));
@@ -59,7 +59,7 @@ TEST_F(Run, ListInput_ReachesThePortWhole) {
     request_.inputs = {{"others", {scan("b.xyz", "5 5 5\n6 6 6\n"), scan("c.xyz", "7 7 7\n8 8 8\n9 9 9\n")}}};
     const RunReport report = run("  - test-step:\n    in: {points: scan, more: others}\n", {scan("a.xyz")}, "",
                                  "{scan: points, others: [points]}");
-    EXPECT_TRUE(report.all_done()) << report.cells[0].failure.whole().what();
+    EXPECT_TRUE(report.outcome() == Outcome::ok) << report.cells[0].failure.whole().what();
     EXPECT_EQ(graph_.nodes.back().inputs.size(), 3u);
 }
 
@@ -76,7 +76,7 @@ TEST_F(Run, OnlyUntilAndSave_SelectVariantsAndSteps) {
     request_.until = "a";
     request_.save = {"a"};
     const RunReport report = run(steps, {scan("s.xyz")}, "outputs: {'{scan}-{variant}.xyz': b}\n");
-    EXPECT_TRUE(report.all_done());
+    EXPECT_TRUE(report.outcome() == Outcome::ok);
     EXPECT_EQ(runs_logged(), 1u);
     EXPECT_EQ(report.cells.size(), 1u);
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out/s.factor=2.a.ply"));
@@ -88,14 +88,14 @@ TEST_F(Run, Cancelling_EndsTheRunAndKeepsWhatWasFinished) {
     settings_.is_cancelled = [&] { return ++asked > 3; };
     const RunReport report = run("  - test-step: {mode: wait}\n", {scan("a.xyz"), scan("b.xyz", "0 0 0\n1 1 1\n")});
     EXPECT_TRUE(report.interrupted);
-    EXPECT_FALSE(report.all_done());
+    EXPECT_FALSE(report.outcome() == Outcome::ok);
     EXPECT_FALSE(report.cells[0].failure);
 }
 
 TEST_F(Run, Warnings_AreKeptWithTheirStep) {
     const RunReport report = run("  - test-step: {mode: warn}\n", {scan("a.xyz")});
     EXPECT_EQ(report.nodes[1].warnings.size(), 1u);
-    EXPECT_TRUE(report.all_done());
+    EXPECT_TRUE(report.outcome() == Outcome::ok);
 }
 
 TEST_F(Run, PlanKeys_KnowContentUnitSeedAndParametersAndNoPath) {

@@ -56,7 +56,7 @@ protected:
     static std::vector<Origin> origins(const RunReport& report) {
         std::vector<Origin> all;
         for (const NodeReport& node : report.nodes) {
-            EXPECT_EQ(node.outcome, Outcome::done) << node.failure.whole().what();
+            EXPECT_EQ(node.outcome, Outcome::ok) << node.failure.whole().what();
             all.push_back(node.origin);
         }
         return all;
@@ -95,7 +95,7 @@ protected:
         EXPECT_TRUE(outputs[0] == outputs[1]) << "the bytes differ";
         EXPECT_EQ(descriptions[0], descriptions[1]);
         EXPECT_EQ(remembered("streamed"), remembered("whole"));
-        EXPECT_EQ(outputs[0].empty(), !reports[1].all_done());
+        EXPECT_EQ(outputs[0].empty(), reports[1].outcome() != Outcome::ok);
     }
 
     std::unique_ptr<Cache> cache_;

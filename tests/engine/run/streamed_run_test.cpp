@@ -58,14 +58,14 @@ TEST_F(StreamedRun, FileThatTurnsOutToNeedIt_IsReadWhole) {
 
 TEST_F(StreamedRun, HandsTheFilterAStream) {
     const RunReport report = run_logging(scan("a.xyz"));
-    EXPECT_TRUE(report.all_done()) << report.cells[0].failure.whole().what();
+    EXPECT_TRUE(report.outcome() == Outcome::ok) << report.cells[0].failure.whole().what();
     EXPECT_EQ(logged(), "stream 0.03 u 4\n") << "the diagonal is 3";
     EXPECT_EQ(report.nodes[0].properties.find("points")->value, 4);
 }
 
 TEST_F(StreamedRun, WithoutACache_HandsTheFilterAStream) {
     settings_.cache = nullptr;
-    EXPECT_TRUE(run_logging(scan("a.xyz")).all_done());
+    EXPECT_TRUE(run_logging(scan("a.xyz")).outcome() == Outcome::ok);
     EXPECT_EQ(logged(), "stream 0.03 u 4\n");
 }
 
@@ -75,7 +75,7 @@ TEST_F(StreamedRun, Forgotten_IsClosed) {
     Job job;
     job.node = 0;
     job.work = ReadWork{graph_.nodes[0].leaf, {}};
-    EXPECT_EQ(bench.perform(job, {{}, [](std::string_view) {}, {}}).outcome, Outcome::done);
+    EXPECT_EQ(bench.perform(job, {{}, [](std::string_view) {}, {}}).outcome, Outcome::ok);
     EXPECT_FALSE(bench.is_empty());
     bench.forget(0);
     EXPECT_TRUE(bench.is_empty());

@@ -53,7 +53,7 @@ TEST_F(StreamedRun, Workers_HandTheFilterAStreamAndGiveTheSame) {
     settings_.shares_values = true;
     const RunReport there = scanmill::run(library_, graph_, workers, settings_);
     ::unsetenv("SCANMILL_PLUGIN_PATH");
-    ASSERT_TRUE(there.all_done()) << there.cells[0].failure.whole().what();
+    ASSERT_TRUE(there.outcome() == Outcome::ok) << there.cells[0].failure.whole().what();
     EXPECT_THAT(logged(), testing::AnyOf("stream 0.03 u 4\nstream 0.06 u 4\n", "stream 0.06 u 4\nstream 0.03 u 4\n"));
     use_cache("other");
     expect_equal(there, run_graph());
@@ -72,7 +72,7 @@ TEST_F(StreamedRun, HelperThatOpenedAScan_GoesOnHelping) {
     settings_.shares_values = true;
     TwoBenches workers(library_, *cache_, keep_);
     const RunReport report = scanmill::run(library_, graph_, workers, settings_);
-    ASSERT_TRUE(report.all_done()) << report.cells[0].failure.whole().what();
+    ASSERT_TRUE(report.outcome() == Outcome::ok) << report.cells[0].failure.whole().what();
     EXPECT_EQ(workers.steps_of_second, 1u);
 }
 

@@ -23,6 +23,8 @@ SCANMILL_FILTER() {
                  {"empty", P::Mode::empty, "Gives an empty mesh."},
                  {"wait", P::Mode::wait, "Goes on until it is cancelled."},
                  {"warn", P::Mode::warn, "Warns once."},
+                 {"doubt", P::Mode::doubt, "Doubts all outputs."},
+                 {"doubt-mesh", P::Mode::doubt_mesh, "Doubts the output `mesh`."},
                  {"slow", P::Mode::slow, "Takes 30 ms."},
                  {"crash", P::Mode::crash, "Raises SIGSEGV."},
                  {"abort", P::Mode::abort, "Aborts the process."},

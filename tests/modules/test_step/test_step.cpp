@@ -32,6 +32,8 @@ std::string_view name_of(Mode mode) {
         case Mode::empty: return "empty";
         case Mode::wait: return "wait";
         case Mode::warn: return "warn";
+        case Mode::doubt: return "doubt";
+        case Mode::doubt_mesh: return "doubt-mesh";
         case Mode::slow: return "slow";
         case Mode::crash: return "crash";
         case Mode::abort: return "abort";
@@ -76,6 +78,8 @@ void misbehave(Mode mode, std::size_t points, Context& context) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
             }
         case Mode::warn: context.warn("was asked to warn"); break;
+        case Mode::doubt: context.doubt("was asked to doubt"); break;
+        case Mode::doubt_mesh: context.doubt("was asked to doubt the mesh", "mesh"); break;
         case Mode::slow: std::this_thread::sleep_for(std::chrono::milliseconds(30)); break;
         case Mode::crash:
             std::puts("about to crash");

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// How the command reports doubtful results.
+#include "runner/batch_fixture.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class DoubtsCommand : public Batch {
+protected:
+    DoubtsCommand() {
+        write_scans("a", 2);
+        write_workflow("1");
+    }
+    ProgramResult run(const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{"run", "w.yaml", "scans/a_01.xyz", "-o", "out", "--set", "mode=doubt"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return scanmill(arguments);
+    }
+};
+
+TEST_F(DoubtsCommand, Table_HasTheOutcome_AndStderrTheReason) {
+    const ProgramResult ran = run();
+    EXPECT_EQ(ran.exit_code, 0);
+    EXPECT_THAT(ran.out, AllOf(HasSubstr("outcome"), HasSubstr("doubtful"), HasSubstr("1 of 1 doubtful")));
+    EXPECT_THAT(ran.err, HasSubstr("doubt: scans/a_01.xyz: last: was asked to doubt\n"));
+    const ProgramResult sure = run({"--set", "mode=pass"});
+    EXPECT_THAT(sure.out, AllOf(HasSubstr(" ok "), Not(HasSubstr("doubtful"))));
+}
+
+TEST_F(DoubtsCommand, Strict_MakesADoubtfulResultExitWith1) {
+    EXPECT_EQ(run({"--strict"}).exit_code, 1);
+    EXPECT_EQ(run({"--strict", "--set", "mode=pass"}).exit_code, 0);
+    EXPECT_EQ(run({"--strict", "--set", "mode=warn"}).exit_code, 0);
+    write_batch("scans/*.xyz", "set: {mode: doubt}\n");
+    EXPECT_EQ(run_batch().exit_code, 0);
+    EXPECT_EQ(run_batch({"--strict"}).exit_code, 1);
+}
+
+TEST_F(DoubtsCommand, JsonEventsAndRecords_CarryTheDoubts) {
+    const Json report = Json::parse(run({"--json"}).out);
+    EXPECT_EQ(report["cells"][0]["outcome"], "doubtful");
+    EXPECT_EQ(report["cells"][0]["doubts"], Json({"last: was asked to doubt"}));
+    const Json record = recorded(1);
+    EXPECT_EQ(record["run"]["outcome"], "doubtful");
+    EXPECT_EQ(record["run"]["doubtful"], 1);
+    EXPECT_EQ(record["cells"][0]["doubts"], Json({"last: was asked to doubt"}));
+    EXPECT_THAT(scanmill({"runs", "out", "show", "1"}).out,
+                HasSubstr("doubt: scans/a_01.xyz: last: was asked to doubt\n"));
+    EXPECT_THAT(scanmill({"runs", "out"}).out, HasSubstr("doubtful"));
+
+    write_batch("scans/*.xyz", "set: {mode: doubt}\n");
+    const std::string events = run_batch({"--json"}).out;
+    EXPECT_THAT(events, HasSubstr(R"("outcome":"doubtful")"));
+    EXPECT_THAT(events, HasSubstr(R"("doubts":["last: was asked to doubt"])"));
+    EXPECT_THAT(events, HasSubstr(R"("ok":0,"doubtful":2,"failed":0)"));
+}
+
+}  // namespace
+}  // namespace scanmill::test
