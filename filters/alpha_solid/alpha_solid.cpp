@@ -11,6 +11,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/geometry/mesh/spanned_gaps.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill {
@@ -109,9 +110,6 @@ void set_metrics(const AlphaSolidResult& result, Context& context) {
 constexpr double ambiguous_factor = 1.1;
 /// On clean scans alpha is near the length of the boundary's edges; this multiple spans a gap or includes outliers.
 constexpr double ambiguous_edges = 3;
-/// At this multiple the solid is far from the scanned surface: complete scans with grooves reach 5.3 (the merged bunny,
-/// over the holes of its base), blobs begin at 9.
-constexpr double doubtful_edges = 7;
 
 std::string_view unit_of(const AlphaSolidResult& result) { return symbol(result.tets.frame.unit); }
 
@@ -188,8 +186,8 @@ double radius_in_edges(const AlphaSolidResult& result) {
     return *middle;
 }
 
-/// Signs that a chosen alpha is too large. `edges`: radius_in_edges().
-std::vector<std::string> signs_of_large_alpha(const AlphaSolidResult& result, double edges) {
+/// Signs that a chosen alpha is too large.
+std::vector<std::string> signs_of_large_alpha(const AlphaSolidResult& result) {
     const std::string_view unit = unit_of(result);
     std::vector<std::string> signs;
     if (result.alpha >= ambiguous_factor * result.alpha_cover)
@@ -197,7 +195,7 @@ std::vector<std::string> signs_of_large_alpha(const AlphaSolidResult& result, do
             fmt::format("alpha {:.4g} {} is {:.3g} times the {:.4g} {} that would cover the points, because the "
                         "smaller solids are not valid",
                         result.alpha, unit, result.alpha / result.alpha_cover, result.alpha_cover, unit));
-    if (edges >= ambiguous_edges)
+    if (const double edges = radius_in_edges(result); edges >= ambiguous_edges)
         signs.push_back(
             fmt::format("alpha {:.4g} {} is {:.3g} times the boundary's median edge{}, to span gaps or to reach "
                         "distant points",
@@ -206,9 +204,9 @@ std::vector<std::string> signs_of_large_alpha(const AlphaSolidResult& result, do
 }
 
 /// Reports that the points do not determine the solid; empty when they do.
-std::string ambiguity_text(const AlphaSolidResult& result, double edges) {
+std::string ambiguity_text(const AlphaSolidResult& result) {
     std::vector<std::string> signs;
-    if (result.choice != AlphaChoice::given) signs = signs_of_large_alpha(result, edges);
+    if (result.choice != AlphaChoice::given) signs = signs_of_large_alpha(result);
     if (!result.interior_points.empty())
         signs.push_back(fmt::format("{} of {} points {} inside the solid instead of on its boundary",
                                     result.interior_points.size(), result.tets.positions.size(),
@@ -258,17 +256,14 @@ void warn_about(const AlphaSolidResult& result, const AlphaSolidParams& params, 
         context.warn(fmt::format(
             "alpha {:.4g} {} joins {} solids that are separate at {:.4g} {}; 'components: many' keeps them separate",
             result.alpha, unit_of(result), separate->count, separate->alpha, unit_of(result)));
-    if (result.choice == AlphaChoice::repaired) context.warn(repair_text(result, params));
-    if (result.choice == AlphaChoice::hull) context.doubt(repair_text(result, params));
-    const double edges = radius_in_edges(result);
-    // The boundary of sculpt's solid may still pass through the points, so its doubt is about the mesh alone.
-    const bool is_doubtful = edges >= doubtful_edges && result.choice != AlphaChoice::given;
-    const bool is_mostly_inside = 2 * result.interior_points.size() > result.tets.positions.size();
-    const std::string text = ambiguity_text(result, edges);
-    if (is_doubtful || is_mostly_inside)
-        context.doubt(text, is_doubtful ? "" : "mesh");
+    if (result.choice == AlphaChoice::repaired || result.choice == AlphaChoice::hull)
+        context.warn(repair_text(result, params));
+    const std::string text = ambiguity_text(result);
+    if (2 * result.interior_points.size() > result.tets.positions.size())
+        context.doubt(text, "mesh");
     else if (!text.empty())
         context.warn(text);
+    if (std::string gaps = doubt_about_gaps(result.mesh); !gaps.empty()) context.doubt(std::move(gaps), "mesh");
 }
 
 }  // namespace

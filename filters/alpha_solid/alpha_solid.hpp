@@ -127,10 +127,10 @@ struct AlphaSolidResult {
 ///       per cell beside the result, and 50 more for `single` with coverage below 100 %.
 /// Metrics: alpha, alpha-cover, spectrum, cells, interior-points, uncovered-points, hidden-points, triangles.
 /// Warnings, one sentence each: a given alpha whose solid is not valid, with the nearest valid alpha; points and cells
-/// left out; separate solids that were joined; a repaired solid; and an ambiguous choice: points inside, or a chosen
-/// alpha far above alpha_cover or the boundary's edges.
-/// Doubts: a chosen alpha of at least seven median edges of the boundary; a hull solid; about the mesh alone, more than
-/// half of the points inside.
+/// left out; separate solids that were joined; a repaired or hull solid; and an ambiguous choice: points inside, or a
+/// chosen alpha far above alpha_cover or the boundary's edges.
+/// Doubts, about the mesh only, because sculpt may still improve the solid: more than half of the points inside; gaps
+/// that the surface spans, see doubt_about_gaps().
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
 
 }  // namespace scanmill

@@ -7,6 +7,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/geometry/mesh/spanned_gaps.hpp"
 #include "sculpt/sculptor.hpp"
 
 namespace scanmill {
@@ -109,6 +110,7 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
             "{} of {} cells had to be removed: the points fill the solid rather than sample its surface, or the "
             "solid is far too large for them; check the result before using it",
             result.removals.size(), cells_before));
+    if (std::string gaps = doubt_about_gaps(result.mesh); !gaps.empty()) context.doubt(std::move(gaps), "mesh");
 }
 
 void report(const SculptResult& result, std::size_t cells_before, Context& context) {

@@ -28,16 +28,13 @@ PointCloud with_point(const PointCloud& cloud, const Vec3& p) {
 
 TEST(AlphaSolidDoubts, SampledSphere_HasNone) { EXPECT_THAT(doubts_of(fibonacci_sphere(2000)), IsEmpty()); }
 
-TEST(AlphaSolidDoubts, PointFarFromTheSphere_MakesAlphaDoubtfulForAllOutputs) {
-    const std::vector<Doubt> doubts = doubts_of(with_point(fibonacci_sphere(2000), {3, 0.1, 0.2}));
+TEST(AlphaSolidDoubts, PointFarFromTheSphere_MakesTheSurfaceSpanGaps) {
+    const PointCloud far = with_point(fibonacci_sphere(2000), {3, 0.1, 0.2});
+    const std::vector<Doubt> doubts = doubts_of(far);
     ASSERT_EQ(doubts.size(), 1u);
-    EXPECT_THAT(doubts[0].text, HasSubstr("times the boundary's median edge"));
-    EXPECT_EQ(doubts[0].port, "");
-    EXPECT_THAT(doubts_of(with_point(fibonacci_sphere(2000), {3, 0.1, 0.2}), covering(99)), IsEmpty());
-}
-
-TEST(AlphaSolidDoubts, GivenAlpha_IsTheUsersChoice) {
-    EXPECT_THAT(doubts_of(fibonacci_sphere(2000), at_alpha(0.9)), IsEmpty());
+    EXPECT_THAT(doubts[0].text, HasSubstr("the surface spans gaps between the points"));
+    EXPECT_EQ(doubts[0].port, "mesh");
+    EXPECT_THAT(doubts_of(far, covering(99)), IsEmpty());
 }
 
 TEST(AlphaSolidDoubts, PointsThroughoutABall_AreADoubtAboutTheMesh) {

@@ -67,7 +67,7 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
         RunRecords records = RunRecords::append_to(file());
         const std::int64_t run = records.begin(some_start());
         records.add(run, {some_step(0), some_step(2)}, {});
-        CellRecord cell{"thinning", "a.ply", "alpha=1", "failed", {"time", 0, "what went wrong"}, 1.5, {0, 2}, {}};
+        CellRecord cell{"thinning", "a.ply", "alpha=1", "failed", {"time", 0, "what went wrong"}, 1.5, {0, 2}, {}, {"a: b"}};
         cell.outputs = {{"out/a.ply", "mesh", "ok", {{{"triangles", 12, Unit::count}}}}};
         records.add(run, {}, {cell});
         records.end(run, "failed", 2.5);
@@ -83,6 +83,7 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     EXPECT_EQ(runs[0].seconds, 2.5);
     EXPECT_THAT(runs[0].started, testing::MatchesRegex("....-..-..T..:..:..Z"));
     const RunDetails run = records.run(runs[0].id);
+    EXPECT_THAT(run.cells[0].doubts, ElementsAre("a: b"));
     EXPECT_EQ(run.start.seed, ~std::uint64_t(0));
     EXPECT_THAT(run.start.arguments, ElementsAre("scanmill", "run", "a b"));
     EXPECT_EQ(run.start.machine, "a box");
