@@ -183,7 +183,7 @@ TEST_F(Records, OfANewerScanmill_AreLeftAlone) {
     SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
     for (const bool append : {false, true})
         EXPECT_THAT(sentence_of([&] { append ? RunRecords::append_to(file()) : RunRecords::read(file()); }),
-                    HasSubstr("tables are of version 99, this one reads up to 2"));
+                    HasSubstr("tables are of version 99, this one reads up to 3"));
 }
 
 TEST_F(Records, LinkOutOfTheFolder_IsRefusedAndNotFollowed) {
