@@ -25,6 +25,8 @@ using Method = OutlierRemovalParams::Method;
 constexpr u32 most_neighbours = 1000;
 /// Of the mean distance to the neighbours: a point hovers if its nearest position and their plane are farther.
 constexpr double hovering_share = 0.6;
+/// Largest surface variation of a flat suspect and its neighbours.
+constexpr double flat_variation = 0.0125;
 /// Mutual neighbours are connected up to this many limits.
 constexpr double reach = 2;
 /// Share of the points above which their removal is reported.
@@ -183,10 +185,11 @@ double statistical_limit(const Neighbourhoods& all, double factor, bool repeated
     }
 }
 
-enum class State : u8 { passed, suspect, hovering };
+/// Of the suspects, flat ones lie in the surface that their neighbours form, hovering ones above it.
+enum class State : u8 { passed, flat, suspect, hovering };
 
 /// Pre: at least one neighbour.
-bool hovers(const Neighbourhoods& all, u32 index, Array<Vec3>& offsets) {
+State state_of_suspect(const Neighbourhoods& all, u32 index, Array<Vec3>& offsets) {
     const Vec3& position = all.positions()[index];
     double sum = 0;
     offsets.clear();
@@ -195,12 +198,15 @@ bool hovers(const Neighbourhoods& all, u32 index, Array<Vec3>& offsets) {
         sum += std::sqrt(squared_distance(all.positions()[other], position));
     }
     const double least = hovering_share * sum / static_cast<double>(offsets.size());
-    if (!(std::sqrt(squared_distance(offsets.front(), Vec3::Zero())) > least)) return false;
-    const Scatter scatter = scatter_of(offsets);
-    return std::abs(scatter.normal.dot(scatter.centroid)) > least;
+    const Scatter others = scatter_of(offsets);
+    if (std::sqrt(squared_distance(offsets.front(), Vec3::Zero())) > least &&
+        std::abs(others.normal.dot(others.centroid)) > least)
+        return State::hovering;
+    offsets.push_back(Vec3::Zero());
+    return scatter_of(offsets).surface_variation <= flat_variation ? State::flat : State::suspect;
 }
 
-/// The state of every position. Hovering is decided only if `connected`.
+/// The state of every position. Suspects are told apart only if `connected`.
 Array<State> states_of(const Neighbourhoods& all, double limit, bool connected, Context& context) {
     Array<State> states(all.positions().size());
     for_each_chunk(context.threads(), states.size(), chunk_size, [&](std::size_t begin, std::size_t end) {
@@ -208,8 +214,8 @@ Array<State> states_of(const Neighbourhoods& all, double limit, bool connected, 
         Array<Vec3> offsets;
         for (std::size_t i = begin; i < end; ++i) {
             states[i] = all.distances[i] > limit ? State::suspect : State::passed;
-            if (connected && states[i] == State::suspect && all.each > 0 && hovers(all, static_cast<u32>(i), offsets))
-                states[i] = State::hovering;
+            if (connected && states[i] == State::suspect && all.each > 0)
+                states[i] = state_of_suspect(all, static_cast<u32>(i), offsets);
         }
     });
     return states;
@@ -227,8 +233,9 @@ void unite_neighbours(const Neighbourhoods& all, std::span<const State> states, 
             if (states[other] == State::hovering || sets.find(index) == sets.find(other)) continue;
             const double squared = squared_distance(positions[index], positions[other]);
             const bool both_passed = states[index] == State::passed && states[other] == State::passed;
+            const bool both_in_surface = states[index] <= State::flat && states[other] <= State::flat;
             if ((both_passed && squared <= near) ||
-                (squared <= far && std::ranges::find(all.of(other), index) != all.of(other).end()))
+                (squared <= far && (both_in_surface || std::ranges::find(all.of(other), index) != all.of(other).end())))
                 sets.unite(index, other);
         }
     }

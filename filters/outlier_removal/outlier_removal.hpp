@@ -64,17 +64,22 @@ struct OutlierRemovalResult {
 ///    `min_component` is above 0, mean and deviation are therefore computed again without the suspects until there is
 ///    no new suspect. Method::radius: the distance of a point is that to its `neighbours`-th nearest other point, the
 ///    limit is `radius`.
-/// 2. Hovering. A suspect hovers if both its nearest position and the plane that fits its `neighbours` nearest other
-///    positions best are farther away than 0.6 of its mean distance to these. Hovering points are connected to nothing.
-/// 3. Connection. Two positions are connected if neither is a suspect and they are at most max(limit, radius) apart, or
-///    if each is one of the `neighbours` nearest of the other and they are at most 2 limit apart. Of equally near
-///    positions the lower in order of x, then y, then z is nearer.
+/// 2. Surface. A suspect hovers if both its nearest position and the plane that fits its `neighbours` nearest other
+///    positions best are farther away than 0.6 of its mean distance to these. Another suspect is flat if the surface
+///    variation (see covariance.hpp) of these positions and itself is at most 0.0125: it lies in the surface that they
+///    form.
+/// 3. Connection. Hovering positions are connected to nothing. Two other positions are connected
+///    - if neither is a suspect and they are at most max(limit, radius) apart, or
+///    - if each is one of the `neighbours` nearest of the other and they are at most 2 limit apart, or
+///    - if both passed the test or are flat, one is among the nearest of the other, and they are at most 2 limit apart.
+///    Of equally near positions the lower in order of x, then y, then z is nearer.
 /// 4. Components with at most `neighbours` positions, or fewer than `min_component` of all, are removed. The first rule
 ///    never removes the largest component, so a scan with few points stays.
 ///
-/// 0.6 and 2 were chosen on 177 clean models and scans and 8 of them with outliers added, see README.md: with 0.5 tips
-/// of sharp corners hover; with 1 limit sparse parts of clean scans are removed, with 3 limits chains of outliers are
-/// kept.
+/// The numbers were chosen on 177 clean models and scans and 8 of them with outliers added, see README.md. Hovering:
+/// with 0.5 instead of 0.6 tips of sharp corners hover. Flat: with 0.01 single points of sparse regions are lost, with
+/// 0.016 more outliers stay in uneven scans. Connection: with 1 limit instead of 2 sparse parts of clean scans are
+/// lost, with 3 chains of outliers stay.
 ///
 /// Throws Error for an empty cloud, more than 2^32 - 1 points, a NaN or infinite coordinate, a parameter out of range,
 /// and when every point is an outlier. Warns when more than 10 % of the points are outliers.

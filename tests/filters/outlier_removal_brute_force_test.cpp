@@ -69,7 +69,7 @@ std::vector<bool> outliers_of(const PointCloud& cloud, const OutlierRemovalParam
     for (const auto& [position, suspect] : suspects) positions.push_back(position), is_suspect.push_back(suspect);
     const std::size_t size = positions.size();
     std::vector<std::vector<std::size_t>> nearest(size);
-    std::vector<bool> hovers(size, false);
+    std::vector<bool> hovers(size, false), in_surface(size);
     for (std::size_t i = 0; i < size; ++i) {
         for (std::size_t j = 0; j < size; ++j)
             if (j != i) nearest[i].push_back(j);
@@ -78,6 +78,7 @@ std::vector<bool> outliers_of(const PointCloud& cloud, const OutlierRemovalParam
             return (d.x() * d.x() + d.y() * d.y()) + d.z() * d.z();
         });
         nearest[i].resize(std::min<std::size_t>(nearest[i].size(), params.neighbours));
+        in_surface[i] = !is_suspect[i];
         if (!is_suspect[i] || nearest[i].empty()) continue;
         std::vector<Vec3> around;
         double mean = 0;
@@ -87,6 +88,8 @@ std::vector<bool> outliers_of(const PointCloud& cloud, const OutlierRemovalParam
         }
         const Scatter scatter = scatter_of(around);
         hovers[i] = around.front().norm() > 0.6 * mean && std::abs(scatter.normal.dot(scatter.centroid)) > 0.6 * mean;
+        around.push_back(Vec3::Zero());
+        in_surface[i] = !hovers[i] && scatter_of(around).surface_variation <= 0.0125;
     }
     const auto among = [&](std::size_t i, std::size_t j) {
         return std::ranges::find(nearest[j], i) != nearest[j].end();
@@ -95,7 +98,8 @@ std::vector<bool> outliers_of(const PointCloud& cloud, const OutlierRemovalParam
         if (hovers[i] || hovers[j]) return false;
         const double d = distance(positions[i], positions[j]);
         if (!is_suspect[i] && !is_suspect[j] && d <= std::max(limit, params.radius.value())) return true;
-        return d <= 2 * limit && among(i, j) && among(j, i);
+        if (d > 2 * limit) return false;
+        return (among(i, j) && among(j, i)) || (in_surface[i] && in_surface[j] && (among(i, j) || among(j, i)));
     };
     std::vector<std::size_t> component(size, size), sizes;
     for (std::size_t seed = 0; seed < size; ++seed) {

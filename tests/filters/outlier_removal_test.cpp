@@ -131,6 +131,20 @@ TEST(OutlierRemoval, PointAboveAPlane_Hovers) {
     EXPECT_EQ(clean(cloud_of_points(points)).removed, 0u);
 }
 
+TEST(OutlierRemoval, LonePointInAFlatRegion_IsAPartOfTheSurface) {
+    // A square without its middle but for one point, as the vertices of a CAD model: nobody's neighbour, but in the
+    // plane.
+    std::vector<Vec3> points;
+    for (const Vec3& p : square_grid(41, 1))
+        if ((p - Vec3(20, 20, 0)).cwiseAbs().maxCoeff() > 2.5) points.push_back(p);
+    points.emplace_back(20, 20, 0);
+    const OutlierRemovalResult flat = clean(cloud_of_points(points));
+    EXPECT_GT(flat.suspects, 0u);
+    EXPECT_EQ(flat.removed, 0u);
+    points.back().z() = 2;
+    EXPECT_EQ(clean(cloud_of_points(points)).removed, 1u);
+}
+
 TEST(OutlierRemoval, ManyPointsAtOneDistantPosition_AreOnePosition) {
     // Scanners write (0, 0, 0) where they saw nothing.
     std::vector<Vec3> points = square_grid(30, 1, Vec3(100, 100, 0));
