@@ -68,6 +68,56 @@ def merge():
     return picture
 
 
+def outlier_removal():
+    """The filter's method in the plane, with a line in place of the plane and six neighbours."""
+    picture = Picture(9, 4.4)
+    source = random.Random(3)
+    neighbours, factor = 6, 3
+    height = lambda x: 1.5 + 0.9 * math.sin(x)
+    points = [(x, height(x)) for x in (0.4 + 0.075 * i + source.uniform(-0.02, 0.02) for i in range(100))]
+    points += [(x, height(x)) for x in (8.05, 8.28, 8.5, 8.72)]  # sparse, but connected
+    points += [(1.55, 2.72), (4.75, 0.98), (6.6, 2.25)]  # hovering
+    points += [(2.4, 3.9), (3.6, 3.3), (5.2, 3.8), (5.35, 3.72), (7.9, 3.6), (0.7, 0.5), (3.2, 0.6), (6.1, 0.35)]
+    nearest = [sorted(range(len(points)), key=lambda j: math.dist(points[j], p))[1 : neighbours + 1] for p in points]
+    mean = [sum(math.dist(p, points[j]) for j in near) / neighbours for p, near in zip(points, nearest)]
+    passed = set(range(len(points)))
+    while True:
+        values = [mean[i] for i in passed]
+        average = sum(values) / len(values)
+        limit = average + factor * math.sqrt(sum((v - average) ** 2 for v in values) / (len(values) - 1))
+        left = {i for i in passed if mean[i] <= limit}
+        if left == passed:
+            break
+        passed = left
+
+    def hovers(i):
+        near = [points[j] for j in nearest[i]]
+        x, y = (sum(p[k] for p in near) / neighbours for k in (0, 1))
+        offsets = [(p[0] - x, p[1] - y) for p in near]
+        xx, xy, yy = (sum(o[a] * o[b] for o in offsets) for a, b in ((0, 0), (0, 1), (1, 1)))
+        turn = math.atan2(2 * xy, xx - yy) / 2
+        away = abs((points[i][1] - y) * math.cos(turn) - (points[i][0] - x) * math.sin(turn))
+        return min(away, math.dist(points[i], near[0])) > 0.6 * mean[i]
+
+    hovering = {i for i in range(len(points)) if i not in passed and hovers(i)}
+    group = list(range(len(points)))
+
+    def find(i):
+        return i if group[i] == i else find(group[i])
+
+    for i, near in enumerate(nearest):
+        for j in near:
+            distance = math.dist(points[i], points[j])
+            mutual = i in nearest[j] and distance <= 2 * limit
+            if not {i, j} & hovering and (mutual or ({i, j} <= passed and distance <= limit)):
+                group[find(i)] = find(j)
+    sizes = [sum(find(j) == find(i) for j in range(len(points))) for i in range(len(points))]
+    for i, p in enumerate(points):
+        outlier = sizes[i] <= neighbours
+        picture.dot(p, BRIGHT if outlier else INK, 4, hollow=outlier)
+    return picture
+
+
 def virtual_scan():
     picture = Picture(9, 4.4)
     centre, radius = (5.6, 2.2), 1.5

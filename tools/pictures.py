@@ -15,6 +15,7 @@ def main():
         ("features", surfaces.features),
         ("measure", surfaces.measure),
         ("merge", clouds.merge),
+        ("outlier_removal", clouds.outlier_removal),
         ("region_grow", surfaces.region_grow),
         ("sculpt", surfaces.sculpt),
         ("virtual_scan", clouds.virtual_scan),

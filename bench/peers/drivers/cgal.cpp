@@ -22,6 +22,7 @@ int main() {
                    {"fixed-alpha-shape", of_input(fixed_alpha_shape)},
                    {"optimal-alpha-shape", of_input(optimal_alpha_shape)},
                    {"advancing-front", of_input(advancing_front)},
+                   {"remove-outliers", of_input(remove_outliers)},
                    {"distances", [&](const Json& request) { return distances(input, points, request); }}},
                   {{"CGAL", CGAL_VERSION_STR}});
 }

@@ -18,5 +18,7 @@ Json optimal_alpha_shape(const RawInput& input, const Json& request);
 Json advancing_front(const RawInput& input, const Json& request);
 /// Distances from all points to `mesh`, by an AABB_tree of its triangles.
 Json distances(const RawInput& mesh, const RawInput& points, const Json& request);
+/// remove_outliers, which removes the "percent" with the largest mean squared distances.
+Json remove_outliers(const RawInput& input, const Json& request);
 
 }  // namespace peers

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// PCL's grids, normals and greedy triangulation, as in its tutorials: points of 16 bytes in single precision. All but
-/// the normals run in one thread.
+/// PCL's grids, outlier removal, normals and greedy triangulation, as in its tutorials: points of 16 bytes in single
+/// precision. All but the normals run in one thread.
 
 #include <pcl/features/normal_3d.h>
 #include <pcl/features/normal_3d_omp.h>
+#include <pcl/filters/statistical_outlier_removal.h>
 #include <pcl/filters/uniform_sampling.h>
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/pcl_config.h>
@@ -50,6 +51,19 @@ Json average(const Cloud::Ptr& cloud, const Json& request) {
         pcl::VoxelGrid<pcl::PointXYZ> filter;
         filter.setInputCloud(cloud);
         filter.setLeafSize(size, size, size);
+        filter.filter(left);
+    });
+    return {{"seconds", seconds}, {"kept", left.size()}};
+}
+
+/// Removes the points whose mean distance to their nearest points is above the mean plus some standard deviations.
+Json remove_outliers(const Cloud::Ptr& cloud, const Json& request) {
+    Cloud left;
+    const double seconds = peers::seconds_of([&] {
+        pcl::StatisticalOutlierRemoval<pcl::PointXYZ> filter;
+        filter.setInputCloud(cloud);
+        filter.setMeanK(request.at("neighbours").get<int>());
+        filter.setStddevMulThresh(request.at("factor").get<double>());
         filter.filter(left);
     });
     return {{"seconds", seconds}, {"kept", left.size()}};
@@ -114,6 +128,7 @@ int main() {
     return peers::answer({{"load", [&](const Json& request) { return load(*cloud, request); }},
                           {"uniform-sampling", [&](const Json& request) { return sample_uniformly(cloud, request); }},
                           {"voxel-grid", [&](const Json& request) { return average(cloud, request); }},
+                          {"remove-outliers", [&](const Json& request) { return remove_outliers(cloud, request); }},
                           {"normals", [&](const Json& request) { return estimate_normals(cloud, request); }},
                           {"greedy-projection", [&](const Json& request) { return project_greedily(cloud, request); }}},
                          {{"PCL", PCL_VERSION_PRETTY}});

@@ -10,6 +10,7 @@
 #include "answer.hpp"
 #include "delaunay/delaunay.hpp"
 #include "measure/sampled_distances.hpp"
+#include "outlier_removal/outlier_removal.hpp"
 #include "region_grow/region_grow.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/fit/local_surface.hpp"
@@ -81,6 +82,18 @@ Json thin(Held& held, const Json& request) {
     Context context = context_for(request);
     VoxelThinResult result;
     const double seconds = peers::seconds_of([&] { result = voxel_thin(held.cloud, params, context); });
+    return {{"seconds", seconds}, {"kept", result.points.size()}};
+}
+
+/// "min_component" is in percent; with 0 the mean distances alone decide, as in PCL.
+Json remove_outliers(Held& held, const Json& request) {
+    OutlierRemovalParams params;
+    params.neighbours = request.at("neighbours").get<u32>();
+    params.factor = request.at("factor").get<double>();
+    params.min_component = Ratio::percent(request.at("min_component").get<double>());
+    Context context = context_for(request);
+    OutlierRemovalResult result;
+    const double seconds = peers::seconds_of([&] { result = outlier_removal(held.cloud, params, context); });
     return {{"seconds", seconds}, {"kept", result.points.size()}};
 }
 
@@ -195,6 +208,7 @@ int main() {
                           {"read", with_held(read)},
                           {"write", with_held(write)},
                           {"voxel-thin", with_held(thin)},
+                          {"remove-outliers", with_held(remove_outliers)},
                           {"curvature", with_held(curvature)},
                           {"delaunay", with_held(tetrahedralise)},
                           {"alpha-solid", with_held(solid)},
