@@ -356,7 +356,7 @@ OutlierRemovalResult outlier_removal(const PointCloud& cloud, const OutlierRemov
     result.removed = cloud.size() - result.kept.size();
     require_kept(result.kept.size(), cloud.size(), params, result.limit, largest, positions);
     if (static_cast<double>(result.removed) > remarkable_share * static_cast<double>(cloud.size()))
-        context.warn(fmt::format(
+        context.doubt(fmt::format(
             "{} of {} points are outliers ({:.0f} %); if they belong to the object, raise factor or radius, or lower "
             "min-component",
             result.removed, cloud.size(),

@@ -35,7 +35,7 @@ SCANMILL_FILTER() {
                "suspects instead, as PCL does.",
                at_least(0), at_most(1))
         .param("mark", &P::mark, "Keeps all points and adds the column `outlier`.")
-        .metric("kept", Unit::count, "Points that are not outliers.", headline)
+        .metric("kept", Unit::count, "Points that are not outliers.")
         .metric("removed", Unit::count, "Points that are outliers, also if they are only marked.", headline)
         .metric("suspects", Unit::count, "Points that failed the test, removed or not.")
         .metric("limit", Unit::length, "Largest distance that passes the test.")

@@ -26,7 +26,7 @@ SCANMILL_FILTER() {
                at_least(0))
         .param("lookahead", &P::lookahead,
                "Whether the gain of an exposing step includes the best smoothing step after it.")
-        .metric("removed", Unit::count, "Cells removed.", headline)
+        .metric("removed", Unit::count, "Cells removed.")
         .metric("removed-exposing", Unit::count, "Of these, cells whose removal brought a point to the boundary.")
         .metric("removed-smoothing", Unit::count,
                 "Of these, cells whose removal flipped an edge to decrease the bending, alone or in a chain.")
@@ -35,7 +35,7 @@ SCANMILL_FILTER() {
         .metric("removed-share", Unit::ratio, "Removed cells divided by the cells inside before.")
         .metric("volume-removed", Unit::volume, "Volume of the removed cells.")
         .metric("bending-before", Unit::angle, "Sum over the boundary's edges of the angle between normals, before.")
-        .metric("bending-after", Unit::angle, "The same sum afterwards.", headline)
+        .metric("bending-after", Unit::angle, "The same sum afterwards.")
         .metric("interior-points", Unit::count, "Points left inside the solid.", headline)
         .metric(
             "interior-blocked", Unit::count,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "filters/outlier_removal_cases.hpp"
+#include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 
@@ -189,7 +190,7 @@ TEST(OutlierRemoval, Metrics_AreThoseOfTheResult) {
     EXPECT_EQ(metric("hovering"), static_cast<double>(result.hovering));
     EXPECT_EQ(metric("components"), 1);
     EXPECT_EQ(metric("limit"), result.limit);
-    EXPECT_THAT(context.warnings(), IsEmpty());
+    EXPECT_THAT(sentences_of(context), IsEmpty());
 }
 
 TEST(OutlierRemoval, MoreThanATenthRemoved_IsReported) {
@@ -198,7 +199,7 @@ TEST(OutlierRemoval, MoreThanATenthRemoved_IsReported) {
     for (int i = 1; i <= 20; ++i) points.emplace_back(0, 0, 1000 * i);
     Context context;
     EXPECT_EQ(outlier_removal(cloud_of_points(points), by_radius(4, 2, Ratio::percent(0.1)), context).removed, 20u);
-    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("20 of 120 points are outliers (17 %)")));
+    EXPECT_THAT(doubts_of(context), ElementsAre(HasSubstr("20 of 120 points are outliers (17 %)")));
 }
 
 TEST(OutlierRemoval, Cancelled_Ends) {

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Raw scans through the shipped workflows: outliers do no harm, and what is not the object is doubtful.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "scanmill/base/random.hpp"
+#include "scanmill/formats/files.hpp"
+#include "support/program.hpp"
+#include "support/real_data.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+std::string shipped(const std::string& name) { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/" + name; }
+
+class RawScans : public testing::Test {
+protected:
+    /// The report's cells. `arguments` follow the workflow.
+    json cells_of(const std::string& workflow, std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"run", workflow});
+        arguments.insert(arguments.end(), {"-o", "out", "--json", "--quiet"});
+        const ProgramResult ran = scanmill_program(arguments, {.folder = folder_.path()});
+        EXPECT_EQ(ran.exit_code, 0) << ran.err;
+        return json::parse(ran.out).at("cells");
+    }
+    json metrics_of(const std::string& mesh, const fs::path& truth, const std::string& parameter) {
+        const ProgramResult measured =
+            scanmill_program({"measure", mesh, truth.string(), "--set", "self-intersections=false", "--set",
+                              "same-frame=true", "--set", parameter, "--json"},
+                             {.folder = folder_.path()});
+        EXPECT_EQ(measured.exit_code, 0) << measured.err;
+        return json::parse(measured.out).at("metrics");
+    }
+    /// NAME.ply: a virtual scan of the mesh from 20 sides.
+    void scan(const fs::path& mesh, const std::string& name, const std::string& resolution, const std::string& noise) {
+        folder_.write("scan.yaml",
+                      fmt::format("scanmill: 1\ninputs: {{model: mesh}}\nsteps:\n  - virtual-scan: {{views: [20], "
+                                  "resolution: {} %diag, noise: {} %diag}}\noutputs: {{{}.ply: virtual-scan}}\n",
+                                  resolution, noise, name));
+        const ProgramResult made = scanmill_program({"run", "scan.yaml", mesh.string(), "-o", "."}, options());
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+    }
+    void merge_views(const std::vector<std::string>& views, const fs::path& poses) {
+        std::vector<std::string> arguments{"run", shipped("merge-views.yaml")};
+        arguments.insert(arguments.end(), views.begin(), views.end());
+        arguments.insert(arguments.end(), {"--set", "poses=" + poses.string(), "-o", "."});
+        const ProgramResult merged = scanmill_program(arguments, options());
+        ASSERT_EQ(merged.exit_code, 0) << merged.err;
+    }
+    ProgramOptions options() const { return {.folder = folder_.path()}; }
+
+    TemporaryFolder folder_;
+};
+
+class ScanWithOutliers : public RawScans, public testing::WithParamInterface<const char*> {
+protected:
+    /// NAME.csv: the positions of scan.ply with outliers, `near` of them per point uniformly in twice the box, `far`
+    /// per point in a hundred times the box.
+    void add_outliers(const std::string& name, double near, double far) {
+        const auto cloud = read_points(folder_ / "scan.ply");
+        BoundingBox box = bounding_box(cloud->positions.span());
+        std::ofstream file(folder_ / (name + ".csv"));
+        const auto write = [&](const Vec3& p) { file << fmt::format("{},{},{}\n", p.x(), p.y(), p.z()); };
+        for (const Vec3& p : cloud->positions) write(cloud->frame.origin + p);
+        Random random(1);
+        const Vec3 middle = (box.low + box.high) / 2, half = (box.high - box.low) / 2;
+        for (const auto& [share, times] : {std::pair(near, 2.0), std::pair(far, 100.0)})
+            for (double i = 0; i < share * static_cast<double>(cloud->size()); ++i) {
+                Vec3 p;
+                for (int axis = 0; axis < 3; ++axis)
+                    p[axis] = middle[axis] + times * random.uniform(-half[axis], half[axis]);
+                write(cloud->frame.origin + p);
+            }
+    }
+};
+
+TEST_P(ScanWithOutliers, ThroughTheQuickstart_HasNearlyTheErrorOfTheCleanScan) {
+    SCANMILL_REAL_SCAN(model, fetched_data, GetParam());
+    ASSERT_NO_FATAL_FAILURE(scan(model, "scan", "0.6", "0.02"));
+    add_outliers("clean", 0, 0);
+    add_outliers("near", 0.05, 0);
+    add_outliers("far", 0, 0.001);
+    add_outliers("both", 0.05, 0.001);
+    cells_of(shipped("quickstart.yaml"), {"clean.csv", "near.csv", "far.csv", "both.csv"});
+    const auto error = [&](const std::string& name) {
+        return metrics_of("out/" + name + ".stl", model, "samples=50000").at("chamfer").get<double>();
+    };
+    const double clean = error("clean");
+    for (const char* name : {"near", "far", "both"}) EXPECT_LT(error(name), 1.1 * clean) << name;
+}
+INSTANTIATE_TEST_SUITE_P(Models, ScanWithOutliers,
+                         testing::Values("meshes/armadillo.off", "meshes/hand.off", "meshes/fandisk_large.off",
+                                         "meshes/camel.off", "meshes/anchor_dense.off"));
+
+TEST_F(RawScans, TenViewsOfTheBunny_GiveTheBunny) {
+    SCANMILL_REAL_SCAN(merged, shared_data, "1-bunny/bun_zipper.ply");
+    SCANMILL_REAL_SCAN(poses, shared_data, "1-bunny/raw/bun.conf");
+    std::vector<std::string> views;
+    for (const auto& file : fs::directory_iterator(poses.parent_path()))
+        if (file.path().extension() == ".ply") views.push_back(file.path().string());
+    ASSERT_EQ(views.size(), 10u);
+    ASSERT_NO_FATAL_FAILURE(merge_views(views, poses));
+    const json cell = cells_of(shipped("quickstart.yaml"), {"merge-views.ply"}).at(0);
+    EXPECT_EQ(cell.at("outcome"), "ok");
+    EXPECT_EQ(cell.at("outputs").at(0).at("properties").at("genus"), 0);
+    EXPECT_GT(metrics_of("out/merge-views.stl", merged, "thresholds=0.5 %diag").at("f-score").get<double>(), 0.94);
+}
+
+TEST_F(RawScans, TwelveViewsOfTheBuddha_GiveASurfaceThroughTheOtherThree_ButItSpansGaps) {
+    SCANMILL_REAL_SCAN(poses, shared_data, "5-raw/happy_stand/happyStandRight.conf");
+    std::vector<std::string> views, others;
+    for (const auto& file : fs::directory_iterator(poses.parent_path()))
+        if (file.path().extension() == ".ply") {
+            const std::string name = file.path().stem();
+            const bool is_other = name.ends_with("_24") || name.ends_with("_144") || name.ends_with("_264");
+            (is_other ? others : views).push_back(file.path().string());
+        }
+    ASSERT_EQ(views.size(), 12u);
+    ASSERT_NO_FATAL_FAILURE(merge_views(others, poses));
+    fs::rename(folder_ / "merge-views.ply", folder_ / "others.ply");
+    ASSERT_NO_FATAL_FAILURE(merge_views(views, poses));
+    const json cell = cells_of(shipped("quickstart.yaml"), {"merge-views.ply"}).at(0);
+    EXPECT_EQ(cell.at("outcome"), "doubtful");
+    EXPECT_THAT(cell.at("doubts").at(0).get<std::string>(), HasSubstr("the surface spans gaps between the points"));
+    EXPECT_EQ(cell.at("outputs").at(0).at("properties").at("closed"), true);
+    EXPECT_GT(
+        metrics_of("out/merge-views.stl", folder_ / "others.ply", "thresholds=0.5 %diag").at("recall").get<double>(),
+        0.98);
+}
+
+/// Without outlier-removal and sculpt, as before they existed.
+TEST_F(RawScans, BlobOfTheBuddha_IsDoubtful) {
+    SCANMILL_REAL_SCAN(buddha, shared_data, "8-derived/happy_stand_merged_1M.ply");
+    folder_.write(
+        "blob.yaml",
+        "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: 0.5 %diag}\n  - delaunay:\n  - "
+        "alpha-solid:\n    expect: {closed: true}\noutputs: {'{scan}.stl': alpha-solid}\n");
+    const json cell = cells_of("blob.yaml", {buddha.string()}).at(0);
+    EXPECT_EQ(cell.at("outcome"), "doubtful");
+    EXPECT_THAT(cell.at("doubts"), Contains(HasSubstr("points lie inside the solid")));
+    EXPECT_THAT(cell.at("doubts"), Contains(HasSubstr("the surface spans gaps between the points")));
+}
+
+TEST_F(RawScans, NoiseThatMakesCreases_IsDoubtful) {
+    for (const char* name : {"meshes/fandisk_large.off", "meshes/hand.off"}) {
+        SCOPED_TRACE(name);
+        SCANMILL_REAL_SCAN(model, fetched_data, name);
+        ASSERT_NO_FATAL_FAILURE(scan(model, "clean", "0.3", "0"));
+        ASSERT_NO_FATAL_FAILURE(scan(model, "noisy", "0.3", "0.05"));
+        const json cells = cells_of(shipped("wang-2006.yaml"), {"clean.ply", "noisy.ply"});
+        EXPECT_EQ(cells.at(0).at("outcome"), "ok") << cells.at(0);
+        EXPECT_EQ(cells.at(1).at("outcome"), "doubtful");
+        EXPECT_THAT(cells.at(1).at("doubts"), Contains(HasSubstr("the surface is rough")));
+    }
+}
+
+}  // namespace
+}  // namespace scanmill::test
