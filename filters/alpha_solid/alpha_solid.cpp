@@ -110,6 +110,8 @@ void set_metrics(const AlphaSolidResult& result, Context& context) {
 constexpr double ambiguous_factor = 1.1;
 /// On clean scans alpha is near the length of the boundary's edges; this multiple spans a gap or includes outliers.
 constexpr double ambiguous_edges = 3;
+/// With grooves complete scans reach 5.3 (the merged bunny, across the holes of its base); blobs begin at 9.
+constexpr double doubtful_edges = 7;
 
 std::string_view unit_of(const AlphaSolidResult& result) { return symbol(result.tets.frame.unit); }
 
@@ -186,8 +188,8 @@ double radius_in_edges(const AlphaSolidResult& result) {
     return *middle;
 }
 
-/// Signs that a chosen alpha is too large.
-std::vector<std::string> signs_of_large_alpha(const AlphaSolidResult& result) {
+/// Signs that a chosen alpha is too large. `edges`: radius_in_edges().
+std::vector<std::string> signs_of_large_alpha(const AlphaSolidResult& result, double edges) {
     const std::string_view unit = unit_of(result);
     std::vector<std::string> signs;
     if (result.alpha >= ambiguous_factor * result.alpha_cover)
@@ -195,7 +197,7 @@ std::vector<std::string> signs_of_large_alpha(const AlphaSolidResult& result) {
             fmt::format("alpha {:.4g} {} is {:.3g} times the {:.4g} {} that would cover the points, because the "
                         "smaller solids are not valid",
                         result.alpha, unit, result.alpha / result.alpha_cover, result.alpha_cover, unit));
-    if (const double edges = radius_in_edges(result); edges >= ambiguous_edges)
+    if (edges >= ambiguous_edges)
         signs.push_back(
             fmt::format("alpha {:.4g} {} is {:.3g} times the boundary's median edge{}, to span gaps or to reach "
                         "distant points",
@@ -204,9 +206,9 @@ std::vector<std::string> signs_of_large_alpha(const AlphaSolidResult& result) {
 }
 
 /// Reports that the points do not determine the solid; empty when they do.
-std::string ambiguity_text(const AlphaSolidResult& result) {
+std::string ambiguity_text(const AlphaSolidResult& result, double edges) {
     std::vector<std::string> signs;
-    if (result.choice != AlphaChoice::given) signs = signs_of_large_alpha(result);
+    if (result.choice != AlphaChoice::given) signs = signs_of_large_alpha(result, edges);
     if (!result.interior_points.empty())
         signs.push_back(fmt::format("{} of {} points {} inside the solid instead of on its boundary",
                                     result.interior_points.size(), result.tets.positions.size(),
@@ -258,8 +260,10 @@ void warn_about(const AlphaSolidResult& result, const AlphaSolidParams& params, 
             result.alpha, unit_of(result), separate->count, separate->alpha, unit_of(result)));
     if (result.choice == AlphaChoice::repaired || result.choice == AlphaChoice::hull)
         context.warn(repair_text(result, params));
-    const std::string text = ambiguity_text(result);
-    if (2 * result.interior_points.size() > result.tets.positions.size())
+    const double edges = radius_in_edges(result);
+    const std::string text = ambiguity_text(result, edges);
+    const bool is_far_too_large = edges >= doubtful_edges && result.choice != AlphaChoice::given;
+    if (is_far_too_large || 2 * result.interior_points.size() > result.tets.positions.size())
         context.doubt(text, "mesh");
     else if (!text.empty())
         context.warn(text);

@@ -120,8 +120,8 @@ struct RegionGrowResult {
 ///
 /// Metrics: see plugin.cpp. Warns when most points are too dense for their `bin-size`, about normals with mixed signs,
 /// and about what find_features() could not decide.
-/// Doubts: more than half a percent of the points unused, more than one crease per 20 edges, normals that end the
-/// surface, loops at thin parts.
+/// Doubts: more than 2 % of the points unused, more than one crease per 20 of more than 10,000 edges, normals that end
+/// the surface, loops at thin parts.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill

@@ -28,11 +28,11 @@ PointCloud with_point(const PointCloud& cloud, const Vec3& p) {
 
 TEST(AlphaSolidDoubts, SampledSphere_HasNone) { EXPECT_THAT(doubts_of(fibonacci_sphere(2000)), IsEmpty()); }
 
-TEST(AlphaSolidDoubts, PointFarFromTheSphere_MakesTheSurfaceSpanGaps) {
+TEST(AlphaSolidDoubts, PointFarFromTheSphere_MakesAlphaTooLarge) {
     const PointCloud far = with_point(fibonacci_sphere(2000), {3, 0.1, 0.2});
     const std::vector<Doubt> doubts = doubts_of(far);
     ASSERT_EQ(doubts.size(), 1u);
-    EXPECT_THAT(doubts[0].text, HasSubstr("the surface spans gaps between the points"));
+    EXPECT_THAT(doubts[0].text, HasSubstr("times the boundary's median edge, to span gaps or to reach distant points"));
     EXPECT_EQ(doubts[0].port, "mesh");
     EXPECT_THAT(doubts_of(far, covering(99)), IsEmpty());
 }

@@ -76,8 +76,8 @@ TEST_P(AlphaSolidOfGroovedModel, HasTheModelsGenusAndReportsThePointsInside) {
     EXPECT_GT(inside, 0);
     EXPECT_EQ(static_cast<long>(properties.triangles), 2 * points - 4 - 2 * inside + 4 * GetParam().genus);
     EXPECT_EQ(properties.genus, GetParam().genus);
-    ASSERT_EQ(result.warnings.size(), 1u);
-    EXPECT_THAT(result.warnings[0], testing::HasSubstr(fmt::format("{} of {} points lie inside", inside, points)));
+    EXPECT_THAT(result.warnings,
+                testing::Contains(testing::HasSubstr(fmt::format("{} of {} points lie inside", inside, points))));
 }
 INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfGroovedModel, testing::ValuesIn(grooved_models));
 
@@ -87,8 +87,7 @@ class AlphaSolidOfSparseModel : public AlphaSolidOfModel {};
 TEST_P(AlphaSolidOfSparseModel, HasAnotherGenusWithAWarning) {
     expect_promised(result.solid, properties);
     EXPECT_NE(properties.genus, GetParam().genus);
-    ASSERT_EQ(result.warnings.size(), 1u);
-    EXPECT_THAT(result.warnings[0], testing::HasSubstr("what is narrower than 2 alpha may be filled"));
+    EXPECT_THAT(result.warnings, testing::Contains(testing::HasSubstr("what is narrower than 2 alpha may be filled")));
 }
 INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfSparseModel,
                          testing::Values(Model{"meshes/anchor.off", 4}, Model{"meshes/cheese.off", 133},
@@ -105,8 +104,7 @@ TEST_P(AlphaSolidOfOpenModel, IsASolidWithADoubtfulAlpha) {
     if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().file;
     const Reconstruction result = reconstructed(*path);
     expect_promised(result.solid, topology(result.solid.mesh));
-    ASSERT_EQ(result.warnings.size(), 1u);
-    EXPECT_THAT(result.warnings[0], testing::HasSubstr("times the boundary's median edge"));
+    EXPECT_THAT(result.warnings, testing::Contains(testing::HasSubstr("times the boundary's median edge")));
 }
 INSTANTIATE_TEST_SUITE_P(Models, AlphaSolidOfOpenModel,
                          testing::Values(Model{"meshes/patch-20.off", 0}, Model{"points_3/half.xyz", 0},

@@ -23,10 +23,10 @@ std::vector<std::string> doubts_about(const PointCloud& cloud) {
 }
 
 TEST(RegionGrowDoubts, RoughGrid_IsDoubtful_AndAFlatOneIsNot) {
-    EXPECT_THAT(doubts_about(grid(40, 40)), IsEmpty());
+    EXPECT_THAT(doubts_about(grid(60, 60)), IsEmpty());
     Random random(1);
     std::vector<Vec3> points;
-    for (const Vec3& p : grid(40, 40).positions) points.push_back(p + Vec3(0, 0, random.uniform(-0.5, 0.5)));
+    for (const Vec3& p : grid(60, 60).positions) points.push_back(p + Vec3(0, 0, random.uniform(-0.5, 0.5)));
     EXPECT_THAT(doubts_about(cloud_from(points)), ElementsAre(HasSubstr("the surface is rough at the distance of")));
 }
 

@@ -92,7 +92,6 @@ TEST(RegionGrow_ThinLoops, AreReportedAndOthersAreNot) {
     const auto warnings = [](const PointCloud& cloud, const RegionGrowParams& params = {}) {
         Context context;
         EXPECT_GE(region_grow(cloud, params, context).loops, 2u);
-        EXPECT_TRUE(context.warnings().empty());
         return doubts_of(context);
     };
     EXPECT_THAT(warnings(plate(2.9)), testing::Contains(testing::HasSubstr(

@@ -21,10 +21,6 @@ protected:
         return scanmill(arguments);
     }
 };
-arguments.insert(arguments.end(), more.begin(), more.end());
-return scanmill(arguments);
-}
-};
 
 TEST_F(DoubtsCommand, Table_HasTheOutcome_AndStderrTheReason) {
     const ProgramResult ran = run("doubt");
