@@ -191,7 +191,7 @@ TEST(Command, CheckPlan_ShowsTheWiringInThreeForms) {
                 AllOf(HasSubstr("points <- scan"), HasSubstr("tets <- delaunay"), HasSubstr("{scan}.stl <- surface")));
     EXPECT_THAT(scanmill_program({"check", "--plan", "--format", "dot", quickstart()}).out, HasSubstr("digraph"));
     const json plan = json::parse(scanmill_program({"check", "--plan", "--format", "json", quickstart()}).out);
-    EXPECT_EQ(plan.at("files").at(0).at("plan").at("steps").size(), 3u);
+    EXPECT_EQ(plan.at("files").at(0).at("plan").at("steps").size(), 5u);
 }
 
 TEST(Command, Info_TellsOfEveryFileAndFailsOnlyForTheBad) {
