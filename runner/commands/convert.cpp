@@ -10,6 +10,7 @@
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/io/memory.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill::runner {
@@ -47,6 +48,7 @@ int convert(const Options& options) {
     try {
         if (std::error_code absent; std::filesystem::equivalent(options.from, options.to, absent))
             throw Error("'{}' is the input; the output must not replace it", options.to);
+        require_memory_to_read(options.from, available_memory());
         Value value = read_file(options.from, read).value;
         if (options.drop_invalid) value = without_invalid(value);
         if (options.to_unit != LengthUnit::unknown) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -86,6 +87,7 @@ private:
     std::size_t painted_ = 0;  // lines on the terminal
     std::chrono::steady_clock::time_point begin_, last_;
     std::mutex mutex_;
+    std::set<std::string> read_;  ///< warnings of readers that were printed
 };
 
 }  // namespace scanmill::runner

@@ -426,7 +426,7 @@ private:
         if (task.write > 0) {
             const Write& write = writes_[task.write - 1];
             job.work = WriteWork{write.file, made_how(graph_, write.cells, write.source.node, report_.nodes),
-                                 input_from(write.source, "")};
+                                 added_columns(graph_, write.source.node), input_from(write.source, "")};
             job.frame = fmt::format("while writing '{}'", write.file.string());
             job.scan = graph_.scan_names[graph_.cells[write.cells.front()].scan];
             return job;
