@@ -11,16 +11,17 @@ namespace scanmill {
 
 namespace {
 
-/// The shift of shift_for_floats() for a mesh that floats do not hold.
-Vec3 round_shift(const BoundingBox& world) {
+/// The multiples of the largest power of ten within the given number of diagonals that are nearest to the middle, on
+/// the axes that are far from zero. Zero for a box beyond the supported range.
+Vec3 round_shift(const BoundingBox& world, double diagonals) {
     constexpr double far = 16;  // diagonals from zero, as distant_origin()
     Vec3 shift = Vec3::Zero();
     const double diagonal = world.diagonal();
-    if (!(diagonal >= least_side && diagonal <= 2 * largest_side)) return shift;  // beyond the supported range
+    if (!(diagonal >= least_side && diagonal <= 2 * largest_side)) return shift;
     // The step is a power of ten or the reciprocal of one: both products with it are correctly rounded.
     double step = 1, parts = 1;
-    while (10 * step <= diagonal) step *= 10;
-    while (1 / parts > diagonal) parts *= 10;
+    while (10 * step <= diagonals * diagonal) step *= 10;
+    while (1 / parts > diagonals * diagonal) parts *= 10;
     for (int axis = 0; axis < 3; ++axis) {
         const double middle = 0.5 * world.low[axis] + 0.5 * world.high[axis];
         if (!(std::abs(middle) > far * diagonal)) continue;
@@ -88,8 +89,15 @@ Vec3 shift_for_floats(const TriangleMesh& mesh) {
     BoundingBox box = bounding_box(mesh.positions.span());
     box.low += mesh.frame.origin;
     box.high += mesh.frame.origin;
-    const Vec3 shift = round_shift(box);
-    return shift == Vec3::Zero() || floats_hold(mesh) ? Vec3::Zero() : shift;
+    const Vec3 shift = round_shift(box, 1);
+    if (shift == Vec3::Zero() || floats_hold(mesh)) return Vec3::Zero();
+    for (const double diagonals : {1000, 100, 10}) {
+        TriangleMesh shifted = mesh;  // shares the arrays
+        const Vec3 rounder = round_shift(box, diagonals);
+        shifted.frame.origin -= rounder;
+        if (floats_hold(shifted)) return rounder;
+    }
+    return shift;
 }
 
 std::string shift_text(const Vec3& shift) { return fmt::format("{} {} {}", shift.x(), shift.y(), shift.z()); }

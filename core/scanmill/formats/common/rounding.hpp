@@ -22,8 +22,9 @@ inline Vec3 rounded_to_float(const Vec3& p) {
 }
 
 /// The shift to subtract from world coordinates before they are rounded to float. Zero if floats hold the mesh, or it
-/// is not far from zero. Else, on every axis whose coordinates exceed 16 diagonals, the multiple nearest to the
-/// mesh's middle of the largest power of ten within the diagonal: shifted coordinates are at most one diagonal.
+/// is not far from zero. Else, on every axis whose coordinates exceed 16 diagonals, the multiple of a power of ten that
+/// is nearest to the mesh's middle. The power is the largest within 1000 diagonals for which floats hold the shifted
+/// mesh, and at least the largest within one diagonal: shifted coordinates are then at most one diagonal.
 /// Pre: finite floats can hold all coordinates. Cost: O(V + F), nothing but the box for a mesh near zero.
 Vec3 shift_for_floats(const TriangleMesh& mesh);
 
@@ -35,7 +36,7 @@ struct JoinedVertices {
     Array<u32> numbers;  ///< of every vertex; equal for vertices written at equal positions, from 0 without gaps
     Array<Vec3> positions;  ///< as written, by number
     u64 rounded = 0;  ///< vertices written at the position of an earlier one that is elsewhere in the mesh
-    u64 equal = 0;    ///< vertices at the position of an earlier one, also in the mesh
+    u64 equal = 0;  ///< vertices at the position of an earlier one, also in the mesh
 };
 /// `written`: the position of a vertex in the file, of which every number is a double.
 JoinedVertices joined_vertices(const TriangleMesh& mesh, const std::function<Vec3(std::size_t vertex)>& written);
