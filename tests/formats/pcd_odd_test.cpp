@@ -46,7 +46,7 @@ TEST(PcdReader, CoordinatesInCapitals_ArePositions) {
     EXPECT_EQ(cloud->columns.begin()->name(), "Intensity");
     EXPECT_THAT(warnings.sentences, IsEmpty());
     const auto both = points_in(header("x y z X", "4 4 4 4", "F F F F", 1, "ascii") + "1 2 3 7\n", "a.pcd");
-    EXPECT_EQ(both->positions[0], Vec3(1, 2, 3));
+    EXPECT_EQ(world_of(*both, 0), Vec3(1, 2, 3));
     EXPECT_TRUE(both->columns.find("X"));
     EXPECT_THAT(
         sentence_of([] { read_bytes(header("X Y height", "4 4 4", "F F F", 1, "ascii") + "1 2 3\n", "a.pcd"); }),
