@@ -43,7 +43,7 @@ Value without_invalid(const Value& value) {
 int convert(const Options& options) {
     ReadOptions read;
     WriteOptions write;
-    read.on_warning = write.on_warning = print_warning;
+    read.on_warning = write.on_warning = warning_printer();
     read.unit = options.unit;
     try {
         if (std::error_code absent; std::filesystem::equivalent(options.from, options.to, absent))
