@@ -86,8 +86,8 @@ struct Format {
     std::function<bool(std::string_view file)> may_stream = {};
     /// Null for a file that cannot be streamed.
     OpenStream open_stream = {};
-    /// About the bytes of memory per byte of the file that reading takes, with a tree over the points or the topology of
-    /// the triangles. Measured with `info`: a point takes 120 bytes and its columns, a triangle of a closed mesh 90.
+    /// About the bytes of memory per byte of the file that reading takes, with a tree over the points or the topology
+    /// of the triangles. Measured with `info`: a point takes 120 bytes and its columns, a triangle of a closed mesh 90.
     double memory_per_byte = 4;
 
     bool has_extension(std::string_view extension) const;
