@@ -6,7 +6,7 @@ set -euo pipefail
 
 packages=(
     build-essential cmake ninja-build ccache clang-format-16
-    libcgal-dev libeigen3-dev libflann-dev libtbb-dev libyaml-cpp-dev libfmt-dev libxxhash-dev
+    libcgal-dev libeigen3-dev libflann-dev libtbb-dev libyaml-cpp-dev libfmt-dev libxxhash-dev zlib1g-dev
     libcli11-dev libsqlitecpp-dev nettle-dev nlohmann-json3-dev libvalijson-dev libgtest-dev libgmock-dev libpcl-dev
     libvtk9-dev libtinygltf-dev lib3mf-dev libassimp-dev)
 if [ "${1:-}" = bench ]; then

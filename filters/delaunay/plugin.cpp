@@ -13,6 +13,7 @@ SCANMILL_FILTER() {
             "Ties between points on one empty sphere are broken by a symbolic perturbation of their coordinates, "
             "independent of their order; of duplicates the first is kept, with the largest of their weights.")
         .not_finite("Refused, with their number and the first of them.")
+        .adds({"hidden"})
         .in<PointCloud>(
             "points",
             "Finite coordinates, at least 4 distinct points that are not coplanar; every column is carried along.")

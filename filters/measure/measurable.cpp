@@ -24,7 +24,7 @@ constexpr double remarkable_times_larger = 2;
 constexpr double widest_gap = 0.1;
 
 constexpr const char* way_out =
-    "declare each file's unit (--unit mm, or `unit:` at the input or the scan) and give both files in one coordinate "
+    "declare each file's unit (`unit:` at the input or the scan) and give both files in one coordinate "
     "system (`pose:` at a scan of a batch moves it there); if both are right already, set same-frame: true";
 
 /// Two units of which the first is larger.

@@ -25,8 +25,10 @@ void require_one_unit(Inputs inputs) {
             throw Error("the inputs have different units: {} in input 0, {} in input {}", unit_text(first),
                         unit_text(unit), input)
                 .hint(first == LengthUnit::unknown || unit == LengthUnit::unknown
-                          ? "declare the unit of all of them (--unit mm, or `unit: mm` at the workflow's input)"
-                          : "convert one of them: scanmill convert --to-unit mm IN OUT");
+                          ? "declare the unit of all of them, as `unit: mm` at the workflow's input"
+                          : "convert one of them")
+                .remedy(first == LengthUnit::unknown || unit == LengthUnit::unknown ? Remedy::declare_unit
+                                                                                    : Remedy::convert_unit);
 }
 
 void require_sound(Inputs inputs, const MergeParams& params) {

@@ -20,6 +20,7 @@ SCANMILL_FILTER() {
         .source("pose files: Turk and Levoy 1994")
         .ties("Of points that overlap and have equal preference the one of the earlier input is kept.")
         .not_finite("Refused, with the input, their number and the first of them.")
+        .adds({"source"})
         .in<PointCloud>("points", "Clouds with finite coordinates and one unit; at least one.", list)
         .out<PointCloud>("points", "All points that are kept, in input order, with a column `source`.")
         .param("poses", &P::poses_file, "A Stanford .conf or a JSON file with the pose of each input.", word("none"))

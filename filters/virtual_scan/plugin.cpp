@@ -11,6 +11,7 @@ SCANMILL_FILTER() {
         .source("z-buffer: Catmull 1974; edge functions: Pineda 1988")
         .ties("Where two triangles are equally near along a ray, the one with the lower row is hit.")
         .not_finite("Refused, with their number and the first of them.")
+        .adds({"normal", "view"})
         .in<TriangleMesh>("mesh", "The surface to scan, of any topology; omit it to scan a shape.", optional)
         .out<PointCloud>("points", "The hits, view by view, with columns `normal` and `view`; outliers at the end.")
         .choice("shape", &P::shape,

@@ -11,6 +11,7 @@ SCANMILL_FILTER() {
         .source("Wang 2006, chapter 3")
         .ties("Of points equally near a centre the first is kept; a duplicate counts as a point.")
         .not_finite("Refused, with their number and the first of them.")
+        .adds({"bin-size", "local-bin-size", "curvature-1", "curvature-2", "fit-error", "stands-for"})
         .in<PointCloud>("points", "Finite coordinates; every column is carried along.")
         .out<PointCloud>(
             "points",

@@ -174,7 +174,8 @@ std::vector<Attribute> attributes_of(const ColumnTable& columns, const WriteOpti
         } else if (is_colour(column)) {
             attributes.push_back(colour_attribute(column));
         } else if (const std::string reason = why_left_out(column, options); !reason.empty()) {
-            warn(options.on_warning, "GLB left out the column '{}': {}; PLY keeps it", column.name(), reason);
+            if (!options.added_columns.contains(column.name()))
+                warn(options.on_warning, "GLB left out the column '{}': {}; PLY keeps it", column.name(), reason);
         } else {
             const std::string expected = upper_case(column.name());
             Attribute attribute = visit_scalar(column.type(), [&]<class T>(T) { return number_attribute<T>(column); });

@@ -9,6 +9,7 @@
 #include "glb/glb.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/rounding.hpp"
 #include "scanmill/formats/common/writing.hpp"
 #include "scanmill/io/output_buffer.hpp"
 
@@ -143,22 +144,28 @@ int type_of(u32 components) {
     return types[components - 1];
 }
 
-void add_positions(GlbModel& model, const Frame& frame, std::span<const Vec3> positions) {
+Vec3 in_metres(const Frame& frame, const Vec3& v) {
     const LengthUnit unit = frame.unit == LengthUnit::unknown ? LengthUnit::metre : frame.unit;
-    const auto in_metres = [&](const Vec3& v) {
-        return Vec3(v.unaryExpr([&](double length) { return in_unit(length, unit, LengthUnit::metre); }));
-    };
+    return v.unaryExpr([&](double length) { return in_unit(length, unit, LengthUnit::metre); });
+}
+
+/// The position of a vertex in the file, before it is rounded, without the node's translation.
+Vec3 local_position(const Frame& frame, const Vec3& shift, const Vec3& position) {
+    return y_up(in_metres(frame, shift + position));
+}
+
+void add_positions(GlbModel& model, const Frame& frame, std::span<const Vec3> positions) {
     const Vec3 origin = local_origin(frame, positions);
     const Vec3 shift = frame.origin - origin;
     if (origin != Vec3::Zero()) {
-        const Vec3 translation = y_up(in_metres(origin));
+        const Vec3 translation = y_up(in_metres(frame, origin));
         model.node().translation.assign(translation.begin(), translation.end());
     }
     unsigned char* row = model.add_accessor(positions.size(), 3 * sizeof(float), TINYGLTF_TYPE_VEC3,
                                             TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
     Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity()), high = -low;
     for (const Vec3& position : positions) {
-        const Eigen::Vector3f local = y_up(in_metres(shift + position)).cast<float>();
+        const Eigen::Vector3f local = local_position(frame, shift, position).cast<float>();
         low = low.min(local.array());
         high = high.max(local.array());
         std::memcpy(row, local.data(), 3 * sizeof(float));
@@ -196,8 +203,8 @@ GlbModel model_of(const Frame& frame, std::span<const Vec3> positions, const Col
     warn_lost_precision(local, positions, true, "GLB", options);
     if (frame.unit == LengthUnit::unknown)
         warn(options.on_warning,
-             "GLB is in metres and the unit is not known: 1 was written as 1 m; declare the unit, for example with "
-             "--unit mm");
+             "GLB is in metres and the unit is not known: 1 was written as 1 m; declare the scan's unit to avoid "
+             "this");
     const std::vector<Attribute> attributes = attributes_of(columns, options);
     for (const Attribute& attribute : attributes) bytes += u64(positions.size()) * attribute.stride();
     require_fits(bytes);
@@ -231,6 +238,11 @@ void write_glb_mesh(const Value& value, OutputBuffer& out, const WriteOptions& o
     std::vector<std::string_view> reported;
     for (const Column& column : mesh.vertex_columns) reported.push_back(column.name());
     warn_bare_triangles(mesh, "GLB", options, reported);
+    const Vec3 shift = mesh.frame.origin - local_origin(mesh.frame, mesh.positions.span());
+    const auto vertex_in_file = [&](std::size_t vertex) {
+        return rounded_to_float(local_position(mesh.frame, shift, mesh.positions[vertex]));
+    };
+    warn_collapsed(mesh, joined_vertices(mesh, vertex_in_file), "GLB", options);
     unsigned char* const rows =
         model.add_accessor(3 * mesh.triangles.size(), sizeof(u32), TINYGLTF_TYPE_SCALAR,
                            TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);

@@ -77,6 +77,12 @@ const PCLPointField* field_named(const PCLPointCloud2& cloud, std::string_view n
     return found == cloud.fields.end() ? nullptr : &*found;
 }
 
+std::string field_names(const PCLPointCloud2& cloud) {
+    std::vector<std::string> names;
+    for (const PCLPointField& field : cloud.fields) names.push_back(quote(field.name));
+    return enumerated(names);
+}
+
 /// The three fields of these names; empty unless all exist, with one number each of the same type.
 std::vector<const PCLPointField*> triple(const PCLPointCloud2& cloud, std::array<std::string_view, 3> names) {
     std::vector<const PCLPointField*> fields;
@@ -96,13 +102,21 @@ std::string free_name(const ColumnTable& table, const std::string& wanted, const
     return name;
 }
 
+/// x, y and z; some programs write X, Y and Z.
+std::array<std::string_view, 3> axes_of(const PCLPointCloud2& cloud) {
+    if (!field_named(cloud, "x") && field_named(cloud, "X")) return {"X", "Y", "Z"};
+    return {"x", "y", "z"};
+}
+
 /// x, y and z of every row. Throws Error when one of the fields is missing or has several numbers.
 Array<Vec3> positions_of(const PCLPointCloud2& cloud) {
     Array<Vec3> positions(rows_of(cloud));
-    constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+    const std::array<std::string_view, 3> axes = axes_of(cloud);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const PCLPointField* field = field_named(cloud, axes[axis]);
-        if (!field || field->count != 1) throw Error("has no field '{}'; points need x, y and z", axes[axis]);
+        if (!field || field->count != 1)
+            throw Error("has no field '{}'; points need x, y and z, it has {}", axes[axis], field_names(cloud))
+                .hint("rename the fields of its coordinates in the line FIELDS of its header");
         visit_scalar(require_type(*field), [&]<class T>(T) {
             for (std::size_t row = 0; row < positions.size(); ++row) {
                 T value;
@@ -118,7 +132,8 @@ Array<Vec3> positions_of(const PCLPointCloud2& cloud) {
 /// normals) gets another one, with a warning.
 ColumnTable columns_of(const PCLPointCloud2& cloud, const ReadOptions& options) {
     ColumnTable table;
-    std::set<std::string_view> taken{"x", "y", "z", "_"};
+    const std::array<std::string_view, 3> axes = axes_of(cloud);
+    std::set<std::string_view> taken{axes[0], axes[1], axes[2], "_"};
     using Names = std::array<std::string_view, 3>;
     for (const Names& names : {Names{"normal_x", "normal_y", "normal_z"}, Names{"nx", "ny", "nz"}})
         if (const auto normal = triple(cloud, names); !normal.empty() && !table.find("normal")) {

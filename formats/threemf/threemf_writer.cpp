@@ -13,6 +13,7 @@
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/quantity.hpp"
 #include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/common/rounding.hpp"
 #include "scanmill/formats/common/writing.hpp"
 #include "scanmill/geometry/mesh/topology.hpp"
 #include "scanmill/io/output_buffer.hpp"
@@ -83,19 +84,17 @@ Eigen::Vector3f offset_of(const TriangleMesh& mesh) {
 /// Warns about triangles whose different corners are written with equal coordinates. Throws Error when all are.
 void warn_of_collapsed(const TriangleMesh& mesh, const std::vector<NMR::MODELMESHVERTEX>& vertices,
                        const WriteOptions& options) {
-    const auto equal = [&](u32 a, u32 b) {
-        if (mesh.positions[a] == mesh.positions[b]) return false;
-        for (int axis = 0; axis < 3; ++axis)
-            if (as_written(vertices[a].m_fPosition[axis]) != as_written(vertices[b].m_fPosition[axis])) return false;
-        return true;
+    const auto vertex_in_file = [&](std::size_t vertex) {
+        const auto& at = vertices[vertex].m_fPosition;
+        return Vec3(as_written(at[0]), as_written(at[1]), as_written(at[2]));
     };
-    std::size_t collapsed = 0;
-    for (const auto& [a, b, c] : mesh.triangles) collapsed += equal(a, b) || equal(b, c) || equal(c, a) ? 1 : 0;
+    const u64 collapsed = collapsed_triangles(mesh, joined_vertices(mesh, vertex_in_file));
     if (collapsed == 0) return;
     if (collapsed == mesh.triangles.size())
         throw Error("nothing is left of the object: its diagonal is {:.3g} {}, and 3MF is written with six decimals",
                     surface_box(mesh).diagonal(), symbol(mesh.frame.unit))
-            .hint("convert it to a smaller unit first: scanmill convert --to-unit um IN OUT");
+            .hint("convert it to a smaller unit first, such as um")
+            .remedy(Remedy::convert_unit);
     warn(options.on_warning,
          "{} of {} collapsed: corners that differ are equal in 3MF's six decimals; a smaller unit "
          "keeps them apart",
@@ -266,7 +265,7 @@ void write_threemf(const Value& value, OutputBuffer& out, const WriteOptions& op
     warn_bare_triangles(mesh, "3MF", options);
     if (mesh.frame.unit == LengthUnit::unknown)
         warn(options.on_warning,
-             "3MF needs a unit and none is known: 1 was written as 1 mm; declare the unit, for example with --unit mm");
+             "3MF needs a unit and none is known: 1 was written as 1 mm; declare the scan's unit to avoid this");
     WrittenMesh shape = written(mesh, options);
     Handle model, writer;
     require(NMR::lib3mf_createmodel(model.receive()), model, "begin");

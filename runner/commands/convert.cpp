@@ -10,6 +10,7 @@
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/formats/common/reading.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/io/memory.hpp"
 #include "scanmill/kinds/value.hpp"
 
 namespace scanmill::runner {
@@ -42,11 +43,12 @@ Value without_invalid(const Value& value) {
 int convert(const Options& options) {
     ReadOptions read;
     WriteOptions write;
-    read.on_warning = write.on_warning = print_warning;
+    read.on_warning = write.on_warning = warning_printer();
     read.unit = options.unit;
     try {
         if (std::error_code absent; std::filesystem::equivalent(options.from, options.to, absent))
             throw Error("'{}' is the input; the output must not replace it", options.to);
+        require_memory_to_read(options.from, available_memory());
         Value value = read_file(options.from, read).value;
         if (options.drop_invalid) value = without_invalid(value);
         if (options.to_unit != LengthUnit::unknown) {

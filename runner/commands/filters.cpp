@@ -81,6 +81,7 @@ void print_filter(const FilterSpec& spec) {
     if (!spec.ties.empty()) fmt::print("  Ties: {}\n", spec.ties);
     if (!spec.not_finite.empty()) fmt::print("  NaN and infinity: {}\n", spec.not_finite);
     if (spec.streams) fmt::print("  Large scans: {}\n", stream_text(spec));
+    if (!spec.adds.empty()) fmt::print("  Columns that it may add: {}\n", fmt::join(spec.adds, ", "));
     print_ports("Takes", spec.inputs);
     print_ports("Gives (the step's name alone refers to the first)", spec.outputs);
     if (!spec.parameters.empty()) fmt::print("\nParameters\n");

@@ -182,7 +182,8 @@ void Progress::node_progress(const RunNode& node, double fraction) {
 
 void Progress::node_warning(const RunNode& node, std::string_view text) {
     const std::scoped_lock lock(mutex_);
-    // Warnings of readers begin with the file's path.
+    // Warnings of readers begin with the file's path; a file that is an input twice is read twice.
+    if (!node.step && !read_.insert(std::string(text)).second) return;
     print("warning: " + printable_line(node.step ? fmt::format("{}: {}", label(node), text) : std::string(text)));
 }
 

@@ -88,6 +88,7 @@ private:
     std::chrono::steady_clock::time_point begin_, last_;
     std::set<std::string> printed_doubts_;
     std::mutex mutex_;
+    std::set<std::string> read_;  ///< warnings of readers that were printed
 };
 
 }  // namespace scanmill::runner

@@ -96,6 +96,19 @@ TEST(GlbLosses, NormalsWithoutDirection_AreNotWrittenAsNormals) {
                 ElementsAre(HasSubstr("'normal' as '_NORMAL' and not as normals: 1 of them has no")));
 }
 
+TEST(GlbLosses, TrianglesWithoutAreaInSinglePrecision_AreReported) {
+    TriangleMesh mesh = cube_in(LengthUnit::metre);
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+    const Triangle first = mesh.triangles[0];
+    positions[first[0]] = Vec3(2, 2, 2);
+    positions[first[1]] = Vec3(2, 2, 2 + 1e-12);
+    mesh.positions = std::move(positions);
+    Warnings warnings;
+    through_assimp(mesh, "a.glb", &warnings);
+    EXPECT_THAT(warnings.sentences,
+                ElementsAre(HasSubstr("1 vertex became equal to others in GLB's single precision, and 2 triangles")));
+}
+
 TEST(GlbLosses, OfFacesAndEdges_AreReported) {
     TriangleMesh mesh = cube_in(LengthUnit::metre);
     mesh.face_columns.add(Column("group", 1, Buffer<u8>(Array<u8>(12, u8(1)))));

@@ -96,7 +96,7 @@ TEST(GlbWriter, UnknownUnit_IsAssumedToBeMetreWithAWarning) {
     Warnings warnings;
     const SeenByAssimp seen = through_assimp(cube(3), "a.glb", &warnings);
     EXPECT_THAT(warnings.sentences,
-                ElementsAre(HasSubstr("the unit is not known: 1 was written as 1 m; declare the unit")));
+                ElementsAre(HasSubstr("the unit is not known: 1 was written as 1 m; declare the scan's unit")));
     EXPECT_EQ(seen.box.high, Vec3(3, 3, 0));
 }
 

@@ -37,6 +37,22 @@ TEST(PcdReader_Refuses, InvalidHeaders) {
     EXPECT_THAT(refusal(with("4 5 6\n", "\n\n\n\n\n\n\n")), HasSubstr("promises 2 points; 1 follow"));
 }
 
+TEST(PcdReader, CoordinatesInCapitals_ArePositions) {
+    Warnings warnings;
+    const auto cloud = points_in(header("X Y Z Intensity", "4 4 4 4", "F F F F", 2, "ascii") + "1 2 3 7\n4 5 6 8\n",
+                                 "a.pcd", &warnings);
+    EXPECT_THAT(rows_of(cloud->positions), ElementsAre(Vec3(1, 2, 3), Vec3(4, 5, 6)));
+    ASSERT_EQ(cloud->columns.size(), 1u);
+    EXPECT_EQ(cloud->columns.begin()->name(), "Intensity");
+    EXPECT_THAT(warnings.sentences, IsEmpty());
+    const auto both = points_in(header("x y z X", "4 4 4 4", "F F F F", 1, "ascii") + "1 2 3 7\n", "a.pcd");
+    EXPECT_EQ(world_of(*both, 0), Vec3(1, 2, 3));
+    EXPECT_TRUE(both->columns.find("X"));
+    EXPECT_THAT(
+        sentence_of([] { read_bytes(header("X Y height", "4 4 4", "F F F", 1, "ascii") + "1 2 3\n", "a.pcd"); }),
+        HasSubstr("has no field 'Z'; points need x, y and z, it has 'X', 'Y' and 'height'"));
+}
+
 TEST(PcdReader_Refuses, PaddingInCompressedFiles) {
     EXPECT_THAT(sentence_of([] {
                     read_bytes(header("x _ y z", "4 1 4 4", "F U F F", 1, "binary_compressed") +

@@ -90,7 +90,7 @@ TEST(ThreemfWriter, EveryUnit_IsDeclared) {
 TEST(ThreemfWriter, UnknownUnit_IsAssumedToBeMillimetreWithAWarning) {
     Warnings warnings;
     EXPECT_EQ(read_by_3mf(bytes_of_3mf(cube(1), &warnings)).unit, static_cast<DWORD>(NMR::MODELUNIT_MILLIMETER));
-    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 was written as 1 mm; declare the unit")));
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 was written as 1 mm; declare the scan's unit")));
 }
 
 TEST(ThreemfWriter, FrameName_IsTheObjects) {

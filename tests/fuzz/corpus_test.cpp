@@ -29,9 +29,10 @@ class FuzzCorpus : public testing::TestWithParam<FuzzTarget> {};
 const std::set<std::string> refused{
     "batch/leads_out.yaml",
     "batch/mistakes.yaml",
-    "csv/decimal_commas.csv",
+    "csv/decimal_commas_and_points.csv",
     "csv/empty_field.csv",
     "csv/name_twice.csv",
+    "csv/utf16_odd.csv",
     "format-manifest/half_a_version.json",
     "format-manifest/kind_unknown.json",
     "las/compressed.las",
@@ -45,6 +46,7 @@ const std::set<std::string> refused{
     "pcd/no_points.pcd",
     "pcd/sizes_without_types.pcd",
     "ply/face_names_no_vertex.ply",
+    "ply/gzip_cut_short.ply",
     "ply/truncated_in_a_list.ply",
     "poses/nested.json",
     "poses/no_pose.json",
@@ -63,6 +65,7 @@ const std::set<std::string> refused{
     "workflow/mistakes.yaml",
     "workflow/not_yaml.yaml",
     "workflow/two_documents.yaml",
+    "xyz/gzip_of_nothing.xyz",
     "xyz/row_too_short.xyz",
 };
 

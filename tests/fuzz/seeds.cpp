@@ -7,6 +7,7 @@
 
 #include "core/formats/las/las_support.hpp"
 #include "scanmill/io/output_buffer.hpp"
+#include "support/gzip.hpp"
 
 namespace scanmill::test {
 
@@ -94,6 +95,13 @@ std::string stl(std::string header, std::uint32_t promised, std::uint16_t attrib
     return file.all();
 }
 
+/// ASCII as little-endian UTF-16 with its mark.
+std::string utf16(std::string_view text) {
+    std::string bytes = "\xff\xfe";
+    for (const char c : text) bytes += {c, '\0'};
+    return bytes;
+}
+
 /// Two points of the format, with extra bytes described and the unit of a survey.
 std::string las(u32 minor_version, u32 point_format, std::size_t point_size) {
     LasBytes file;
@@ -123,6 +131,12 @@ std::vector<Seed> binary_seeds() {
         {"stl", "control_character_in_the_name.stl", stl("binary STL by scanmill; frame part  \x16", 2, 0)},
         {"stl", "attribute.stl", stl("solid in name only", 2, 31)},
         {"stl", "more_promised_than_there.stl", stl("", 3, 0)},
+        {"ply", "gzip.ply", gzipped(points)},
+        {"ply", "gzip_cut_short.ply", gzipped(points).substr(0, 100)},
+        {"xyz", "gzip_of_two_members.xyz", gzipped("1 2 3\n") + gzipped("4 5 6\n")},
+        {"xyz", "gzip_of_nothing.xyz", gzipped("")},
+        {"csv", "utf16.csv", utf16("X;Y;Z\r\n1,5;2,5;3,5\r\n")},
+        {"csv", "utf16_odd.csv", utf16("1;2;3\n") + "4"},
         {"las", "oldest.las", las(0, 0, 20)},
         {"las", "colours.las", las(2, 3, 34)},
         {"las", "newest.las", las(4, 8, 38)},

@@ -9,6 +9,7 @@
 
 #include "scanmill/base/random.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 #include "support/program.hpp"
 #include "support/real_data.hpp"
 #include "support/temporary_folder.hpp"
@@ -162,6 +163,22 @@ TEST_F(RawScans, NoiseThatMakesCreases_IsDoubtful) {
         EXPECT_EQ(cells.at(1).at("outcome"), "doubtful");
         EXPECT_THAT(cells.at(1).at("doubts"), Contains(HasSubstr("the surface is rough")));
     }
+}
+
+TEST_F(RawScans, SphereAtSurveyCoordinates_IsClosedInTheFile) {
+    folder_.write(
+        "sphere.yaml",
+        "scanmill: 1\nname: sphere\nsteps:\n  - virtual-scan: {shape: sphere, size: [5 u], views: [12], resolution: 1 "
+        "%diag}\noutputs: {sphere.csv: virtual-scan}\n");
+    ASSERT_EQ(scanmill_program({"run", "sphere.yaml", "-o", "."}, options()).exit_code, 0);
+    std::ofstream far(folder_ / "far.csv");
+    for (const Vec3& p : read_points(folder_ / "sphere.csv")->positions)
+        far << fmt::format("{},{},{}\n", p.x() + 500000, p.y() + 4500000, p.z() + 300);
+    far.close();
+    const json cell = cells_of(shipped("quickstart.yaml"), {"far.csv"}).at(0);
+    EXPECT_EQ(cell.at("outcome"), "ok");
+    EXPECT_TRUE(topology(*read_mesh(folder_ / "out/far.stl")).closed);
+    EXPECT_THAT(cell.at("outputs").at(0).at("warnings").at(0).get<std::string>(), HasSubstr("500000 4500000"));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/base/text.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -81,6 +83,15 @@ bool is_too_small(std::string_view number) {
 }
 
 }  // namespace
+
+std::string byte_size_text(std::uint64_t bytes) {
+    constexpr std::array<const char*, 4> units{"KiB", "MiB", "GiB", "TiB"};
+    if (bytes < 1024) return fmt::format("{} B", bytes);
+    std::size_t unit = 0;
+    double amount = static_cast<double>(bytes) / 1024;
+    for (; amount >= 1024 && unit + 1 < units.size(); ++unit) amount /= 1024;
+    return fmt::format("{:.{}f} {}", amount, amount < 10 ? 2 : amount < 100 ? 1 : 0, units[unit]);
+}
 
 std::string number_text(double value) {
     std::array<char, 32> digits;

@@ -28,6 +28,9 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
 /// "a, b and c", for messages; of more than forty names the first 39 and the number of the others.
 std::string enumerated(std::span<const std::string> names);
 
+/// "1.50 GiB", "20.0 GiB", "512 MiB".
+std::string byte_size_text(std::uint64_t bytes);
+
 /// Shortest text that reads back to the same double; locale-free.
 std::string number_text(double value);
 /// Reads all of `text` as a double, locale-free; false if it is not a number. Accepts nan and inf in any case and a

@@ -204,6 +204,11 @@ public:
         declaration_.spec.outputs.push_back(std::move(spec));
         return *this;
     }
+    /// The names of the columns that the filter may add to its outputs.
+    Declare& adds(std::vector<std::string> columns) {
+        declaration_.spec.adds = std::move(columns);
+        return *this;
+    }
     /// The field may be inherited.
     template <class T, class Owner, class... Constraints>
         requires std::derived_from<Params, Owner>

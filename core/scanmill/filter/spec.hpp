@@ -63,6 +63,8 @@ struct FilterSpec {
     std::vector<ParameterSpec> parameters;
     std::vector<MetricSpec> metrics;
     std::optional<StreamSpec> streams;
+    /// Names of columns that it may add to its outputs. Formats that cannot hold them leave them out without a warning.
+    std::vector<std::string> adds;
 
     const PortSpec* input(std::string_view port) const;
     const PortSpec* output(std::string_view port) const;

@@ -4,6 +4,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/formats/common/reading.hpp"
+#include "scanmill/formats/detail/content.hpp"
 #include "scanmill/io/atomic_file.hpp"
 #include "scanmill/io/output_buffer.hpp"
 
@@ -11,9 +12,21 @@ namespace scanmill {
 
 namespace {
 
+/// Whether a byte order mark of UTF-8 begins a text, or a PLY file.
+bool is_marked_text(std::string_view bytes) {
+    const std::string_view head = bytes.substr(0, head_size), text = without_byte_order_mark(head);
+    return text.size() < head.size() && (text.starts_with("ply") || text.find('\0') == std::string_view::npos);
+}
+
 LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
     if (file.bytes.empty()) throw Error("is empty (0 bytes)");
-    return format_of(file).read(file, {warnings_with_file_name(file.path, options.on_warning), options.unit});
+    const std::optional<Array<char>> content = unwrapped(file.bytes);
+    FileBytes plain{file.path, content ? std::string_view(content->data(), content->size()) : file.bytes};
+    if (is_marked_text(plain.bytes)) plain.bytes = without_byte_order_mark(plain.bytes);
+    LoadedFile loaded =
+        format_of(plain).read(plain, {warnings_with_file_name(file.path, options.on_warning), options.unit});
+    if (content) loaded.encoding += wrapping_of(file.bytes) == Wrapping::gzip ? ", gzip" : ", UTF-16";
+    return loaded;
 }
 
 /// Throws Error for a value without points. Features may be empty: a closed, smooth mesh has none.
@@ -41,6 +54,28 @@ LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& optio
         const MappedFile file(path);
         return read_named({path, file.bytes()}, options);
     });
+}
+
+u64 memory_to_read(const std::filesystem::path& path) {
+    try {
+        const MappedFile file(path, false);
+        const double per_byte = wrapping_of(file.bytes()) == Wrapping::none
+                                    ? format_of({path, file.bytes()}).memory_per_byte
+                                    : Format().memory_per_byte;
+        return static_cast<u64>(per_byte * static_cast<double>(file.bytes().size()));
+    } catch (const Error&) {
+        return 0;  // read_file() throws it again, with the file's name
+    }
+}
+
+void require_memory_to_read(const std::filesystem::path& path, u64 available) {
+    const u64 need = memory_to_read(path);
+    if (need <= available) return;
+    throw Error("'{}': it has {}; reading it needs up to {} of memory, and {} are available", path.string(),
+                byte_size_text(std::filesystem::file_size(path)), byte_size_text(need), byte_size_text(available))
+        .hint(
+            "thin or split it first, use a machine with more memory, or store points as binary PLY with vertices "
+            "only, which is read piece by piece where the workflow allows it");
 }
 
 LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name, const ReadOptions& options) {
@@ -73,6 +108,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path
                                                unsigned threads, const OnWorldPositions& on_positions) {
     try {
         auto file = std::make_unique<MappedFile>(path, false);
+        if (wrapping_of(file->bytes()) != Wrapping::none) return nullptr;
         const Format& format = format_of({path, file->bytes()});
         if (format.open_stream)
             return format.open_stream(std::move(file),
@@ -87,6 +123,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::filesystem::path& path
 bool may_be_point_stream(const std::filesystem::path& path) {
     try {
         const MappedFile file(path, false);
+        if (wrapping_of(file.bytes()) != Wrapping::none) return false;
         const Format& format = format_of({path, file.bytes()});
         return format.may_stream && format.may_stream(file.bytes());
     } catch (const Error&) {
@@ -102,7 +139,9 @@ void write_file(const std::filesystem::path& path, const Value& value, const Wri
             file.write(bytes);
             if (options.on_bytes) options.on_bytes(bytes);
         });
-        write(value, out, {warnings_with_file_name(path, options.on_warning)});
+        WriteOptions named = options;
+        named.on_warning = warnings_with_file_name(path, options.on_warning);
+        write(value, out, named);
         out.flush();
         file.commit();
     });
@@ -112,7 +151,9 @@ std::string write_bytes(const std::filesystem::path& name, const Value& value, c
     return with_file_name(name, [&] {
         std::string bytes;
         OutputBuffer out([&bytes](std::string_view piece) { bytes += piece; });
-        writer_for(name, value)(value, out, {warnings_with_file_name(name, options.on_warning)});
+        WriteOptions named = options;
+        named.on_warning = warnings_with_file_name(name, options.on_warning);
+        writer_for(name, value)(value, out, named);
         out.flush();
         return bytes;
     });

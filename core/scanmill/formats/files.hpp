@@ -3,10 +3,11 @@
 /// Reads scans from files and writes results to files, for the engine and the command line.
 ///
 /// The content of a file decides its format; the extension only decides for content without a signature, such as a
-/// table of numbers without a header. Every column is kept with its type, coordinates are double, and everything that a
-/// format cannot carry is reported through on_warning, one sentence with numbers each. NaN and infinite coordinates are
-/// read as they are. Positions far from zero are stored relative to frame.origin, so that frame.origin + position is
-/// exactly the file's coordinate (a point with a NaN or infinite coordinate may lose the last bit of its other two).
+/// table of numbers without a header. gzip data and text in UTF-16 are read like their content, whole. Every column is
+/// kept with its type, coordinates are double, and everything that a format cannot carry is reported through
+/// on_warning, one sentence with numbers each. NaN and infinite coordinates are read as they are. Positions far from
+/// zero are stored relative to frame.origin, so that frame.origin + position is exactly the file's coordinate (a point
+/// with a NaN or infinite coordinate may lose the last bit of its other two).
 ///
 /// Every refusal is an Error that begins with the file's path: missing, a folder, unreadable, empty, of unknown format,
 /// truncated, contradictory, or without a single point. No memory is taken for a declared count before the file's size
@@ -21,6 +22,14 @@ LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& optio
 
 /// The same from memory; `name` replaces the path in messages, and its extension counts as the file's.
 LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name, const ReadOptions& options = {});
+
+/// About the most memory, in bytes, that read_file() takes for this file and `info` for what it computes of it. From
+/// the file's size and format, without reading it; of gzip data, from that of the compressed content, so too low. 0 for
+/// a file that read_file() refuses at once.
+u64 memory_to_read(const std::filesystem::path& path);
+
+/// Throws Error if memory_to_read() exceeds the memory that is available, with both numbers.
+void require_memory_to_read(const std::filesystem::path& path, u64 available);
 
 /// Points of a point file, or vertices of a mesh file, with a warning that counts the faces left out.
 std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path, const ReadOptions& options = {});

@@ -36,6 +36,17 @@ std::string plain_extension(std::string_view extension) {
     return plain;
 }
 
+std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = plain_extension(path.extension().string());
+    if (extension == "gz") extension = plain_extension(path.stem().extension().string());
+    return extension;
+}
+
+std::string stem_of(const std::filesystem::path& path) {
+    const std::filesystem::path stem = path.stem();
+    return plain_extension(path.extension().string()) == "gz" ? stem.stem().string() : stem.string();
+}
+
 bool Format::has_extension(std::string_view extension) const {
     return std::ranges::find(extensions, plain_extension(extension)) != extensions.end();
 }
@@ -65,7 +76,7 @@ const Format& format_of(const FileBytes& file) {
         if (recognition == Recognition::certain) return format;
         if (recognition == Recognition::plausible && !plausible) plausible = &format;
     }
-    const std::string extension = file.path.extension().string();
+    const std::string extension = extension_of(file.path);
     for (const Format& format : formats())
         if (format.has_extension(extension)) return format;
     if (plausible) return *plausible;
@@ -75,7 +86,7 @@ const Format& format_of(const FileBytes& file) {
         if (!format.is_refused) readable.push_back(format.name);
     constexpr std::size_t shown = 16;
     throw Error("is in an unknown format: it begins with {} and has {}", quote(head.substr(0, shown)),
-                extension.empty() ? std::string("no extension") : "the extension '" + extension + "'")
+                extension.empty() ? std::string("no extension") : "the extension '." + extension + "'")
         .hint(fmt::format("formats that are read: {}", fmt::join(readable, ", ")));
 }
 

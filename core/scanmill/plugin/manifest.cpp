@@ -124,7 +124,7 @@ void members(Archive& archive, Manifest& manifest) {
     archive.version("scanmill-manifest")("abi", manifest.abi)("name", spec.name)("version", spec.version);
     archive("summary", spec.summary)("source", spec.source)("ties", spec.ties)("not-finite", spec.not_finite);
     archive("inputs", spec.inputs)("outputs", spec.outputs)("parameters", spec.parameters)("metrics", spec.metrics);
-    archive.optional("streams", spec.streams);
+    archive.optional("streams", spec.streams).optional("adds", spec.adds);
 }
 void members(Archive& archive, FormatManifest& manifest) {
     FormatSpec& spec = manifest.spec;

@@ -7,33 +7,68 @@
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/kind_traits.hpp"
 #include "scanmill/kinds/length_scale.hpp"
+#include "scanmill/session/session.hpp"
 
 namespace scanmill {
 
 namespace {
+
+void add_columns(Json& json, const char* name, const ColumnTable& table) {
+    Json rows = Json::array();
+    for (const Column& column : table)
+        rows.push_back(
+            {{"name", column.name()}, {"type", name_of(column.type())}, {"components", column.components()}});
+    json[name] = std::move(rows);
+}
 
 /// The columns of every table, by the table's name.
 class ListColumns : public FieldVisitor {
 public:
     explicit ListColumns(Json& json) : json_(json) {}
     void columns(const char* name, ColumnTable& table) override {
-        Json rows = Json::array();
-        for (const Column& column : table)
-            rows.push_back(
-                {{"name", column.name()}, {"type", name_of(column.type())}, {"components", column.components()}});
-        json_[std::string_view(name) == "vertex-columns" ? "columns" : name] = std::move(rows);
+        add_columns(json_, std::string_view(name) == "vertex-columns" ? "columns" : name, table);
     }
 
 private:
     Json& json_;
 };
 
+void add_box(Json& json, const BoundingBox& box, const Frame& frame) {
+    json["low"] = json_of(box.low + frame.origin);
+    json["high"] = json_of(box.high + frame.origin);
+    json["diagonal"] = box.diagonal();
+}
+
+void add_frame(Json& json, const Frame& frame) {
+    if (!frame.name.empty()) json["frame"] = frame.name;
+    if (frame.origin != Vec3::Zero()) json["origin"] = json_of(frame.origin);
+}
+
+/// The description of a scan that is read piece by piece.
+Json stream_info(const std::string& file, const PointStream& scan) {
+    Json json{{"file", file}, {"kind", name_of(kind_of<PointCloud>())}, {"points", scan.size()}};
+    add_columns(json, "columns", scan.read_columns(0));
+    add_box(json, scan.bounds(), scan.frame());
+    json["not-finite"] = 0;
+    json["unit"] = unit_json(scan.frame().unit);
+    add_frame(json, scan.frame());
+    return json;
+}
+
 }  // namespace
 
-Json file_info(const std::string& file) {
+Json file_info(const std::string& file, u64 memory) {
     std::vector<std::string> warnings;
     ReadOptions options;
     options.on_warning = [&](std::string text) { warnings.push_back(std::move(text)); };
+    if (memory_to_read(file) > memory) {
+        const auto scan = may_be_point_stream(file) ? open_point_stream(file, options, usable_cores()) : nullptr;
+        if (!scan) require_memory_to_read(file, memory);
+        Json json = stream_info(file, *scan);
+        warnings.push_back("it was read piece by piece, because it may not fit into memory; the spacing is not known");
+        json["warnings"] = warnings;
+        return json;
+    }
     const LoadedFile loaded = read_file(file, options);
     const Value& value = loaded.value;
     Json json{{"file", file}, {"format", loaded.format}, {"encoding", loaded.encoding}, {"kind", value.kind().name()}};
@@ -45,17 +80,14 @@ Json file_info(const std::string& file) {
     const Buffer<Vec3> positions = positions_of(value);
     const Frame frame = frame_of(value).value_or(Frame{});
     if (const BoundingBox box = bounding_box(positions.span()); !box.empty()) {
-        json["low"] = json_of(box.low + frame.origin);
-        json["high"] = json_of(box.high + frame.origin);
-        json["diagonal"] = box.diagonal();
+        add_box(json, box, frame);
         json["spacing"] = length_scale(value).spacing();
     }
     if (is_geometric(value.kind())) {
         json["not-finite"] = std::ranges::count_if(positions, [](const Vec3& p) { return !p.allFinite(); });
         json["unit"] = unit_json(frame.unit);
     }
-    if (!frame.name.empty()) json["frame"] = frame.name;
-    if (frame.origin != Vec3::Zero()) json["origin"] = json_of(frame.origin);
+    add_frame(json, frame);
     if (!loaded.comments.empty()) json["comments"] = loaded.comments;
     if (!warnings.empty()) json["warnings"] = warnings;
     return json;

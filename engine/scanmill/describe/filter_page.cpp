@@ -78,6 +78,7 @@ std::string remarks(const FilterSpec& spec) {
     if (!spec.ties.empty()) list += fmt::format("- Ties: {}\n", spec.ties);
     if (!spec.not_finite.empty()) list += fmt::format("- NaN and infinity: {}\n", spec.not_finite);
     if (spec.streams) list += fmt::format("- Large scans: {}\n", stream_text(spec));
+    if (!spec.adds.empty()) list += fmt::format("- Columns that it may add: `{}`\n", fmt::join(spec.adds, "`, `"));
     return list.empty() ? list : "\n" + list;
 }
 

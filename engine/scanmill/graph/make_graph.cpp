@@ -57,7 +57,7 @@ std::string key_of_leaf(const LeafSource& leaf, const KeyBase& base) {
     key.field("scheme", key_scheme)
         .field("content", leaf.content)
         .field("readers", base.readers)
-        .field("extension", plain_extension(leaf.file.extension().string()))  // readers may depend on it
+        .field("extension", extension_of(leaf.file))  // readers may depend on it
         .field("kind", name_of(leaf.kind))
         .field("unit", symbol(leaf.unit))
         .field("frame", leaf.frame)
@@ -196,8 +196,8 @@ private:
                 node_of_step[step] = add_step(step, node_of_step, scan, file, cell);
                 add_to(cell, node_of_step[step]);
             }
-            const TemplateValues values{file ? file->path.stem().string() : scan_name, planned.name,
-                                        workflow_name(*plan_), file ? folder_name(file->path) : scan_name};
+            const TemplateValues values{file ? stem_of(file->path) : scan_name, planned.name, workflow_name(*plan_),
+                                        file ? folder_name(file->path) : scan_name};
             for (const auto& [name, source] : outputs(planned)) {
                 if (source.step && !node_of_step.contains(*source.step)) continue;  // after the last step to run
                 const std::size_t node = sources_of(source, node_of_step, scan, file, cell).front();

@@ -428,7 +428,7 @@ private:
             job.work = WriteWork{
                 write.file,
                 made_how(graph_, write.cells, {write.file, write.source.node, write.source.port}, report_.nodes),
-                input_from(write.source, "")};
+                added_columns(graph_, write.source.node), input_from(write.source, "")};
             job.frame = fmt::format("while writing '{}'", write.file.string());
             job.scan = graph_.scan_names[graph_.cells[write.cells.front()].scan];
             return job;
@@ -730,6 +730,9 @@ private:
         }
         if (!report.failure && cells_[index].is_out_of_time && !is_done) report.failure = out_of_time(index);
         report.doubts = doubts_about(cell.outputs, cell.nodes, graph_, report_.nodes);
+        for (const OutputReport& output : report.outputs)
+            for (const std::string& doubt : output.doubts)
+                report.doubts.push_back(fmt::format("'{}': {}", output.file.string(), doubt));
         report.outcome = report.failure          ? Outcome::failed
                          : !is_done              ? Outcome::skipped
                          : report.doubts.empty() ? Outcome::ok

@@ -114,8 +114,16 @@ std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cell
     return dumped(json);
 }
 
+std::vector<std::string> added_columns(const RunGraph& graph, std::size_t node) {
+    std::vector<std::string> columns;
+    for (const std::size_t each : ancestry(graph, node))
+        if (const PlannedStep* step = graph.step(graph.nodes[each]))
+            columns.insert(columns.end(), step->spec.adds.begin(), step->spec.adds.end());
+    return columns;
+}
+
 void write_description(const fs::path& file, const std::string& sha256, const std::string& how, const Value& value,
-                       const Metrics& properties) {
+                       const Metrics& properties, const Vec3& shift) {
     Json json = Json::parse(how);
     const std::optional<Frame> frame = frame_of(value);
     json["file"] = {{"name", file.filename().string()},
@@ -125,6 +133,7 @@ void write_description(const fs::path& file, const std::string& sha256, const st
                     {"unit", frame && frame->unit != LengthUnit::unknown ? Json(symbol(frame->unit)) : Json()},
                     {"frame", frame && !frame->name.empty() ? Json(frame->name) : Json()},
                     {"properties", to_json(properties)}};
+    if (shift != Vec3::Zero()) json["file"]["shift"] = {shift.x(), shift.y(), shift.z()};
     AtomicFile description(description_of(file));
     description.write(dumped(json) + "\n");
     description.commit();

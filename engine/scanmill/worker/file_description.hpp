@@ -36,9 +36,13 @@ private:
 std::string made_how(const RunGraph& graph, const std::vector<std::size_t>& cells, const RunOutput& output,
                      const std::vector<NodeReport>& reports);
 
+/// Names of the columns that the filters between the files that were read and the node's outputs declare to add.
+std::vector<std::string> added_columns(const RunGraph& graph, std::size_t node);
+
 /// Writes the description of a file that was written: `how` (of made_how()), with the file's name, bytes and `sha256`
-/// (of what was written, see Sha256), and the value's unit, frame and properties. Throws Error as AtomicFile.
+/// (of what was written, see Sha256), the value's unit, frame and properties, and `shift` unless it is zero (see
+/// WriteOptions::on_shift). Throws Error as AtomicFile.
 void write_description(const std::filesystem::path& file, const std::string& sha256, const std::string& how,
-                       const Value& value, const Metrics& properties);
+                       const Value& value, const Metrics& properties, const Vec3& shift);
 
 }  // namespace scanmill

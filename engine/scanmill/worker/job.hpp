@@ -59,6 +59,7 @@ struct ExpectWork {
 struct WriteWork {
     std::filesystem::path file;
     std::string made_how;  ///< for the file's description
+    std::vector<std::string> added_columns;  ///< those of added_columns()
     JobInput value;
 };
 

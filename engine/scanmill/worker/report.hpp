@@ -85,6 +85,7 @@ struct OutputReport {
     Kind kind = kind_of<PointCloud>();
     Metrics properties;
     std::vector<std::string> warnings;
+    std::vector<std::string> doubts;  ///< about the file: it holds less than the value
 };
 
 struct CellReport {
@@ -92,7 +93,7 @@ struct CellReport {
     Failure failure;     ///< of the first node that failed, else of the first output
     double seconds = 0;  ///< of its nodes and outputs; nodes that cells share count for each
     std::vector<OutputReport> outputs;
-    std::vector<std::string> doubts;  ///< from doubts_about()
+    std::vector<std::string> doubts;  ///< from doubts_about(), and of its outputs
 };
 
 struct RunReport {

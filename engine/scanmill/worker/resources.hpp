@@ -7,13 +7,10 @@
 #include <string>
 
 #include "scanmill/data/array.hpp"
+#include "scanmill/io/memory.hpp"
 #include "scanmill/worker/report.hpp"
 
 namespace scanmill {
-
-/// Bytes that new work can use without swapping: the kernel's estimate, within the limits of the control groups of this
-/// process (cgroup v2).
-u64 available_memory();
 
 /// Limits the memory of this process as long as the object lives: allocations beyond it fail. Mapped files do not
 /// count; the stacks of `threads` are added. 0: no limit. Does nothing under AddressSanitizer, which needs much more.

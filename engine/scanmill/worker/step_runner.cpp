@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cassert>
+#include <map>
 
 #include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/kinds/length_scale.hpp"
 #include "scanmill/kinds/value.hpp"
@@ -63,20 +65,24 @@ LengthUnit common_unit(const std::vector<StepInput>& inputs) {
 Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, Context& context) {
     const LengthUnit unit = common_unit(inputs);
     Inputs result;
+    std::map<std::string, std::size_t> without_unit;  // by port
     for (const StepInput& input : inputs) {
         const std::optional<Frame> own = frame_of(input.value);
         if (!own) {
             result.add(input.port, input.value);
             continue;
         }
-        if (own->unit != unit)
-            context.warn(fmt::format("the value at '{}' declares no unit; the unit of the other inputs is used: {}",
-                                     input.port, symbol(unit)));
+        without_unit[input.port] += own->unit != unit;
         Frame frame = *own;
         frame.unit = unit;
         frame.origin = frame_of(*first)->origin;
         result.add(input.port, frame == *own ? input.value : reframed(input.value, frame));
     }
+    for (const auto& [port, count] : without_unit)
+        if (count > 0)
+            context.warn(fmt::format("{} at '{}' {} no unit; the unit of the other inputs is used: {}",
+                                     count == 1 ? "the value" : fmt::format("{} values", count), port,
+                                     by_count(count, "declares", "declare"), symbol(unit)));
     return result;
 }
 

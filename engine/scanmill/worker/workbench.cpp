@@ -12,6 +12,7 @@
 #include "scanmill/graph/output_files.hpp"
 #include "scanmill/kinds/value.hpp"
 #include "scanmill/plan/step_parameters.hpp"
+#include "scanmill/worker/counted_warnings.hpp"
 #include "scanmill/worker/file_description.hpp"
 #include "scanmill/worker/resources.hpp"
 #include "scanmill/workflow/sizes.hpp"
@@ -111,7 +112,10 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     options.scratch = emptied(scratch_ / "step");
     options.is_cancelled = listener.is_cancelled;
     options.on_progress = listener.on_progress;
-    options.on_warning = listener.on_warning;
+    CountedWarnings warnings;
+    options.on_warning = [&](std::string_view text) {
+        if (warnings.add(std::string(text))) listener.on_warning(text);
+    };
     std::string run_key;
     auto start = std::chrono::steady_clock::now();
     const Recall recall = [&](const ParameterSet& resolved, NodeReport&) -> std::optional<Outputs> {
@@ -141,6 +145,7 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
         }
     }();
     const double seconds = seconds_since(start);
+    if (report.node.origin == Origin::ran) report.node.warnings = warnings.sentences();
     if (scan) scans_.require_unchanged(work.inputs.front().node);
     if (uses_cache(work.caching))
         for (const ParameterFile& file : work.parameter_files) require_unchanged(file.path, file.content);
@@ -172,17 +177,24 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
     fs::create_directories(work.file.parent_path(), trouble);
     if (trouble) throw Error("the folder '{}' cannot be made: {}", work.file.parent_path().string(), trouble.message());
     WriteOptions options;
-    options.on_warning = [&](std::string text) { written.warnings.push_back(std::move(text)); };
+    CountedWarnings warnings;
+    options.on_warning = [&](const std::string& text) { warnings.add(text); };
+    options.added_columns = {work.added_columns.begin(), work.added_columns.end()};
+    Vec3 shift = Vec3::Zero();
+    options.on_shift = [&](const Vec3& used) { shift = used; };
+    options.on_opened = [&](std::string sentence) { written.doubts.push_back(std::move(sentence)); };
     Sha256 hash;
     options.on_bytes = [&](std::string_view bytes) { hash.add(bytes); };
     write_file(work.file, value, options);
     const auto found = properties_.find({work.value.node, work.value.from});
     written.properties = found != properties_.end() ? found->second : properties_of(value);
+    if (!written.doubts.empty()) written.properties.set("closed", 0, Unit::boolean);
     constexpr std::size_t longest_name = NAME_MAX;
     if (description_of(work.file).filename().native().size() <= longest_name)
-        write_description(work.file, hash.text(), work.made_how, value, written.properties);
+        write_description(work.file, hash.text(), work.made_how, value, written.properties, shift);
     else
         options.on_warning(fmt::format("'{}' has no description: its name would be too long", work.file.string()));
+    written.warnings = warnings.sentences();
     written.outcome = Outcome::ok;
 }
 
@@ -196,16 +208,26 @@ void ignore_warning(std::string) {}
 }  // namespace
 
 void Workbench::read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report) {
-    const auto on_warning = [&](std::string text) {
-        listener.on_warning(text);
-        report.node.warnings.push_back(std::move(text));
+    CountedWarnings warnings;
+    const auto on_warning = [&](const std::string& text) { warnings.add(text); };
+    const auto report_warnings = [&] {
+        report.node.warnings = warnings.sentences();
+        for (const std::string& warning : report.node.warnings) listener.on_warning(warning);
     };
-    if (work.leaf.is_streamed && read_as_stream(job, work, listener, on_warning, report)) return;
+    if (work.leaf.is_streamed && read_as_stream(job, work, listener, on_warning, report_warnings, report)) return;
     report.was_read_whole = work.leaf.is_streamed;
     const auto start = std::chrono::steady_clock::now();
     std::optional<UnchangedWhileRead> check;
     if (uses_cache(work.caching)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
-    Value value = read_leaf(work.leaf, on_warning);
+    Value value = [&] {
+        try {
+            return read_leaf(work.leaf, on_warning);
+        } catch (...) {
+            report_warnings();
+            throw;
+        }
+    }();
+    report_warnings();
     if (check) check->require();
     if (is_geometric(value.kind()))
         report.node.properties.set("points", static_cast<double>(positions_of(value).size()), Unit::count);
@@ -216,7 +238,8 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
 /// Opens the scan as a stream, and stores in the cache the result that reading its value would give. False if the file
 /// must be read as a whole.
 bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener,
-                               const OnWarning& on_warning, JobReport& report) {
+                               const OnWarning& on_warning, const std::function<void()>& report_warnings,
+                               JobReport& report) {
     const auto start = std::chrono::steady_clock::now();
     const JobCaching& caching = work.caching;
     std::optional<StepResult> cached = uses_cache(caching) ? cache_->step(caching.plan_key) : std::nullopt;
@@ -232,6 +255,7 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
     };
     const auto scan = scans_.open(job.node, work.leaf, job.threads, uses_cache(caching), on_warning, on_positions);
     if (!scan) return false;
+    report_warnings();
     report.node.properties.set("points", static_cast<double>(scan->size()), Unit::count);
     std::vector<ResultOutput> outputs;
     if (cached) {

@@ -43,7 +43,7 @@ private:
 
     void read(const Job& job, const ReadWork& work, const JobListener& listener, JobReport& report);
     bool read_as_stream(const Job& job, const ReadWork& work, const JobListener& listener, const OnWarning& on_warning,
-                        JobReport& report);
+                        const std::function<void()>& report_warnings, JobReport& report);
     void run(const Job& job, const StepWork& work, const JobListener& listener, JobReport& report);
     void write(const WriteWork& work, JobReport& report);
     void check_expectations(const PlannedStep& step, const Value& primary, const Slot& slot, NodeReport& report);

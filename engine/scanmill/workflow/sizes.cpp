@@ -54,15 +54,6 @@ u64 parse_byte_size(std::string_view text) {
     throw Error("'{}' is not a size; expected 500 MiB, 20 GiB, 1.5 GB or a number of bytes", text);
 }
 
-std::string byte_size_text(u64 bytes) {
-    for (const SizeUnit& unit : std::span(units).first(4))
-        if (static_cast<double>(bytes) >= unit.bytes) {
-            const double amount = static_cast<double>(bytes) / unit.bytes;
-            return fmt::format("{:.{}f} {}", amount, amount < 10 ? 2 : amount < 100 ? 1 : 0, unit.symbol);
-        }
-    return fmt::format("{} B", bytes);
-}
-
 double parse_duration(std::string_view text) {
     constexpr std::string_view expected = "expected 500 ms, 30 s, 10 min or 2 h";
     for (const TimeUnit& unit : time_units)

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "scanmill/base/text.hpp"
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/metrics.hpp"
 #include "scanmill/data/quantity.hpp"
@@ -13,9 +14,6 @@ namespace scanmill {
 
 /// "500 MiB", "20GiB", "1.5 GB", "4096": bytes. Throws Error with the expected form.
 u64 parse_byte_size(std::string_view text);
-
-/// "1.50 GiB", "20.0 GiB", "512 MiB".
-std::string byte_size_text(u64 bytes);
 
 /// "10 min", "1.5h", "250 ms": seconds, finite and not negative. Throws Error with the expected form; a number without
 /// a unit is refused.

@@ -116,6 +116,7 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].headline = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].numbered = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.streams.emplace(); }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.adds.push_back("bin-size"); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { std::swap(spec.outputs[0], spec.outputs[1]); }));
 }
 

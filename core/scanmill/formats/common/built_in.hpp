@@ -29,8 +29,11 @@ Format ply_format();
 /// its size is exactly what its triangle count requires, even if it begins with "solid". Corners with equal bits become
 /// one vertex, after -0 became +0. Stored normals are not kept. Attribute bytes become the face column `attribute`
 /// (uint16) when one is not zero. Degenerate facets are kept and counted in a warning.
+/// A file whose facets are all degenerate is an Error.
 /// Written: binary. Facet normals have unit length, computed in double from the positions, zero for degenerate
-/// triangles. Unit and frame name are in the 80 bytes of the header, which never begins with "solid".
+/// triangles. A mesh far from zero that floats do not hold is written relative to a shift (see shift_for_floats());
+/// reading does not add it, and warns. Triangles that collapse nevertheless are left out, with a warning. Unit, shift
+/// and frame name are in the 80 bytes of the header, which never begins with "solid".
 /// Source: StereoLithography Interface Specification, 3D Systems, 1989.
 Format stl_format();
 
@@ -65,9 +68,10 @@ Format obj_format();
 /// XYZ and similar texts (.xyz, .txt; .csv, .pts, .pwn, .asc are read only): one point per line, numbers in columns.
 ///
 /// Read: columns separated by blanks, tabs, commas, semicolons or bars, of one kind in each row; `#` and `//` begin
-/// comments. A line of names (X,Y,Z,Intensity; also in a comment) names the columns, in any order; without one the
-/// first three are x, y, z. text_columns() describes how the others become columns. Every line must have as many
-/// numbers as the first.
+/// comments. If a row has commas between digits beside another separator, as "1,5;2,5;3,5", the commas of the text are
+/// decimal; decimal points in the same text are an Error. A line of names (X,Y,Z,Intensity; also in a comment) names
+/// the columns, in any order; without one the first three are x, y, z. text_columns() describes how the others become
+/// columns. Every line must have as many numbers as the first.
 ///
 /// A first line with a single whole number is the number of points. When further such lines follow, each after as many
 /// points as the one before declares, the blocks are scans: one cloud with a column `scan` (uint32) from 0. A count N

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,6 +42,12 @@ struct WriteOptions {
     std::function<void(std::string)> on_warning;
     /// Called with all bytes of the file, piece by piece, in order. May be empty.
     std::function<void(std::string_view)> on_bytes = {};
+    /// Called if the coordinates in the file need `shift` added to become world coordinates. May be empty.
+    std::function<void(const Vec3& shift)> on_shift = {};
+    /// Called with one sentence if the mesh is closed and the one in the file is not; if empty, that is a warning.
+    std::function<void(std::string sentence)> on_opened = {};
+    /// Names of columns that filters added: leaving them out needs no warning.
+    std::set<std::string, std::less<>> added_columns = {};
 };
 
 /// The whole content of a file.
@@ -79,6 +86,9 @@ struct Format {
     std::function<bool(std::string_view file)> may_stream = {};
     /// Null for a file that cannot be streamed.
     OpenStream open_stream = {};
+    /// About the bytes of memory per byte of the file that reading takes, with a tree over the points or the topology
+    /// of the triangles. Measured with `info`: a point takes 120 bytes and its columns, a triangle of a closed mesh 90.
+    double memory_per_byte = 4;
 
     bool has_extension(std::string_view extension) const;
     /// Empty when the format cannot carry the kind.
@@ -87,6 +97,10 @@ struct Format {
 
 /// "PLY" → "ply", ".Stl" → "stl": the form in which Format lists extensions.
 std::string plain_extension(std::string_view extension);
+/// The extension that readers see, in that form: "xyz" of scan.xyz, and also of scan.xyz.gz.
+std::string extension_of(const std::filesystem::path& path);
+/// The file's name without that extension, and without a `.gz` after it: "scan".
+std::string stem_of(const std::filesystem::path& path);
 
 /// Every format, in the order in which they are tried and listed: the built-in ones, then those of modules.
 std::span<const Format> formats();

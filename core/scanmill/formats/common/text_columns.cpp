@@ -103,6 +103,7 @@ public:
         if (!text_.next_row()) throw Error("holds no points: only blanks and comments");
         const bool counted = read_count();
         if (read_names() && !counted) read_count();
+        if (!text_.has_decimal_commas()) require_no_decimal_commas(text_.rest(), text_.line());
         layout_.width = tokens_of_row(text_).size();
         if (layout_.width > most_columns) throw Error("line {}: more than {} columns", text_.line(), most_columns);
         const std::string columns = count_text(layout_.width, "column", "columns");
@@ -112,9 +113,10 @@ public:
             read_names_in_comments();
         } else if (layout_.names.size() != layout_.width) {
             Error error("line {}: {} for {} names", text_.line(), columns, layout_.names.size());
-            // Decimal commas in a row with semicolons look like twice as many numbers.
+            // Decimal commas in a row with commas look like twice as many numbers.
             if (layout_.width == 2 * layout_.names.size())
-                error.set_hint("if the commas are decimal commas, write points instead: 1.5 for 1,5");
+                error.set_hint(
+                    "if the commas are decimal commas, separate the numbers with semicolons or write points");
             throw error;
         }
         return std::move(layout_);
@@ -136,7 +138,10 @@ private:
         std::vector<std::string> names = split_names({tokens.front().begin(), tokens.back().end()});
         const Indices axes = indices_of(names, {"x", "y", "z"});
         if (axes.empty()) {
+            double ignored = 0;
+            const auto is_decimal = [&](std::string_view token) { return number_with_decimal_comma(token, ignored); };
             if (std::ranges::any_of(tokens, is_number)) return false;
+            if (text_.has_decimal_commas() && std::ranges::any_of(tokens, is_decimal)) return false;
             std::set<std::string> found;
             for (const std::string& name : names)
                 if (const std::string axis = plain(name);
@@ -144,7 +149,10 @@ private:
                     throw Error("line {}: two columns are called {}", text_.line(), quote(name))
                         .hint("rename one of them");
             throw Error("line {}: {} is neither a row of numbers nor names among which are x, y and z", text_.line(),
-                        quote(tokens.front()));
+                        quote(tokens.front()))
+                .hint(
+                    "if it is a title, remove the line or begin it with #; if it has names, call three of them x, y "
+                    "and z");
         }
         std::ranges::copy(axes, layout_.axes.begin());
         layout_.names = std::move(names);
@@ -242,6 +250,16 @@ private:
 };
 
 }  // namespace
+
+void require_no_decimal_commas(std::string_view rest, std::size_t line) {
+    const std::string_view row = rest.substr(0, rest.find_first_of("\r\n"));
+    if (row.find(',') == std::string_view::npos) return;
+    TextCursor text(row, decimal_comma_rules);
+    std::size_t numbers = 0;
+    for (double ignored = 0; text.more(); ++numbers)
+        if (!text.number(ignored)) return;
+    if (numbers >= 3 && !text.mixes_separators() && !text.has_empty_field()) throw DecimalCommas{line};
+}
 
 TextLayout read_text_layout(TextCursor& text) { return LayoutReader(text).read(); }
 

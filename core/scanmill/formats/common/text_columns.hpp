@@ -16,6 +16,17 @@ namespace scanmill {
 /// Blanks, tabs, commas, semicolons and bars separate; `#` and `//` begin comments.
 constexpr TextRules text_rules{.commas = true, .comment = '#', .slashes = true};
 
+/// The same for numbers with decimal commas: blanks, tabs, semicolons and bars separate.
+constexpr TextRules decimal_comma_rules{.commas = true, .decimal_commas = true, .comment = '#', .slashes = true};
+
+/// Thrown for a text that must be read with decimal_comma_rules, at the first row that shows it.
+struct DecimalCommas {
+    std::size_t line;
+};
+/// Throws DecimalCommas if the first line of `rest` is three or more numbers under decimal_comma_rules, some with a
+/// comma: "1,5;2,5;3,5" and "1,5 2 3,5", but not "1,5,2,5".
+void require_no_decimal_commas(std::string_view rest, std::size_t line);
+
 struct TextLayout {
     /// The single whole number in a line before the first row: the number of points that follow.
     std::optional<std::size_t> declared_points;
@@ -32,7 +43,7 @@ struct TextLayout {
 
 /// Moves the cursor from the text's beginning to the first row of numbers. Names are taken from a row before it or else
 /// from the last comment before it that names x, y, z and every column. Throws Error with the line: no row, fewer than
-/// three columns, names without x, y and z or not one for each column.
+/// three columns, names without x, y and z or not one for each column. Throws DecimalCommas.
 TextLayout read_text_layout(TextCursor& text);
 
 /// Whether all remaining tokens of the cursor's row are numbers; does not move it.

@@ -100,6 +100,17 @@ bool TextCursor::begins_not_a_number(std::string_view text) {
     return std::ranges::any_of(not_numbers, begins);
 }
 
+bool number_with_decimal_comma(std::string_view token, double& value) {
+    if (token.find('.') != std::string_view::npos) return false;
+    std::string with_point(token);
+    if (const std::size_t comma = with_point.find(','); comma != std::string::npos) {
+        const auto is_digit = [&](std::size_t at) { return with_point[at] >= '0' && with_point[at] <= '9'; };
+        if (comma == 0 || comma + 1 == with_point.size() || !is_digit(comma - 1) || !is_digit(comma + 1)) return false;
+        with_point[comma] = '.';
+    }
+    return number_of_token(with_point, value);
+}
+
 bool number_of_token(std::string_view token, double& value) {
     const std::size_t hash = token.find('#');
     if (hash == std::string_view::npos) return parse_number(token, value);

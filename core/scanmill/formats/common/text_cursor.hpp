@@ -47,6 +47,7 @@ private:
 
 struct TextRules {
     bool commas = false;  ///< commas, semicolons and bars separate as well
+    bool decimal_commas = false;  ///< commas do not separate: numbers have them instead of points
     char comment = '\0';  ///< begins a comment that lasts until the line's end; none when zero
     bool slashes = false;  ///< two slashes at the beginning of a token begin a comment as well
     char continuation = '\0';  ///< joins two lines when it is the last character of the first; none when zero
@@ -55,6 +56,8 @@ struct TextRules {
 
 /// The number that a token spells: as parse_number(), and infinity and NaN as Microsoft's libraries print them.
 bool number_of_token(std::string_view token, double& value);
+/// The same for a text whose numbers have decimal commas: between two digits, at most one. A point is not accepted.
+bool number_with_decimal_comma(std::string_view token, double& value);
 
 class TextCursor {
 public:
@@ -62,7 +65,9 @@ public:
         : at_(text.data()),
           end_(text.data() + text.size()),
           rules_(rules),
-          separators_(rules.commas ? any_gap : blank_gap),
+          separators_(!rules.commas          ? blank_gap
+                      : rules.decimal_commas ? any_gap & ~comma_gap
+                                             : any_gap),
           line_(rules.line) {}
 
     /// Moves to the next row, skipping the rest of this one; false at the end of the text.
@@ -82,6 +87,9 @@ public:
     /// Whether the row, as far as it was read, has different separators, such as commas and blanks: "1,5 2,5 3" may
     /// mean three numbers or five.
     bool mixes_separators() const { return (gaps_ & any_gap & ((gaps_ & any_gap) - 1)) != 0; }
+    bool has_decimal_commas() const { return rules_.decimal_commas; }
+    /// Whether the row, as far as it was read, has commas between tokens.
+    bool has_commas() const { return (gaps_ & comma_gap) != 0; }
     /// Two of the row's separators: "commas" and "blanks". Pre: mixes_separators().
     std::pair<std::string_view, std::string_view> mixed_separators() const;
     /// Whether the row, as far as it was read, has a comma, semicolon or bar without a number before it.
@@ -89,6 +97,8 @@ public:
     /// Tokens left in this row; does not move.
     std::size_t count_tokens() const;
 
+    /// The text that was not read yet.
+    std::string_view rest() const { return {at_, end_}; }
     /// Number of the current line.
     std::size_t line() const { return line_; }
     /// The comments so far, without the characters that begin them.
@@ -170,13 +180,13 @@ inline bool TextCursor::more() {
 template <class Number>
 bool TextCursor::number(Number& value) {
     const auto [rest, error] = std::from_chars(at_, end_, value);
-    if (error == std::errc() && (rest == end_ || ends_token(rest))) {
+    if (error == std::errc() && (rest == end_ || ends_token(rest)) && !rules_.decimal_commas) {
         at_ = rest;
         return true;
     }
     double wide = 0;
     last_token_ = token();
-    if (!number_of_token(last_token_, wide)) return false;
+    if (!(rules_.decimal_commas ? number_with_decimal_comma : number_of_token)(last_token_, wide)) return false;
     if constexpr (std::is_integral_v<Number>) {
         // The largest integer may round up as a double: compare with its successor, which is exact.
         constexpr double low = static_cast<double>(std::numeric_limits<Number>::min());

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scanmill/data/quantity.hpp"
+#include "scanmill/formats/common/rounding.hpp"
 
 namespace scanmill {
 
@@ -50,7 +51,7 @@ bool all_floats(const Frame& frame, std::span<const Vec3> positions) {
     for (const Vec3& position : positions) {
         const Vec3 p = world(frame, position);
         for (int axis = 0; axis < 3; ++axis)
-            if (static_cast<double>(static_cast<float>(p[axis])) != p[axis] && !std::isnan(p[axis])) return false;
+            if (rounded_to_float(p[axis]) != p[axis] && !std::isnan(p[axis])) return false;
     }
     return true;
 }
@@ -63,7 +64,7 @@ void warn_lost_precision(const Frame& frame, std::span<const Vec3> positions, bo
         if (!positions[i].allFinite()) continue;
         const Vec3 p = world(frame, positions[i]);
         for (int axis = 0; axis < 3; ++axis) {
-            const double written = as_float ? static_cast<double>(static_cast<float>(p[axis])) : p[axis];
+            const double written = as_float ? rounded_to_float(p[axis]) : p[axis];
             if (!std::isfinite(written))
                 throw Error("point {} has the coordinate {}, beyond what {} can write", i, number_text(p[axis]), format)
                     .hint("write PLY, or change the unit");
@@ -82,7 +83,8 @@ void warn_left_out(const ColumnTable& columns, std::string_view element, std::st
                    const WriteOptions& options, std::span<const std::string_view> kept) {
     std::vector<std::string_view> names;
     for (const Column& column : columns)
-        if (std::ranges::find(kept, column.name()) == kept.end()) names.push_back(column.name());
+        if (std::ranges::find(kept, column.name()) == kept.end() && !options.added_columns.contains(column.name()))
+            names.push_back(column.name());
     if (!names.empty())
         warn(options.on_warning, "{} left out {} of the {} ({}); PLY keeps them", format,
              count_text(names.size(), "column", "columns"), element, fmt::join(names, ", "));

@@ -23,7 +23,8 @@ bool all_floats(const Frame& frame, std::span<const Vec3> positions);
 void warn_lost_precision(const Frame& frame, std::span<const Vec3> positions, bool as_float, std::string_view format,
                          const WriteOptions& options);
 
-/// Warns that the columns of `element` ("vertices") are left out, with their names, except those in `kept`.
+/// Warns that the columns of `element` ("vertices") are left out, with their names, except those in `kept` and
+/// WriteOptions::added_columns.
 void warn_left_out(const ColumnTable& columns, std::string_view element, std::string_view format,
                    const WriteOptions& options, std::span<const std::string_view> kept = {});
 

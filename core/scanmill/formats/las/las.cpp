@@ -289,6 +289,10 @@ LoadedFile read(const FileBytes& file, const ReadOptions& options) {
 
 }  // namespace
 
-Format las_format() { return {"LAS", {"las", "laz"}, recognise, read, {}}; }
+Format las_format() {
+    Format las{"LAS", {"las", "laz"}, recognise, read, {}};
+    las.memory_per_byte = 5;
+    return las;
+}
 
 }  // namespace scanmill

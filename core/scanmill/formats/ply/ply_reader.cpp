@@ -213,6 +213,7 @@ Format ply_format() {
                recognise,
                read,
                {{kind_of<PointCloud>(), write_ply_points}, {kind_of<TriangleMesh>(), write_ply_mesh}}};
+    ply.memory_per_byte = 5;
     ply.may_stream = may_be_ply_stream;
     ply.open_stream = open_ply_stream;
     return ply;

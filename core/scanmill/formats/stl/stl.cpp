@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
 #include <cctype>
-#include <cstring>
 
 #include "scanmill/formats/common/built_in.hpp"
+#include "scanmill/formats/common/position_merger.hpp"
+#include "scanmill/formats/common/rounding.hpp"
 #include "scanmill/formats/common/text_cursor.hpp"
 #include "scanmill/formats/common/writing.hpp"
 #include "scanmill/io/output_buffer.hpp"
@@ -17,17 +17,19 @@ namespace {
 constexpr std::size_t header_size = 80, facet_size = 50;
 constexpr std::string_view signature = "binary STL by scanmill";
 constexpr std::string_view unit_key = "; unit ";
+constexpr std::string_view shift_key = "; shift ";
 constexpr std::string_view frame_key = "; frame ";
 
-std::string header_of(const Frame& frame) {
+std::string header_of(const Frame& frame, const Vec3& shift) {
     std::string header(signature);
     if (frame.unit != LengthUnit::unknown) header.append(unit_key).append(symbol(frame.unit));
+    if (shift != Vec3::Zero()) header.append(shift_key).append(shift_text(shift));
     if (!frame.name.empty()) header.append(frame_key).append(frame.name);
     header.resize(header_size, ' ');
     return header;
 }
 
-/// "unit mm" and "frame NAME" in a header of header_of(); of other headers the whole text.
+/// "unit mm", "shift X Y Z" and "frame NAME" in a header of header_of(); of other headers the whole text.
 std::vector<std::string> header_comments(std::string_view header) {
     header = trimmed(header.substr(0, header.find('\0')));
     if (header.empty()) return {};
@@ -35,84 +37,15 @@ std::vector<std::string> header_comments(std::string_view header) {
     std::vector<std::string> comments;
     header.remove_prefix(signature.size());
     // The frame's name is last and may contain anything, also semicolons.
-    for (std::string_view key : {unit_key, frame_key}) {
+    for (std::string_view key : {unit_key, shift_key, frame_key}) {
         if (!header.starts_with(key)) continue;
         header.remove_prefix(2);
-        const std::size_t end = key == unit_key ? header.find(frame_key) : std::string_view::npos;
+        const std::size_t end = key == frame_key ? std::string_view::npos : header.find(';');
         comments.emplace_back(header.substr(0, end));
         header.remove_prefix(comments.back().size());
     }
     return comments;
 }
-
-/// Gives equal positions one number: turns a soup of triangles into an indexed mesh.
-///
-/// Equal means equal bits after -0 became +0; near positions are not merged. Vertices are numbered by first appearance.
-/// Cost: one hash-table look-up per corner (open addressing, at most half full), about 40 bytes per vertex.
-class CornerMerger {
-public:
-    /// `corners` is the expected number; a wrong guess only costs time.
-    explicit CornerMerger(std::size_t corners) {
-        // A closed triangulation has about six corners per vertex.
-        constexpr std::size_t corners_per_vertex = 6;
-        const std::size_t guess = corners / corners_per_vertex + 16;
-        positions.reserve(guess);
-        slots_.assign(std::bit_ceil(2 * guess), Slot{});
-    }
-
-    /// The number of the vertex at this position.
-    u32 add(const Vec3& corner) {
-        const Vec3 p = corner.array() + 0.0;  // -0 + 0 is +0, every other number stays
-        const auto vertex = static_cast<u32>(positions.size());
-        Slot& slot = slot_of(p);
-        if (slot.vertex != empty) return slot.vertex;
-        slot = {vertex, static_cast<u32>(hash_of(p))};
-        positions.push_back(p);
-        if (2 * positions.size() > slots_.size()) grow();
-        return vertex;
-    }
-
-    Array<Vec3> positions;
-
-private:
-    static constexpr u32 empty = ~u32(0);
-    struct Slot {
-        u32 vertex = empty;
-        u32 mark = 0;  // the lower half of the hash: most other positions differ in it
-    };
-
-    static u64 hash_of(const Vec3& p) {
-        // Floats widened to double have zeros in the low bits: multiply, then fold the high half down.
-        u64 hash = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            hash = (hash ^ std::bit_cast<u64>(p[axis])) * 0x9E3779B97F4A7C15u;
-            hash ^= hash >> 32;
-        }
-        return hash * 0xD6E8FEB86659FD93u;
-    }
-
-    /// The slot of this position, or the empty one to put it into.
-    Slot& slot_of(const Vec3& p) {
-        const u64 hash = hash_of(p);
-        const std::size_t mask = slots_.size() - 1;
-        for (std::size_t at = (hash >> 32) & mask;; at = (at + 1) & mask) {
-            Slot& slot = slots_[at];
-            if (slot.vertex == empty) return slot;
-            if (slot.mark == static_cast<u32>(hash) &&
-                std::memcmp(positions[slot.vertex].data(), p.data(), sizeof(Vec3)) == 0)
-                return slot;
-        }
-    }
-
-    void grow() {
-        require_countable(2 * positions.size(), "vertices");
-        slots_.assign(2 * slots_.size(), Slot{});
-        for (u32 vertex = 0; vertex < positions.size(); ++vertex)
-            slot_of(positions[vertex]) = {vertex, static_cast<u32>(hash_of(positions[vertex]))};
-    }
-
-    Array<Slot> slots_;
-};
 
 bool same_word(std::string_view text, std::string_view lower) {
     return std::ranges::equal(text, lower, [](unsigned char a, unsigned char b) { return std::tolower(a) == b; });
@@ -130,12 +63,21 @@ bool has_binary_size(std::string_view head, u64 file_size) {
 }
 
 struct Soup {
-    explicit Soup(std::size_t facets) : merger(3 * facets) { triangles.reserve(facets); }
+    /// A closed triangulation has about two facets per vertex.
+    explicit Soup(std::size_t facets) : merger(facets / 2) { triangles.reserve(facets); }
 
     LoadedFile mesh(std::vector<std::string> comments, std::string encoding, const ReadOptions& options) {
         if (triangles.empty()) throw Error("holds no points: the STL file has no facets");
         const auto is_degenerate = [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
-        if (const auto count = static_cast<u64>(std::ranges::count_if(triangles, is_degenerate)); count > 0)
+        const auto count = static_cast<u64>(std::ranges::count_if(triangles, is_degenerate));
+        if (count == triangles.size())
+            throw Error("holds no surface: {} of the STL file {} two equal corners",
+                        count > 1 ? fmt::format("all {} facets", count) : std::string("the only facet"),
+                        by_count(count, "has", "have"))
+                .hint(
+                    "the program that wrote it lost digits, as single precision does far from zero: move the object "
+                    "near zero there, or export it as PLY");
+        if (count > 0)
             warn(options.on_warning, "{} of {} {} degenerate (two equal corners); {} kept", count,
                  count_text(triangles.size(), "facet", "facets"), by_count(count, "is", "are"),
                  by_count(count, "it is", "they are"));
@@ -146,7 +88,7 @@ struct Soup {
                            std::move(mesh), options);
     }
 
-    CornerMerger merger;
+    PositionMerger merger;
     Array<Triangle> triangles;
     ColumnTable columns;
 };
@@ -183,7 +125,12 @@ LoadedFile read_binary(std::string_view bytes, const ReadOptions& options) {
         any_attribute |= attributes[i];
     }
     if (any_attribute != 0) soup.columns.add(Column("attribute", 1, Buffer(std::move(attributes))));
-    return soup.mesh(header_comments(bytes.substr(0, header_size)), "binary", options);
+    std::vector<std::string> comments = header_comments(bytes.substr(0, header_size));
+    for (const std::string& comment : comments)
+        if (const std::string_view shift = declaration_in(comment, "shift"); !shift.empty())
+            warn(options.on_warning,
+                 "its coordinates are relative to {}: add these three numbers for world coordinates", quote(shift));
+    return soup.mesh(std::move(comments), "binary", options);
 }
 
 class AsciiReader {
@@ -307,22 +254,12 @@ void put(const Eigen::Vector3f& p, OutputBuffer& out) {
     for (int axis = 0; axis < 3; ++axis) out.binary(p[axis]);
 }
 
-Eigen::Vector3f written(const TriangleMesh& mesh, u32 vertex) {
-    return world(mesh.frame, mesh.positions[vertex]).cast<float>();
-}
-
-/// Triangles with two corners that differ in the mesh and coincide in single precision.
-std::size_t collapsed_triangles(const TriangleMesh& mesh) {
-    std::size_t count = 0;
-    for (const Triangle& triangle : mesh.triangles) {
-        bool collapsed = false;
-        for (int corner = 0; corner < 3; ++corner) {
-            const u32 a = triangle[corner], b = triangle[(corner + 1) % 3];
-            collapsed |= mesh.positions[a] != mesh.positions[b] && written(mesh, a) == written(mesh, b);
-        }
-        count += collapsed;
-    }
-    return count;
+void warn_cut_frame(const Frame& frame, const std::string& header, const WriteOptions& options) {
+    const std::vector<std::string> kept = header_comments(header);
+    if (!frame.name.empty() && (kept.empty() || kept.back() != "frame " + frame.name))
+        warn(options.on_warning,
+             "the frame's name of {} bytes does not fit into STL's header and was cut; PLY keeps it",
+             frame.name.size());
 }
 
 void write(const Value& value, OutputBuffer& out, const WriteOptions& options) {
@@ -330,35 +267,42 @@ void write(const Value& value, OutputBuffer& out, const WriteOptions& options) {
     if (whole.triangles.empty()) throw Error("nothing to write: the mesh has no triangles, and STL holds nothing else");
     require_countable(whole.triangles.size(), "triangles");
     const TriangleMesh mesh = with_used_vertices(whole, "STL", options);
-    warn_lost_precision(mesh.frame, mesh.positions.span(), true, "STL", options);
-    warn_bare_triangles(mesh, "STL", options);
-    if (const std::size_t collapsed = collapsed_triangles(mesh); collapsed > 0)
+    const Vec3 shift = shift_for_floats(mesh);
+    Frame shifted = mesh.frame;
+    shifted.origin -= shift;
+    if (shift != Vec3::Zero()) {
         warn(options.on_warning,
-             "{} collapsed: corners that differ are equal in STL's single precision; PLY "
-             "keeps them apart",
-             count_text(collapsed, "triangle", "triangles"));
+             "coordinates are written relative to {}: STL's single precision does not hold them so far from zero; add "
+             "these three numbers to get them back, or write PLY",
+             shift_text(shift));
+        if (options.on_shift) options.on_shift(shift);
+    }
+    warn_lost_precision(shifted, mesh.positions.span(), true, "STL", options);
+    warn_bare_triangles(mesh, "STL", options);
+    const JoinedVertices joined = joined_vertices(
+        mesh, [&](std::size_t vertex) { return rounded_to_float(world(shifted, mesh.positions[vertex])); });
+    const Buffer<Triangle> triangles = triangles_of_positions(mesh, joined, "STL", options);
 
     Frame frame = mesh.frame;
     frame.name = one_line(frame.name);
-    const std::string header = header_of(frame);
-    const std::vector<std::string> kept = header_comments(header);
-    if (!frame.name.empty() && (kept.empty() || kept.back() != "frame " + frame.name))
-        warn(options.on_warning,
-             "the frame's name of {} bytes does not fit into STL's header and was cut; PLY keeps it",
-             frame.name.size());
-
+    const std::string header = header_of(frame, shift);
+    warn_cut_frame(frame, header, options);
     out.text(header);
-    out.binary(static_cast<u32>(mesh.triangles.size()));
-    for (const Triangle& triangle : mesh.triangles) {
+    out.binary(static_cast<u32>(triangles.size()));
+    for (const Triangle& triangle : triangles) {
         const Vec3 &a = mesh.positions[triangle[0]], &b = mesh.positions[triangle[1]], &c = mesh.positions[triangle[2]];
         put(facet_normal(a, b, c).cast<float>(), out);
-        for (u32 vertex : triangle) put(written(mesh, vertex), out);
+        for (u32 vertex : triangle) put(world(shifted, mesh.positions[vertex]).cast<float>(), out);
         out.binary(std::uint16_t(0));
     }
 }
 
 }  // namespace
 
-Format stl_format() { return {"STL", {"stl"}, recognise, read, {{kind_of<TriangleMesh>(), write}}}; }
+Format stl_format() {
+    Format stl{"STL", {"stl"}, recognise, read, {{kind_of<TriangleMesh>(), write}}};
+    stl.memory_per_byte = 2;
+    return stl;
+}
 
 }  // namespace scanmill

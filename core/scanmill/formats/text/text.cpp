@@ -59,10 +59,13 @@ LoadedFile read_tagged_points(std::string_view text, const ReadOptions& options)
 
 class XyzReader {
 public:
-    XyzReader(const FileBytes& file, std::string_view text, const ReadOptions& options)
-        : text_(text, text_rules),
+    /// `decimal_commas`: the row that showed that the text has them.
+    XyzReader(const FileBytes& file, std::string_view text, const ReadOptions& options,
+              std::optional<DecimalCommas> decimal_commas = {})
+        : text_(text, decimal_commas ? decimal_comma_rules : text_rules),
+          decimal_commas_(decimal_commas),
           size_(text.size()),
-          extension_(plain_extension(file.path.extension().string())),
+          extension_(extension_of(file.path)),
           options_(options) {}
 
     LoadedFile read() {
@@ -79,6 +82,7 @@ public:
         std::vector<Array<double>> normals = normals_after_points();
         if (normals.empty()) check_count();
         require_countable(positions_.size(), "points");
+        warn_of_commas();
         TriangleMesh vertices;
         vertices.vertex_columns =
             normals.empty() ? columns()
@@ -116,20 +120,51 @@ private:
 
     /// Fills row_; false when the row is the count of another block.
     bool read_row() {
+        const std::string_view rest = text_.rest();
         const std::size_t width = row_.size();
         double* const numbers = row_.data();
         for (std::size_t i = 0; i < width; ++i) {
             if (!text_.more()) {
                 if (i == 1 && begins_block(numbers[0])) return false;
-                require_equal_separators();
+                require_equal_separators(rest);
                 throw_width(i);
             }
-            if (!text_.number(numbers[i]) && !quoted_number(numbers[i]))
-                throw Error("line {}: {} is not a number", text_.line(), quote(text_.last_token()));
+            if (!text_.number(numbers[i]) && !quoted_number(numbers[i])) throw_not_a_number(rest);
         }
-        if (text_.more()) throw_width(width + text_.count_tokens());
-        require_equal_separators();
+        if (text_.more()) {
+            refuse_decimal_commas(rest);
+            throw_width(width + text_.count_tokens());
+        }
+        require_equal_separators(rest);
+        has_commas_ = text_.has_commas();
         return true;
+    }
+
+    /// `rest`: the text from the row on.
+    void refuse_decimal_commas(std::string_view rest) const {
+        if (!decimal_commas_) require_no_decimal_commas(rest, text_.line());
+    }
+
+    [[noreturn]] void throw_not_a_number(std::string_view rest) const {
+        refuse_decimal_commas(rest);
+        const std::string_view token = text_.last_token();
+        if (decimal_commas_ && token.find('.') != std::string_view::npos)
+            throw Error("line {}: {} has a decimal point, and line {} has decimal commas", text_.line(), quote(token),
+                        decimal_commas_->line)
+                .hint("write all numbers with decimal points");
+        throw Error("line {}: {} is not a number", text_.line(), quote(token));
+    }
+
+    /// "1,5,2,5,3,5" may be six numbers or three.
+    void warn_of_commas() const {
+        if (!has_commas_ || layout_.width <= 3 || !layout_.names.empty()) return;
+        const auto is_whole = [](double number) { return number == std::trunc(number); };
+        const auto all_whole = [&](const auto& numbers) { return std::ranges::all_of(numbers, is_whole); };
+        if (!std::ranges::all_of(positions_, all_whole) || !std::ranges::all_of(further_, all_whole)) return;
+        warn(options_.on_warning,
+             "commas separate {} numbers in a row, and none of them has a decimal point: if they are decimal commas, "
+             "separate the numbers with semicolons; if not, name the columns in a first line, as x,y,z,intensity",
+             layout_.width);
     }
 
     [[noreturn]] void throw_width(std::size_t found) const {
@@ -153,13 +188,14 @@ private:
     }
 
     /// Checks the row as far as it was read.
-    void require_equal_separators() const {
+    void require_equal_separators(std::string_view rest) const {
+        if (text_.has_empty_field() || text_.mixes_separators()) refuse_decimal_commas(rest);
         if (text_.has_empty_field())
             throw Error("line {}: a field is empty; every point needs a number in every column", text_.line());
         if (text_.mixes_separators())
             throw Error("line {}: {} separate some numbers and {} others", text_.line(), text_.mixed_separators().first,
                         text_.mixed_separators().second)
-                .hint("if the commas are decimal commas, write points instead");
+                .hint("separate all numbers by the same character");
     }
 
     /// Warns when the last block is not as long as its count declares. A PWN file is refused: its count separates
@@ -210,6 +246,8 @@ private:
     }
 
     TextCursor text_;
+    std::optional<DecimalCommas> decimal_commas_;
+    bool has_commas_ = false;  // between the numbers of the last row
     std::size_t size_;
     std::string extension_;
     const ReadOptions& options_;
@@ -228,6 +266,8 @@ Recognition recognise(std::string_view head, u64) {
         TextCursor cursor(text, text_rules);
         read_text_layout(cursor);
         return is_row_of_numbers(cursor) ? Recognition::plausible : Recognition::no;
+    } catch (const DecimalCommas&) {
+        return Recognition::plausible;
     } catch (const Error&) {
         return Recognition::no;
     }
@@ -235,7 +275,17 @@ Recognition recognise(std::string_view head, u64) {
 
 LoadedFile read(const FileBytes& file, const ReadOptions& options) {
     const std::string_view text = without_byte_order_mark(file.bytes);
-    return has_tagged_points(text) ? read_tagged_points(text, options) : XyzReader(file, text, options).read();
+    if (has_tagged_points(text)) return read_tagged_points(text, options);
+    std::vector<std::string> warnings;  // void if the text has decimal commas
+    try {
+        ReadOptions kept = options;
+        kept.on_warning = [&](std::string sentence) { warnings.push_back(std::move(sentence)); };
+        LoadedFile loaded = XyzReader(file, text, kept).read();
+        for (std::string& sentence : warnings) warn(options.on_warning, "{}", std::move(sentence));
+        return loaded;
+    } catch (const DecimalCommas& found) {
+        return XyzReader(file, text, options, found).read();
+    }
 }
 
 /// No row is shorter than three digits with separators and a line end.
@@ -376,9 +426,11 @@ private:
     KeptComments comments_;
 };
 
-bool may_stream(std::string_view file) {
+bool may_stream(std::string_view file) try {
     TextCursor cursor(without_byte_order_mark(file), text_rules);
     return is_streamed(read_text_layout(cursor));
+} catch (const DecimalCommas&) {
+    return false;
 }
 
 std::unique_ptr<PointStream> open_stream(std::unique_ptr<MappedFile> file, const ReadOptions& options, unsigned threads,
@@ -387,6 +439,7 @@ std::unique_ptr<PointStream> open_stream(std::unique_ptr<MappedFile> file, const
         auto stream = std::make_unique<TextStream>(std::move(file));
         if (stream->open(options, threads, on_positions)) return stream;
     } catch (const NotStreamable&) {
+    } catch (const DecimalCommas&) {
     }
     return nullptr;
 }
@@ -411,6 +464,7 @@ void write(const Value& value, OutputBuffer& out, const WriteOptions& options) {
 
 std::vector<Format> text_formats() {
     Format xyz{"XYZ", {"xyz", "txt"}, recognise, read, {{kind_of<PointCloud>(), write}}};
+    xyz.memory_per_byte = 5;
     xyz.may_stream = may_stream;
     xyz.open_stream = open_stream;
     // Not written: other programs expect commas, a count or normals in them.

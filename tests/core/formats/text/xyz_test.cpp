@@ -22,11 +22,6 @@ TEST(XyzReader_Separators, AnEmptyField_IsRefused_RatherThanShiftTheOthers) {
         EXPECT_THAT(refusal_of(text, "a.csv"), HasSubstr("a field is empty")) << text;
 }
 
-TEST(XyzReader_Separators, DecimalCommas_AreRefused_RatherThanReadAsSeparators) {
-    EXPECT_THAT(refusal_of("1,5 2,25 3,5\n", "a.xyz"), HasSubstr("line 1: commas separate some numbers"));
-    EXPECT_THAT(refusal_of("1 2 3\n4,5 6\n", "a.xyz"), HasSubstr("line 2: commas separate some numbers"));
-}
-
 TEST(XyzReader_ByteOrderMark, IsPassedOver) {
     EXPECT_EQ(points_in("\xef\xbb\xbf"
                         "1 2 3\n4 5 6\n",

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/formats/detail/content.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <limits>
+#include <new>
+#include <span>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/io/memory.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::string_view gzip_magic = "\x1f\x8b";
+constexpr std::string_view little_mark = "\xff\xfe", big_mark = "\xfe\xff";
+
+/// zlib's decoder of one gzip member after the other.
+class Inflater {
+public:
+    explicit Inflater(std::string_view input) : input_(input) {
+        constexpr int largest_window = 15, only_gzip = 16;
+        if (::inflateInit2(&stream_, largest_window + only_gzip) != Z_OK) throw std::bad_alloc();
+    }
+    ~Inflater() { ::inflateEnd(&stream_); }
+    Inflater(const Inflater&) = delete;
+    Inflater& operator=(const Inflater&) = delete;
+
+    /// Fills `room` as far as there is content; returns how much. Throws Error for invalid or truncated data.
+    std::size_t read(std::span<char> room) {
+        std::size_t filled = 0;
+        while (filled < room.size() && !is_at_end_) filled += step(room.subspan(filled));
+        return filled;
+    }
+
+private:
+    std::size_t step(std::span<char> room) {
+        constexpr std::size_t most = std::numeric_limits<uInt>::max();
+        const auto input = static_cast<uInt>(std::min(input_.size(), most));
+        const auto output = static_cast<uInt>(std::min(room.size(), most));
+        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(input_.data()));  // zlib does not write there
+        stream_.avail_in = input;
+        stream_.next_out = reinterpret_cast<Bytef*>(room.data());
+        stream_.avail_out = output;
+        const int result = ::inflate(&stream_, Z_NO_FLUSH);
+        input_.remove_prefix(input - stream_.avail_in);
+        const std::size_t filled = output - stream_.avail_out;
+        content_ += filled;
+        if (result == Z_MEM_ERROR) throw std::bad_alloc();
+        if (result == Z_STREAM_END)
+            next_member();
+        else if (result == Z_BUF_ERROR || (result == Z_OK && input_.empty() && stream_.avail_out > 0))
+            throw Error("its gzip data end after {} of content, before the end of the content",
+                        count_text(content_, "byte", "bytes"))
+                .hint("the file is truncated: fetch or compress it again");
+        else if (result != Z_OK)
+            throw Error("its gzip data are damaged after {} of content ({})", count_text(content_, "byte", "bytes"),
+                        stream_.msg ? stream_.msg : "no reason given")
+                .hint("fetch or compress the file again");
+        return filled;
+    }
+
+    /// What follows a member and does not begin another one is padding, which gunzip ignores as well.
+    void next_member() {
+        is_at_end_ = !input_.starts_with(gzip_magic);
+        if (!is_at_end_) ::inflateReset(&stream_);
+    }
+
+    z_stream stream_{};
+    std::string_view input_;
+    std::uint64_t content_ = 0;
+    bool is_at_end_ = false;
+};
+
+unsigned unit_at(std::string_view text, std::size_t at, bool is_big) {
+    const auto first = static_cast<unsigned char>(text[at]), second = static_cast<unsigned char>(text[at + 1]);
+    return is_big ? first << 8 | second : second << 8 | first;
+}
+
+/// Whether all units may be characters of a text; with `only_ascii`, of one in ASCII.
+bool is_text(std::string_view head, bool is_big, bool only_ascii) {
+    for (std::size_t at = 0; at + 1 < head.size(); at += 2) {
+        const unsigned unit = unit_at(head, at, is_big);
+        if (unit < ' ' ? unit < '\t' || unit > '\r' : only_ascii && unit >= 0x7f) return false;
+    }
+    return true;
+}
+
+constexpr std::size_t looked_at = 4096;
+
+/// Big-endian if true, little-endian if false; empty: the bytes are not UTF-16 text.
+std::optional<bool> utf16_order(std::string_view bytes) {
+    const std::string_view head = bytes.substr(0, looked_at);
+    if (head.size() < 4) return std::nullopt;
+    for (const bool is_big : {false, true}) {
+        const bool has_mark = head.starts_with(is_big ? big_mark : little_mark);
+        if (is_text(has_mark ? head.substr(2) : head, is_big, !has_mark)) return is_big;
+    }
+    return std::nullopt;
+}
+
+void put_utf8(unsigned code, Array<char>& text) {
+    const auto put = [&](unsigned byte) { text.push_back(static_cast<char>(byte)); };
+    if (code < 0x80) return put(code);
+    if (code < 0x800) {
+        put(0xc0 | code >> 6);
+    } else {
+        if (code < 0x10000) {
+            put(0xe0 | code >> 12);
+        } else {
+            put(0xf0 | code >> 18);
+            put(0x80 | (code >> 12 & 0x3f));
+        }
+        put(0x80 | (code >> 6 & 0x3f));
+    }
+    put(0x80 | (code & 0x3f));
+}
+
+}  // namespace
+
+Wrapping wrapping_of(std::string_view bytes) {
+    if (bytes.starts_with(gzip_magic)) return Wrapping::gzip;
+    return utf16_order(bytes) ? Wrapping::utf16 : Wrapping::none;
+}
+
+Array<char> decompressed(std::string_view gzip, std::uint64_t most) {
+    constexpr std::size_t usual_ratio = 4;
+    Inflater inflater(gzip);
+    Array<char> content(std::min<std::uint64_t>(most, usual_ratio * gzip.size() + 1));
+    std::size_t filled = 0;
+    for (;;) {
+        filled += inflater.read(std::span(content).subspan(filled));
+        if (filled < content.size()) break;
+        char further = 0;
+        if (content.size() == most && inflater.read({&further, 1}) == 0) break;
+        if (content.size() == most)
+            throw Error("its {} of gzip data contain more than {}, half of the memory that is available",
+                        byte_size_text(gzip.size()), byte_size_text(most))
+                .hint(
+                    "decompress it with gunzip -k; binary PLY and texts of three columns are then read piece by "
+                    "piece where the workflow allows it");
+        content.resize(std::min<std::uint64_t>(most, 2 * content.size()));
+    }
+    content.resize(filled);
+    if (content.empty()) throw Error("is empty: its gzip data hold 0 bytes");
+    return content;
+}
+
+Array<char> utf8_of(std::string_view utf16) {
+    if (utf16.size() % 2 != 0)
+        throw Error("is text in UTF-16 and has an odd number of bytes, {}", utf16.size())
+            .hint("the file is truncated: fetch it again, or save it as UTF-8 in a text editor");
+    const bool is_big = utf16_order(utf16).value();
+    Array<char> text;
+    text.reserve(utf16.size() / 2);
+    for (std::size_t at = utf16.starts_with(is_big ? big_mark : little_mark) ? 2 : 0; at < utf16.size(); at += 2) {
+        unsigned code = unit_at(utf16, at, is_big);
+        const auto is_half = [](unsigned unit, unsigned first) { return unit >= first && unit < first + 0x400; };
+        const unsigned next = at + 2 < utf16.size() ? unit_at(utf16, at + 2, is_big) : 0;
+        if (is_half(code, 0xd800) && is_half(next, 0xdc00)) {
+            code = 0x10000 + ((code - 0xd800) << 10 | (next - 0xdc00));
+            at += 2;
+        } else if (is_half(code, 0xd800) || is_half(code, 0xdc00)) {
+            code = '?';
+        }
+        put_utf8(code, text);
+    }
+    return text;
+}
+
+std::optional<Array<char>> unwrapped(std::string_view bytes) {
+    std::optional<Array<char>> content;
+    if (wrapping_of(bytes) == Wrapping::gzip) {
+        content = decompressed(bytes, available_memory() / 2);
+        bytes = {content->data(), content->size()};
+        if (wrapping_of(bytes) == Wrapping::gzip)
+            throw Error("is compressed twice with gzip").hint("decompress it with gunzip -k");
+    }
+    if (wrapping_of(bytes) == Wrapping::utf16) content = utf8_of(bytes);
+    return content;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The content of files that are not stored as readers expect it: gzip data and text in UTF-16.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "scanmill/data/array.hpp"
+
+namespace scanmill {
+
+/// gzip: by its first two bytes. UTF-16: by a byte order mark or by the zero bytes of plain ASCII, if the first
+/// characters are text.
+enum class Wrapping { none, gzip, utf16 };
+Wrapping wrapping_of(std::string_view bytes);
+
+/// The decompressed content, of all members of the gzip file (RFC 1952). Throws Error: truncated or damaged data, or
+/// more than `most` bytes of content. Cost: up to three times the content while its memory grows.
+Array<char> decompressed(std::string_view gzip, std::uint64_t most);
+
+/// The text as UTF-8, without a byte order mark. Unpaired surrogates become '?'. Throws Error for an odd number of
+/// bytes. Pre: wrapping_of() is utf16.
+Array<char> utf8_of(std::string_view utf16);
+
+/// Content that readers can read: decompressed, then as UTF-8; empty if `bytes` are such already. Decompresses at most
+/// half of the available memory: reading needs the rest.
+std::optional<Array<char>> unwrapped(std::string_view bytes);
+
+}  // namespace scanmill
