@@ -25,6 +25,11 @@ LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name,
 /// Points of a point file, or vertices of a mesh file, with a warning that counts the faces left out.
 std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
+/// The points of a file that was read, as a scan that enters a workflow: only valid rows (see accepted()). Warns of
+/// dropped points, and as read_points(). Throws Error with the file's path.
+Cleaned<PointCloud> accepted_points(const LoadedFile& loaded, const std::filesystem::path& path,
+                                    const ReadOptions& options, InvalidRows rule);
+
 /// Throws Error when the file holds points only.
 std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -28,6 +28,17 @@ private:
     Json& json_;
 };
 
+/// `stray`, and with stray points the diagonal that `%diag` refers to and the first of them.
+void add_stray_points(const RobustBox& box, const Frame& frame, Json& json) {
+    constexpr std::size_t shown = 5;
+    json["stray"] = box.stray.size();
+    if (box.stray.empty()) return;
+    json["robust-diagonal"] = box.diagonal();
+    Json& points = json["stray-points"] = Json::array();
+    for (std::size_t i = 0; i < std::min(shown, box.stray.size()); ++i)
+        points.push_back({{"number", box.stray[i].row}, {"position", json_of(box.stray[i].position + frame.origin)}});
+}
+
 }  // namespace
 
 Json file_info(const std::string& file) {
@@ -50,6 +61,7 @@ Json file_info(const std::string& file) {
         json["diagonal"] = box.diagonal();
         json["spacing"] = length_scale(value).spacing();
     }
+    if (value.find<PointCloud>()) add_stray_points(robust_box(positions.span()), frame, json);
     if (is_geometric(value.kind())) {
         json["not-finite"] = std::ranges::count_if(positions, [](const Vec3& p) { return !p.allFinite(); });
         json["unit"] = unit_json(frame.unit);
