@@ -104,13 +104,16 @@ struct VoxelThinResult {
 /// `minimum` obeys them, `quantile` ignores a share of them. Kept points of adjacent voxels are at most 2 √3 voxel
 /// edges apart, and so are the corners of a triangle without kept points in its smallest circumsphere.
 ///
+/// Stray points (see robust_box.hpp) count neither for the grid's origin nor for a derived size. They are kept as
+/// others.
+///
 /// Throws Error for an empty cloud, a NaN or infinite coordinate, a bin size not above 0, a negative margin,
 /// min_points 0, more than 2^21 voxels along an axis of the robust box (with the smallest size that fits), a grid
-/// origin or a stray point more than 2^31 voxels away, 2^63 voxels in all, and when every point is noise. When the size
-/// is derived, also for a tolerance not above 0 or not below the cloud's diagonal, a quantile outside of [0, 1], fewer
-/// than 6 or more than 1000 neighbours, no more distinct points than neighbours, and when all neighbourhoods lie near
-/// lines. With the adaptive rule also for a given bin size or grid origin. Warns when more than 1 % of the points have
-/// no determined curvature, and about replaced columns.
+/// origin or a stray point more than 2^31 voxels away, more than 2^63 voxels in all, and when every point is noise.
+/// When the size is derived, also for a tolerance not above 0 or not below the robust box's diagonal, a quantile
+/// outside of [0, 1], fewer than 6 or more than 1000 neighbours, no more distinct points than neighbours, and when all
+/// neighbourhoods lie near lines. With the adaptive rule also for a given bin size or grid origin. Warns when more than
+/// 1 % of the points have no determined curvature, and about replaced columns.
 ///
 /// Deterministic: the same bytes for any number of threads; without ties the same set for any order of the points.
 /// Cost: O(n) time; beside the result 24 to 72 bytes per occupied voxel and at most 50 MB. A derived size takes about 2

@@ -34,8 +34,8 @@ Cleaned<PointCloud> accepted_points(const LoadedFile& loaded, const std::filesys
 std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Opens a scan file as a point stream (see Format::open_stream), after reading the whole file once, on up to `threads`
-/// threads, for bounds and origin. `on_positions`, unless empty, receives every piece meanwhile, in order and on this
-/// thread, even if the result is null.
+/// threads, for bounds and origin, and as many pieces again as robust_box() needs. `on_positions`, unless empty,
+/// receives every piece meanwhile, in order and on this thread, even if the result is null.
 ///
 /// Null when the format cannot be streamed, a coordinate is not finite, or read_points() would warn about the content
 /// or refuse the file; the caller then uses read_points(). Warnings about units and frames go to options.on_warning.
