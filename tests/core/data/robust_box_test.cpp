@@ -96,6 +96,17 @@ TEST(RobustBox, MoreThanOneIn500Outside_AreNotStray) {
         for (const std::size_t far : {0u, 1u, 2u, 3u, 4u, 10u, 11u}) expect_as_defined(cube_with_far(count, far));
 }
 
+TEST(RobustBox, OneFarPointTooManyOnDifferentSides_LeavesNoneStray) {
+    std::vector<Vec3> positions = positions_of(random_cube(1000, 5));
+    positions[1] = Vec3(100, 0, 0);
+    positions[2] = Vec3(0, 100, 0);
+    EXPECT_THAT(stray_rows(positions), ElementsAre(1u, 2u));
+    positions[3] = Vec3(0, 0, -100);
+    EXPECT_THAT(stray_rows(positions), IsEmpty()) << "3 of 1000 are more than 2";
+    EXPECT_GT(robust_box(positions).diagonal(), 100);
+    expect_as_defined(positions);
+}
+
 TEST(RobustBox, PointOnTheBoundaryOfQ_IsNotStray) {
     // 500 points, k = 1: second lowest and highest are 0 and 3 and 0 and 4: Q goes to 3 + 5/4 in x.
     std::vector<Vec3> positions(500, Vec3::Zero());

@@ -127,12 +127,12 @@ void expect_as_read_whole(const fs::path& path) {
 TEST(PointStream, StrayPoints_AreThoseOfTheFileReadWhole) {
     const TemporaryFolder folder;
     for (const double middle : {0.0, 4'500'000.0})
-        for (const Vec3& stray : {Vec3(0, 0, 0), Vec3(0.1, 0.2, 0.3), Vec3(-7e6, 1e5, 3), Vec3(9e6, 9e6, 9e6)}) {
+        for (const Vec3& stray : {Vec3(0, 0, 0), Vec3(-7e6, 0.1, 3)}) {
             std::string content;
             Numbers numbers(middle);
-            constexpr int rows = 150'000;
+            constexpr int rows = 70'000;
             for (int row = 0; row < rows; ++row) {
-                const bool is_stray = row == 3 || row == 80'000;
+                const bool is_stray = row == 3 || row == 69'000;
                 const Vec3 p = is_stray ? Vec3(stray + Vec3(row == 3 ? 0 : 1000, 0, 0))
                                         : Vec3(numbers.next(), numbers.next(), numbers.next());
                 for (int axis = 0; axis < 3; ++axis) content += bytes_of(p[axis], false);
