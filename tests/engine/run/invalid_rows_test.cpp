@@ -179,7 +179,8 @@ TEST_F(StrayPointRun, StreamedOrWhole_IsTheSame) {
 }
 
 TEST_F(StrayPointRun, LengthInUnits_NeedsNoWarning) {
-    EXPECT_THAT(run_thin("bin-size: 1 u", sphere("b.ply", 1)).nodes[1].warnings, IsEmpty());
+    EXPECT_THAT(run_logging(sphere("b.ply", 1), "length: 1 u").nodes[1].warnings, IsEmpty());
+    EXPECT_EQ(run_logging(sphere("b.ply", 1)).nodes[1].warnings.size(), 1u);
 }
 
 }  // namespace
