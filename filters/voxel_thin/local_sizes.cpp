@@ -20,7 +20,7 @@ constexpr double most_voxels_along_box = 1 << 20;
 /// Share of points without a determined surface above which a warning is given.
 constexpr double many_undetermined = 0.01;
 
-void require_valid(const BoundingBox& box, const VoxelThinParams& params) {
+void require_valid(const RobustBox& box, const VoxelThinParams& params) {
     const double tolerance = params.tolerance.value(), diagonal = box.diagonal();
     if (!(tolerance > 0) || !std::isfinite(tolerance)) throw Error("tolerance is {} u; it must be above 0", tolerance);
     const double quantile = params.quantile.value();
@@ -51,10 +51,12 @@ double quantile_of(Array<double> sizes, double share) {
     return *nth;
 }
 
-double chosen_size(const LocalSizes& local, const VoxelThinParams& params) {
+double chosen_size(const LocalSizes& local, std::span<const StrayPoint> stray, const VoxelThinParams& params) {
+    std::vector<bool> is_stray(local.sizes.size());
+    for (const StrayPoint& point : stray) is_stray[local.point_of_row[point.row]] = true;
     Array<double> determined;
     for (std::size_t point = 0; point < local.sizes.size(); ++point)
-        if (local.surfaces[point].is_curved) determined.push_back(local.sizes[point]);
+        if (local.surfaces[point].is_curved && !is_stray[point]) determined.push_back(local.sizes[point]);
     if (determined.empty())
         throw Error("no point has {} neighbours that determine a surface: all lie near lines", params.neighbours)
             .hint("give a bin-size, or more neighbours, so that they include more than one scan line");
@@ -85,7 +87,7 @@ double derivatives_of(const LocalSurface& surface, VoxelThinParams::Derivatives 
     return derivatives == VoxelThinParams::Derivatives::thesis ? sum / 2 : sum;
 }
 
-LocalSizes local_sizes(std::span<const Vec3> positions, const BoundingBox& box, const VoxelThinParams& params,
+LocalSizes local_sizes(std::span<const Vec3> positions, const RobustBox& box, const VoxelThinParams& params,
                        Context& context) {
     require_valid(box, params);
     const PointTree tree(positions, context.threads());
@@ -95,7 +97,7 @@ LocalSizes local_sizes(std::span<const Vec3> positions, const BoundingBox& box, 
     LocalSizes local;
     local.point_of_row.assign(tree.index_of_row().begin(), tree.index_of_row().end());
     local.surfaces = local_surfaces(tree, {params.neighbours, params.origin}, context);
-    const double extent = (box.high - box.low).maxCoeff();
+    const double extent = (box.robust.high - box.robust.low).maxCoeff();
     const LocalSurface& closest = *std::ranges::min_element(local.surfaces, {}, &LocalSurface::spacing);
     local.largest = extent / least_voxels_along_box;
     // A voxel with a diagonal of less than the closest spacing cannot hold two points.
@@ -110,7 +112,7 @@ LocalSizes local_sizes(std::span<const Vec3> positions, const BoundingBox& box, 
         local.undetermined += !surface.is_curved;
         local.flat += surface.is_curved && allowed >= local.largest;
     }
-    local.chosen = chosen_size(local, params);
+    local.chosen = chosen_size(local, box.stray, params);
     warn_of_undetermined(local, params, context);
     return local;
 }

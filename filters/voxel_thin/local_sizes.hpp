@@ -28,8 +28,8 @@ struct LocalSizes {
     Array<u32> point_of_row;
     Array<LocalSurface> surfaces;
     /// The voxel size that each distinct point allows, between `least` and `largest`. `least` is a voxel that cannot
-    /// hold both of the two closest points (or the smallest that a grid supports), `largest` a tenth of the box's
-    /// longest side. `largest` where the surface is not determined.
+    /// hold both of the two closest points (or the smallest that a grid supports), `largest` a tenth of the robust
+    /// box's longest side. `largest` where the surface is not determined.
     Array<double> sizes;
     double least = 0, largest = 0;
     /// By the rule; of the adaptive one the size of the basic voxels, by the quantile.
@@ -40,9 +40,9 @@ struct LocalSizes {
 };
 
 /// Throws Error for a tolerance not above 0 or not below the diagonal, a quantile outside of [0, 1], fewer than 6 or
-/// more than 1000 neighbours, fewer distinct points than neighbours + 1, and when no point determines a surface. `box`
-/// bounds the positions, which are finite.
-LocalSizes local_sizes(std::span<const Vec3> positions, const BoundingBox& box, const VoxelThinParams& params,
+/// more than 1000 neighbours, fewer distinct points than neighbours + 1, and when no point determines a surface. Stray
+/// points have no part in the choice. `box` is that of the positions, which are finite.
+LocalSizes local_sizes(std::span<const Vec3> positions, const RobustBox& box, const VoxelThinParams& params,
                        Context& context);
 
 }  // namespace scanmill::voxel

@@ -125,8 +125,14 @@ struct Root {
 };
 
 /// The smallest cell that holds the box, of the grids from `origin` with edges `base` times a power of two. It need not
-/// contain `origin`, so a distant origin costs no levels.
-Root root_over(const BoundingBox& box, const Vec3& origin, double base) {
+/// contain `origin`, so a distant origin costs no levels. If the box begins below the origin (stray points do), the
+/// origin moves down by an edge that no smaller cell notices.
+Root root_over(const BoundingBox& box, Vec3 origin, double base) {
+    if ((box.low.array() < origin.array()).any()) {
+        double edge = base;
+        while (edge < (box.high - box.low).maxCoeff()) edge *= 2;
+        origin.array() -= edge;
+    }
     int levels = 0;
     for (double edge = base;; edge *= 2, ++levels) {
         const Vec3 low = origin.array() + ((box.low - origin).array() / edge).floor() * edge;

@@ -24,7 +24,7 @@ struct OctreeChoice {
 /// edge is above the smallest of its points' sizes, at most 21 times; throws Error when that is not enough. In a leaf
 /// the point nearest the centre is kept, of equal ones the lowest row.
 ///
-/// Pre: sizes[size_of_row[row]] is the size that a row allows, above 0; no position below `origin`.
+/// Pre: sizes[size_of_row[row]] is the size that a row allows, above 0.
 /// Cost: a sort, and the depth of the tree in passes over the points; 16 bytes per point.
 OctreeChoice choose_in_octree(std::span<const Vec3> positions, std::span<const u32> size_of_row,
                               std::span<const double> sizes, const Vec3& origin, double base, u32 min_points,

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = VoxelThinParams;
-    return Declare<P>("voxel-thin", 3)
+    return Declare<P>("voxel-thin", 4)
         .summary("Keeps, in every voxel, the point nearest the voxel's centre.")
         .source("Wang 2006, chapter 3")
         .ties("Of points equally near a centre the first is kept; a duplicate counts as a point.")
@@ -52,14 +52,17 @@ SCANMILL_FILTER() {
                "Voxels with fewer points are noise and keep none; 1 keeps all voxels. With `rule: adaptive` these are "
                "the basic voxels of edge `bin-size`, before any is divided or joined.",
                at_least(1))
-        .param("margin", &P::margin, "The grid begins this far below the bounding box, along every axis.", at_least(0))
+        .param("margin", &P::margin,
+               "The grid begins this far below the bounding box of the points that are not stray, along every axis.",
+               at_least(0))
         .metric("bin-size", Unit::length, "Edge of a voxel, given or derived; in an octree of a basic voxel.")
         .metric("kept", Unit::count, "Points kept.", headline)
         .metric("removed", Unit::count, "Points that are not kept.")
         .metric("noise", Unit::count,
                 "Removed points whose voxels (in an octree basic voxels) had fewer than min-points.")
         .metric("smallest-radius", Unit::length, "Smallest radius of principal curvature; none on a plane.")
-        .metric("flat", Unit::count, "Points so flat that a tenth of the bounding box limits their voxels.")
+        .metric("flat", Unit::count,
+                "Points so flat that a tenth of the bounding box (without stray points) limits their voxels.")
         .metric("undetermined", Unit::count, "Points whose neighbours lie near a line and determine no curvature.")
         .metric("smallest-bin", Unit::length, "Smallest edge among octree leaves that hold several points.")
         .metric("largest-bin", Unit::length, "Largest edge among octree leaves that hold several points.")

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double most_voxels_per_axis = 1 << 21;  // the product of three of them has 63 bits
 constexpr double farthest_voxel = 0x1p31;
+constexpr double most_voxels = 0x1p63;
 constexpr u32 invalid_row = ~u32(0);
 
 /// Multiply and fold: both halves of the result depend on all bits of the voxel's number.
@@ -229,25 +230,36 @@ KeptRows choose(const PointChunks& points, const VoxelGrid& grid, u32 min_points
 
 }  // namespace
 
-VoxelGrid grid_over(const BoundingBox& box, const Vec3& origin, double size) {
+VoxelGrid grid_over(const RobustBox& box, const Vec3& origin, double size) {
+    const auto voxel_of = [&](const Vec3& point, int axis) { return std::floor((point[axis] - origin[axis]) / size); };
     VoxelGrid grid{origin, size, Vec3::Zero(), {}};
+    double voxels = 1, farthest = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const double first = std::floor((box.low[axis] - grid.origin[axis]) / size);
-        const double last = std::floor((box.high[axis] - grid.origin[axis]) / size);
+        const BoundingBox& robust = box.robust;
+        const double first = voxel_of(robust.low, axis), last = voxel_of(robust.high, axis);
         if (!(last - first < most_voxels_per_axis))
             throw Error(
                 "voxels of {} u divide the cloud's extent of {:.6g} u along {} into {:.8g}; at most {} are supported",
-                size, box.high[axis] - box.low[axis], "xyz"[axis], last - first + 1, most_voxels_per_axis)
+                size, robust.high[axis] - robust.low[axis], "xyz"[axis], last - first + 1, most_voxels_per_axis)
                 .hint(fmt::format("a bin-size of at least {:.6g} u fits this cloud",
-                                  (box.high - box.low).maxCoeff() / (most_voxels_per_axis - 2)));
+                                  (robust.high - robust.low).maxCoeff() / (most_voxels_per_axis - 2)));
         if (!(std::max(std::abs(first), std::abs(last)) < farthest_voxel))
             throw Error(
                 "the grid's origin lies {:.6g} voxels of {} u away from the cloud along {}; at most {} are supported",
                 std::max(std::abs(first), std::abs(last)), size, "xyz"[axis], farthest_voxel)
                 .hint("lessen the margin, or choose a grid origin nearer the cloud");
-        grid.first[axis] = first;
-        grid.voxels[axis] = static_cast<u64>(last - first) + 1;
+        const double lowest = voxel_of(box.all.low, axis), highest = voxel_of(box.all.high, axis);
+        grid.first[axis] = lowest;
+        grid.voxels[axis] = static_cast<u64>(std::min(highest - lowest, farthest_voxel)) + 1;
+        voxels *= highest - lowest + 1;
+        farthest = std::max({farthest, std::abs(lowest), std::abs(highest)});
     }
+    if (!(farthest < farthest_voxel && voxels <= most_voxels))
+        throw Error(
+            "a stray point lies {:.6g} voxels of {} u away from the grid's origin; at most {} along an axis and "
+            "{:.3g} voxels in all are supported",
+            farthest, size, farthest_voxel, most_voxels)
+            .hint("remove the stray points, or give a larger bin-size");
     return grid;
 }
 

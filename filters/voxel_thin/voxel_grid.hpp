@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/robust_box.hpp"
 #include "scanmill/filter/context.hpp"
 
 namespace scanmill::voxel {
@@ -23,9 +24,10 @@ struct VoxelGrid {
     u64 size_in_voxels() const { return voxels[0] * voxels[1] * voxels[2]; }
 };
 
-/// The part of the grid that overlaps `box`. Pre: the box is finite, size above 0. Throws Error for more than 2^21
-/// voxels along an axis (with the smallest size that fits) and for an origin more than 2^31 voxels away.
-VoxelGrid grid_over(const BoundingBox& box, const Vec3& origin, double size);
+/// The part of the grid that overlaps the box of all points. Pre: the box is finite, size above 0. Throws Error for
+/// more than 2^21 voxels along an axis of the robust box (with the smallest size that fits), for an origin more than
+/// 2^31 voxels away, and for stray points that far away or that need more than 2^63 voxels in all.
+VoxelGrid grid_over(const RobustBox& box, const Vec3& origin, double size);
 
 /// Points in order, in chunks that can be read one by one.
 struct PointChunks {

@@ -10,7 +10,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/data/bounds.hpp"
+#include "scanmill/data/robust_box.hpp"
 #include "voxel_thin/local_sizes.hpp"
 #include "voxel_thin/octree.hpp"
 #include "voxel_thin/voxel_grid.hpp"
@@ -40,8 +40,9 @@ void require_valid(std::size_t points, const VoxelThinParams& params) {
     if (params.grid_origin && !params.grid_origin->allFinite()) throw Error("the grid's origin is not finite");
 }
 
-/// Bounds of all points in one parallel pass. Throws Error for coordinates that are not finite.
-BoundingBox required_bounds(std::span<const Vec3> positions, Context& context) {
+/// The box of all points in one parallel pass, and without stray points. Throws Error for coordinates that are not
+/// finite.
+RobustBox required_bounds(std::span<const Vec3> positions, Context& context) {
     constexpr std::size_t chunk = 1 << 18;
     std::vector<FiniteBounds> parts((positions.size() + chunk - 1) / chunk);
     for_each_chunk(context.threads(), positions.size(), chunk, [&](std::size_t begin, std::size_t end) {
@@ -51,7 +52,7 @@ BoundingBox required_bounds(std::span<const Vec3> positions, Context& context) {
     FiniteBounds all;
     for (const FiniteBounds& part : parts) all.add(part);
     if (!all.finite) require_finite(positions);  // counts them for the message
-    return all.box;
+    return robust_box(positions, all.box);
 }
 
 /// Points of a chunk: they fit the cache of one core.
@@ -67,8 +68,8 @@ PointChunks chunks_of(std::span<const Vec3> positions) {
     return chunks;
 }
 
-Vec3 grid_origin(const BoundingBox& box, const VoxelThinParams& params) {
-    return params.grid_origin.value_or(box.low.array() - params.margin.value());
+Vec3 grid_origin(const RobustBox& box, const VoxelThinParams& params) {
+    return params.grid_origin.value_or(box.robust.low.array() - params.margin.value());
 }
 
 void require_kept(const KeptRows& rows, std::size_t points, u32 min_points) {
@@ -162,7 +163,7 @@ void finish(VoxelThinResult& result, KeptRows rows, std::size_t points, Context&
 }
 
 /// With a given voxel size. `gather` returns the points of ascending rows.
-VoxelThinResult thin_by_grid(const PointChunks& points, const BoundingBox& box, const VoxelThinParams& params,
+VoxelThinResult thin_by_grid(const PointChunks& points, const RobustBox& box, const VoxelThinParams& params,
                              const std::function<PointCloud(std::span<const u32>)>& gather, Context& context) {
     const VoxelGrid grid = grid_over(box, grid_origin(box, params), params.bin_size->value());
     KeptRows rows = nearest_to_centres(points, grid, params.min_points, context);
@@ -194,7 +195,7 @@ void report(const LocalSizes& local, Context& context) {
     context.metric("undetermined", static_cast<double>(local.undetermined));
 }
 
-VoxelThinResult thin_within_tolerance(const PointCloud& cloud, const PointChunks& chunks, const BoundingBox& box,
+VoxelThinResult thin_within_tolerance(const PointCloud& cloud, const PointChunks& chunks, const RobustBox& box,
                                       const VoxelThinParams& params, Context& context) {
     const bool adaptive = params.rule == VoxelThinParams::Rule::adaptive;
     if (adaptive && params.grid_origin)
@@ -222,7 +223,7 @@ VoxelThinResult thin_within_tolerance(const PointCloud& cloud, const PointChunks
 VoxelThinResult voxel_thin(const PointCloud& cloud, const VoxelThinParams& params, Context& context) {
     require_valid(cloud.size(), params);
     const std::span<const Vec3> positions = cloud.positions.span();
-    const BoundingBox box = required_bounds(positions, context);
+    const RobustBox box = required_bounds(positions, context);
     const PointChunks chunks = chunks_of(positions);
     if (!params.bin_size) return thin_within_tolerance(cloud, chunks, box, params, context);
     return thin_by_grid(
@@ -239,8 +240,8 @@ VoxelThinResult voxel_thin(const PointStream& scan, const VoxelThinParams& param
                                  return buffer;
                              }};
     return thin_by_grid(
-        chunks, scan.bounds(), params, [&](std::span<const u32> rows) { return scan.gather(rows, context.threads()); },
-        context);
+        chunks, scan.robust_box(), params,
+        [&](std::span<const u32> rows) { return scan.gather(rows, context.threads()); }, context);
 }
 
 }  // namespace scanmill

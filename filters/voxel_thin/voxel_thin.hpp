@@ -69,7 +69,8 @@ struct VoxelThinParams {
     /// Voxels with fewer points are noise: none of their points is kept. 1 keeps all voxels. With the adaptive rule
     /// this is decided in the basic voxels, of edge VoxelThinResult::bin_size, before any is divided or joined.
     u32 min_points = 1;
-    /// The grid's origin is the low corner of the bounding box minus this along every axis; 0 or more.
+    /// The grid's origin is the low corner of the robust box (see robust_box.hpp) minus this along every axis; 0 or
+    /// more.
     Length margin;
     /// For programs: the grid's origin, in the cloud's frame; `margin` is then ignored. Thinning a result again in the
     /// same grid changes nothing. Not with the adaptive rule.
@@ -103,12 +104,16 @@ struct VoxelThinResult {
 /// `minimum` obeys them, `quantile` ignores a share of them. Kept points of adjacent voxels are at most 2 √3 voxel
 /// edges apart, and so are the corners of a triangle without kept points in its smallest circumsphere.
 ///
+/// Stray points (see robust_box.hpp) count neither for the grid's origin nor for a derived size. They are kept as
+/// others.
+///
 /// Throws Error for an empty cloud, a NaN or infinite coordinate, a bin size not above 0, a negative margin,
-/// min_points 0, more than 2^21 voxels along an axis (with the smallest size that fits), a grid origin more than 2^31
-/// voxels away, and when every point is noise. When the size is derived, also for a tolerance not above 0 or not below
-/// the cloud's diagonal, a quantile outside of [0, 1], fewer than 6 or more than 1000 neighbours, no more distinct
-/// points than neighbours, and when all neighbourhoods lie near lines. With the adaptive rule also for a given bin size
-/// or grid origin. Warns when more than 1 % of the points have no determined curvature, and about replaced columns.
+/// min_points 0, more than 2^21 voxels along an axis of the robust box (with the smallest size that fits), a grid
+/// origin or a stray point more than 2^31 voxels away, more than 2^63 voxels in all, and when every point is noise.
+/// When the size is derived, also for a tolerance not above 0 or not below the robust box's diagonal, a quantile
+/// outside of [0, 1], fewer than 6 or more than 1000 neighbours, no more distinct points than neighbours, and when all
+/// neighbourhoods lie near lines. With the adaptive rule also for a given bin size or grid origin. Warns when more than
+/// 1 % of the points have no determined curvature, and about replaced columns.
 ///
 /// Deterministic: the same bytes for any number of threads; without ties the same set for any order of the points.
 /// Cost: O(n) time; beside the result 24 to 72 bytes per occupied voxel and at most 50 MB. A derived size takes about 2
@@ -120,9 +125,9 @@ VoxelThinResult voxel_thin(const PointCloud& cloud, const VoxelThinParams& param
 /// and refusals. The bin size must be given. The file is read once for its bounds (when the stream is opened), once for
 /// the voxels, and a third time at the kept rows.
 ///
-/// Lengths are resolved against scan.bounds(). Cost: beside the result 24 to 72 bytes per occupied voxel, an eighth of
-/// a byte per point, 56 bytes (72 where the grid has 2^32 voxels or more) per point of 16 chunks, thus at most 76 MB,
-/// and for each thread mapped pages of the file: of a chunk, or 4 MB while the kept rows are gathered.
+/// Lengths are resolved against scan.robust_box(). Cost: beside the result 24 to 72 bytes per occupied voxel, an eighth
+/// of a byte per point, 56 bytes (72 where the grid has 2^32 voxels or more) per point of 16 chunks, thus at most 76
+/// MB, and for each thread mapped pages of the file: of a chunk, or 4 MB while the kept rows are gathered.
 VoxelThinResult voxel_thin(const PointStream& scan, const VoxelThinParams& params, Context& context);
 
 }  // namespace scanmill

@@ -246,10 +246,11 @@ LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     loaded.format = "PCD";
     loaded.encoding = name_of(header.encoding);
     loaded.comments = header.comments;
+    loaded.nan_is_no_return = true;
     PointCloud points;
     points.frame = declared_frame(loaded.comments, options);
     Array<Vec3> positions = positions_of(cloud);
-    move_near_origin(positions, bounding_box(positions), points.frame);
+    move_near_origin(positions, points.frame);
     points.positions = std::move(positions);
     points.columns = with_exponents(columns_of(cloud, options), loaded.comments);
     loaded.value = std::make_shared<const PointCloud>(std::move(points));

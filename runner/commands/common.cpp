@@ -71,6 +71,11 @@ void add_unit_option(CLI::App& command, const char* name, LengthUnit& unit, cons
         ->check(CLI::IsMember({"um", "mm", "cm", "m", "in", "ft"}));
 }
 
+void add_invalid_option(CLI::App& command, InvalidRows& rule, const char* help) {
+    const auto read = [&rule](const std::string& name) { rule = *invalid_rows_named(name); };
+    command.add_option_function<std::string>("--invalid", read, help)->check(CLI::IsMember({"drop", "refuse"}));
+}
+
 Warn warning_printer() {
     return [printed = std::make_shared<std::set<std::string>>()](const std::string& text) {  // shared by all copies
         if (printed->insert(text).second) print_warning(text);

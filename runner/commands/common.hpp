@@ -36,6 +36,9 @@ Settings parse_settings(const std::vector<std::string>& pairs);
 /// Adds an option for a unit of length; without it `unit` is unknown.
 void add_unit_option(CLI::App& command, const char* name, LengthUnit& unit, const char* help);
 
+/// Adds `--invalid drop|refuse`; without it `rule` is by_format.
+void add_invalid_option(CLI::App& command, InvalidRows& rule, const char* help);
+
 using Warn = std::function<void(std::string)>;
 
 /// Prints warnings on stderr, equal sentences once.

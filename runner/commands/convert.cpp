@@ -26,8 +26,9 @@ struct Options {
 template <class T>
 Value warn_dropped(Cleaned<T> cleaned) {
     if (cleaned.points > 0)
-        print_warning(count_text(cleaned.points, "point", "points") + " with a NaN or an infinity " +
-                      (cleaned.points == 1 ? "was" : "were") + " left out" +
+        print_warning(count_text(cleaned.points, "point", "points") +
+                      " with a NaN, infinite or too distant coordinate " + (cleaned.points == 1 ? "was" : "were") +
+                      " left out" +
                       (cleaned.triangles > 0 ? ", and " + count_text(cleaned.triangles, "triangle", "triangles") +
                                                    " on " + (cleaned.points == 1 ? "it" : "them")
                                              : ""));
@@ -78,7 +79,8 @@ void add_convert(CLI::App& app, Action& chosen) {
     add_unit_option(command, "--unit", options.unit, "The input's unit of length");
     add_unit_option(command, "--to-unit", options.to_unit, "Convert the coordinates to this unit");
     command.add_flag("--drop-invalid", options.drop_invalid,
-                     "Leave out points with a NaN or infinite coordinate, and their faces");
+                     "Leave out points with a NaN or infinite coordinate, and their faces; of a point file also points "
+                     "too distant for the supported range");
 }
 
 }  // namespace scanmill::runner

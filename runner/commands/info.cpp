@@ -31,7 +31,10 @@ std::string value_text(const Json& value, int digits = 9) {
     std::string text;
     for (const Json& item : value) {
         std::string part;
-        if (item.is_object()) {
+        if (item.contains("position")) {
+            part =
+                fmt::format("number {} at {}", item.at("number").get<std::size_t>(), value_text(item.at("position")));
+        } else if (item.is_object()) {
             const unsigned components = item.at("components");
             part = fmt::format("{} ({}{})", item.at("name").get<std::string>(), item.at("type").get<std::string>(),
                                components == 0   ? " lists"

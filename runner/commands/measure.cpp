@@ -26,6 +26,7 @@ const std::string filter = "measure";
 struct Options {
     std::string mesh, truth;
     LengthUnit unit = LengthUnit::unknown, truth_unit = LengthUnit::unknown;
+    InvalidRows invalid = InvalidRows::by_format;
     std::vector<std::string> settings;
     bool certify = false, json = false;
     unsigned threads = 0;
@@ -58,8 +59,12 @@ std::vector<StepInput> read_inputs(const Options& options, const Warn& warn) {
     reading.unit = options.unit;
     const Value mesh = read_mesh(options.mesh, reading);
     reading.unit = options.truth_unit;
-    Value truth = read_file(options.truth, reading).value;
-    if (!truth.find<TriangleMesh>() && !truth.find<PointCloud>())
+    const LoadedFile loaded = read_file(options.truth, reading);
+    Value truth = loaded.value;
+    if (truth.find<PointCloud>())
+        truth =
+            std::make_shared<const PointCloud>(accepted_points(loaded, options.truth, reading, options.invalid).result);
+    else if (!truth.find<TriangleMesh>())
         throw Error("'{}': the truth is a mesh or points; the file contains {}", options.truth, truth.kind().name());
     if (Frame frame = *frame_of(truth); frame.unit == LengthUnit::unknown) {
         frame.unit = options.unit;  // --unit is also that of a truth that declares none
@@ -137,6 +142,9 @@ void add_measure(CLI::App& app, Action& chosen) {
     add_unit_option(command, "--unit", options.unit, "The unit of MESH, and of TRUTH if that declares none");
     add_unit_option(command, "--truth-unit", options.truth_unit,
                     "The unit of TRUTH, which is converted to that of MESH");
+    add_invalid_option(command, options.invalid,
+                       "Points of TRUTH with a NaN, infinite or too distant coordinate: drop or refuse. Default: drop "
+                       "where the format writes NaN for a ray without a return (PCD, PTX), else refuse");
     command.add_flag("--certify", options.certify, "Bound the Hausdorff distance from below and above; takes longer");
     command.add_option("--set", options.settings,
                        "NAME=VALUE: a parameter of the filter, as `scanmill show measure` lists them");

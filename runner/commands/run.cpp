@@ -265,6 +265,7 @@ RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteO
         file.unit = scan.unit;
         file.frame = scan.frame;
         file.pose = scan.pose;
+        file.invalid = scan.invalid;
         request.scans.push_back(std::move(file));
         for (const std::filesystem::path& other : {scan.truth, scan.pose_file})
             if (!other.empty()) request.protected_files.push_back(other);
@@ -306,6 +307,10 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
     };
     add_list("--in", options.inputs, "Files for an input: NAME=FILE[,FILE…]");
     add_unit_option(run, "--unit", options.request.unit, "The scans' unit of length");
+    add_invalid_option(
+        run, options.request.invalid,
+        "Points with a NaN, infinite or too distant coordinate: drop or refuse. Default: the workflow's, "
+        "else drop where the format writes NaN for a ray without a return (PCD, PTX), else refuse");
     add_list("--set", options.settings, "A workflow parameter's value, NAME=VALUE");
     add_list("--only", options.request.only, "Run only this variant (may be repeated)");
     run.add_option("--until", options.request.until, "Stop after this step");

@@ -31,6 +31,10 @@ Error with_option(const Error& error) {
             case Remedy::convert_unit: return "scanmill convert --to-unit mm IN OUT";
             case Remedy::drop_invalid_points:
                 return "'scanmill convert --drop-invalid IN OUT' writes a copy without them";
+            case Remedy::drop_invalid_rows:
+                return "or drop them while reading: --invalid drop on the command line, `invalid: drop` in a workflow "
+                       "or "
+                       "batch";
             case Remedy::choose_output_folder: return "on the command line: -o DIR";
             case Remedy::choose_cache_folder: return "on the command line: --cache DIR";
             case Remedy::run_without_workers: return "on the command line: -j 0";

@@ -71,10 +71,11 @@ TEST_F(DryRun, OneOfAThing_IsNamedAsOne) {
     EXPECT_THAT(scanmill({"check", "w.yaml", "--plan"}).out, HasSubstr("w: 1 step, 1 variant\n"));
     folder_.write("one.xyz", "0 0 0\n1 1 nan\n");
     EXPECT_THAT(scanmill({"convert", "--drop-invalid", "one.xyz", "one.ply"}).err,
-                HasSubstr("warning: 1 point with a NaN or an infinity was left out\n"));
+                HasSubstr("warning: 1 point with a NaN, infinite or too distant coordinate was left out\n"));
     folder_.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nv 0 nan 0\nf 1 2 3\nf 1 2 4\n");
     EXPECT_THAT(scanmill({"convert", "--drop-invalid", "mesh.obj", "mesh.ply"}).err,
-                HasSubstr("warning: 2 points with a NaN or an infinity were left out, and 1 triangle on them\n"));
+                HasSubstr("warning: 2 points with a NaN, infinite or too distant coordinate were left out, and 1 "
+                          "triangle on them\n"));
 }
 
 }  // namespace

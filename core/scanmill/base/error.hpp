@@ -23,7 +23,8 @@ enum class Remedy {
     name_input_files,
     declare_unit,
     convert_unit,
-    drop_invalid_points,
+    drop_invalid_points,  ///< from a file
+    drop_invalid_rows,    ///< of a scan while it is read
     choose_output_folder,
     choose_cache_folder,
     run_without_workers

@@ -25,9 +25,16 @@ PointCloud PointStream::gather(std::span<const u32> rows, unsigned threads) cons
 void PointStream::throw_changed() { throw Error("the scan's file changed while it was read").hint("run it again"); }
 
 void PointStream::choose_origin() {
-    frame_.origin = distant_origin(world_.box);
-    bounds_.low = world_.box.low - frame_.origin;
-    bounds_.high = world_.box.high - frame_.origin;
+    const auto read = [this](std::size_t piece, Array<Vec3>& buffer) -> std::span<const Vec3> {
+        this->read(piece, buffer);
+        return buffer;
+    };
+    frame_.origin = Vec3::Zero();
+    box_ = scanmill::robust_box({pieces_, read}, world_.box);
+    frame_.origin = distant_origin(box_);
+    if (frame_.origin == Vec3::Zero()) return;
+    const BoundingBox moved{world_.box.low - frame_.origin, world_.box.high - frame_.origin};
+    box_ = scanmill::robust_box({pieces_, read}, moved);
 }
 
 }  // namespace scanmill

@@ -10,8 +10,8 @@
 #include <memory>
 #include <span>
 
-#include "scanmill/data/bounds.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/robust_box.hpp"
 
 namespace scanmill {
 
@@ -26,7 +26,9 @@ public:
 
     const Frame& frame() const { return frame_; }
     /// Of all points, relative to frame().origin.
-    const BoundingBox& bounds() const { return bounds_; }
+    const BoundingBox& bounds() const { return box_.all; }
+    /// The same, and without stray points; equals robust_box() of the positions.
+    const RobustBox& robust_box() const { return box_; }
     /// The first point of every piece, and the number of points. A piece has at most 2^16 points and may be empty.
     const std::vector<std::size_t>& pieces() const { return pieces_; }
     std::size_t size() const { return pieces_.back(); }
@@ -49,12 +51,12 @@ protected:
     /// Reads the world positions of a piece, as many as the file has now; returns their bounds.
     virtual FiniteBounds read_world(std::size_t piece, Array<Vec3>& positions) const = 0;
     virtual PointCloud gather_world(std::span<const u32> rows, unsigned threads) const = 0;
-    /// Sets the frame's origin as readers do, and the bounds relative to it. Pre: world_ bounds all pieces.
+    /// Sets the frame's origin as readers do, and the boxes relative to it. Pre: world_ bounds all pieces.
     void choose_origin();
 
     Frame frame_;
     FiniteBounds world_;  ///< of the pieces read so far, as in the file
-    BoundingBox bounds_;
+    RobustBox box_;
     std::vector<std::size_t> pieces_;
 };
 

@@ -2,6 +2,7 @@
 #include "scanmill/data/points.hpp"
 #include "scanmill/base/text.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scanmill/base/error.hpp"
@@ -12,7 +13,9 @@ PointCloud gather(const PointCloud& cloud, std::span<const u32> rows) {
     return {cloud.frame, gather(cloud.positions, rows), cloud.columns.gather(rows)};
 }
 
-void require_finite(std::span<const Vec3> positions, std::string_view what) {
+namespace {
+
+void require_finite(std::span<const Vec3> positions, std::string_view what, Remedy remedy) {
     std::size_t bad = 0;
     std::size_t first = 0;
     for (std::size_t i = 0; i < positions.size(); ++i)
@@ -23,7 +26,13 @@ void require_finite(std::span<const Vec3> positions, std::string_view what) {
     throw Error("needs finite coordinates; {} of {} {} {} a NaN or an infinity, the first is number {} ({} is {})", bad,
                 positions.size(), what, by_count(bad, "has", "have"), first, "xyz"[axis], p[axis])
         .hint("remove them from the file")
-        .remedy(Remedy::drop_invalid_points);
+        .remedy(remedy);
+}
+
+}  // namespace
+
+void require_finite(std::span<const Vec3> positions, std::string_view what) {
+    require_finite(positions, what, Remedy::drop_invalid_points);
 }
 
 Array<u32> finite_rows(std::span<const Vec3> positions) {
@@ -34,10 +43,95 @@ Array<u32> finite_rows(std::span<const Vec3> positions) {
     return rows;
 }
 
+namespace {
+
+/// Farther from the median than this along an axis, a row is invalid in a scan that is too long.
+constexpr double farthest = largest_side / 2;
+
+/// The lower median along every axis. Pre: at least one position is finite.
+Vec3 median_of(std::span<const Vec3> positions) {
+    Vec3 median;
+    Array<double> coordinates;
+    for (int axis = 0; axis < 3; ++axis) {
+        coordinates.clear();
+        for (const Vec3& p : positions)
+            if (p.allFinite()) coordinates.push_back(p[axis]);
+        const auto middle = coordinates.begin() + static_cast<std::ptrdiff_t>((coordinates.size() - 1) / 2);
+        std::nth_element(coordinates.begin(), middle, coordinates.end());
+        median[axis] = *middle;
+    }
+    return median;
+}
+
+bool is_too_long(const BoundingBox& box) { return !box.empty() && !((box.high - box.low).maxCoeff() <= largest_side); }
+
+bool is_near(const Vec3& position, const Vec3& median) { return ((position - median).array().abs() <= farthest).all(); }
+
+/// Throws Error for a scan with invalid rows, all of them finite.
+[[noreturn]] void refuse_far_rows(const PointCloud& cloud, std::span<const u32> valid) {
+    u32 first = 0;
+    while (first < valid.size() && valid[first] == first) ++first;
+    const Vec3 world = cloud.positions[first] + cloud.frame.origin;
+    throw Error(
+        "{} of {} points {} farther than {:g} u from the median of all, the first is number {} at ({}, {}, {}); "
+        "at most {:g} u may lie between two points",
+        cloud.size() - valid.size(), cloud.size(), by_count(cloud.size() - valid.size(), "lies", "lie"), farthest,
+        first, number_text(world.x()), number_text(world.y()), number_text(world.z()), largest_side)
+        .hint("remove them from the file")
+        .remedy(Remedy::drop_invalid_rows);
+}
+
+}  // namespace
+
+Array<u32> valid_rows(std::span<const Vec3> positions) {
+    Array<u32> rows = finite_rows(positions);
+    const BoundingBox box = bounding_box(positions);
+    if (!is_too_long(box)) return rows;
+    const Vec3 median = median_of(positions);
+    const std::size_t finite = rows.size();
+    std::erase_if(rows, [&](u32 row) { return !is_near(positions[row], median); });
+    if (rows.size() <= finite / 2) require_supported_range(box);
+    return rows;
+}
+
+std::string_view name_of(InvalidRows rule) {
+    switch (rule) {
+        case InvalidRows::by_format: return "";
+        case InvalidRows::refuse: return "refuse";
+        case InvalidRows::drop: return "drop";
+    }
+    return "";
+}
+
+std::optional<InvalidRows> invalid_rows_named(std::string_view name) {
+    for (const InvalidRows rule : {InvalidRows::refuse, InvalidRows::drop})
+        if (name == name_of(rule)) return rule;
+    return std::nullopt;
+}
+
 Cleaned<PointCloud> without_invalid_points(const PointCloud& cloud) {
-    const Array<u32> rows = finite_rows(cloud.positions.span());
+    const Array<u32> rows = valid_rows(cloud.positions.span());
     if (rows.size() == cloud.size()) return {cloud, 0, 0};
+    if (rows.empty())
+        throw Error("{} a NaN or an infinity; no point is left",
+                    cloud.size() == 1 ? "the only point has" : fmt::format("all {} points have", cloud.size()));
     return {gather(cloud, rows), cloud.size() - rows.size(), 0};
+}
+
+Cleaned<PointCloud> accepted(const PointCloud& cloud, InvalidRows rule, bool nan_is_no_return) {
+    Cleaned<PointCloud> result{cloud};
+    const FiniteBounds bounds = finite_bounds(cloud.positions.span());
+    if (!bounds.finite || is_too_long(bounds.box)) {
+        if (rule == InvalidRows::drop || (rule == InvalidRows::by_format && nan_is_no_return)) {
+            result = without_invalid_points(cloud);
+        } else {
+            if (!bounds.finite) require_finite(cloud.positions.span(), "points", Remedy::drop_invalid_rows);
+            if (const Array<u32> valid = valid_rows(cloud.positions.span()); valid.size() < cloud.size())
+                refuse_far_rows(cloud, valid);
+        }
+    }
+    require_supported_range(bounding_box(result.result.positions.span()));
+    return result;
 }
 
 Buffer<Vec3> translated(const Buffer<Vec3>& positions, const Vec3& shift) {

@@ -2,6 +2,8 @@
 #pragma once
 /// `points`: a scan as an unordered list of positions with per-point columns.
 
+#include <optional>
+
 #include "scanmill/data/bounds.hpp"
 #include "scanmill/data/columns.hpp"
 #include "scanmill/data/frame.hpp"
@@ -10,8 +12,8 @@ namespace scanmill {
 
 struct PointCloud {
     Frame frame;
-    /// #points, relative to frame.origin. May contain NaN or infinity as read: filters refuse those by
-/// require_finite().
+    /// #points, relative to frame.origin. May contain NaN or infinity as read; a scan that enters a workflow has only
+    /// valid rows (see valid_rows()).
     Buffer<Vec3> positions;
     /// Every column has #points rows.
     ColumnTable columns;
@@ -29,15 +31,37 @@ void require_finite(std::span<const Vec3> positions, std::string_view what = "po
 /// The rows of the positions whose three coordinates are finite, ascending.
 Array<u32> finite_rows(std::span<const Vec3> positions);
 
+/// The rows that a scan may have, ascending: those with three finite coordinates and, if the box of these has a side
+/// longer than largest_side, within half of largest_side of the median along every axis. So the box of the valid rows
+/// is not too long. Throws Error if at most half of the finite rows are near the median: the scan itself is too long.
+/// Cost: one pass; a selection per axis if the box is too long.
+Array<u32> valid_rows(std::span<const Vec3> positions);
+
+/// What happens to invalid rows where a scan enters.
+enum class InvalidRows {
+    by_format,  ///< dropped where the file's format writes NaN for a ray without a return, else refused
+    refuse,
+    drop
+};
+/// "refuse" and "drop"; empty for by_format.
+std::string_view name_of(InvalidRows rule);
+/// Nothing for other texts than "refuse" and "drop".
+std::optional<InvalidRows> invalid_rows_named(std::string_view name);
+
 template <class Geometry>
 struct Cleaned {
     Geometry result;
-    std::size_t points = 0;     ///< number of points or vertices removed
+    std::size_t points = 0;  ///< number of points or vertices removed
     std::size_t triangles = 0;  ///< number of triangles removed
 };
 
-/// The points whose three coordinates are finite, in order, with all columns.
+/// The points at the valid rows, in order, with all columns. Throws Error if no row is valid.
 Cleaned<PointCloud> without_invalid_points(const PointCloud& cloud);
+
+/// The scan if all its rows are valid; else without_invalid_points() or an Error with the number of invalid rows and
+/// the first of them. `nan_is_no_return`: of the file's format. Throws Error also for a scan outside the
+/// supported range (see require_supported_range()).
+Cleaned<PointCloud> accepted(const PointCloud& cloud, InvalidRows rule, bool nan_is_no_return);
 
 /// Adds `shift` to every position.
 Buffer<Vec3> translated(const Buffer<Vec3>& positions, const Vec3& shift);

@@ -82,8 +82,10 @@ LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name,
     return with_file_name(name, [&] { return read_named({name, bytes}, options); });
 }
 
-std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path, const ReadOptions& options) {
-    const LoadedFile loaded = read_file(path, options);
+namespace {
+
+std::shared_ptr<const PointCloud> points_in(const LoadedFile& loaded, const std::filesystem::path& path,
+                                            const ReadOptions& options) {
     if (loaded.value.find<PointCloud>()) return loaded.value.get<PointCloud>();
     const TriangleMesh* mesh = loaded.value.find<TriangleMesh>();
     if (!mesh)
@@ -91,6 +93,24 @@ std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path,
     warn(options.on_warning, "'{}': read as points; {} left out", path.string(),
          count_text(mesh->triangles.size(), "triangle was", "triangles were"));
     return std::make_shared<const PointCloud>(points_of(*mesh));
+}
+
+}  // namespace
+
+std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path, const ReadOptions& options) {
+    return points_in(read_file(path, options), path, options);
+}
+
+Cleaned<PointCloud> accepted_points(const LoadedFile& loaded, const std::filesystem::path& path,
+                                    const ReadOptions& options, InvalidRows rule) {
+    const std::shared_ptr<const PointCloud> cloud = points_in(loaded, path, options);
+    Cleaned<PointCloud> result = with_file_name(path, [&] { return accepted(*cloud, rule, loaded.nan_is_no_return); });
+    if (result.points > 0)
+        warn(options.on_warning, "'{}': {} of {} dropped: {}", path.string(), result.points,
+             count_text(cloud->size(), "point was", "points were"),
+             loaded.nan_is_no_return ? "no return, or a coordinate that is too far"
+                                     : "a coordinate is NaN, infinite or too far");
+    return result;
 }
 
 std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path, const ReadOptions& options) {

@@ -34,12 +34,17 @@ void require_memory_to_read(const std::filesystem::path& path, u64 available);
 /// Points of a point file, or vertices of a mesh file, with a warning that counts the faces left out.
 std::shared_ptr<const PointCloud> read_points(const std::filesystem::path& path, const ReadOptions& options = {});
 
+/// The points of a file that was read, as a scan that enters a workflow: only valid rows (see accepted()). Warns of
+/// dropped points, and as read_points(). Throws Error with the file's path.
+Cleaned<PointCloud> accepted_points(const LoadedFile& loaded, const std::filesystem::path& path,
+                                    const ReadOptions& options, InvalidRows rule);
+
 /// Throws Error when the file holds points only.
 std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Opens a scan file as a point stream (see Format::open_stream), after reading the whole file once, on up to `threads`
-/// threads, for bounds and origin. `on_positions`, unless empty, receives every piece meanwhile, in order and on this
-/// thread, even if the result is null.
+/// threads, for bounds and origin, and as many pieces again as robust_box() needs. `on_positions`, unless empty,
+/// receives every piece meanwhile, in order and on this thread, even if the result is null.
 ///
 /// Null when the format cannot be streamed, a coordinate is not finite, or read_points() would warn about the content
 /// or refuse the file; the caller then uses read_points(). Warnings about units and frames go to options.on_warning.

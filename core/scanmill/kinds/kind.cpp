@@ -14,6 +14,7 @@ namespace scanmill {
 template <>
 struct KindTraits<PointCloud> : FromPositions<PointCloud>, NoJson<PointCloud> {
     static constexpr std::string_view name = "points";
+    static RobustBox box(const PointCloud& cloud) { return robust_box(cloud.positions.span()); }
     static void visit(FieldVisitor& visitor, PointCloud& cloud) {
         visitor.frame("frame", cloud.frame);
         visitor.positions("positions", cloud.positions);
@@ -39,7 +40,7 @@ struct KindTraits<TriangleMesh> : FromPositions<TriangleMesh>, NoJson<TriangleMe
         visitor.columns("edge-columns", mesh.edge_columns);
         visitor.plain("sharp-edges", mesh.sharp_edges);
     }
-    static BoundingBox box(const TriangleMesh& mesh) {
+    static RobustBox box(const TriangleMesh& mesh) {
         return mesh.triangles.empty() ? bounding_box(mesh.positions.span()) : surface_box(mesh);
     }
     static double spacing(const TriangleMesh& mesh) {

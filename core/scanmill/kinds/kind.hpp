@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "scanmill/data/bounds.hpp"
 #include "scanmill/data/metrics.hpp"
+#include "scanmill/data/robust_box.hpp"
 
 namespace scanmill {
 
@@ -48,7 +48,7 @@ struct KindInfo {
     std::shared_ptr<void> (*make)();
     std::shared_ptr<void> (*copy)(const void* object);  ///< shares its arrays
     void (*visit)(FieldVisitor& visitor, void* object);
-    BoundingBox (*box)(const void* object);
+    RobustBox (*box)(const void* object);
     double (*spacing)(const void* object);
     std::vector<PropertySpec> (*property_specs)();
     Metrics (*properties)(const void* object);

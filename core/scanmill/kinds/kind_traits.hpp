@@ -65,15 +65,15 @@ struct KindTraits;
 template <class T>
 struct FromPositions {
     static constexpr bool is_geometric = true;
-    /// The lengths that `%diag` and `spacing` refer to.
-    static BoundingBox box(const T& object) { return bounding_box(object.positions.span()); }
+    /// The box whose diagonal `%diag` refers to, and the length that `spacing` refers to.
+    static RobustBox box(const T& object) { return bounding_box(object.positions.span()); }
     static double spacing(const T& object) { return point_spacing(object.positions.span()); }
 };
 /// Members of the traits of types without positions.
 template <class T>
 struct NotGeometric {
     static constexpr bool is_geometric = false;
-    static BoundingBox box(const T&) { return {}; }
+    static RobustBox box(const T&) { return {}; }
     static double spacing(const T&) { return 0; }
 };
 /// Members of the traits of types without properties, of which every object is usable.
@@ -100,7 +100,7 @@ inline constexpr KindInfo kind_info{
     []() -> std::shared_ptr<void> { return std::make_shared<T>(); },
     [](const void* object) -> std::shared_ptr<void> { return std::make_shared<T>(*static_cast<const T*>(object)); },
     [](FieldVisitor& visitor, void* object) { KindTraits<T>::visit(visitor, *static_cast<T*>(object)); },
-    [](const void* object) { return KindTraits<T>::box(*static_cast<const T*>(object)); },
+    [](const void* object) -> RobustBox { return KindTraits<T>::box(*static_cast<const T*>(object)); },
     [](const void* object) { return KindTraits<T>::spacing(*static_cast<const T*>(object)); },
     &KindTraits<T>::property_specs,
     [](const void* object) {

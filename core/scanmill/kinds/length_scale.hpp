@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The two lengths that relative parameters refer to: the bounding box's diagonal and the spacing of the samples.
+/// The two lengths that relative parameters refer to: the diagonal of the box, without stray points, and the spacing of
+/// the samples.
 
 #include "scanmill/data/quantity.hpp"
 #include "scanmill/geometry/spatial/spacing.hpp"
@@ -8,13 +9,18 @@
 
 namespace scanmill {
 
-/// The lengths that `%diag` and `spacing` refer to for this value: KindTraits::box() and spacing(), each computed at
-/// most once, on demand. `%diag` throws Error if all positions are equal. For metrics, `%diag` is their metric
-/// `diagonal`, and `spacing` throws Error.
-LengthScale length_scale(const Value& value);
+/// The lengths that `%diag` and `spacing` refer to for this value: the diagonal of KindTraits::box() and
+/// KindTraits::spacing(), each computed at most once, on demand. `%diag` throws Error if all positions are equal. For
+/// metrics, `%diag` is their metric `diagonal`, and `spacing` throws Error. `on_stray`, unless empty, gets the sentence
+/// of stray_warning() when `%diag` is computed for points of which some are stray.
+LengthScale length_scale(const Value& value, const OnWarning& on_stray = {});
 
 class PointStream;
 /// The same for a streamed scan; `spacing` throws Error, because it needs all points at once.
-LengthScale length_scale(const PointStream& scan);
+LengthScale length_scale(const PointStream& scan, const OnWarning& on_stray = {});
+
+/// One sentence with the number of stray points, the first of them in world coordinates, and both diagonals. Pre: there
+/// are stray points; positions are relative to frame.origin.
+std::string stray_warning(const RobustBox& box, const Frame& frame);
 
 }  // namespace scanmill

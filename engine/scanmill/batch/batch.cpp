@@ -202,6 +202,7 @@ public:
         if (!unreadable_) {
             report_undeclared(checked_.batch.settings);
             for (const BatchScan& scan : checked_.batch.scans) report_undeclared(scan.settings);
+            report_idle_rules();
         }
         constexpr std::size_t most_cells = 100'000;
         if (const std::size_t cells = checked_.cells(); cells > most_cells)
@@ -233,6 +234,7 @@ private:
         const Workflow workflow = parse_workflow(text, diagnostics);
         if (workflow.steps.empty()) unreadable_ = true;  // nor could its parameters
         require_one_input(workflow, listed);
+        if (!workflow.inputs.empty()) takes_points_ |= workflow.inputs.front().kind == kind_of<PointCloud>();
         for (const WorkflowParameter& parameter : workflow.parameters) declared_.insert(parameter.name);
         add_parts(workflow, index, diagnostics);
         checked_.diagnostics.push_back(std::move(diagnostics));
@@ -279,10 +281,21 @@ private:
                                          did_you_mean(name, names));
     }
 
+    /// A rule for invalid rows has no effect if no workflow takes points. Scans of one entry have one position.
+    void report_idle_rules() {
+        if (takes_points_) return;
+        std::set<std::pair<int, int>> reported;
+        for (const BatchScan& scan : checked_.batch.scans)
+            if (const Position at = scan.invalid_position;
+                scan.invalid != InvalidRows::by_format && reported.emplace(at.line, at.column).second)
+                batch_diagnostics_.error(at, "`invalid` is for points; no workflow of the batch takes points");
+    }
+
     const FilterLibrary& library_;
     Diagnostics batch_diagnostics_;
     CheckedBatch checked_;
     std::set<std::string> declared_;
+    bool takes_points_ = false;
     bool unreadable_ = false;  // a workflow cannot be read, so its parameters are unknown
 };
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "scanmill/data/array.hpp"
+#include "scanmill/data/points.hpp"
 #include "scanmill/data/transform.hpp"
 #include "scanmill/plan/plan.hpp"
 
@@ -39,6 +39,8 @@ struct BatchScan {
     std::optional<RigidTransform> pose;  ///< applies to the scan's world coordinates
     std::filesystem::path pose_file;     ///< empty: the pose is written in the batch
     std::filesystem::path truth;         ///< empty: none
+    InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the workflow or the format
+    Position invalid_position;                     ///< of the key `invalid`
     Settings settings;                   ///< the scan's own, which override the batch's
 };
 

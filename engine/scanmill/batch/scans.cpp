@@ -269,6 +269,14 @@ private:
             check_stem_template(text, "the frame", found.value.position, diagnostics_);
             for (BatchScan& scan : scans()) scan.frame = with_stem(text, scan.file);
         };
+        const auto invalid = [&](const YamlEntry& found) {
+            InvalidRows rule = InvalidRows::by_format;
+            invalid_into(rule, diagnostics_)(found);
+            for (BatchScan& scan : scans()) {
+                scan.invalid = rule;
+                scan.invalid_position = found.position;
+            }
+        };
         const auto set = [&](const YamlEntry& found) {
             const Settings settings = parse_settings(found.value, diagnostics_);
             for (BatchScan& scan : scans()) scan.settings = settings;
@@ -281,6 +289,7 @@ private:
                      {{"path", path, fmt::format("the scan has no path; expected {}", expected)},
                       {"unit", unit},
                       {"frame", frame},
+                      {"invalid", invalid},
                       {"pose", [&](const YamlEntry& found) { pose(found, scans()); }},
                       {"truth", truth},
                       {"set", set}},

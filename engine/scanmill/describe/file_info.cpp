@@ -44,11 +44,23 @@ void add_frame(Json& json, const Frame& frame) {
     if (frame.origin != Vec3::Zero()) json["origin"] = json_of(frame.origin);
 }
 
+/// `stray`, and with stray points the diagonal that `%diag` refers to and the first of them.
+void add_stray_points(const RobustBox& box, const Frame& frame, Json& json) {
+    constexpr std::size_t shown = 5;
+    json["stray"] = box.stray.size();
+    if (box.stray.empty()) return;
+    json["robust-diagonal"] = box.diagonal();
+    Json& points = json["stray-points"] = Json::array();
+    for (std::size_t i = 0; i < std::min(shown, box.stray.size()); ++i)
+        points.push_back({{"number", box.stray[i].row}, {"position", json_of(box.stray[i].position + frame.origin)}});
+}
+
 /// The description of a scan that is read piece by piece.
 Json stream_info(const std::string& file, const PointStream& scan) {
     Json json{{"file", file}, {"kind", name_of(kind_of<PointCloud>())}, {"points", scan.size()}};
     add_columns(json, "columns", scan.read_columns(0));
     add_box(json, scan.bounds(), scan.frame());
+    add_stray_points(scan.robust_box(), scan.frame(), json);
     json["not-finite"] = 0;
     json["unit"] = unit_json(scan.frame().unit);
     add_frame(json, scan.frame());
@@ -83,6 +95,7 @@ Json file_info(const std::string& file, u64 memory) {
         add_box(json, box, frame);
         json["spacing"] = length_scale(value).spacing();
     }
+    if (value.find<PointCloud>()) add_stray_points(robust_box(positions.span()), frame, json);
     if (is_geometric(value.kind())) {
         json["not-finite"] = std::ranges::count_if(positions, [](const Vec3& p) { return !p.allFinite(); });
         json["unit"] = unit_json(frame.unit);

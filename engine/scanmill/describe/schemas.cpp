@@ -22,6 +22,8 @@ constexpr const char* length_units = "u|%diag|spacing|um|mm|cm|m|in|ft";
 const char* const common_definitions = R"json({
 "unit": {"enum": ["um", "mm", "cm", "m", "in", "ft"], "description": "The unit of the file's numbers."},
 "frame": {"type": ["string", "number", "boolean"], "description": "The coordinate system's name; may contain {stem}."},
+"invalid": {"enum": ["drop", "refuse"],
+            "description": "What happens to rows with a NaN, infinite or too distant coordinate; without it, formats that write NaN for a missing return drop them, others are refused."},
 "literal": {"type": ["string", "number", "boolean"], "pattern": "^(?!\\$(?!\\$))"},
 "value": {"if": {"type": "array"}, "then": {"items": {"$ref": "#/definitions/literal"}},
           "else": {"$ref": "#/definitions/literal"}},
@@ -61,6 +63,7 @@ const char* const workflow_grammar = R"json({
       "list": {"type": "boolean", "description": "Takes any number of files."},
       "unit": {"$ref": "#/definitions/unit"},
       "frame": {"$ref": "#/definitions/frame"},
+      "invalid": {"$ref": "#/definitions/invalid"},
       "help": {"type": ["string", "number", "boolean"], "description": "What the input is for."}}}},
   "parameter": {"if": {"type": "object", "not": {"required": ["sweep"]}},
                 "else": {"$ref": "#/definitions/value-or-sweep"}, "then": {
@@ -118,6 +121,7 @@ const char* const batch_grammar = R"json({
       "path": {"$ref": "#/definitions/scan-path"},
       "unit": {"$ref": "#/definitions/unit"},
       "frame": {"$ref": "#/definitions/frame"},
+      "invalid": {"$ref": "#/definitions/invalid"},
       "pose": {"$ref": "#/definitions/pose"},
       "truth": {"type": "string", "minLength": 1, "description": "The correct result: a file; may contain {stem}."},
       "set": {"$ref": "#/definitions/settings"}}}},

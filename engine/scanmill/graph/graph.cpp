@@ -20,6 +20,7 @@ std::vector<std::pair<std::string, std::string>> declared_of(const LeafSource& l
                                 leaf.pose->rotation(row, 1), leaf.pose->rotation(row, 2), leaf.pose->translation[row]);
         texts.emplace_back("pose", "[" + rows + ", [0, 0, 0, 1]]");
     }
+    if (leaf.invalid != InvalidRows::by_format) texts.emplace_back("invalid", name_of(leaf.invalid));
     return texts;
 }
 
@@ -83,6 +84,9 @@ void require_known_names(const RunRequest& request, const Plan& plan) {
 
 void require_fits(const RunRequest& request, const Plan& plan) {
     require_fed(request, plan);
+    const auto is_points = [](const WorkflowInput& input) { return input.kind == kind_of<PointCloud>(); };
+    if (request.invalid != InvalidRows::by_format && std::ranges::none_of(plan.workflow.inputs, is_points))
+        throw Error("the workflow has no input of points, so no rows are invalid");
     require_known_names(request, plan);
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "scanmill/base/hash.hpp"
+#include "scanmill/data/points.hpp"
 #include "scanmill/data/transform.hpp"
 #include "scanmill/plan/plan.hpp"
 #include "scanmill/plugin/library.hpp"
@@ -29,6 +30,7 @@ struct ScanFile {
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the request, the workflow or the file
     std::string frame;                      ///< empty: from the workflow or the file
     std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
+    InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
 };
 
 /// The files that a plan runs over, the part of the plan that runs, and the folder for its outputs.
@@ -38,13 +40,16 @@ struct RunRequest {
     std::vector<std::filesystem::path> protected_files;  ///< more files that no output may replace
     std::filesystem::path output_folder;
     LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: from the workflow or the file
+    InvalidRows invalid =
+        InvalidRows::by_format;  ///< of every file of points; by_format: from the workflow or the format
     std::uint64_t seed = 0;
     std::vector<std::string> only;  ///< variants; empty: all
     std::string until;  ///< last step to run, in the variants that have it; empty: all steps
     std::vector<std::string> save;  ///< steps (or step.port) to write in addition to the outputs
 };
 
-/// Throws Error for inputs that are missing or unknown, and for unknown variants and steps.
+/// Throws Error for inputs that are missing or unknown, for unknown variants and steps, and for a rule for invalid rows
+/// without an input of points.
 void require_fits(const RunRequest& request, const Plan& plan);
 
 struct NodeInput {
@@ -65,16 +70,17 @@ struct LeafSource {
     std::string content;  ///< hash of the file's bytes
     Kind kind = kind_of<PointCloud>();
     LengthUnit unit = LengthUnit::unknown;  ///< unknown: from the file
-    std::string frame;                      ///< empty: from the file
+    std::string frame;  ///< empty: from the file
     std::optional<RigidTransform> pose;
+    InvalidRows invalid = InvalidRows::by_format;  ///< of points
     bool is_streamed = false;  ///< read piece by piece, if the file allows it; in no key, as the values are equal
 };
 
-/// Declared unit, frame and pose as (name, text).
+/// Declared unit, frame, pose and rule for invalid rows as (name, text).
 std::vector<std::pair<std::string, std::string>> declared_of(const LeafSource& leaf);
 
 struct RunNode {
-    std::string key;   ///< plan key: identifies the result before anything runs
+    std::string key;  ///< plan key: identifies the result before anything runs
     std::string code;  ///< of a step: hash of filter, builds, seed and the content of files that parameters name
     std::size_t plan = 0;  ///< index into RunGraph::plans
     std::optional<std::size_t> step;  ///< index into Plan::steps; nothing: a leaf

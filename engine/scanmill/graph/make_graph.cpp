@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Increases when the meaning of a plan key or of a value's content name changes.
-constexpr std::string_view key_scheme = "5";
+constexpr std::string_view key_scheme = "6";
 
 /// The builds that read files: the core, and the modules of formats.
 std::string builds_of_readers(const std::string& core) {
@@ -61,7 +61,8 @@ std::string key_of_leaf(const LeafSource& leaf, const KeyBase& base) {
         .field("kind", name_of(leaf.kind))
         .field("unit", symbol(leaf.unit))
         .field("frame", leaf.frame)
-        .field("pose", leaf.pose ? text_of(*leaf.pose) : "");
+        .field("pose", leaf.pose ? text_of(*leaf.pose) : "")
+        .field("invalid", name_of(leaf.invalid));
     return key.key();
 }
 
@@ -302,6 +303,10 @@ private:
                                                                  : declared.unit;
         node.leaf.frame = !file.frame.empty() ? file.frame : with_stem(declared.frame, file.path);
         node.leaf.pose = file.pose;
+        if (declared.kind == kind_of<PointCloud>())
+            node.leaf.invalid = file.invalid != InvalidRows::by_format        ? file.invalid
+                                : request_->invalid != InvalidRows::by_format ? request_->invalid
+                                                                              : declared.invalid;
         node.is_uncacheable = !node.unreadable.empty();
         node.key = key_of_leaf(node.leaf, base_);
         const std::size_t index = add_node(std::move(node));

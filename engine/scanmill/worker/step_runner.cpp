@@ -123,9 +123,14 @@ bool take_declared_name(const LeafSource& leaf, std::string& name, const OnWarni
     return true;
 }
 
+OnWarning adding_to(std::vector<std::string>& warnings) {
+    return [&warnings](std::string sentence) { warnings.push_back(std::move(sentence)); };
+}
+
 /// A step whose inputs and parameters are prepared.
 struct Prepared {
     ResolvedParameters resolved;
+    std::vector<std::string> warnings;  ///< of resolving them
     std::function<Outputs(const FilterDeclaration&, const ParameterSet&)> run;
 };
 
@@ -142,9 +147,10 @@ Outputs run_recorded(const PlannedStep& step, const std::function<const FilterDe
                     report.metrics.set(metric.name, metric.value, declared.unit);
     };
     try {
-        const auto [resolved, run] = prepare(context);
+        const auto [resolved, warnings, run] = prepare(context);
         report.resolved = resolved.values;
         if (std::optional<Outputs> known = recall(report.resolved, report)) return std::move(*known);
+        for (const std::string& warning : warnings) context.warn(warning);
         Outputs outputs;
         try {
             outputs = run(filter(), resolved.values);
@@ -169,18 +175,24 @@ void require_expectations(const PlannedStep& step, const Value& primary, NodeRep
     report.properties = properties_of(primary);
     Metrics found = report.properties;
     for (const Metric& metric : report.metrics.values) found.set(metric.name, metric.value, metric.unit);
-    require_met(step.expectations, found, length_scale(primary));
+    require_met(step.expectations, found, length_scale(primary, adding_to(report.warnings)));
 }
 
-Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning) {
+Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning, std::size_t* dropped) {
     const ReadOptions options = reading(leaf, on_warning);
-    Value value = leaf.kind == kind_of<PointCloud>()     ? Value(read_points(leaf.file, options))
-                  : leaf.kind == kind_of<TriangleMesh>() ? Value(read_mesh(leaf.file, options))
-                                                         : read_file(leaf.file, options).value;
-    if (value.kind() != leaf.kind)
-        throw Error("'{}': the workflow needs {}; the file contains {}", leaf.file.string(), leaf.kind.name(),
-                    value.kind().name());
-    naming_file(leaf.file, [&] { require_supported_range(bounding_box(positions_of(value).span())); });
+    Value value;
+    if (leaf.kind == kind_of<PointCloud>()) {
+        Cleaned<PointCloud> scan = accepted_points(read_file(leaf.file, options), leaf.file, options, leaf.invalid);
+        if (dropped) *dropped = scan.points;
+        value = std::make_shared<const PointCloud>(std::move(scan.result));
+    } else {
+        value = leaf.kind == kind_of<TriangleMesh>() ? Value(read_mesh(leaf.file, options))
+                                                     : read_file(leaf.file, options).value;
+        if (value.kind() != leaf.kind)
+            throw Error("'{}': the workflow needs {}; the file contains {}", leaf.file.string(), leaf.kind.name(),
+                        value.kind().name());
+        naming_file(leaf.file, [&] { require_supported_range(bounding_box(positions_of(value).span())); });
+    }
     if (leaf.pose) value = placed(value, *leaf.pose);
     std::optional<Frame> frame = frame_of(value);
     return frame && take_declared_name(leaf, frame->name, on_warning) ? reframed(value, *frame) : value;
@@ -191,6 +203,8 @@ std::shared_ptr<const PointStream> open_leaf(const LeafSource& leaf, unsigned th
     assert(leaf.is_streamed && leaf.kind == kind_of<PointCloud>() && !leaf.pose);
     std::shared_ptr<PointStream> scan = open_point_stream(leaf.file, reading(leaf, on_warning), threads, on_positions);
     if (!scan) return nullptr;
+    if (const BoundingBox& box = scan->bounds(); (box.high - box.low).maxCoeff() > largest_side)
+        return nullptr;  // it may have invalid rows
     naming_file(leaf.file, [&] { require_supported_range(scan->bounds()); });
     if (std::string name = scan->frame().name; take_declared_name(leaf, name, on_warning)) scan->rename_frame(name);
     return scan;
@@ -203,19 +217,23 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
         const Value* first = first_geometric(inputs);
         Inputs ports = rebased(inputs, first, context);
         // Without a geometric input, the filter resolves lengths against its own result.
-        ResolvedParameters resolved =
-            first ? resolved_parameters(step, length_scale(*first)) : ResolvedParameters{step.parameters, {}};
-        return Prepared{std::move(resolved), [&context, ports = std::move(ports)](const FilterDeclaration& declared,
-                                                                                  const ParameterSet& parameters) {
-                            return declared.run(ports, parameters, context);
-                        }};
+        std::vector<std::string> warnings;
+        ResolvedParameters resolved = first ? resolved_parameters(step, length_scale(*first, adding_to(warnings)))
+                                            : ResolvedParameters{step.parameters, {}};
+        return Prepared{
+            std::move(resolved), std::move(warnings),
+            [&context, ports = std::move(ports)](const FilterDeclaration& declared, const ParameterSet& parameters) {
+                return declared.run(ports, parameters, context);
+            }};
     });
 }
 
 Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
                  const PointStream& scan, ContextOptions options, const Recall& recall, NodeReport& report) {
     return run_recorded(step, filter, std::move(options), recall, report, [&](Context& context) {
-        return Prepared{resolved_parameters(step, length_scale(scan)),
+        std::vector<std::string> warnings;
+        ResolvedParameters resolved = resolved_parameters(step, length_scale(scan, adding_to(warnings)));
+        return Prepared{std::move(resolved), std::move(warnings),
                         [&](const FilterDeclaration& declared, const ParameterSet& parameters) {
                             return declared.run_streamed(scan, parameters, context);
                         }};

@@ -13,11 +13,12 @@
 
 namespace scanmill {
 
-/// The file's content with the declared unit, frame name and pose. Throws Error.
-Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning);
+/// The file's content with the declared unit, frame name and pose; of points the valid rows. Throws Error. `dropped`,
+/// unless null, gets the number of rows that were left out because they are invalid.
+Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning, std::size_t* dropped = nullptr);
 
 /// The file as a stream with the declared unit and frame name; nullptr if it cannot be streamed (see
-/// open_point_stream()). Pre: leaf.is_streamed.
+/// open_point_stream()) or has invalid rows. Pre: leaf.is_streamed.
 std::shared_ptr<const PointStream> open_leaf(const LeafSource& leaf, unsigned threads, const OnWarning& on_warning,
                                              const OnWorldPositions& on_positions = {});
 

@@ -219,9 +219,10 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     const auto start = std::chrono::steady_clock::now();
     std::optional<UnchangedWhileRead> check;
     if (uses_cache(work.caching)) check.emplace(work.leaf.file, work.leaf.content, job.threads > 1);
+    std::size_t dropped = 0;
     Value value = [&] {
         try {
-            return read_leaf(work.leaf, on_warning);
+            return read_leaf(work.leaf, on_warning, &dropped);
         } catch (...) {
             report_warnings();
             throw;
@@ -231,6 +232,7 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     if (check) check->require();
     if (is_geometric(value.kind()))
         report.node.properties.set("points", static_cast<double>(positions_of(value).size()), Unit::count);
+    if (dropped > 0) report.node.properties.set("dropped-points", static_cast<double>(dropped), Unit::count);
     values_[job.node] = {{"", std::move(value)}};
     store(job, work.caching, work.caching.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
 }

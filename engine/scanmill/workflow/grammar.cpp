@@ -52,6 +52,14 @@ ReadEntry unit_into(LengthUnit& target, Diagnostics& diagnostics) {
     };
 }
 
+ReadEntry invalid_into(InvalidRows& target, Diagnostics& diagnostics) {
+    return [&](const YamlEntry& entry) {
+        const std::optional<InvalidRows> rule = invalid_rows_named(entry.value.text);
+        target = rule.value_or(InvalidRows::by_format);
+        if (!rule) report_unexpected(entry.value, "drop or refuse", diagnostics);
+    };
+}
+
 Key grammar_version_key(Diagnostics& diagnostics) {
     const auto read = [&](const YamlEntry& entry) {
         if (entry.value.text != "1")

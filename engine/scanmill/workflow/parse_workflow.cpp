@@ -120,14 +120,23 @@ private:
             text_into(input.frame, diagnostics_)(name);
             check_stem_template(input.frame, "the frame", name.value.position, diagnostics_);
         };
+        std::optional<Position> rule;
+        const auto invalid = [&](const YamlEntry& given) {
+            invalid_into(input.invalid, diagnostics_)(given);
+            rule = given.position;
+        };
         read_mapping(entry.value, "an input",
                      {{"kind", [&](const YamlEntry& kind) { input_kind(kind.value, input); },
                        fmt::format("the input '{}' has no kind; expected one of {}", input.name, kind_names())},
                       {"help", text_into(input.help, diagnostics_)},
                       {"frame", frame},
+                      {"invalid", invalid},
                       {"list", list},
                       {"unit", unit_into(input.unit, diagnostics_)}},
                      diagnostics_);
+        if (rule && input.kind != kind_of<PointCloud>())
+            diagnostics_.error(*rule, "`invalid` is for points; the input '{}' is of kind {}", input.name,
+                               input.kind.name());
         return input;
     }
 

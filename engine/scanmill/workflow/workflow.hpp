@@ -100,6 +100,7 @@ struct WorkflowInput {
     bool list = false;
     LengthUnit unit = LengthUnit::unknown;
     std::string frame;  ///< may contain {stem}; empty: the file's own
+    InvalidRows invalid = InvalidRows::by_format;  ///< of points
     std::string help;
 };
 

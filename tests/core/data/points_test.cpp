@@ -13,7 +13,7 @@
 namespace scanmill::test {
 namespace {
 
-using ::testing::AllOf, ::testing::HasSubstr;
+using ::testing::AllOf, ::testing::ElementsAre, ::testing::HasSubstr;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -102,6 +102,80 @@ TEST(SupportedRange, SidesOutsideOneNanoUnitToOneGigaUnit_AreRefusedWithTheirRan
                 AllOf(HasSubstr("from -1e+09 to 1 in x"), HasSubstr("supported are 1e-09 to 1e+09")));
     EXPECT_THAT(sentence_of([&] { require_supported_range(box(0, 0.99e-9)); }), HasSubstr("supported are"));
     EXPECT_THAT(sentence_of([&] { require_supported_range(box(-1.5e308, 1.5e308)); }), HasSubstr("supported are"));
+}
+
+std::vector<u32> valid(const std::vector<Vec3>& positions) {
+    const Array<u32> rows = valid_rows(positions);
+    return {rows.begin(), rows.end()};
+}
+
+TEST(ValidRows, NotFiniteRows_AreInvalid) {
+    EXPECT_THAT(valid({{0, 0, 0}, {1, nan, 2}, {3, 4, 5}, {-infinity, 0, 0}}), ElementsAre(0u, 2u));
+    EXPECT_THAT(valid({{nan, 0, 0}}), testing::IsEmpty());
+}
+
+TEST(ValidRows, RowsFarFromTheMedianOfAScanThatIsTooLong_AreInvalid) {
+    EXPECT_THAT(valid({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1e300, 0}}), ElementsAre(0u, 1u, 2u));
+    EXPECT_THAT(valid({{4e9, 0, 0}, {4e9, 1, 0}, {4e9 + 1, 0, 0}, {0, 0, 0}}), ElementsAre(0u, 1u, 2u));
+    EXPECT_THAT(valid({{0, 0, 0}, {0, 0, 0}, {0, 0, 5e8}, {0, 0, -5e8}, {0, 6e8, 0}, {0, -6e8, 0}}),
+                ElementsAre(0u, 1u, 2u, 3u));
+}
+
+TEST(ValidRows, ScanOfTheLongestLength_HasNoInvalidRow) {
+    EXPECT_THAT(valid({{0, 0, 0}, {1, 0, 0}, {1e9, 0, 0}}), ElementsAre(0u, 1u, 2u));
+}
+
+TEST(ValidRows, ScanOfWhichHalfIsFar_IsTooLongItself) {
+    const std::vector<Vec3> spread{{0, 0, 0}, {1e9, 0, 0}, {2e9, 0, 0}, {3e9, 0, 0}};
+    EXPECT_THAT(sentence_of([&] { valid_rows(spread); }), HasSubstr("supported are"));
+}
+
+TEST(Accepted, InvalidRows_AreRefusedWithTheWayOutOrDropped) {
+    PointCloud cloud = cloud_of({{0, 0, 0}, {nan, 0, 0}, {2, 0, 0}});
+    cloud.columns.add(Column("weight", 1, Buffer<float>{10, 11, 12}));
+    for (const bool no_return : {false, true}) {
+        const Error error = error_of([&] { accepted(cloud, InvalidRows::refuse, no_return); });
+        EXPECT_THAT(error.sentence(), HasSubstr("1 of 3 points has a NaN"));
+        EXPECT_EQ(error.remedy(), Remedy::drop_invalid_rows);
+        const auto dropped = accepted(cloud, InvalidRows::drop, no_return);
+        EXPECT_EQ(dropped.points, 1u);
+        EXPECT_EQ(dropped.result.size(), 2u);
+        EXPECT_EQ(dropped.result.columns.find("weight")->number(1), 12);
+    }
+    EXPECT_THROW(accepted(cloud, InvalidRows::by_format, false), Error);
+    EXPECT_EQ(accepted(cloud, InvalidRows::by_format, true).points, 1u);
+}
+
+TEST(Accepted, FarRow_IsRefusedWithItsPositionOrDropped) {
+    PointCloud cloud = cloud_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 3e12, 0}});
+    cloud.frame.origin = Vec3(7, 0, 0);
+    const Error error = error_of([&] { accepted(cloud, InvalidRows::by_format, false); });
+    EXPECT_THAT(error.sentence(),
+                AllOf(HasSubstr("1 of 4 points lies farther than"), HasSubstr("number 3 at (9, 3e+12, 0)")));
+    EXPECT_EQ(error.remedy(), Remedy::drop_invalid_rows);
+    EXPECT_EQ(accepted(cloud, InvalidRows::drop, false).points, 1u);
+}
+
+TEST(Accepted, ValidScan_IsUnchanged) {
+    const PointCloud cloud = random_cube(100, 1);
+    const auto same = accepted(cloud, InvalidRows::drop, true);
+    EXPECT_EQ(same.points, 0u);
+    EXPECT_EQ(same.result.positions.data(), cloud.positions.data());
+}
+
+TEST(Accepted, OneValidRow_IsAScanAndNoneIsRefused) {
+    EXPECT_EQ(accepted(cloud_of({{nan, 0, 0}, {1, 2, 3}}), InvalidRows::drop, false).result.size(), 1u);
+    const PointCloud none = cloud_of({{nan, 0, 0}, {1, 2, infinity}});
+    EXPECT_THAT(sentence_of([&] { accepted(none, InvalidRows::drop, false); }),
+                HasSubstr("all 2 points have a NaN or an infinity"));
+    EXPECT_THAT(sentence_of([&] { accepted(none, InvalidRows::by_format, true); }), HasSubstr("no point is left"));
+}
+
+TEST(Accepted, TooShortScan_IsRefused) {
+    EXPECT_THAT(sentence_of([&] {
+                    accepted(cloud_of({{0, 0, 0}, {0, 1e-10, 0}}), InvalidRows::drop, false);
+                }),
+                HasSubstr("supported are"));
 }
 
 }  // namespace

@@ -113,9 +113,43 @@ void expect_as_read_whole(const fs::path& path) {
         EXPECT_EQ(stream->size(), whole->size());
         EXPECT_EQ(stream->bounds().low, bounding_box(whole->positions.span()).low);
         EXPECT_EQ(stream->bounds().high, bounding_box(whole->positions.span()).high);
+        const RobustBox robust = robust_box(whole->positions.span());
+        EXPECT_EQ(stream->robust_box().all.low, robust.all.low);
+        EXPECT_EQ(stream->robust_box().all.high, robust.all.high);
+        EXPECT_EQ(stream->robust_box().robust.low, robust.robust.low);
+        EXPECT_EQ(stream->robust_box().robust.high, robust.robust.high);
+        EXPECT_EQ(stream->robust_box().stray, robust.stray);
         EXPECT_TRUE(same_points(streamed(*stream, all, threads), *whole));
         EXPECT_TRUE(same_points(streamed(*stream, some, threads), gather(*whole, some)));
     }
+}
+
+TEST(PointStream, StrayPoints_AreThoseOfTheFileReadWhole) {
+    const TemporaryFolder folder;
+    for (const double middle : {0.0, 4'500'000.0})
+        for (const Vec3& stray : {Vec3(0, 0, 0), Vec3(-7e6, 0.1, 3)}) {
+            std::string content;
+            Numbers numbers(middle);
+            constexpr int rows = 70'000;
+            for (int row = 0; row < rows; ++row) {
+                const bool is_stray = row == 3 || row == 69'000;
+                const Vec3 p = is_stray ? Vec3(stray + Vec3(row == 3 ? 0 : 1000, 0, 0))
+                                        : Vec3(numbers.next(), numbers.next(), numbers.next());
+                for (int axis = 0; axis < 3; ++axis) content += bytes_of(p[axis], false);
+            }
+            const fs::path path = folder.write(
+                "a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(rows) +
+                             "\nproperty double x\nproperty double y\nproperty double z\nend_header\n" + content);
+            expect_as_read_whole(path);
+            const auto whole = read_points(path);
+            EXPECT_EQ(robust_box(whole->positions.span()).stray.size(), middle == 0 && stray.norm() < 1 ? 1u : 2u);
+            std::string lines;
+            for (const Vec3& p : whole->positions) {
+                const Vec3 world = p + whole->frame.origin;
+                lines += fmt::format("{} {} {}\n", world.x(), world.y(), world.z());
+            }
+            expect_as_read_whole(folder.write("a.xyz", lines));
+        }
 }
 
 /// `begins_so`: only later content prevents streaming.

@@ -77,5 +77,41 @@ TEST(LengthScale, Scale_OutlivesWhoMadeTheValue) {
     EXPECT_EQ(scale.spacing(), 5);
 }
 
+TEST(LengthScale, StrayPoints_AreNotPartOfTheDiagonalAndAreReportedOnce) {
+    PointCloud cloud = random_cube(1000, 1);
+    const double diagonal = length_scale(value_of(cloud)).diagonal();
+    Array<Vec3> positions(cloud.positions.begin(), cloud.positions.end());
+    positions.push_back(Vec3(-100, 0, 0));
+    cloud.positions = std::move(positions);
+    cloud.frame.origin = Vec3(5000, 0, 0);
+    std::vector<std::string> warnings;
+    const LengthScale scale = length_scale(value_of(cloud), [&](std::string text) { warnings.push_back(text); });
+    EXPECT_TRUE(warnings.empty()) << "the diagonal was not needed";
+    EXPECT_EQ(scale.diagonal(), diagonal);
+    EXPECT_EQ(scale.diagonal(), diagonal);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_THAT(warnings[0], AllOf(HasSubstr("without 1 stray point,"), HasSubstr("number 1000 at (4900, 0, 0)"),
+                                   HasSubstr("remove it if it is not part of the object")));
+}
+
+TEST(LengthScale, ManyStrayPoints_AreCountedAndTheFirstAreNamed) {
+    PointCloud cloud = random_cube(5000, 1);
+    Array<Vec3> positions(cloud.positions.begin(), cloud.positions.end());
+    for (std::size_t i = 0; i < 5; ++i) positions[10 * i] = Vec3(0, 100, static_cast<double>(i));
+    cloud.positions = std::move(positions);
+    std::string warning;
+    length_scale(value_of(cloud), [&](std::string text) { warning = text; }).diagonal();
+    EXPECT_THAT(warning, AllOf(HasSubstr("without 5 stray points,"), HasSubstr("number 20 at (0, 100, 2) and 2 more"),
+                               HasSubstr("remove them if they are not part of the object")));
+}
+
+TEST(LengthScale, MeshWithAStrayVertex_HasItsOrdinaryBox) {
+    TriangleMesh mesh = geodesic_sphere(1, 10);
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+    positions[0] = Vec3(100, 0, 0);
+    mesh.positions = std::move(positions);
+    EXPECT_GT(length_scale(value_of(mesh)).diagonal(), 100);
+}
+
 }  // namespace
 }  // namespace scanmill::test

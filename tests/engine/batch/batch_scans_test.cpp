@@ -218,5 +218,20 @@ TEST_F(BatchScans, PosesInPlaceThatAreNone_AreRefusedWhereTheyAreWrong) {
                 ElementsAre(HasSubstr("the pose has no translation"), HasSubstr("did you mean 'translation'?")));
 }
 
+TEST_F(BatchScans, RuleForInvalidRows_IsReadAndNeedsAWorkflowOfPoints) {
+    EXPECT_THAT(scans("[{path: scans/a.ply, invalid: drop}, scans/b.ply]"), IsEmpty());
+    EXPECT_EQ(batch_.scans[0].invalid, InvalidRows::drop);
+    EXPECT_EQ(batch_.scans[1].invalid, InvalidRows::by_format);
+    EXPECT_THAT(scans("[{path: scans/a.ply, invalid: keep}]"),
+                ElementsAre(AllOf(HasSubstr("'keep'"), HasSubstr("expected drop or refuse"))));
+    const std::string batch = "scanmill: 1\nbatch: b\nscans: [{path: scans/*.ply, invalid: drop}]\nworkflows: ";
+    EXPECT_THAT(check(batch + "w.yaml\n"), IsEmpty());
+    folder_.write("m.yaml",
+                  "scanmill: 1\ninputs: {mesh: mesh}\nsteps: [{simplify: {max-error: 1 u}}]\noutputs: "
+                  "{'{scan}.stl': simplify}\n");
+    EXPECT_THAT(check(batch + "m.yaml\n"), ElementsAre(AllOf(testing::StartsWith("b:3:29: "),
+                                                             HasSubstr("no workflow of the batch takes points"))));
+}
+
 }  // namespace
 }  // namespace scanmill

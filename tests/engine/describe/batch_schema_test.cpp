@@ -22,7 +22,8 @@ TEST_F(BatchSchema, WhatTheParserAccepts_IsAccepted) {
     const std::string scan = "scanmill: 1\nbatch: b\nworkflows: [w.yaml]\nscans: ";
     for (const std::string& batch :
          {head, head + "summary: It.\nset:\nlimits:\n",
-          scan + "[{path: scans/*.ply, unit: mm, frame: '{stem}', pose: p.json, truth: 'scans/{stem}.ply', set: {n: "
+          scan + "[{path: scans/*.ply, unit: mm, invalid: drop, frame: '{stem}', pose: p.json, truth: "
+                 "'scans/{stem}.ply', set: {n: "
                  "2}}]\n",
           scan + "[{path: scans/*.ply, set: , pose: [[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]\n",
           scan + "[scans/a.ply, {path: scans/b.ply, pose: {translation: [1, 2, 3], rotation: [0, 0, 0, 1]}}]\n",
@@ -63,6 +64,8 @@ std::vector<Mistake> mistakes(const std::string& head) {
         {scan + "[{unit: mm}]\n", "scans 0: Missing required property 'path'", "the scan has no path"},
         {scan + "[{path: scans/a.ply, unti: mm}]\n", "scans 0: Object contains a property" + known_only + "'unti'",
          "a scan has no key 'unti'"},
+        {scan + "[{path: scans/a.ply, invalid: keep}]\n", "scans 0 invalid: Failed to match against any enum",
+         "expected drop or refuse"},
         {scan + "[{path: scans/a.ply, unit: yard}]\n", "scans 0 unit: Failed to match against any enum",
          "'yard' is not a unit"},
         {scan + "[{path: scans/a.ply, frame: [x]}]\n", "scans 0 frame: Value type not permitted", "a text for 'frame'"},

@@ -55,7 +55,8 @@ TEST_F(WorkflowSchema, WhatCheckAccepts_IsAccepted) {
                  "u^2}\n"),
           with_n("  - one-of:\n      - thin: {count: $n}\n      - id: b\n        thin:\n"
                  "      - name: twice\n        steps: [{thin: }, {id: again, thin: }]\n    id: any\n"),
-          std::string("scanmill: 1\nname: w\nsummary: Nothing.\ninputs: {a: {kind: points, unit: mm, help: It.}, "
+          std::string("scanmill: 1\nname: w\nsummary: Nothing.\ninputs: {a: {kind: points, unit: mm, invalid: drop, "
+                      "help: It.}, "
                       "b: [points]}\nsteps: [{combine: , in: {points: [a, b]}}]\n"
                       "outputs: {'{scan}.ply': combine}\n"),
           std::string("scanmill: 1\nsummary: 5\ninputs: {scan: points}\nparameters:\nsteps: [{thin: }]\noutputs:\n"),
@@ -85,6 +86,8 @@ const std::vector<Mistake> mistakes{
      "'cloud' is not a kind"},
     {"scanmill: 1\ninputs: {scan: {unit: mm}}\nsteps: [{thin: }]\n", "inputs scan: Missing required property 'kind'",
      "the input 'scan' has no kind"},
+    {"scanmill: 1\ninputs: {scan: {kind: points, invalid: keep}}\nsteps: [{thin: }]\n",
+     "inputs scan invalid: Failed to match against any enum", "expected drop or refuse"},
     {"scanmill: 1\ninputs: {scan: {kind: points, unit: yard}}\nsteps: [{thin: }]\n",
      "inputs scan unit: Failed to match against any enum", "'yard' is not a unit"},
     {"scanmill: 1\noutput: {}\ninputs: {scan: points}\nsteps: [{thin: }]\n",

@@ -47,6 +47,20 @@ TEST_F(Check, SoundWorkflow_HasNoFindings) {
                 IsEmpty());
 }
 
+TEST_F(Check, RuleForInvalidRows_IsDropOrRefuseAndForPoints) {
+    const auto input = [&](const std::string& text) {
+        return findings("scanmill: 1\ninputs: {scan: " + text + "}\nsteps: [{make: }]\n");
+    };
+    EXPECT_THAT(input("{kind: points, invalid: drop}"), IsEmpty());
+    EXPECT_EQ(plan_.workflow.inputs[0].invalid, InvalidRows::drop);
+    EXPECT_THAT(input("{kind: [points], invalid: refuse}"), IsEmpty());
+    EXPECT_THAT(
+        input("{kind: points, invalid: ignore}"),
+        ElementsAre(AllOf(StartsWith("w:2:40: "), HasSubstr("'ignore'"), HasSubstr("expected drop or refuse"))));
+    EXPECT_THAT(input("{kind: mesh, invalid: drop}"),
+                ElementsAre(AllOf(StartsWith("w:2:29: "), HasSubstr("`invalid` is for points"), HasSubstr("mesh"))));
+}
+
 TEST_F(Check, MissingGrammarVersion_IsAnError) {
     EXPECT_THAT(findings("steps: [{make: }]\n"),
                 ElementsAre(HasSubstr("w:1:1: has no grammar version; expected `scanmill: 1`")));

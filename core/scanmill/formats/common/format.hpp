@@ -35,6 +35,8 @@ struct LoadedFile {
     std::string encoding;  ///< "binary little-endian", "ascii"
     /// The file's comments, in order: comment and obj_info lines, `#` lines, the text of an STL header.
     std::vector<std::string> comments;
+    /// A row with NaN means a ray without a return: a format of organised scans.
+    bool nan_is_no_return = false;
 };
 
 struct WriteOptions {

@@ -85,17 +85,28 @@ void require_countable(u64 count, std::string_view elements) {
     if (count > most) throw Error("holds {} {}; at most {} can be numbered", count, elements, most);
 }
 
-void move_near_origin(Array<Vec3>& positions, const BoundingBox& box, Frame& frame) {
-    frame.origin = distant_origin(box);
+namespace {
+
+void move_to(const Vec3& origin, Array<Vec3>& positions, Frame& frame) {
+    frame.origin = origin;
     if (frame.origin == Vec3::Zero()) return;
     for (Vec3& p : positions) p -= frame.origin;
+}
+
+}  // namespace
+
+void move_near_origin(Array<Vec3>& positions, Frame& frame, std::optional<BoundingBox> box) {
+    move_to(distant_origin(robust_box(positions, box ? *box : bounding_box(positions))), positions, frame);
 }
 
 LoadedFile loaded_file(std::string format, std::string encoding, std::vector<std::string> comments,
                        Array<Vec3> positions, TriangleMesh mesh, const ReadOptions& options,
                        std::optional<BoundingBox> box) {
     mesh.frame = declared_frame(comments, options);
-    move_near_origin(positions, box ? *box : bounding_box(positions), mesh.frame);
+    if (mesh.triangles.empty())
+        move_near_origin(positions, mesh.frame, box);
+    else
+        move_to(distant_origin(box ? *box : bounding_box(positions)), positions, mesh.frame);
     mesh.positions = std::move(positions);
     Value value = mesh.triangles.empty() ? Value(std::make_shared<const PointCloud>(points_of(mesh)))
                                          : Value(std::make_shared<const TriangleMesh>(std::move(mesh)));

@@ -60,8 +60,9 @@ ColumnTable with_exponents(const ColumnTable& columns, const std::vector<std::st
 /// Throws Error unless `count` elements can be numbered with 32 bits.
 void require_countable(u64 count, std::string_view elements);
 
-/// Chooses frame.origin for world positions that lie in `box` and makes them relative to it.
-void move_near_origin(Array<Vec3>& positions, const BoundingBox& box, Frame& frame);
+/// Chooses frame.origin for the world positions of points (see distant_origin()) and makes them relative to it. `box`
+/// bounds them; it is computed when absent.
+void move_near_origin(Array<Vec3>& positions, Frame& frame, std::optional<BoundingBox> box = {});
 
 /// A reader's result with the frame that the comments declare: `mesh`, or a point cloud when it has no triangles, at
 /// these world positions. `box` bounds them; it is computed when absent.

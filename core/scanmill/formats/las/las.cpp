@@ -53,15 +53,24 @@ private:
     }
 
     void find_origin() {
-        Grid low = grid_point(begin_), high = low;
-        for_each_point([&](std::size_t, const char* point) {
-            const Grid p = grid_point(point);
-            low = low.cwiseMin(p);
-            high = high.cwiseMax(p);
-        });
-        const Vec3 one = low.cast<double>().cwiseProduct(header_.scale) + header_.offset;
-        const Vec3 other = high.cast<double>().cwiseProduct(header_.scale) + header_.offset;
-        cloud_.frame.origin = distant_origin({one.cwiseMin(other), one.cwiseMax(other)});
+        constexpr std::size_t piece_size = 1 << 12;
+        std::vector<std::size_t> begin;
+        for (std::size_t row = 0; row < header_.points; row += piece_size) begin.push_back(row);
+        begin.push_back(header_.points);
+        const auto read = [&](std::size_t piece, Array<Vec3>& buffer) -> std::span<const Vec3> {
+            buffer.resize(begin[piece + 1] - begin[piece]);
+            const char* point = begin_ + begin[piece] * header_.point_size;
+            for (Vec3& p : buffer) {
+                p = grid_point(point).cast<double>().cwiseProduct(header_.scale) + header_.offset;
+                point += header_.point_size;
+            }
+            return buffer;
+        };
+        BoundingBox box;
+        Array<Vec3> buffer;
+        for (std::size_t piece = 0; piece + 1 < begin.size(); ++piece)
+            for (const Vec3& p : read(piece, buffer)) box.add(p);
+        cloud_.frame.origin = distant_origin(robust_box({begin, read}, box).robust);
     }
 
     /// The offset is moved to the origin before the integers are added: near zero a double resolves the smallest step.

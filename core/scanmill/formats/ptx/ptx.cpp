@@ -27,7 +27,9 @@ public:
              "the order of the cells in columns and rows and the scanner's position were left out");
         TriangleMesh vertices;
         vertices.vertex_columns = columns();
-        return loaded_file("PTX", "ascii", {}, std::move(positions_), std::move(vertices), options_);
+        LoadedFile loaded = loaded_file("PTX", "ascii", {}, std::move(positions_), std::move(vertices), options_);
+        loaded.nan_is_no_return = true;
+        return loaded;
     }
 
 private:
