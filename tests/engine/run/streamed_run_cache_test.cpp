@@ -37,8 +37,9 @@ TEST_F(StreamedRun, ValueThatWasKept_ChangesNothing) {
 
 TEST_F(StreamedRun, ValueThatWasKept_IsTakenWhereTheFileHasToBeReadWhole) {
     const std::string file = scan("a.xyz", small_scan + "1 2 nan\n");
-    run("  - test-step:\n", {file});
-    EXPECT_THAT(origins(run_logging(file)), ElementsAre(cached, ran));
+    const std::string inputs = "{scan: {kind: points, invalid: drop}}";
+    run("  - test-step:\n", {file}, "", inputs);
+    EXPECT_THAT(origins(run("  - test-stream: {log: " + log() + "}\n", {file}, "", inputs)), ElementsAre(cached, ran));
     EXPECT_THAT(logged(), HasSubstr("whole"));
 }
 

@@ -50,7 +50,9 @@ TEST_F(StreamedRun, FileThatTurnsOutToNeedIt_IsReadWhole) {
     const std::string mixed = scan("mixed.xyz", small_scan + "1, 2 3\n");
     expect_the_same(mixed, "bin-size: 0.1 u");
     use_cache("logging");
-    const std::vector<std::string> log = run_logging(nan).nodes[0].effort.log;
+    prepare("  - test-stream: {length: 1 %diag, log: " + log() + "}\n", {nan}, "",
+            "{scan: {kind: points, invalid: drop}}");
+    const std::vector<std::string> log = run_graph().nodes[0].effort.log;
     EXPECT_THAT(log, ElementsAre(HasSubstr("read as a whole")));
     EXPECT_THAT(run_logging(scan("a.xyz")).nodes[0].effort.log, testing::IsEmpty());
     EXPECT_THAT(logged(), testing::MatchesRegex("whole .*\nstream .*\n"));
