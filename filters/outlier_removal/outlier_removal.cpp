@@ -30,7 +30,7 @@ constexpr double flat_variation = 0.0125;
 /// Mutual neighbours are connected up to this many limits.
 constexpr double reach = 2;
 /// Share of the points above which their removal is reported.
-constexpr double remarkable_share = 0.1;
+constexpr double doubtful_share = 0.1;
 /// Equal distances differ by rounding; such differences make no suspects.
 constexpr double rounding = 1e-12;
 
@@ -206,7 +206,7 @@ State state_of_suspect(const Neighbourhoods& all, u32 index, Array<Vec3>& offset
     return scatter_of(offsets).surface_variation <= flat_variation ? State::flat : State::suspect;
 }
 
-/// The state of every position. Suspects are told apart only if `connected`.
+/// The state of every position. Suspects are classified only if `connected`.
 Array<State> states_of(const Neighbourhoods& all, double limit, bool connected, Context& context) {
     Array<State> states(all.positions().size());
     for_each_chunk(context.threads(), states.size(), chunk_size, [&](std::size_t begin, std::size_t end) {
@@ -355,7 +355,7 @@ OutlierRemovalResult outlier_removal(const PointCloud& cloud, const OutlierRemov
     }
     result.removed = cloud.size() - result.kept.size();
     require_kept(result.kept.size(), cloud.size(), params, result.limit, largest, positions);
-    if (static_cast<double>(result.removed) > remarkable_share * static_cast<double>(cloud.size()))
+    if (static_cast<double>(result.removed) > doubtful_share * static_cast<double>(cloud.size()))
         context.doubt(fmt::format(
             "{} of {} points are outliers ({:.0f} %); if they belong to the object, raise factor or radius, or lower "
             "min-component",

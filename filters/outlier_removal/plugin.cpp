@@ -11,6 +11,7 @@ SCANMILL_FILTER() {
         .source("Rusu, Marton, Blodow, Dolha, Beetz 2008, section 4.1")
         .ties("Points at a limit pass. Of equally near points the lower in order of x, then y, then z is nearer.")
         .not_finite("Refused; the message gives their number and the first one.")
+        .adds({"outlier"})
         .in<PointCloud>("points", "Finite coordinates; every column is carried along.")
         .out<PointCloud>("points",
                          "The kept points, in input order; with `mark` all points, with the column `outlier`, which is "

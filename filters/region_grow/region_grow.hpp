@@ -118,10 +118,10 @@ struct RegionGrowResult {
 /// of the boundary or other points. So a radius of many spacings costs O(n m log m) on noisy scans; use the default
 /// there.
 ///
-/// Metrics: see plugin.cpp. Warns when most points are too dense for their `bin-size`, about normals with mixed signs,
-/// and about what find_features() could not decide.
-/// Doubts: more than 2 % of the points unused, more than one crease per 20 of more than 10,000 edges, normals that end
-/// the surface, loops at thin parts.
+/// Metrics: see plugin.cpp. Warns when more than half a percent of the points stay unused, when most points are too
+/// dense for their `bin-size`, about normals with mixed signs, and about what find_features() could not decide. Doubts:
+/// more than 2 % of the points unused, more than one crease per 20 of more than 10,000 edges, normals that end the
+/// surface, loops at thin parts.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill

@@ -114,7 +114,8 @@ Cleaned<PointCloud> without_invalid_points(const PointCloud& cloud) {
     if (rows.size() == cloud.size()) return {cloud, 0, 0};
     if (rows.empty())
         throw Error("{} a NaN or an infinity; no point is left",
-                    cloud.size() == 1 ? "the only point has" : fmt::format("all {} points have", cloud.size()));
+                    cloud.size() == 1 ? "the only point has" : fmt::format("all {} points have", cloud.size()))
+            .hint("export the scan again");
     return {gather(cloud, rows), cloud.size() - rows.size(), 0};
 }
 

@@ -13,8 +13,7 @@ namespace {
 constexpr std::size_t points_per_stray = 500;
 constexpr double widening = 0.25;  // of the diagonal
 
-/// The entry of this rank, counted from 0, in the order of `sign` times the coordinate. Moves it to its place, those
-/// before it in that order before it.
+/// The entry of this rank, counted from 0, in the order of `sign` times the coordinate. Partitions the entries at it.
 template <class Entries>
 double ranked(Entries& entries, std::size_t rank, double sign) {
     const auto nth = entries.begin() + static_cast<std::ptrdiff_t>(rank);
@@ -60,7 +59,7 @@ bool has_no_stray(const PositionPieces& pieces, const BoundingBox& all) {
 /// The lowest and the highest coordinates of each axis.
 class Extremes {
 public:
-    /// Of `positions` coordinates all that their ranks may need.
+    /// Keeps at least the `positions` / 500 + 1 lowest and highest coordinates per axis.
     explicit Extremes(std::size_t positions) : wanted_(positions / points_per_stray + 1) {}
 
     void add(std::span<const Vec3> positions) {

@@ -428,7 +428,7 @@ private:
             job.work = WriteWork{
                 write.file,
                 made_how(graph_, write.cells, {write.file, write.source.node, write.source.port}, report_.nodes),
-                added_columns(graph_, write.source.node), input_from(write.source, "")};
+                added_columns(graph_, write.source.node), must_be_closed(write.source), input_from(write.source, "")};
             job.frame = fmt::format("while writing '{}'", write.file.string());
             job.scan = graph_.scan_names[graph_.cells[write.cells.front()].scan];
             return job;
@@ -757,6 +757,15 @@ private:
                 }
         error.set_hint("raise the limit, or thin the scan first");
         return {Cause::time, 0, std::move(error), graph_.scan_names[cell.scan], {}};
+    }
+
+    /// Whether the source's step expects `closed: true` of this output.
+    bool must_be_closed(const Source& source) const {
+        const PlannedStep* step = graph_.step(graph_.nodes[source.node]);
+        return step && step->spec.outputs.front().name == source.port &&
+               std::ranges::any_of(step->expectations, [](const PlannedExpectation& expectation) {
+                   return expectation.name == "closed" && expectation.low == ParameterValue(ParameterScalar(true));
+               });
     }
 
     const std::vector<std::size_t>& cells_of(const Task& task) const {

@@ -95,7 +95,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobCaching, is_used, plan_key, code, keep_alw
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReadWork, leaf, caching)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StepWork, step, build, inputs, parameter_files, caching)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExpectWork, step, metrics, primary)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WriteWork, file, made_how, added_columns, value)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WriteWork, file, made_how, added_columns, must_be_closed, value)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Job, node, work, frame, scan, threads, seed, memory_limit, seconds_limit, limit_text)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, cause, number, error, scan, equal_scan)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Effort, seconds, cpu_seconds, peak_memory, threads, log)

@@ -60,6 +60,7 @@ struct WriteWork {
     std::filesystem::path file;
     std::string made_how;  ///< for the file's description
     std::vector<std::string> added_columns;  ///< those of added_columns()
+    bool must_be_closed = false;             ///< the step's expectation `closed: true` holds for the file too
     JobInput value;
 };
 

@@ -113,8 +113,11 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
     options.is_cancelled = listener.is_cancelled;
     options.on_progress = listener.on_progress;
     CountedWarnings warnings;
-    options.on_warning = [&](std::string_view text) {
-        if (warnings.add(std::string(text))) listener.on_warning(text);
+    options.on_warning = [&](std::string_view text) { warnings.add(std::string(text)); };
+    const auto report_warnings = [&] {
+        if (report.node.origin != Origin::ran) return;
+        report.node.warnings = warnings.sentences();
+        for (const std::string& warning : report.node.warnings) listener.on_warning(warning);
     };
     std::string run_key;
     auto start = std::chrono::steady_clock::now();
@@ -134,18 +137,19 @@ void Workbench::run(const Job& job, const StepWork& work, const JobListener& lis
         return declaration;
     };
     const Outputs outputs = [&] {
-        if (!scan) return run_step(step, filter, inputs, std::move(options), recall, report.node);
         try {
-            return run_step(step, filter, *scan, std::move(options), recall, report.node);
+            return scan ? run_step(step, filter, *scan, std::move(options), recall, report.node)
+                        : run_step(step, filter, inputs, std::move(options), recall, report.node);
         } catch (const Cancelled&) {
             throw;
         } catch (...) {
-            scans_.require_unchanged(work.inputs.front().node);  // a change explains the failure
+            report_warnings();
+            if (scan) scans_.require_unchanged(work.inputs.front().node);  // a change explains the failure
             throw;
         }
     }();
     const double seconds = seconds_since(start);
-    if (report.node.origin == Origin::ran) report.node.warnings = warnings.sentences();
+    report_warnings();
     if (scan) scans_.require_unchanged(work.inputs.front().node);
     if (uses_cache(work.caching))
         for (const ParameterFile& file : work.parameter_files) require_unchanged(file.path, file.content);
@@ -182,7 +186,10 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
     options.added_columns = {work.added_columns.begin(), work.added_columns.end()};
     Vec3 shift = Vec3::Zero();
     options.on_shift = [&](const Vec3& used) { shift = used; };
-    options.on_opened = [&](std::string sentence) { written.doubts.push_back(std::move(sentence)); };
+    options.on_opened = [&](std::string sentence) {
+        if (work.must_be_closed) throw Error("expected closed: true; {}", sentence).hint("write PLY");
+        written.doubts.push_back(std::move(sentence));
+    };
     Sha256 hash;
     options.on_bytes = [&](std::string_view bytes) { hash.add(bytes); };
     write_file(work.file, value, options);
@@ -204,6 +211,10 @@ namespace {
 
 /// For files that are read again; their warnings were reported the first time.
 void ignore_warning(std::string) {}
+
+void add_stray_points(const RobustBox& box, Metrics& properties) {
+    if (!box.stray.empty()) properties.set("stray-points", static_cast<double>(box.stray.size()), Unit::count);
+}
 
 }  // namespace
 
@@ -233,6 +244,8 @@ void Workbench::read(const Job& job, const ReadWork& work, const JobListener& li
     if (is_geometric(value.kind()))
         report.node.properties.set("points", static_cast<double>(positions_of(value).size()), Unit::count);
     if (dropped > 0) report.node.properties.set("dropped-points", static_cast<double>(dropped), Unit::count);
+    if (const PointCloud* cloud = value.find<PointCloud>())
+        add_stray_points(robust_box(cloud->positions.span()), report.node.properties);
     values_[job.node] = {{"", std::move(value)}};
     store(job, work.caching, work.caching.plan_key, path_prefix(work.leaf.file), seconds_since(start), report);
 }
@@ -259,6 +272,7 @@ bool Workbench::read_as_stream(const Job& job, const ReadWork& work, const JobLi
     if (!scan) return false;
     report_warnings();
     report.node.properties.set("points", static_cast<double>(scan->size()), Unit::count);
+    add_stray_points(scan->robust_box(), report.node.properties);
     std::vector<ResultOutput> outputs;
     if (cached) {
         outputs = cached->outputs;

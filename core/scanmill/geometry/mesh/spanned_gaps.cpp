@@ -34,11 +34,8 @@ std::string doubt_about_gaps(const TriangleMesh& mesh) {
     const double share = spanned_share(mesh);
     if (share <= doubtful_share) return {};
     return fmt::format(
-        "{:.2g} % of the surface's area is in triangles with an edge longer than {} median edges: the surface spans "
-        "gaps "
-        "between the points, because a part was not scanned or outliers are in the way; outlier-removal before, or "
-        "more "
-        "points, help",
+        "{:.0f} % of the surface's area is in triangles with an edge longer than {} median edges, where it spans gaps "
+        "between the points: scan the missing part, or run outlier-removal first",
         100 * share, long_edge);
 }
 
