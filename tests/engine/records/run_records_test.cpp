@@ -67,7 +67,8 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
         RunRecords records = RunRecords::append_to(file());
         const std::int64_t run = records.begin(some_start());
         records.add(run, {some_step(0), some_step(2)}, {});
-        CellRecord cell{"thinning", "a.ply", "alpha=1", "failed", {"time", 0, "what went wrong"}, 1.5, {0, 2}, {}, {"a: b"}};
+        CellRecord cell{"thinning", "a.ply", "alpha=1", "failed", {"time", 0, "what went wrong"},
+                        1.5,        {0, 2},  {},        {"a: b"}};
         cell.outputs = {{"out/a.ply", "mesh", "ok", {{{"triangles", 12, Unit::count}}}}};
         records.add(run, {}, {cell});
         records.end(run, "failed", 2.5);
