@@ -11,7 +11,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/points.hpp"
-#include "scanmill/geometry/mesh/spanned_gaps.hpp"
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill {
@@ -263,11 +263,12 @@ void warn_about(const AlphaSolidResult& result, const AlphaSolidParams& params, 
     const double edges = radius_in_edges(result);
     const std::string text = ambiguity_text(result, edges);
     const bool is_far_too_large = edges >= doubtful_edges && result.choice != AlphaChoice::given;
+    // sculpt may bring points inside to the surface, but does not open what a far too large alpha joined.
     if (is_far_too_large || 2 * result.interior_points.size() > result.tets.positions.size())
-        context.doubt(text, "mesh");
+        context.doubt(text, is_far_too_large ? "" : "mesh");
     else if (!text.empty())
         context.warn(text);
-    if (std::string gaps = doubt_about_gaps(result.mesh); !gaps.empty()) context.doubt(std::move(gaps), "mesh");
+    for (std::string& doubt : doubts_about_surface(result.mesh)) context.doubt(std::move(doubt), "mesh");
 }
 
 }  // namespace

@@ -129,8 +129,8 @@ struct AlphaSolidResult {
 /// Warnings, one sentence each: a given alpha whose solid is not valid, with the nearest valid alpha; points and cells
 /// left out; separate solids that were joined; a repaired or hull solid; and an ambiguous choice: points inside, or a
 /// chosen alpha far above alpha_cover or the boundary's edges.
-/// Doubts, about the mesh only, because sculpt may still improve the solid: a chosen alpha of at least seven of the
-/// boundary's edges; more than half of the points inside; gaps that the surface spans, see doubt_about_gaps().
+/// Doubts: a chosen alpha of at least seven of the boundary's edges. About the mesh only, because sculpt may still
+/// improve the solid: more than half of the points inside, and doubts_about_surface().
 AlphaSolidResult alpha_solid(const TetMesh& tets, const AlphaSolidParams& params, Context& context);
 
 }  // namespace scanmill

@@ -10,6 +10,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/mesh.hpp"
+#include "scanmill/data/robust_box.hpp"
 
 namespace scanmill {
 
@@ -234,7 +235,7 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
             .hint("leave certify out, or give a mesh as truth");
     const Buffer<Vec3> points = in_frame_of(mesh.frame, truth.frame, truth.positions);
     const BoundingBox box = bounding_box(points.span());
-    compare_extents(mesh, box, true, params, context);
+    compare_extents(mesh, robust_box(points.span(), box).robust, true, params, context);
 
     const double rounding = rounding_within(surface_box(mesh), box);
     const TriangleTree mesh_tree(mesh.positions.span(), mesh.triangles.span(), context.threads());

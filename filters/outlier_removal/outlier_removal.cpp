@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "scanmill/base/disjoint_sets.hpp"
@@ -251,28 +252,63 @@ struct Components {
     u32 largest() const { return static_cast<u32>(std::ranges::max_element(size) - size.begin()); }
 };
 
+/// Passed positions of one component in one cell of a grid.
+struct Cluster {
+    u32 label;
+    Vec3 cell;
+    u32 index;
+    auto key() const { return std::tuple(label, cell.x(), cell.y(), cell.z(), index); }
+};
+
+/// The passed positions outside the largest component, by component and cell.
+std::vector<Cluster> clusters_of(const Neighbourhoods& all, std::span<const State> states, double edge,
+                                 const Components& components) {
+    const u32 largest = components.largest();
+    std::vector<Cluster> clusters;
+    for (u32 index = 0; index < states.size(); ++index)
+        if (states[index] == State::passed && components.label[index] != largest)
+            clusters.push_back({components.label[index], (all.positions()[index] / edge).array().floor(), index});
+    std::ranges::sort(clusters, {}, &Cluster::key);
+    return clusters;
+}
+
 /// Unites passed positions within the radius that are not among each other's nearest: groups of many points side by
-/// side. Searches from all components but the largest.
+/// side. Searches from all components but the largest, once per cell, because a dense group can be smaller than the
+/// radius.
 void unite_groups(const Neighbourhoods& all, std::span<const State> states, double radius, DisjointSets& sets,
                   Context& context) {
+    if (!(radius > 0)) return;
+    const std::span<const Vec3> positions = all.positions();
     const Components components(sets, states.size());
-    const u32 largest = components.largest();
-    std::vector<u32> from;
-    for (u32 index = 0; index < states.size(); ++index)
-        if (states[index] == State::passed && components.label[index] != largest) from.push_back(index);
+    constexpr double cells_per_radius = 8;
+    const double edge = radius / cells_per_radius;
+    const std::vector<Cluster> clusters = clusters_of(all, states, edge, components);
+    std::vector<std::size_t> begins;  // the first position of every cell
+    for (std::size_t i = 0; i < clusters.size(); ++i)
+        if (i == 0 || clusters[i].label != clusters[i - 1].label || clusters[i].cell != clusters[i - 1].cell)
+            begins.push_back(i);
+    begins.push_back(clusters.size());
 
-    const double squared = std::nextafter(radius * radius, std::numeric_limits<double>::infinity());
+    const auto above = [](double length) { return std::nextafter(length * length, 2 * length * length); };
+    const double least = above(radius), most = above(radius + std::sqrt(3.0) * edge);
     constexpr std::size_t searches = 1 << 10;
-    std::vector<std::vector<std::pair<u32, u32>>> found((from.size() + searches - 1) / searches);
-    for_each_chunk(context.threads(), from.size(), searches, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::vector<std::pair<u32, u32>>> found((begins.size() + searches - 1) / searches);
+    for_each_chunk(context.threads(), begins.size() - 1, searches, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
         NeighbourBuffer buffer;
         for (std::size_t i = begin; i < end; ++i) {
-            u32 last = components.label[from[i]];
-            for (const Neighbour& neighbour : all.tree.within(from[i], squared, buffer)) {
+            const std::span<const Cluster> cell(&clusters[begins[i]], begins[i + 1] - begins[i]);
+            u32 last = cell.front().label;
+            for (const Neighbour& neighbour :
+                 all.tree.within(cell.front().index, cell.size() > 1 ? most : least, buffer)) {
                 const u32 label = components.label[neighbour.index];
-                if (states[neighbour.index] != State::passed || label == last) continue;
-                if (label != components.label[from[i]]) found[begin / searches].emplace_back(from[i], neighbour.index);
+                if (states[neighbour.index] != State::passed || label == last || label == cell.front().label) continue;
+                const auto near = std::ranges::find_if(cell, [&](const Cluster& each) {
+                    return cell.size() == 1 ||
+                           squared_distance(positions[each.index], positions[neighbour.index]) < least;
+                });
+                if (near == cell.end()) continue;
+                found[begin / searches].emplace_back(near->index, neighbour.index);
                 last = label;
             }
         }
@@ -354,7 +390,7 @@ OutlierRemovalResult outlier_removal(const PointCloud& cloud, const OutlierRemov
         if (!is_outlier[index]) result.kept.push_back(row);
     }
     result.removed = cloud.size() - result.kept.size();
-    require_kept(result.kept.size(), cloud.size(), params, result.limit, largest, positions);
+    if (!params.mark) require_kept(result.kept.size(), cloud.size(), params, result.limit, largest, positions);
     if (static_cast<double>(result.removed) > doubtful_share * static_cast<double>(cloud.size()))
         context.doubt(fmt::format(
             "{} of {} points are outliers ({:.0f} %); if they belong to the object, raise factor or radius, or lower "

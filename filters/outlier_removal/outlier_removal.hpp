@@ -82,7 +82,8 @@ struct OutlierRemovalResult {
 /// lost, with 3 chains of outliers stay.
 ///
 /// Throws Error for an empty cloud, more than 2^32 - 1 points, a NaN or infinite coordinate, a parameter out of range,
-/// and when every point is an outlier. Doubts its result if more than 10 % of the points are outliers.
+/// and unless `mark` is set
+/// when every point is an outlier. Doubts its result if more than 10 % of the points are outliers.
 ///
 /// Deterministic: the same bytes for any number of threads; the same points for any order of the input. Cost:
 /// O(n log n) time while `max(limit, radius)` holds few points; memory beside the result about 110 + 4 `neighbours`

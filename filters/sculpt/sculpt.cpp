@@ -7,7 +7,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/geometry/mesh/spanned_gaps.hpp"
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 #include "sculpt/sculptor.hpp"
 
 namespace scanmill {
@@ -110,7 +110,7 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
             "{} of {} cells had to be removed: the points fill the solid rather than sample its surface, or the "
             "solid is far too large for them; check the result before using it",
             result.removals.size(), cells_before));
-    if (std::string gaps = doubt_about_gaps(result.mesh); !gaps.empty()) context.doubt(std::move(gaps), "mesh");
+    for (std::string& doubt : doubts_about_surface(result.mesh)) context.doubt(std::move(doubt), "mesh");
 }
 
 void report(const SculptResult& result, std::size_t cells_before, Context& context) {

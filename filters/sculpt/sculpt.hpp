@@ -86,8 +86,8 @@ struct SculptResult {
 ///       processor.
 /// Cost: linear in the cells to find the boundary; O(r log r) for r removals. About 12 bytes per cell and 40 per
 ///       boundary triangle in addition to the result.
-/// Metrics: see plugin.cpp. Warns about points that stay in the interior. Doubts: more than half of the cells removed;
-/// gaps that the surface spans, see doubt_about_gaps().
+/// Metrics: see plugin.cpp. Warns about points that stay in the interior. Doubts: more than half of the cells removed,
+/// and doubts_about_surface().
 /// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 3; Boissonnat 1984 for the admissible steps.
 SculptResult sculpt(const TetMesh& tets, const SculptParams& params, Context& context);
 

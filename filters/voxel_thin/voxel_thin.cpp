@@ -149,12 +149,23 @@ void add_surface_columns(PointCloud& thinned, const LocalSizes& local, std::span
                 context);
 }
 
+/// Doubts voxels that are about as large as the scan.
+void doubt_few(const VoxelThinResult& result, std::size_t points, Context& context) {
+    constexpr std::size_t few = 100, many = 10'000;
+    if (result.kept.size() < few && points >= many)
+        context.doubt(fmt::format(
+            "{} of {} points stay: voxels of {:.4g} {} are about as large as the scan, or points far from all others "
+            "determine `%diag`; use smaller voxels, or outlier-removal before",
+            result.kept.size(), points, result.bin_size, symbol(result.points.frame.unit)));
+}
+
 /// Moves the rows into the result, adds the column `bin-size` and reports the metrics of every thinning.
 void finish(VoxelThinResult& result, KeptRows rows, std::size_t points, Context& context) {
     add_bin_sizes(result.points, rows.edges, result.bin_size, context);
     result.kept = std::move(rows.kept);
     result.noise = rows.noise;
     result.removed = points - result.kept.size();
+    doubt_few(result, points, context);
     context.metric("bin-size", result.bin_size, Unit::length);
     context.metric("kept", static_cast<double>(result.kept.size()));
     context.metric("removed", static_cast<double>(result.removed));

@@ -112,8 +112,9 @@ struct VoxelThinResult {
 /// origin or a stray point more than 2^31 voxels away, more than 2^63 voxels in all, and when every point is noise.
 /// When the size is derived, also for a tolerance not above 0 or not below the robust box's diagonal, a quantile
 /// outside of [0, 1], fewer than 6 or more than 1000 neighbours, no more distinct points than neighbours, and when all
-/// neighbourhoods lie near lines. With the adaptive rule also for a given bin size or grid origin. Warns when more than
-/// 1 % of the points have no determined curvature, and about replaced columns.
+/// neighbourhoods lie near lines. With the adaptive rule also for a given bin size or grid origin. Doubts its result if
+/// fewer than 100 of at least 10,000 points stay. Warns when more than 1 % of the points have no determined curvature,
+/// and about replaced columns.
 ///
 /// Deterministic: the same bytes for any number of threads; without ties the same set for any order of the points.
 /// Cost: O(n) time; beside the result 24 to 72 bytes per occupied voxel and at most 50 MB. A derived size takes about 2

@@ -33,7 +33,7 @@ TEST(AlphaSolidDoubts, PointFarFromTheSphere_MakesAlphaTooLarge) {
     const std::vector<Doubt> doubts = doubts_of(far);
     ASSERT_EQ(doubts.size(), 1u);
     EXPECT_THAT(doubts[0].text, HasSubstr("times the boundary's median edge, to span gaps or to reach distant points"));
-    EXPECT_EQ(doubts[0].port, "mesh");
+    EXPECT_EQ(doubts[0].port, "");
     EXPECT_THAT(doubts_of(far, covering(99)), IsEmpty());
 }
 

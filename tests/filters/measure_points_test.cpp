@@ -47,6 +47,14 @@ TEST(MeasureAgainstPoints, AnyNumberOfThreads_GivesTheSameNumbers) {
     EXPECT_EQ(metrics_of(measured(sphere, cloud, few_samples(), 3)).values, one.values);
 }
 
+TEST(MeasureAgainstPoints, StrayPoint_IsMeasuredAndDoesNotDecideWhetherTheFramesAgree) {
+    const PointCloud sphere = random_sphere(20'000, 3);
+    const PointCloud scan = joined(sphere, cloud_of({{0, 0, 1000}}));
+    const Measurement result = measured(geodesic_sphere(1, 20), scan, few_samples());
+    EXPECT_EQ(result.from_truth.samples, 20'001u);
+    EXPECT_NEAR(result.from_truth.max, 999, 1e-2);
+}
+
 TEST(MeasureAgainstPoints, OnePoint_IsMeasured) {
     const Measurement result = measured(cube(), cloud_of({{0.5, 0.5, 0.75}}), few_samples());
     EXPECT_DOUBLE_EQ(result.from_truth.mean, 0.25);

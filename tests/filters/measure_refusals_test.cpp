@@ -166,8 +166,8 @@ TEST(MeasureFrames, AnotherPosition_IsRefused) {
 }
 
 TEST(MeasureFrames, EveryRefusal_NamesAWayOut) {
-    EXPECT_THAT(error_of([] { measured(brick(), brick(10)); }).hint(), HasSubstr("--unit"));
-    EXPECT_THAT(error_of([] { measured(brick(), brick(77)); }).hint(), HasSubstr("--unit"));
+    EXPECT_THAT(error_of([] { measured(brick(), brick(10)); }).hint(), HasSubstr("`unit:`"));
+    EXPECT_THAT(error_of([] { measured(brick(), brick(77)); }).hint(), HasSubstr("`unit:`"));
     EXPECT_THAT(error_of([] { measured(brick(), shifted(brick(), {9, 9, 9})); }).hint(), HasSubstr("pose"));
 }
 

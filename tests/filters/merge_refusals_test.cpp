@@ -46,14 +46,15 @@ TEST(MergeRefusals, DifferentUnits_AreBothNamedWithAHint) {
     const Error error =
         refusal({in_unit(LengthUnit::millimetre), in_unit(LengthUnit::millimetre), in_unit(LengthUnit::metre)});
     EXPECT_EQ(error.sentence(), "the inputs have different units: mm in input 0, m in input 2");
-    EXPECT_THAT(error.hint(), HasSubstr("scanmill convert --to-unit"));
+    EXPECT_EQ(error.hint(), "convert one of them");
+    EXPECT_EQ(error.remedy(), Remedy::convert_unit);
 }
 
 TEST(MergeRefusals, KnownAndUnknownUnit_AreDifferent) {
     const Error error = refusal({point, in_unit(LengthUnit::inch)});
     EXPECT_EQ(error.sentence(), "the inputs have different units: an unknown unit in input 0, in in input 1");
-    EXPECT_THAT(error.hint(), HasSubstr("--unit mm"));
-    EXPECT_THAT(refusal({in_unit(LengthUnit::inch), point}).hint(), HasSubstr("--unit mm"));
+    EXPECT_THAT(error.hint(), HasSubstr("`unit: mm`"));
+    EXPECT_THAT(refusal({in_unit(LengthUnit::inch), point}).hint(), HasSubstr("`unit: mm`"));
 }
 
 TEST(MergeRefusals, DistanceBelowZeroOrInfinite_IsRefused) {

@@ -72,6 +72,15 @@ TEST(OutlierRemovalRefusals, AllPointsTooFarFromEachOther_NothingWouldBeLeft) {
     EXPECT_THAT(refusal(on_a_line({4}), by_radius(1, 0.5)), HasSubstr("1 of 1 points are outliers"));
 }
 
+TEST(OutlierRemovalRefusals, AllPointsMarked_AreKept) {
+    OutlierRemovalParams params = by_radius(1, 0.5);
+    params.mark = true;
+    Context context;
+    const OutlierRemovalResult result = outlier_removal(three, params, context);
+    EXPECT_EQ(result.points.size(), 3u);
+    EXPECT_EQ(result.removed, 3u);
+}
+
 TEST(OutlierRemovalRefusals, NoComponentLargeEnough_NothingWouldBeLeft) {
     std::vector<Vec3> points = square_grid(10, 1);
     const std::vector<Vec3> others = square_grid(10, 1, Vec3(100, 0, 0));

@@ -7,6 +7,7 @@
 #include "filters/voxel_thin_cases.hpp"
 #include "scanmill/base/random.hpp"
 #include "scanmill/formats/files.hpp"
+#include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 #include "support/real_data.hpp"
 #include "support/shapes.hpp"
@@ -79,6 +80,21 @@ TEST(VoxelThinFlaws, DistantScanLines_AreCountedWithAWarning) {
     ASSERT_EQ(context.warnings().size(), 1u);
     EXPECT_THAT(context.warnings()[0], HasSubstr("800 of 3800 distinct points"));
     EXPECT_NEAR(result.bin_size / size_for(2, 0.01, Guarantee::points), 1, 0.05) << "the lines are ignored";
+}
+
+TEST(VoxelThinFlaws, VoxelsAsLargeAsTheScan_AreDoubtful) {
+    const PointCloud sphere = moved(fibonacci_sphere(20'000), 1, {10'000, 0, 0});
+    PointCloud zeros;
+    zeros.positions = Array<Vec3>(300, Vec3::Zero());  // too many to be stray
+    VoxelThinParams params;
+    params.bin_size = Length(100);  // 1 % of the distance
+    Context context;
+    EXPECT_LT(voxel_thin(joined(sphere, zeros), params, context).points.size(), 10u);
+    EXPECT_THAT(doubts_of(context), testing::ElementsAre(HasSubstr("of 20300 points stay")));
+    Context without;
+    params.bin_size = Length(0.05);
+    voxel_thin(sphere, params, without);
+    EXPECT_THAT(doubts_of(without), testing::IsEmpty());
 }
 
 TEST(VoxelThinFlaws, RealScan_IsThinnedByEveryRule) {

@@ -46,12 +46,12 @@ TEST_F(OutlierRemovalCommand, OnePoint_Stays) {
     EXPECT_EQ(read_points(folder_ / "out/one-clean.xyz")->size(), 1u);
 }
 
-TEST_F(OutlierRemovalCommand, NotANumber_FailsWithStepAndScan) {
+TEST_F(OutlierRemovalCommand, NotANumber_IsRefusedWhereTheScanIsRead) {
     folder_.write("bad.xyz", "1 2 3\nnan 0 0\n");
     const ProgramResult ran = run("bad.xyz");
     EXPECT_EQ(ran.exit_code, 1);
     EXPECT_THAT(ran.err, HasSubstr("1 of 2 points"));
-    EXPECT_THAT(ran.err, HasSubstr("in step 'outlier-removal'"));
+    EXPECT_THAT(ran.err, HasSubstr("--invalid drop"));
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Signs that a surface that was made from points is not that of the scanned object.
+
+#include <string>
+#include <vector>
+
+#include "scanmill/data/mesh.hpp"
+
+namespace scanmill {
+
+/// The share of the surface's area in triangles with an edge longer than seven times the median edge (edge_spacing()).
+/// 0 without area. Cost: O(n). Pre: finite positions.
+double spanned_share(const TriangleMesh& mesh);
+
+/// The share of the edges with a dihedral deviation above 60 degrees, of those with two triangles. 0 without any.
+/// Cost: O(n). Pre: as topology().
+double rough_share(const TriangleMesh& mesh);
+
+/// A sentence for each sign that this surface has:
+/// - spanned_share() is above a tenth. Surfaces of complete scans reach 0.06 (the merged bunny, across the holes of its
+///   base); those of scans that lack a side, or of which a few distant points decide, have 0.11 to 0.6.
+/// - rough_share() is above 0.15, on more than 10,000 edges: of few points, coarse sampling looks the same. Surfaces of
+///   clean scans reach 0.02, of raw overlapping views 0.08; crumpled ones, through outliers or noise as large as the
+///   spacing, have 0.18 to 0.3.
+std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh);
+
+}  // namespace scanmill
