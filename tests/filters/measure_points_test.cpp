@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "filters/measure_cases.hpp"
+#include "support/point_sets.hpp"
 
 namespace scanmill::test {
 namespace {
