@@ -32,7 +32,7 @@ struct OutlierRemovalParams {
     /// more. If it is still in `spacing`, it is a multiple of the median distance between distinct positions.
     Length radius = Length::spacings(3);
     /// Connected components with fewer than this share of all distinct positions are removed, from 0 to 1. With 0 there
-    /// are no components: all suspects are removed, and nothing else.
+    /// are no components, and exactly the suspects are removed.
     Ratio min_component = Ratio::percent(0.1);
     /// Keeps all points and adds the column `outlier` (uint8): 1 for the points that would be removed, else 0.
     bool mark = false;
@@ -42,7 +42,7 @@ struct OutlierRemovalResult {
     /// In input order with all columns: the kept points, or with `mark` all points. An older column `outlier` is
     /// replaced, with a warning.
     PointCloud points;
-    /// Rows of the points that are no outliers, ascending.
+    /// Rows of the points that are not outliers, ascending.
     Array<u32> kept;
     /// kept + removed = input, also with `mark`.
     std::size_t removed = 0;

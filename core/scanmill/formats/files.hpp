@@ -24,8 +24,8 @@ LoadedFile read_file(const std::filesystem::path& path, const ReadOptions& optio
 LoadedFile read_bytes(std::string_view bytes, const std::filesystem::path& name, const ReadOptions& options = {});
 
 /// About the most memory, in bytes, that read_file() takes for this file and `info` for what it computes of it. From
-/// the file's size and format, without reading it; of gzip data, from that of the compressed content, so too low. 0 for
-/// a file that read_file() refuses at once.
+/// the file's size and format, without reading it; of gzip data, from the compressed size, so the estimate is too low.
+/// 0 for a file that read_file() refuses at once.
 u64 memory_to_read(const std::filesystem::path& path);
 
 /// Throws Error if memory_to_read() exceeds the memory that is available, with both numbers.
@@ -43,7 +43,7 @@ Cleaned<PointCloud> accepted_points(const LoadedFile& loaded, const std::filesys
 std::shared_ptr<const TriangleMesh> read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Opens a scan file as a point stream (see Format::open_stream), after reading the whole file once, on up to `threads`
-/// threads, for bounds and origin, and as many pieces again as robust_box() needs. `on_positions`, unless empty,
+/// threads, for bounds and origin, and the pieces that robust_box() needs, up to twice. `on_positions`, unless empty,
 /// receives every piece meanwhile, in order and on this thread, even if the result is null.
 ///
 /// Null when the format cannot be streamed, a coordinate is not finite, or read_points() would warn about the content

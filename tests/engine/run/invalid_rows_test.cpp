@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows that are no points: refused or dropped where a scan enters, and counted; stray points: reported.
+// A scan's invalid rows are refused, or dropped and counted, when it is read; stray points are reported.
 #include <gmock/gmock.h>
 
 #include "engine/run/streamed_run_fixture.hpp"

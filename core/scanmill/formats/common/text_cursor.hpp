@@ -88,7 +88,7 @@ public:
     /// mean three numbers or five.
     bool mixes_separators() const { return (gaps_ & any_gap & ((gaps_ & any_gap) - 1)) != 0; }
     bool has_decimal_commas() const { return rules_.decimal_commas; }
-    /// Whether the row, as far as it was read, has commas between tokens.
+    /// Whether commas separate tokens in the part of the row that was read.
     bool has_commas() const { return (gaps_ & comma_gap) != 0; }
     /// Two of the row's separators: "commas" and "blanks". Pre: mixes_separators().
     std::pair<std::string_view, std::string_view> mixed_separators() const;

@@ -30,7 +30,8 @@ public:
     Inflater(const Inflater&) = delete;
     Inflater& operator=(const Inflater&) = delete;
 
-    /// Fills `room` as far as there is content; returns how much. Throws Error for invalid or truncated data.
+    /// Writes up to room.size() bytes of content into `room`; returns their number, smaller only at the end. Throws
+    /// Error for invalid or truncated data.
     std::size_t read(std::span<char> room) {
         std::size_t filled = 0;
         while (filled < room.size() && !is_at_end_) filled += step(room.subspan(filled));

@@ -62,7 +62,7 @@ std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh) {
     if (const double share = spanned_share(mesh); share > doubtful_spanned)
         doubts.push_back(fmt::format(
             "{:.0f} % of the surface's area is in triangles with an edge longer than {} median edges, where it spans "
-            "gaps between the points: scan the missing part, or run outlier-removal first",
+            "gaps between the points: scan the missing part, or remove outliers first",
             100 * share, long_edge));
     if (3 * mesh.triangles.size() / 2 <= few_edges) return doubts;
     if (const double share = rough_share(mesh); share > doubtful_rough)
