@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/mesh/editable_mesh.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "scanmill/base/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+void require_proper_triangles(const TriangleMesh& mesh) {
+    const auto repeated = [](const Triangle& t) { return half_edges::has_repeated_vertex(t); };
+    const auto count = std::ranges::count_if(mesh.triangles, repeated);
+    if (count == 0) return;
+    const auto first = std::ranges::find_if(mesh.triangles, repeated) - mesh.triangles.begin();
+    const Triangle& t = mesh.triangles[static_cast<std::size_t>(first)];
+    throw Error("triangle {} has the vertices {}, {} and {}; three different ones are needed (such triangles: {})",
+                first, t[0], t[1], t[2], count)
+        .hint("remove triangles with a repeated vertex first");
+}
+
+}  // namespace
+
+EditableMesh::EditableMesh(const TriangleMesh& mesh)
+    : opposite_(half_edges::opposites(mesh)),
+      first_(mesh.positions.size(), none),
+      triangles_(mesh.triangles.size()) {
+    require_proper_triangles(mesh);
+    corners_.reserve(3 * mesh.triangles.size());
+    for (const Triangle& triangle : mesh.triangles) corners_.insert(corners_.end(), triangle.begin(), triangle.end());
+    std::vector<u32> corners_at(mesh.positions.size(), 0);
+    for (u32 half_edge = 0; half_edge < corners_.size(); ++half_edge) {
+        const u32 vertex = corners_[half_edge];
+        ++corners_at[vertex];
+        if (first_[vertex] == none || is_boundary(half_edge)) first_[vertex] = half_edge;
+    }
+    std::size_t crowded = 0;
+    u32 first_crowded = none;
+    for (u32 vertex = 0; vertex < first_.size(); ++vertex) {
+        if (first_[vertex] == none) continue;
+        u32 corners = 0;
+        for_each_around(vertex, [&](u32) { ++corners; });
+        if (corners == corners_at[vertex]) continue;
+        if (crowded++ == 0) first_crowded = vertex;
+    }
+    if (crowded > 0) {
+        const Vec3 world = mesh.frame.origin + mesh.positions[first_crowded];
+        throw Error(
+            "the triangles at vertex {} ({:.9g}, {:.9g}, {:.9g}) form several fans; a surface has one fan at a vertex "
+            "(such vertices: {})",
+            first_crowded, world.x(), world.y(), world.z(), crowded)
+            .hint("give each fan its own vertex, or mesh the points again with sculpt or region-grow");
+    }
+}
+
+u32 EditableMesh::valence(u32 vertex) const {
+    u32 edges = is_boundary_vertex(vertex) ? 1 : 0;
+    for_each_around(vertex, [&](u32) { ++edges; });
+    return edges;
+}
+
+u32 EditableMesh::between(u32 a, u32 b) const {
+    const u32 begin = first_[a];
+    if (begin == none) return none;
+    u32 half_edge = begin;
+    do {
+        if (end(half_edge) == b) return half_edge;
+        half_edge = next_around(half_edge);
+    } while (half_edge != begin && half_edge != half_edges::boundary);
+    return none;
+}
+
+void EditableMesh::set(u32 row, u32 a, u32 b, u32 c) {
+    corners_[3 * row] = a;
+    corners_[3 * row + 1] = b;
+    corners_[3 * row + 2] = c;
+}
+
+void EditableMesh::link(u32 one, u32 other) {
+    if (one != half_edges::boundary) opposite_[one] = other;
+    if (other != half_edges::boundary) opposite_[other] = one;
+}
+
+void EditableMesh::update_first(u32 half_edge) {
+    const u32 vertex = corners_[half_edge], begin = half_edge;
+    while (!is_boundary(half_edge)) {
+        half_edge = after(opposite_[half_edge]);
+        if (half_edge == begin) break;
+    }
+    first_[vertex] = half_edge;
+}
+
+bool EditableMesh::can_flip(u32 half_edge) const {
+    if (is_boundary(half_edge)) return false;
+    const u32 a = start(half_edge), b = end(half_edge), c = apex(half_edge), d = apex(opposite_[half_edge]);
+    if (c == d || has_edge(c, d)) return false;
+    const auto least = [&](u32 vertex) { return is_boundary_vertex(vertex) ? 2u : 3u; };
+    return valence(a) > least(a) && valence(b) > least(b);
+}
+
+u32 EditableMesh::flip(u32 half_edge) {
+    assert(can_flip(half_edge));
+    const u32 other = opposite_[half_edge];
+    const u32 a = start(half_edge), b = end(half_edge), c = apex(half_edge), d = apex(other);
+    const u32 bc = opposite_[after(half_edge)], ca = opposite_[before(half_edge)];
+    const u32 ad = opposite_[after(other)], db = opposite_[before(other)];
+    const u32 row = half_edge / 3, other_row = other / 3;
+    // Corner i of the row is the start of half-edge i, so that `half_edge` keeps its number and goes from d to c.
+    const u32 h0 = half_edge, h1 = after(h0), h2 = before(h0), o0 = other, o1 = after(o0), o2 = before(o0);
+    corners_[h0] = d, corners_[h1] = c, corners_[h2] = a;
+    corners_[o0] = c, corners_[o1] = d, corners_[o2] = b;
+    link(h1, ca);
+    link(h2, ad);
+    link(o1, db);
+    link(o2, bc);
+    link(h0, o0);
+    for (const u32 h : {h0, h2, o0, o2}) update_first(h);
+    assert(row < rows());
+    return other_row;
+}
+
+void EditableMesh::ring(u32 vertex, std::vector<u32>& vertices) const {
+    vertices.clear();
+    u32 last = none;
+    for_each_around(vertex, [&](u32 half_edge) {
+        vertices.push_back(end(half_edge));
+        last = half_edge;
+    });
+    if (is_boundary_vertex(vertex)) vertices.push_back(apex(last));
+}
+
+bool EditableMesh::can_remove(u32 vertex, std::span<const RingTriangle> triangulation) const {
+    std::vector<u32> vertices;
+    ring(vertex, vertices);
+    const u32 size = static_cast<u32>(vertices.size());
+    const bool is_open = is_boundary_vertex(vertex);
+    if (triangulation.size() + 2 != size || triangulation.empty()) return false;
+    for (const RingTriangle& t : triangulation)
+        for (u32 i = 0; i < 3; ++i) {
+            const u32 a = t[i], b = t[(i + 1) % 3];
+            const bool in_ring = b == a + 1 || (!is_open && a == size - 1 && b == 0);
+            if (!in_ring && has_edge(vertices[a], vertices[b])) return false;
+        }
+    return true;
+}
+
+void EditableMesh::remove(u32 vertex, std::span<const RingTriangle> triangulation, std::vector<u32>& new_rows) {
+    const bool is_open = is_boundary_vertex(vertex);
+    std::vector<u32> vertices;
+    ring(vertex, vertices);
+    const u32 size = static_cast<u32>(vertices.size());
+    assert(triangulation.size() + 2 == size && !triangulation.empty());
+    outside_.clear();
+    rows_.clear();
+    for_each_around(vertex, [&](u32 half_edge) {
+        outside_.push_back(opposite_[after(half_edge)]);
+        rows_.push_back(half_edge / 3);
+    });
+    std::vector<bool> on_boundary(size);
+    for (u32 i = 0; i < size; ++i) on_boundary[i] = is_boundary_vertex(vertices[i]);
+    std::ranges::sort(rows_);
+    for (std::size_t i = triangulation.size(); i < rows_.size(); ++i) set(rows_[i], none, none, none);
+    triangles_ -= rows_.size() - triangulation.size();
+
+    by_ends_.assign(static_cast<std::size_t>(size) * size, none);
+    for (std::size_t i = 0; i < triangulation.size(); ++i) {
+        const RingTriangle& t = triangulation[i];
+        const u32 row = rows_[i];
+        set(row, vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+        for (u32 corner = 0; corner < 3; ++corner) by_ends_[t[corner] * size + t[(corner + 1) % 3]] = 3 * row + corner;
+        new_rows.push_back(row);
+    }
+    for (u32 a = 0; a < size; ++a) {
+        u32 out = none;
+        for (u32 b = 0; b < size; ++b) {
+            const u32 half_edge = by_ends_[a * size + b];
+            if (half_edge == none) continue;
+            if (out == none) out = half_edge;
+            const bool in_ring = b == a + 1 || (!is_open && a == size - 1 && b == 0);
+            if (in_ring)
+                link(half_edge, outside_[a]);
+            else if (is_open && a == size - 1 && b == 0)
+                link(half_edge, half_edges::boundary);
+            else if (a < b)
+                link(half_edge, by_ends_[b * size + a]);
+        }
+        assert(out != none);
+        first_[vertices[a]] = out;
+    }
+    for (u32 a = 0; a < size; ++a)
+        if (on_boundary[a]) update_first(first_[vertices[a]]);
+    first_[vertex] = none;
+}
+
+void EditableMesh::split_edge(u32 half_edge, u32 vertex) {
+    assert(first_[vertex] == none);
+    const auto add_row = [&](u32 a, u32 b, u32 c) {
+        corners_.insert(corners_.end(), {a, b, c});
+        opposite_.insert(opposite_.end(), 3, half_edges::boundary);
+        ++triangles_;
+        return static_cast<u32>(corners_.size() - 3);
+    };
+    // (a, b, c) becomes (a, v, c) and the new (v, b, c); likewise the neighbour (b, a, d): (b, v, d) and (v, a, d).
+    const u32 other = opposite_[half_edge];
+    const u32 b = end(half_edge), c = apex(half_edge);
+    const u32 bc = after(half_edge), beyond_bc = opposite_[bc];
+    const u32 added = add_row(vertex, b, c);
+    corners_[bc] = vertex;
+    link(added + 1, beyond_bc);
+    link(added + 2, bc);
+    if (other == half_edges::boundary) {
+        link(added, half_edges::boundary);
+        first_[b] = none;
+        update_first(added + 1);
+        update_first(added);
+        update_first(half_edge);
+        return;
+    }
+    const u32 a = corners_[half_edge], d = apex(other);
+    const u32 ad = after(other), beyond_ad = opposite_[ad];
+    const u32 other_added = add_row(vertex, a, d);
+    corners_[ad] = vertex;
+    link(other_added + 1, beyond_ad);
+    link(other_added + 2, ad);
+    link(half_edge, other_added);
+    link(added, other);
+    for (const u32 h : {added + 1, added, half_edge, other_added + 1}) update_first(h);
+}
+
+void EditableMesh::split_triangle(u32 row, u32 vertex) {
+    assert(first_[vertex] == none);
+    const Triangle t = triangle(row);
+    const u32 beyond_bc = opposite_[3 * row + 1], beyond_ca = opposite_[3 * row + 2];
+    const u32 second = static_cast<u32>(corners_.size()), third = second + 3;
+    corners_.insert(corners_.end(), {t[1], t[2], vertex, t[2], t[0], vertex});
+    opposite_.insert(opposite_.end(), 6, half_edges::boundary);
+    triangles_ += 2;
+    corners_[3 * row + 2] = vertex;
+    link(second, beyond_bc);
+    link(third, beyond_ca);
+    link(3 * row + 1, second + 2);
+    link(second + 1, third + 2);
+    link(third + 1, 3 * row + 2);
+    for (const u32 h : {3 * row, second, third, 3 * row + 2}) update_first(h);
+}
+
+u32 EditableMesh::add_vertex() {
+    first_.push_back(none);
+    return static_cast<u32>(first_.size() - 1);
+}
+
+Array<Triangle> EditableMesh::compact_triangles() const {
+    Array<Triangle> result;
+    result.reserve(triangles_);
+    for (u32 row = 0; row < rows(); ++row)
+        if (!is_empty(row)) result.push_back(triangle(row));
+    return result;
+}
+
+}  // namespace scanmill
