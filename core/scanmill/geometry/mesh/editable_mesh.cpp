@@ -106,7 +106,7 @@ u32 EditableMesh::flip(u32 half_edge) {
     const u32 a = start(half_edge), b = end(half_edge), c = apex(half_edge), d = apex(other);
     const u32 bc = opposite_[after(half_edge)], ca = opposite_[before(half_edge)];
     const u32 ad = opposite_[after(other)], db = opposite_[before(other)];
-    const u32 row = half_edge / 3, other_row = other / 3;
+    const u32 other_row = other / 3;
     // Corner i of the row is the start of half-edge i, so that `half_edge` keeps its number and goes from d to c.
     const u32 h0 = half_edge, h1 = after(h0), h2 = before(h0), o0 = other, o1 = after(o0), o2 = before(o0);
     corners_[h0] = d, corners_[h1] = c, corners_[h2] = a;
@@ -117,7 +117,6 @@ u32 EditableMesh::flip(u32 half_edge) {
     link(o2, bc);
     link(h0, o0);
     for (const u32 h : {h0, h2, o0, o2}) update_first(h);
-    assert(row < rows());
     return other_row;
 }
 
