@@ -72,6 +72,13 @@ u32 EditableMesh::between(u32 a, u32 b) const {
     return none;
 }
 
+bool EditableMesh::has_edge(u32 a, u32 b) const {
+    if (!is_used(a)) return false;
+    bool found = false;
+    for_each_around(a, [&](u32 half_edge) { found |= end(half_edge) == b || apex(half_edge) == b; });
+    return found;
+}
+
 void EditableMesh::set(u32 row, u32 a, u32 b, u32 c) {
     corners_[3 * row] = a;
     corners_[3 * row + 1] = b;
@@ -83,21 +90,11 @@ void EditableMesh::link(u32 one, u32 other) {
     if (other != half_edges::boundary) opposite_[other] = one;
 }
 
-void EditableMesh::update_first(u32 half_edge) {
-    const u32 vertex = corners_[half_edge], begin = half_edge;
-    while (!is_boundary(half_edge)) {
-        half_edge = after(opposite_[half_edge]);
-        if (half_edge == begin) break;
-    }
-    first_[vertex] = half_edge;
-}
-
 bool EditableMesh::can_flip(u32 half_edge) const {
     if (is_boundary(half_edge)) return false;
     const u32 a = start(half_edge), b = end(half_edge), c = apex(half_edge), d = apex(opposite_[half_edge]);
-    if (c == d || has_edge(c, d)) return false;
-    const auto least = [&](u32 vertex) { return is_boundary_vertex(vertex) ? 2u : 3u; };
-    return valence(a) > least(a) && valence(b) > least(b);
+    // An end with too few edges for a flip has the other diagonal among the edges of its neighbours.
+    return c != d && !has_edge(c, d);
 }
 
 u32 EditableMesh::flip(u32 half_edge) {
@@ -106,7 +103,6 @@ u32 EditableMesh::flip(u32 half_edge) {
     const u32 a = start(half_edge), b = end(half_edge), c = apex(half_edge), d = apex(other);
     const u32 bc = opposite_[after(half_edge)], ca = opposite_[before(half_edge)];
     const u32 ad = opposite_[after(other)], db = opposite_[before(other)];
-    const u32 other_row = other / 3;
     // Corner i of the row is the start of half-edge i, so that `half_edge` keeps its number and goes from d to c.
     const u32 h0 = half_edge, h1 = after(h0), h2 = before(h0), o0 = other, o1 = after(o0), o2 = before(o0);
     corners_[h0] = d, corners_[h1] = c, corners_[h2] = a;
@@ -116,8 +112,12 @@ u32 EditableMesh::flip(u32 half_edge) {
     link(o1, db);
     link(o2, bc);
     link(h0, o0);
-    for (const u32 h : {h0, h2, o0, o2}) update_first(h);
-    return other_row;
+    // A half-edge on the boundary stays on it, in another row.
+    if (first_[a] == h0 || first_[a] == o1) first_[a] = h2;
+    if (first_[b] == o0 || first_[b] == h1) first_[b] = o2;
+    if (first_[c] == h2) first_[c] = h1;
+    if (first_[d] == o2) first_[d] = o1;
+    return other / 3;
 }
 
 void EditableMesh::ring(u32 vertex, std::vector<u32>& vertices) const {
@@ -142,7 +142,11 @@ bool EditableMesh::can_remove(u32 vertex, std::span<const RingTriangle> triangul
             const bool in_ring = b == a + 1 || (!is_open && a == size - 1 && b == 0);
             if (!in_ring && has_edge(vertices[a], vertices[b])) return false;
         }
-    return true;
+    // Without a diagonal or a closing edge, the new triangle may be the back of another one: of a tetrahedron.
+    if (is_open || size > 3) return true;
+    const u32 begin = first_[vertex];
+    const u32 outside = opposite_[after(begin)];
+    return outside == half_edges::boundary || opposite_[after(next_around(begin))] / 3 != outside / 3;
 }
 
 void EditableMesh::remove(u32 vertex, std::span<const RingTriangle> triangulation, std::vector<u32>& new_rows) {
@@ -151,14 +155,14 @@ void EditableMesh::remove(u32 vertex, std::span<const RingTriangle> triangulatio
     ring(vertex, vertices);
     const u32 size = static_cast<u32>(vertices.size());
     assert(triangulation.size() + 2 == size && !triangulation.empty());
+    std::vector<bool> was_boundary_vertex(size);
+    for (u32 i = 0; i < size; ++i) was_boundary_vertex[i] = is_boundary_vertex(vertices[i]);
     outside_.clear();
     rows_.clear();
     for_each_around(vertex, [&](u32 half_edge) {
         outside_.push_back(opposite_[after(half_edge)]);
         rows_.push_back(half_edge / 3);
     });
-    std::vector<bool> on_boundary(size);
-    for (u32 i = 0; i < size; ++i) on_boundary[i] = is_boundary_vertex(vertices[i]);
     std::ranges::sort(rows_);
     for (std::size_t i = triangulation.size(); i < rows_.size(); ++i) set(rows_[i], none, none, none);
     triangles_ -= rows_.size() - triangulation.size();
@@ -172,24 +176,15 @@ void EditableMesh::remove(u32 vertex, std::span<const RingTriangle> triangulatio
         new_rows.push_back(row);
     }
     for (u32 a = 0; a < size; ++a) {
-        u32 out = none;
-        for (u32 b = 0; b < size; ++b) {
-            const u32 half_edge = by_ends_[a * size + b];
-            if (half_edge == none) continue;
-            if (out == none) out = half_edge;
-            const bool in_ring = b == a + 1 || (!is_open && a == size - 1 && b == 0);
-            if (in_ring)
-                link(half_edge, outside_[a]);
-            else if (is_open && a == size - 1 && b == 0)
-                link(half_edge, half_edges::boundary);
-            else if (a < b)
-                link(half_edge, by_ends_[b * size + a]);
-        }
-        assert(out != none);
-        first_[vertices[a]] = out;
+        const bool is_last = a == size - 1;
+        const u32 along = by_ends_[a * size + (is_last ? 0 : a + 1)];
+        assert(along != none);
+        link(along, is_last && is_open ? half_edges::boundary : outside_[a]);
+        for (u32 b = a + 2; b < size; ++b)
+            if (const u32 diagonal = by_ends_[a * size + b]; diagonal != none) link(diagonal, by_ends_[b * size + a]);
+        // The first half-edge of a boundary vertex is either here or in a row outside.
+        if (is_boundary(along) || !was_boundary_vertex[a]) first_[vertices[a]] = along;
     }
-    for (u32 a = 0; a < size; ++a)
-        if (on_boundary[a]) update_first(first_[vertices[a]]);
     first_[vertex] = none;
 }
 
@@ -209,12 +204,10 @@ void EditableMesh::split_edge(u32 half_edge, u32 vertex) {
     corners_[bc] = vertex;
     link(added + 1, beyond_bc);
     link(added + 2, bc);
+    if (first_[b] == bc) first_[b] = added + 1;
+    first_[vertex] = added;
     if (other == half_edges::boundary) {
         link(added, half_edges::boundary);
-        first_[b] = none;
-        update_first(added + 1);
-        update_first(added);
-        update_first(half_edge);
         return;
     }
     const u32 a = corners_[half_edge], d = apex(other);
@@ -225,7 +218,7 @@ void EditableMesh::split_edge(u32 half_edge, u32 vertex) {
     link(other_added + 2, ad);
     link(half_edge, other_added);
     link(added, other);
-    for (const u32 h : {added + 1, added, half_edge, other_added + 1}) update_first(h);
+    if (first_[a] == ad) first_[a] = other_added + 1;
 }
 
 void EditableMesh::split_triangle(u32 row, u32 vertex) {
@@ -242,7 +235,9 @@ void EditableMesh::split_triangle(u32 row, u32 vertex) {
     link(3 * row + 1, second + 2);
     link(second + 1, third + 2);
     link(third + 1, 3 * row + 2);
-    for (const u32 h : {3 * row, second, third, 3 * row + 2}) update_first(h);
+    if (first_[t[1]] == 3 * row + 1) first_[t[1]] = second;
+    if (first_[t[2]] == 3 * row + 2) first_[t[2]] = third;
+    first_[vertex] = 3 * row + 2;
 }
 
 u32 EditableMesh::add_vertex() {

@@ -63,7 +63,7 @@ public:
     u32 valence(u32 vertex) const;
     /// The half-edge from a to b; `none` if there is none. (The edge may exist as the half-edge from b to a.)
     u32 between(u32 a, u32 b) const;
-    bool has_edge(u32 a, u32 b) const { return between(a, b) != none || between(b, a) != none; }
+    bool has_edge(u32 a, u32 b) const;
 
     /// Whether the two triangles at the edge may be replaced by the two at the other diagonal: the edge is interior,
     /// the other diagonal is no edge yet, and no vertex is left with fewer than three edges (two on the boundary).
@@ -77,8 +77,9 @@ public:
     void ring(u32 vertex, std::vector<u32>& vertices) const;
     /// A triangle of a hole, by positions in the ring.
     using RingTriangle = std::array<u32, 3>;
-    /// Whether no edge of the triangulation between ring vertices that are not neighbours in the ring exists already:
-    /// the link condition. Linear in the valences of the ring. Pre: as remove().
+    /// The link condition: no edge of the triangulation between ring vertices that are not neighbours in the ring
+    /// exists already, and neither does its triangle, reversed (at a corner of a tetrahedron). Linear in the valences
+    /// of the ring. Pre: as remove().
     bool can_remove(u32 vertex, std::span<const RingTriangle> triangulation) const;
     /// Removes the vertex and triangulates the hole. An open ring is closed by the edge from its last vertex to its
     /// first, a boundary edge. Appends the rows of the new triangles, in the order given.
@@ -99,8 +100,6 @@ private:
     void set(u32 row, u32 a, u32 b, u32 c);
     /// Makes two half-edges opposite; `one` or `other` may be half_edges::boundary.
     void link(u32 one, u32 other);
-    /// Sets first(start of half_edge), moved to the begin of an open fan.
-    void update_first(u32 half_edge);
 
     Array<u32> corners_;  ///< by half-edge: its start
     Array<u32> opposite_;  ///< by half-edge
