@@ -23,8 +23,10 @@ void require_proper_triangles(const TriangleMesh& mesh) {
 
 }  // namespace
 
-EditableMesh::EditableMesh(const TriangleMesh& mesh)
-    : opposite_(half_edges::opposites(mesh)),
+EditableMesh::EditableMesh(const TriangleMesh& mesh) : EditableMesh(mesh, half_edges::opposites(mesh)) {}
+
+EditableMesh::EditableMesh(const TriangleMesh& mesh, Array<u32> opposite)
+    : opposite_(std::move(opposite)),
       first_(mesh.positions.size(), none),
       triangles_(mesh.triangles.size()) {
     require_proper_triangles(mesh);
@@ -92,7 +94,7 @@ void EditableMesh::link(u32 one, u32 other) {
 
 bool EditableMesh::can_flip(u32 half_edge) const {
     if (is_boundary(half_edge)) return false;
-    const u32 a = start(half_edge), b = end(half_edge), c = apex(half_edge), d = apex(opposite_[half_edge]);
+    const u32 c = apex(half_edge), d = apex(opposite_[half_edge]);
     // An end with too few edges for a flip has the other diagonal among the edges of its neighbours.
     return c != d && !has_edge(c, d);
 }
