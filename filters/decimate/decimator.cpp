@@ -16,6 +16,8 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr double share_of_round = 0.25;
 constexpr std::size_t least_of_round = 64;
 constexpr std::size_t chunk = 64;
+/// Sines of 25 and 20 degrees.
+constexpr double first_angle_sines[] = {0.42261826174069944, 0.3420201433256687};
 
 }  // namespace
 
@@ -161,21 +163,33 @@ std::size_t Decimator::flip_edges() {
     return flips;
 }
 
-DecimatorCounts Decimator::run(bool flips_edges) {
+void Decimator::run_until_stuck(bool flips_edges) {
     update_all_estimates();
+    std::fill(is_settled_.begin(), is_settled_.end(), false);
     for (;;) {
-        const std::size_t removed = counts_.removed;
+        const std::size_t before = counts_.removed;
         remove_vertices();
         const std::size_t flips = flips_edges ? flip_edges() : 0;
         counts_.flips += flips;
-        if (is_enough()) return counts_;
-        if (flips > 0 && counts_.removed > removed) continue;
-        // Some removals became possible by edits farther away: all are tried once more.
-        update_all_estimates();
-        const std::size_t before = counts_.removed;
-        remove_vertices();
-        if (counts_.removed == before) return counts_;
+        if (is_enough() || flips == 0 || counts_.removed == before) return;
     }
+}
+
+DecimatorCounts Decimator::run(bool flips_edges) {
+    const double least = limits_.angle_sine;
+    for (const double sine : first_angle_sines) {
+        if (!(sine > least)) continue;
+        limits_.angle_sine = sine;
+        run_until_stuck(flips_edges);
+    }
+    limits_.angle_sine = least;
+    // Edits make others possible that are farther away, so all are tried until none is.
+    std::size_t before;
+    do {
+        before = counts_.removed;
+        run_until_stuck(flips_edges);
+    } while (!is_enough() && counts_.removed > before);
+    return counts_;
 }
 
 }  // namespace scanmill::decimating
