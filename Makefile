@@ -47,7 +47,7 @@ bench-peers: deps ## compare with CGAL, PCL, Open3D, VTK and others: ROWS=delaun
 	bench/peers/run.sh build/bench $(if $(ROWS),--rows $(ROWS)) $(if $(ROUNDS),--rounds $(ROUNDS)) $(if $(LARGE),--large)
 
 # Filters that make a closed mesh from points and measure it.
-reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculpt scanmill-measure
+reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculpt scanmill-decimate scanmill-measure
 # Filters that thin a scan, make an open mesh of it and find its features.
 hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features
 

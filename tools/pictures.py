@@ -11,6 +11,7 @@ def main():
     filters = pathlib.Path(__file__).resolve().parent.parent / "filters"
     for name, draw in (
         ("alpha_solid", surfaces.alpha_solid),
+        ("decimate", surfaces.decimate),
         ("delaunay", surfaces.delaunay_filter),
         ("features", surfaces.features),
         ("measure", surfaces.measure),

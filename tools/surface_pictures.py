@@ -115,6 +115,45 @@ def sculpt():
     return picture
 
 
+def decimate():
+    """A profile with a corner: its vertices are removed while all that were removed stay within the distance."""
+    picture = Picture(9, 3)
+    corner, most = 44, 0.11
+    height = lambda x: 1.6 + 0.9 * math.sin(1.3 * x) if x <= 4.6 else 1.33 - 0.85 * (x - 4.6) + 0.28 * (x - 4.6) ** 2
+    heights = random.Random(4)
+    profile = []
+    for i in range(86):
+        x = 0.2 + 0.1 * i
+        profile.append((x, height(x) + heights.uniform(-0.035, 0.035)))
+    segment_distance = lambda p, a, b: math.dist(p, nearest_on_profile(p, [a, b]))
+
+    kept = list(range(len(profile)))
+    while True:
+        # The cheapest vertex whose removal keeps every vertex between its neighbours near their edge.
+        costs = []
+        for before, vertex, after in zip(kept, kept[1:], kept[2:]):
+            passed = profile[before + 1 : after]
+            cost = max(segment_distance(p, profile[before], profile[after]) for p in passed)
+            if vertex != corner and cost <= most:
+                costs.append((cost, vertex))
+        if not costs:
+            break
+        kept.remove(min(costs)[1])
+
+    for p in profile:
+        picture.circle(p, most, SOLID, SOLID)
+    for a, b in itertools.pairwise(profile):
+        picture.line(a, b, PALE, 1)
+    for p in profile:
+        picture.dot(p, PALE, 3)
+    for a, b in itertools.pairwise(kept):
+        picture.line(profile[a], profile[b], INK, 2)
+    for i in kept:
+        picture.dot(profile[i], BRIGHT if i == corner else INK, 6 if i == corner else 5)
+    picture.text((profile[corner][0] - 0.35, profile[corner][1] + 0.25), "corner", BRIGHT)
+    return picture
+
+
 def features():
     picture = Picture(10.6, 4.6)
     bend, centre, radius = math.radians(55), (-1.7, 1.5), 0.75

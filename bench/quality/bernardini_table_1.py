@@ -99,7 +99,7 @@ def run(options, folder):
         for threads in ("1", "all"):
             into = folder / f"{threads}-{number}"
             report = scanmill.run(options.program, options.workflow, there, into, options.limit,
-                                  threads=1 if threads == "1" else 0)
+                                  threads=1 if threads == "1" else 0, until="surface")
             for cell in report["cells"]:
                 entry, path = there[cell["scan"]]
                 take(entry, judged(report, cell), threads)

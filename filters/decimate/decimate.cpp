@@ -24,17 +24,18 @@ using namespace decimating;
 constexpr double feature_reach = 4;
 /// Removal stays within this share of the largest error, so that the certificate needs few cuts to prove the whole.
 constexpr double steering_share = 1 - 0x1p-10;
-/// Shares of the progress.
-constexpr double prepared = 0.1, removed = 0.75;
 
 void require_angle(const char* name, const Angle& angle, double least, double most) {
     if (!(angle.in_degrees() >= least && angle.in_degrees() <= most))
-        throw Error("{} must be from {} to {} deg; it is {}", name, least, most, angle.text());
+        throw Error("{} must be from {} to {} deg; it is {}", name, least, most, angle.text())
+            .hint(fmt::format("leave {} out for the default, which suits most meshes", name));
 }
 
 double length_of(const char* name, const Length& length) {
     const double value = length.value();
-    if (!(value >= 0 && std::isfinite(value))) throw Error("{} must be 0 or more; it is {} u", name, value);
+    if (!(value >= 0 && std::isfinite(value)))
+        throw Error("{} must be 0 or more; it is {} u", name, value)
+            .hint("`0.1 %diag` is a thousandth of the mesh's diagonal");
     return value;
 }
 
@@ -44,7 +45,8 @@ Limits limits_for(const DecimateParams& params, double rounding) {
     require_angle("normal-deviation", params.normal_deviation, 0, 89);
     require_angle("min-angle", params.min_angle, 0, 30);
     if (params.max_valence < 6 || params.max_valence > 64)
-        throw Error("max-valence must be from 6 to 64; it is {}", params.max_valence);
+        throw Error("max-valence must be from 6 to 64; it is {}", params.max_valence)
+            .hint("leave max-valence out for the default, which suits most meshes");
     Limits limits;
     limits.error.outside =
         params.outside ? length_of("outside", *params.outside) : length_of("max-error", params.max_error);
@@ -62,6 +64,7 @@ void require_usable(const TriangleMesh& mesh) {
         throw Error("needs a mesh with triangles; this one has {} and none",
                     count_text(mesh.positions.size(), "vertex", "vertices"))
             .hint("mesh the points first, with alpha-solid or region-grow");
+    require_consistent(mesh);
     require_finite(mesh.positions.span(), "vertices");
 }
 
@@ -254,7 +257,12 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     const Array<u32> opposite = half_edges::opposites(mesh);
     EditableMesh edited(mesh, opposite);
     warn_about(mesh, context);
-    context.progress(prepared / 2);
+    if (max_error >= box.diagonal() && max_error > 0)
+        context.warn(
+            fmt::format("max-error is {:.6g} u, as large as the mesh, whose diagonal is {:.6g} u: what is left is a "
+                        "small mesh of the same topology, without its shape",
+                        max_error, box.diagonal()));
+    context.progress(Decimator::progress_begin / 2);
 
     const FeatureScale scale{params.sharp_angle.in_radians(), params.corner_angle.in_radians(),
                              feature_reach * max_error};
@@ -279,7 +287,7 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
                 surface.assign(static_cast<u32>(mesh.positions.size()) + i, nearest.triangles[i]);
         }
     }
-    context.progress(prepared);
+    context.progress(Decimator::progress_begin);
 
     const DecimatorCounts counts =
         Decimator(surface, limits, params.mode, params.target_triangles, context).run(params.final_flips);
@@ -290,7 +298,7 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     result.creases = count_lines(result.mesh.sharp_edges.span(), classes.values<u8>());
     result.corners =
         static_cast<std::size_t>(std::ranges::count(classes.values<u8>(), static_cast<u8>(VertexClass::corner)));
-    context.progress(removed);
+    context.progress(Decimator::progress_end);
 
     const double bound = max_error + 2 * rounding;
     result.certificate = certified_hausdorff(result.mesh, mesh, {0.01, 100'000'000, bound}, context);

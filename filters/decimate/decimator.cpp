@@ -73,6 +73,10 @@ void Decimator::pick_vertices() {
         for (const u32 vertex : ring_) touched_[vertex] = round_;
         picked_.push_back(candidate.vertex);
     }
+    // Near the target only the first ones are removed. A removal takes two triangles, on the boundary one.
+    const std::size_t triangles = surface_.mesh().triangles();
+    const std::size_t needed = triangles > target_ ? (triangles - target_ + 1) / 2 : 0;
+    if (picked_.size() > needed) picked_.resize(needed);
     std::ranges::sort(picked_);  // neighbours in memory are planned after each other
 }
 
@@ -134,7 +138,8 @@ void Decimator::remove_vertices() {
         surface_.tidy();
         update_estimates(changed);
         const double removed = static_cast<double>(counts_.removed);
-        execution_.progress(removed / (static_cast<double>(begin_triangles_) / 2));
+        const double share = std::min(1.0, 2 * removed / static_cast<double>(begin_triangles_));
+        execution_.progress(progress_begin + (progress_end - progress_begin) * share);
     }
 }
 
@@ -184,11 +189,11 @@ DecimatorCounts Decimator::run(bool flips_edges) {
     }
     limits_.angle_sine = least;
     // Edits make others possible that are farther away, so all are tried until none is.
-    std::size_t before;
+    DecimatorCounts before;
     do {
-        before = counts_.removed;
+        before = counts_;
         run_until_stuck(flips_edges);
-    } while (!is_enough() && counts_.removed > before);
+    } while (!is_enough() && (counts_.removed > before.removed || counts_.flips > before.flips));
     return counts_;
 }
 

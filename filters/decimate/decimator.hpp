@@ -17,6 +17,9 @@ struct DecimatorCounts {
 
 class Decimator {
 public:
+    /// Progress that run() reports; the shares before and after it are left to the caller.
+    static constexpr double progress_begin = 0.1, progress_end = 0.75;
+
     /// Keeps the references to surface and execution. Removal ends with at most `target` triangles.
     Decimator(Surface& surface, const Limits& limits, DecimateMode mode, u64 target, Execution& execution);
 

@@ -193,9 +193,12 @@ bool FeatureNetwork::turns(u32 vertex, const FeatureScale& scale) const {
     const Vec3& here = position(vertex);
     const auto [last, next] = line_neighbours(vertex);
     if (!(angle_between(here - position(last), position(next) - here) > limit)) return false;
+    // Below the shorter edge the reach changes nothing; the edges' own directions need one above 0.
+    const double shorter = std::min((here - position(last)).norm(), (position(next) - here).norm());
+    const double reach = std::max(scale.reach, shorter);
     bool is_closed = false;
-    const Vec3 arriving = here - point_on_line(vertex, last, scale.reach, is_closed);
-    const Vec3 leaving = point_on_line(vertex, next, scale.reach, is_closed) - here;
+    const Vec3 arriving = here - point_on_line(vertex, last, reach, is_closed);
+    const Vec3 leaving = point_on_line(vertex, next, reach, is_closed) - here;
     return !is_closed && angle_between(arriving, leaving) > limit;
 }
 

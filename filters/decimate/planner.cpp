@@ -100,15 +100,18 @@ bool Planner::find_sides(u32 vertex) {
 bool Planner::add_line_errors(u32 vertex) {
     const Vec3 &begin = surface_.position(line_ends_[0]), &end = surface_.position(line_ends_[1]);
     const Vec3 up = side_count_ == 2 ? Vec3(sides_[0].up + sides_[1].up) : sides_[0].up;
+    SignedErrors all;
     const auto add = [&](u32 passed) {
         const Vec3& position = surface_.position(passed);
         const Vec3 off = position - nearest_on_segment(position, begin, end);
-        line_.add(off.norm(), off.dot(up) >= 0);
+        all.add(off.norm(), off.dot(up) >= 0);
     };
-    line_ = {};
     add(vertex);
+    // What accumulates is the distance between the old line and the new one, largest at the vertex.
+    const SignedErrors last = all;
     surface_.line_ends(vertex, add);
-    return line_.is_within(limits_.error);
+    line_ = mode_ == DecimateMode::direct ? all : last;
+    return all.is_within(limits_.error);
 }
 
 bool Planner::triangulate(const Side& side, const Vec3* removed, Edit& edit) {
@@ -188,11 +191,14 @@ void Planner::plan_flip(u32 half_edge, Edit& edit) {
 }
 
 bool Planner::exceeds_valence(const Edit& edit) const {
+    const bool is_open = surface_.mesh().is_boundary_vertex(edit.element);
     for (u32 i = 0; i < ring_.size(); ++i) {
         u32 triangles = 0;
         for (const auto& triangle : edit.ring_triangles) triangles += std::ranges::count(triangle, i);
-        // Inside the ring, a vertex has one more edge than triangles; now it is the one to the removed vertex.
-        if (triangles > 2 && surface_.mesh().valence(ring_[i]) + triangles - 2 > limits_.max_valence) return true;
+        // Inside the hole, a vertex has one edge less than triangles now, and had one, to the removed vertex. At both
+        // ends of an open ring the edge that closes it is inside too.
+        const u32 edges = is_open && (i == 0 || i + 1 == ring_.size()) ? triangles : triangles - 1;
+        if (edges > 1 && surface_.mesh().valence(ring_[i]) + edges - 1 > limits_.max_valence) return true;
     }
     return false;
 }

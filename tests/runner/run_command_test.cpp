@@ -82,7 +82,11 @@ TEST(RunCommand, WorkflowOfThePaper_LeadsToAClosedMeshThroughAllPoints) {
         if (file.path().extension() != ".stl" && file.path().extension() != ".ply") continue;
         const json made = json::parse(scanmill_program({"info", "--json", file.path().string()}).out).at("files").at(0);
         EXPECT_EQ(made.at("closed"), true);
-        EXPECT_EQ(made.at("triangles"), 2 * scan.at("files").at(0).at("points").get<int>() - 4);
+        const int triangles = made.at("triangles"), all = 2 * scan.at("files").at(0).at("points").get<int>() - 4;
+        if (file.path().stem() == "ball")
+            EXPECT_EQ(triangles, all);
+        else
+            EXPECT_LT(triangles, all / 2);
     }
 }
 
