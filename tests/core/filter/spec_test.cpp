@@ -209,9 +209,9 @@ TEST(RequireSound, TakesSpacings_IsForOneLength) {
     FilterSpec spec = sound_spec();
     make_length(spec);
     EXPECT_NO_THROW(require_sound(spec));
-    EXPECT_EQ(verdict([&](FilterSpec& spec) {
-                  make_length(spec);
-                  spec.parameters[0].list = true;
+    EXPECT_EQ(verdict([&](FilterSpec& list) {
+                  make_length(list);
+                  list.parameters[0].list = true;
               }),
               refusal);
 }
