@@ -4,7 +4,7 @@ import importlib.metadata
 
 import pymeshlab
 
-from answer import answer, read_points, read_triangles, timed
+from answer import answer, of_decimation, read_points, read_triangles, timed
 
 held = {}
 
@@ -37,7 +37,8 @@ def decimate(request):
     meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=held["mesh"][0], face_matrix=held["mesh"][1]))
     work = meshes.meshing_decimation_quadric_edge_collapse
     seconds, _ = timed(lambda: work(targetfacenum=request["triangles"]))
-    return {"seconds": seconds, "triangles": meshes.current_mesh().face_number()}
+    mesh = meshes.current_mesh()
+    return of_decimation(request, seconds, mesh.vertex_matrix(), mesh.face_matrix())
 
 
 answer(
