@@ -205,7 +205,7 @@ def searched(bench, contender, truth, hash_of_input, total, goals):
         for distance, guess in goals:
             best, made = fewest(peer.evaluate, peer.known, distance, total, guess)
             failures = [one["failure"] for one in peer.known.values() if "failure" in one]
-            found.append({**(best or {"failure": (failures or ["at no number of triangles"])[-1]}), "evaluations": made})
+            found.append({**(best or {"failure": (failures or ["too far at every number"])[-1]}), "evaluations": made})
     except Failure as failure:
         found += [{"failure": str(failure), "evaluations": 0}] * (len(goals) - len(found))
     finally:

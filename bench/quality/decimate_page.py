@@ -114,8 +114,8 @@ def remarks(records):
                 if "failure" in result:
                     yield f"- {record['name']} at {percent(one['share'])}, {name}: failed: {result['failure']}"
                 elif not result["certified"]:
-                    yield (f"- {record['name']} at {percent(one['share'])}, {name}: the bounds of the distance are more "
-                           "than 1 % apart")
+                    yield (f"- {record['name']} at {percent(one['share'])}, {name}: the bounds of the distance are "
+                           "more than 1 % apart")
 
 
 def lines(results):

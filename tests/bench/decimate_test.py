@@ -46,8 +46,9 @@ class JudgeTest(unittest.TestCase):
         self.assertEqual(facts, {"triangles": 4, "self_intersections": 0, "min_angle": 60.0})
 
     def test_both_directions_are_certified_against_the_input(self):
+        mesh = [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]
         with mock.patch.object(decimate_judge.scanmill, "measure", return_value=METRICS) as measure, \
-                mock.patch.object(decimate_judge, "read", return_value=([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])):
+                mock.patch.object(decimate_judge, "read", return_value=mesh):
             facts = decimate_judge.Judge("scanmill", 1, 60)("result.ply", "input.ply")
         self.assertEqual(measure.call_args.args[:3], ("scanmill", "result.ply", "input.ply"))
         self.assertIn("certify=true", measure.call_args.args[4])

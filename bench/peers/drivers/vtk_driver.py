@@ -58,8 +58,8 @@ def decimate(request):
     filter.SetTargetReduction(1 - request["triangles"] / held["mesh"].GetNumberOfPolys())
     seconds, _ = timed(filter.Update)
     made = filter.GetOutput()
-    points, corners = (vtk_to_numpy(array) for array in (made.GetPoints().GetData(), made.GetPolys().GetConnectivityArray()))
-    return of_decimation(request, seconds, points, corners.reshape(-1, 3))
+    points, triangles = made.GetPoints().GetData(), made.GetPolys().GetConnectivityArray()
+    return of_decimation(request, seconds, vtk_to_numpy(points), vtk_to_numpy(triangles).reshape(-1, 3))
 
 
 answer({"load": load, "read": read, "write": write, "decimate": decimate}, {"VTK": vtkVersion.GetVTKVersion()})

@@ -4,8 +4,8 @@ from harness.row import Contender, Row
 
 UNBOUNDED = "the error of the results; none of these programs takes a bound of the distance between the surfaces"
 
-#: fast-simplification's "aggression", 7 by default. At equal distance, 4 needs the fewest triangles: on the bunny at 1 %
-#: of the diagonal 588, with the default 1,592, and with 3 it stops at 1,884.
+#: fast-simplification's "aggression", 7 by default. At equal distance, 4 needs the fewest triangles: on the bunny at
+#: 1 % of the diagonal 588, with the default 1,592, and with 3 it stops at 1,884.
 AGG = 4
 
 
