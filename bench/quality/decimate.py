@@ -5,8 +5,8 @@
 `decimate` gets a largest error. One judge (decimate_judge.py) measures the distance of its result from the input in
 both directions. For every other program, a search (fewest.py) finds the fewest triangles with which the judge measures
 at most the same distance. Evaluations of other programs are kept in build/peers/decimate and are not repeated, so a run
-that was stopped continues. Writes decimate.md and .json. The exit code is 1 if `decimate` failed or exceeded its error,
-or if a file is missing.
+that was stopped continues. Writes decimate.md and .json. The exit code is 1 if `decimate` failed, exceeded its error or
+added self-intersections, or if a file is missing.
 """
 import argparse
 import collections
@@ -127,7 +127,16 @@ def write_truth(given, path):
     return float(numpy.linalg.norm(used.max(axis=0) - used.min(axis=0))), hashlib.sha256(b"|".join(arrays)).hexdigest()
 
 
-def ours(bench, truth, share, diagonal):
+def broken_promise(facts, before, share, diagonal):
+    """What our result must not be, as a sentence; empty if it is right. `before`: the facts of the input."""
+    if facts["lower"] > share / 100 * diagonal:
+        return f"its distance is at least {100 * facts['lower'] / diagonal:.4g} % of the diagonal"
+    if facts["self_intersections"] > before["self_intersections"]:
+        return f"self-intersections: {facts['self_intersections']:,}, in the input {before['self_intersections']:,}"
+    return ""
+
+
+def ours(bench, truth, before, share, diagonal):
     """Our result at a largest error of `share` percent of the diagonal."""
     report = scanmill.run(bench.program, BENCH / "quality" / "decimate.yaml", [truth], truth.parent / f"ours-{share}",
                           bench.options.limit, settings={"max-error": f"{share} %diag"})
@@ -136,9 +145,8 @@ def ours(bench, truth, share, diagonal):
         return {"failure": cell.get("error", cell["outcome"])}
     facts = bench.judge(scanmill.mesh(cell)["file"], truth)
     facts["seconds"] = scanmill.steps(report, cell)["decimate"]["seconds"]
-    if facts["lower"] > share / 100 * diagonal:
-        facts["failure"] = f"its distance is at least {100 * facts['lower'] / diagonal:.4g} % of the diagonal"
-    return facts
+    broken = broken_promise(facts, before, share, diagonal)
+    return {**facts, "failure": broken} if broken else facts
 
 
 class Peer:
@@ -224,7 +232,7 @@ def run(bench, model):
         truth = folder / "input.ply"
         diagonal, hash_of_input = write_truth(given, truth)
         record.update(diagonal=diagonal, input=bench.judge.alone(truth))
-        results = [ours(bench, truth, share, diagonal) for share in SHARES]
+        results = [ours(bench, truth, record["input"], share, diagonal) for share in SHARES]
     except (Missing, scanmill.Broken) as failure:
         return {**record, "failure": str(failure)}
     record["distances"] = [{"share": share, "ours": result, "others": {}} for share, result in zip(SHARES, results)]

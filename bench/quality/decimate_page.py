@@ -87,6 +87,21 @@ def fact_rows(records, others, key, format_):
                    *(value_cell(one["others"].get(name, {}), key, format_) for name in others)]
 
 
+def median_facts(records, others, key, format_):
+    """The medians of the columns of fact_rows(), over all models and over each kind."""
+    for kind in ["", *dict.fromkeys(record["kind"] for record in records)]:
+        columns = {}
+        for record in records:
+            for one in pairs(record):
+                if kind in ("", record["kind"]):
+                    results = {"input": record["input"], "ours": one["ours"], **one["others"]}
+                    for name, facts in results.items():
+                        columns.setdefault(name, []).extend([facts[key]] if key in facts else [])
+        medians = [columns.get(name) for name in ["input", "ours", *others]]
+        yield [f"**median{', ' if kind else ''}{kind}**", "",
+               *(f"**{statistics.median(some):{format_}}**" if some else "" for some in medians)]
+
+
 def of_model(record):
     """What is printed after a model."""
     if record["failure"]:
@@ -132,7 +147,8 @@ def lines(results):
     text += ["", *summary(done, others), *remarks(records), "", "## Angles", "",
              "The 10 % quantile of the triangles' minimum angles, in degrees. Larger is better.", ""]
     header = ["model", "max-error", "input", "ours", *others]
-    text += page.table(header, fact_rows(done, others, "min_angle", ".1f"))
+    text += page.table(header, [*fact_rows(done, others, "min_angle", ".1f"),
+                                *median_facts(done, others, "min_angle", ".1f")])
     text += ["", "## Self-intersections", "", "Pairs of triangles that intersect.", ""]
     text += page.table(header, fact_rows(done, others, "self_intersections", ","))
     return text + ["", page.other_load(results["load"])]

@@ -154,10 +154,31 @@ class PageTest(unittest.TestCase):
         rows = page.fact_rows([record(s1=(facts(1), facts(1, min_angle=22.25)))], ["peer"], "min_angle", ".1f")
         self.assertEqual(list(rows), [["bunny (75,408)", "1 %", "40.0", "20.0", "22.2"]])
 
+    def test_medians_of_a_fact_are_over_all_and_over_each_kind(self):
+        records = [record(s1=(facts(1, min_angle=30.0), facts(1, min_angle=10.0)), s0_1=(facts(1), {"failure": "x"})),
+                   record("fandisk", "mechanical", s1=(facts(1), facts(1, min_angle=12.0)))]
+        self.assertEqual(list(page.median_facts(records, ["peer"], "min_angle", ".1f")),
+                         [["**median**", "", "**40.0**", "**20.0**", "**11.0**"],
+                          ["**median, scanned**", "", "**40.0**", "**25.0**", "**10.0**"],
+                          ["**median, mechanical**", "", "**40.0**", "**20.0**", "**12.0**"]])
+
     def test_missing_file_is_a_failure(self):
         gone = {"name": "dragon", "failure": "it is not there", "distances": []}
         self.assertEqual(list(bench.failures([gone])), ["dragon: it is not there"])
         self.assertEqual(page.of_model(gone), ["dragon: failed: it is not there"])
+
+
+class PromiseTest(unittest.TestCase):
+    def broken(self, **more):
+        return bench.broken_promise(facts(100, upper=0.02, **more), {"self_intersections": 1}, share=1, diagonal=2.0)
+
+    def test_largest_error_may_be_reached_but_not_exceeded(self):
+        self.assertEqual(self.broken(), "")
+        self.assertEqual(self.broken(lower=0.03), "its distance is at least 1.5 % of the diagonal")
+
+    def test_no_self_intersections_may_be_added(self):
+        self.assertEqual(self.broken(self_intersections=1), "")
+        self.assertEqual(self.broken(self_intersections=2), "self-intersections: 2, in the input 1")
 
 
 class ChosenTest(unittest.TestCase):
