@@ -92,10 +92,9 @@ void EditableMesh::link(u32 one, u32 other) {
 
 bool EditableMesh::can_flip(u32 half_edge) const {
     if (is_boundary(half_edge)) return false;
-    const u32 a = start(half_edge), b = end(half_edge), c = apex(half_edge), d = apex(opposite_[half_edge]);
-    if (c == d || has_edge(c, d)) return false;
-    const auto least = [&](u32 vertex) { return is_boundary_vertex(vertex) ? 2u : 3u; };
-    return valence(a) > least(a) && valence(b) > least(b);
+    const u32 c = apex(half_edge), d = apex(opposite_[half_edge]);
+    // An end with too few edges for a flip has the other diagonal among the edges of its neighbours.
+    return c != d && !has_edge(c, d);
 }
 
 u32 EditableMesh::flip(u32 half_edge) {
