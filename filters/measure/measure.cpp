@@ -11,6 +11,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/robust_box.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
 
 namespace scanmill {
 
@@ -22,7 +23,7 @@ double rounding_within(const BoundingBox& one, const BoundingBox& other) {
     double largest = 0;
     for (const BoundingBox& box : {one, other})
         largest = std::max({largest, box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff()});
-    return rounding_of(largest);
+    return position_rounding(largest);
 }
 
 /// Distances from one surface's samples and vertices to the other.
@@ -96,7 +97,9 @@ void measure_mesh_alone(Measurement& result, const TriangleMesh& mesh, const Tri
     result.diagonal = surface_box(mesh).diagonal();
     result.mesh = mesh_numbers(mesh, context.threads());
     context.progress(0.6);
-    if (params.self_intersections) result.self_intersections = count_self_intersections(mesh, tree, context);
+    if (params.self_intersections)
+        result.self_intersections =
+            self_intersections(mesh.positions.span(), mesh.triangles.span(), tree, context, 0).count;
     context.progress(0.8);
 }
 

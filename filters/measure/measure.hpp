@@ -10,7 +10,6 @@
 #include <optional>
 #include <vector>
 
-#include "measure/certified_hausdorff.hpp"
 #include "measure/distance_numbers.hpp"
 #include "measure/mesh_numbers.hpp"
 #include "scanmill/data/mesh.hpp"
@@ -18,6 +17,7 @@
 #include "scanmill/data/points.hpp"
 #include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
+#include "scanmill/geometry/distance/certified_hausdorff.hpp"
 
 namespace scanmill {
 
@@ -85,7 +85,7 @@ struct Measurement {
     double diagonal = 0;  ///< of the mesh's bounding box
     MeshNumbers mesh;
     std::optional<MeshNumbers> truth;
-    /// Pairs of the mesh's triangles, see count_self_intersections(); absent unless requested.
+    /// Pairs of the mesh's triangles, see scanmill::self_intersections(); absent unless requested.
     std::optional<std::size_t> self_intersections;
     std::optional<CertifiedHausdorff> certified;
 };

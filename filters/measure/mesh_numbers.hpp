@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Properties of one mesh by itself: size, topology, the shape of its triangles, self-intersections.
+/// Properties of one mesh by itself: size, topology, the shape of its triangles.
 
 #include <optional>
 
 #include "scanmill/data/mesh.hpp"
-#include "scanmill/filter/context.hpp"
 #include "scanmill/geometry/mesh/topology.hpp"
-#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill {
 
@@ -26,16 +24,6 @@ struct MeshNumbers {
 
 /// Pre: consistent, finite coordinates. Bytes do not depend on the number of threads. Cost: O(F log F).
 MeshNumbers mesh_numbers(const TriangleMesh& mesh, unsigned threads);
-
-/// Pairs of triangles with a point in common beyond their common vertices and edge. Touching counts: a corner on
-/// another triangle, an edge on an edge, overlap in a plane, the same triangle twice. Vertices at one position count as
-/// one vertex, so a soup has the pairs of the mesh that it draws. Collinear triangles are skipped (MeshNumbers counts
-/// them). Decided by exact predicates.
-///
-/// Pre: `tree` is over exactly these positions and triangles. The count does not depend on the number of threads.
-/// Cost: O(F log F) plus one test for each pair of overlapping boxes.
-/// Source: the cases are those of CGAL's Polygon_mesh_processing::self_intersections, on a soup.
-std::size_t count_self_intersections(const TriangleMesh& mesh, const TriangleTree& tree, Context& context);
 
 namespace measuring {
 

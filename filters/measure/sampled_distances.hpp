@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Points spread evenly over a mesh, and the distances from points to another surface.
+/// Points spread evenly over a mesh, and which points are nearest to its border.
 
 #include <span>
 
 #include "scanmill/base/random.hpp"
 #include "scanmill/data/mesh.hpp"
-#include "scanmill/filter/context.hpp"
-#include "scanmill/geometry/spatial/triangle_tree.hpp"
+#include "scanmill/geometry/distance/nearest_distances.hpp"
 
 namespace scanmill::measuring {
 
@@ -22,24 +21,6 @@ struct SurfaceSamples {
 /// uniform. Triangles without area get none.
 /// Pre: count ≥ 1, an area above 0. Depends on the generator alone, not on the number of threads.
 SurfaceSamples sample_surface(const TriangleMesh& mesh, std::size_t count, const Random& random, unsigned threads);
-
-struct NearestDistances {
-    /// In the order of the points; 0 if not above `rounding`.
-    Array<double> distances;
-    /// Rows of the nearest triangles; of equally near ones the smallest.
-    Array<u32> triangles;
-    /// The same triangles as NearestTriangle::slot in the tree.
-    Array<u32> slots;
-};
-
-/// Visits the points along a space-filling curve and starts each search at the previous result. Pre: finite points.
-NearestDistances nearest_distances(std::span<const Vec3> points, const TriangleTree& surface, double rounding,
-                                   Context& context);
-
-/// The same for the vertices of a mesh, by vertex. A vertex in no triangle has distance 0 and
-/// NearestTriangle::none.
-NearestDistances nearest_of_vertices(std::span<const Vec3> positions, std::span<const Triangle> triangles,
-                                     const TriangleTree& surface, double rounding, Context& context);
 
 /// Removes from `nearest`, keeping the order of the others, the points whose nearest point on the mesh is on a boundary
 /// edge (an edge of only one triangle) or on a vertex of one, within `rounding`. Returns how many were removed.

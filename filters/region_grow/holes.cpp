@@ -10,6 +10,8 @@
 #include <span>
 #include <utility>
 
+#include "scanmill/geometry/distance/triangles_intersect.hpp"
+
 namespace scanmill::growing {
 
 namespace {
@@ -278,7 +280,7 @@ std::vector<Triangle> triangulate_hole(const Surface& surface, NearTriangles& ne
         triangles = HoleTriangulation(surface, near, corners, limits).find();
     for (std::size_t i = 0; i < triangles.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
-            if (intersect(surface.positions, triangles[i], triangles[j])) return {};
+            if (triangles_intersect(surface.positions, triangles[i], triangles[j])) return {};
     return triangles;
 }
 

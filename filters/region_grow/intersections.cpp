@@ -1,31 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "region_grow/intersections.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/intersections.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "scanmill/geometry/distance/triangles_intersect.hpp"
+
 namespace scanmill::growing {
 
 namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-/// Reorders both triangles so that their common corners come first, in the same order. Returns the number of these.
-std::size_t bring_common_first(Triangle& one, Triangle& other) {
-    std::size_t common = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto same = std::find(other.begin() + static_cast<std::ptrdiff_t>(common), other.end(), one[i]);
-        if (same == other.end()) continue;
-        std::swap(*same, other[common]);
-        std::swap(one[i], one[common]);
-        ++common;
-    }
-    return common;
-}
 
 double squared_radius_of(const Surface& surface, const Triangle& triangle) {
     const auto& p = surface.positions;
@@ -46,29 +30,6 @@ double squared_radius_of_most(const Surface& surface) {
 }
 
 }  // namespace
-
-bool intersect(std::span<const Vec3> positions, const Triangle& one, const Triangle& other) {
-    Triangle t = one, u = other;
-    const std::size_t common = bring_common_first(t, u);
-    const auto point = [&](u32 index) {
-        return Kernel::Point_3(positions[index].x(), positions[index].y(), positions[index].z());
-    };
-    const std::array<Kernel::Point_3, 3> p{point(t[0]), point(t[1]), point(t[2])},
-        q{point(u[0]), point(u[1]), point(u[2])};
-    if (CGAL::collinear(p[0], p[1], p[2]) || CGAL::collinear(q[0], q[1], q[2])) return false;
-    const Kernel::Triangle_3 first(p[0], p[1], p[2]), second(q[0], q[1], q[2]);
-    switch (common) {
-        case 0: return CGAL::do_intersect(first, second);
-        case 1:
-            // Any other common part extends to the edge opposite the common corner, in one of the triangles.
-            return CGAL::do_intersect(first, Kernel::Segment_3(q[1], q[2])) ||
-                   CGAL::do_intersect(second, Kernel::Segment_3(p[1], p[2]));
-        case 2:
-            return CGAL::coplanar(p[0], p[1], p[2], q[2]) &&
-                   CGAL::coplanar_orientation(p[0], p[1], p[2], q[2]) == CGAL::POSITIVE;
-        default: return true;
-    }
-}
 
 NearTriangles::Box NearTriangles::box_of(const Surface& surface, std::span<const u32> corners) {
     Box box{surface.positions[corners[0]], surface.positions[corners[0]]};
@@ -133,7 +94,7 @@ bool NearTriangles::intersect(const Surface& surface, const Triangle& triangle) 
     };
     return std::ranges::any_of(triangles_, [&](const Boxed& other) {
         return box.overlaps(other.box) && !is_same(other.corners) &&
-               growing::intersect(surface.positions, triangle, other.corners);
+               triangles_intersect(surface.positions, triangle, other.corners);
     });
 }
 

@@ -21,11 +21,6 @@ inline double squared_enclosing_radius(double a, double b, double c, double twic
     return a * b * c / (4 * twice_area * twice_area);
 }
 
-/// Whether the triangles have a point in common beyond their common corners and edge. A corner of one on the other, and
-/// one folded flat onto the other, count. Exact for the coordinates as they are. Triangles without area intersect
-/// nothing.
-bool intersect(std::span<const Vec3> positions, const Triangle& one, const Triangle& other);
-
 /// The surface's triangles in some region, gathered for several intersection tests.
 class NearTriangles {
 public:

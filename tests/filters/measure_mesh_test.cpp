@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// The numbers of one mesh: size, topology, shape, self-intersections.
+/// The numbers of one mesh: size, topology, shape.
 #include <gmock/gmock.h>
 
 #include <numbers>
@@ -10,13 +10,6 @@ namespace scanmill::test {
 namespace {
 
 using std::numbers::pi;
-
-std::size_t intersections(const TriangleMesh& mesh, unsigned threads = 2) {
-    ContextOptions options;
-    options.threads = threads;
-    Context context(options);
-    return count_self_intersections(mesh, TriangleTree(mesh.positions.span(), mesh.triangles.span(), 1), context);
-}
 
 /// A block of height 1 with tunnels of 1 × 1 through it; genus = tunnels. Made of the outer faces of unit cubes.
 TriangleMesh block_with_tunnels(u32 tunnels) {
@@ -107,77 +100,15 @@ TEST(MeasureMesh, NearNeedles_HaveAFiniteAspect) {
     EXPECT_NEAR(numbers.largest_aspect * 1e-9, 2 / (2 * std::sqrt(3)), 1e-9);
 }
 
-TEST(SelfIntersections, GoodMeshes_HaveNone) {
-    for (const TriangleMesh& mesh : {cube(), l_block(), icosahedron(), geodesic_sphere(1, 8), torus(2, 0.5, 30, 20),
-                                     block_with_tunnels(2), rectangle(1, 1)})
-        EXPECT_EQ(intersections(mesh), 0u);
-}
-
-TEST(SelfIntersections, Soup_HasThePairsOfTheMeshThatItDraws) {
-    const TriangleMesh mesh = geodesic_sphere(1, 4);
-    Array<Vec3> positions;
-    Array<Triangle> triangles;
-    for (const Triangle& triangle : mesh.triangles) {
-        const u32 first = static_cast<u32>(positions.size());
-        for (u32 vertex : triangle) positions.push_back(mesh.positions[vertex]);
-        triangles.push_back({first, first + 1, first + 2});
-    }
-    EXPECT_EQ(intersections(soup(positions, triangles)), 0u);
-}
-
-TEST(SelfIntersections, Crossing_IsOnePair) {
-    // A triangle through the middle of another.
-    EXPECT_EQ(intersections(
-                  soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {2, 1, 1}}, {{0, 1, 2}, {3, 4, 5}})),
-              1u);
-}
-
-TEST(SelfIntersections, Touching_Counts) {
-    const Array<Vec3> base{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
-    const auto with = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-        Array<Vec3> positions = base;
-        for (const Vec3& p : {a, b, c}) positions.push_back(p);
-        return intersections(soup(positions, {{0, 1, 2}, {3, 4, 5}}));
-    };
-    EXPECT_EQ(with({1, 1, 0}, {1, 1, 1}, {2, 1, 1}), 1u);  // a corner on the face
-    EXPECT_EQ(with({1, 0, 0}, {1, -1, 0}, {2, -1, 0}), 1u);  // a corner on an edge
-    EXPECT_EQ(with({0, 0, 0}, {-1, 0, 0}, {0, -1, 0}), 0u);  // a corner on a corner: a common vertex
-    EXPECT_EQ(with({1, 0, 0}, {3, 0, 0}, {2, -1, 0}), 1u);  // a part of an edge
-    EXPECT_EQ(with({0, 0, 0}, {4, 0, 0}, {2, -1, 0}), 0u);  // the whole edge: a common one
-    EXPECT_EQ(with({1, 1, 1e-300}, {1, 1, 1}, {2, 1, 1}), 0u);  // next to the face
-    EXPECT_EQ(with({0.5, 0.5, 0}, {1, 0.5, 0}, {0.5, 1, 0}), 1u);  // inside the face, in its plane
-}
-
-TEST(SelfIntersections, CommonVertices_DoNotCountButOtherCommonPointsDo) {
-    // At one common corner: beside each other, crossing the opposite edge, flat on each other.
-    const auto from_corner = [](const Vec3& b, const Vec3& c) {
-        return intersections(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, b, c}, {{0, 1, 2}, {0, 3, 4}}));
-    };
-    EXPECT_EQ(from_corner({-1, 0, 0}, {0, -1, 0}), 0u);
-    EXPECT_EQ(from_corner({1, 1, 1}, {1, 1, -1}), 1u);
-    EXPECT_EQ(from_corner({5, 5, 1}, {5, 5, -1}), 1u);
-    EXPECT_EQ(from_corner({1, 2, 0}, {2, 1, 0}), 1u);
-    // At one common edge: in a plane, folded at an angle, folded flat, and the same triangle again.
-    const auto over_edge = [](const Vec3& d) {
-        return intersections(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, d}, {{0, 1, 2}, {1, 0, 3}}));
-    };
-    EXPECT_EQ(over_edge({0, -4, 0}), 0u);
-    EXPECT_EQ(over_edge({0, 4, 1e-300}), 0u);
-    EXPECT_EQ(over_edge({1, 1, 0}), 1u);
-    EXPECT_EQ(intersections(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {2, 1, 0}})), 1u);
-}
-
-TEST(SelfIntersections, CollinearTriangles_AreSkipped) {
-    EXPECT_EQ(intersections(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 0}, {1, 1, 1}},
-                                 {{0, 1, 2}, {3, 4, 5}, {0, 0, 1}})),
-              0u);
-}
-
-TEST(SelfIntersections, OverlappingCubes_CountTheSameForAnyThreads) {
-    const TriangleMesh cubes = both(geodesic_sphere(1, 15), shifted(geodesic_sphere(1, 15), {0.5, 0.2, 0.1}));
-    const std::size_t pairs = intersections(cubes, 1);
-    EXPECT_GT(pairs, 100u);
-    EXPECT_EQ(intersections(cubes, 3), pairs);
+TEST(MeasureMesh, SelfIntersections_AreCountedIfRequested) {
+    const TriangleMesh block = block_with_tunnels(2);
+    EXPECT_EQ(measured(block, block, few_samples()).self_intersections, 0u);
+    const TriangleMesh crossing =
+        soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {2, 1, 1}}, {{0, 1, 2}, {3, 4, 5}});
+    MeasureParams params = few_samples();
+    EXPECT_EQ(measured(crossing, crossing, params).self_intersections, 1u);
+    params.self_intersections = false;
+    EXPECT_EQ(measured(crossing, crossing, params).self_intersections, std::nullopt);
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// Whether triangles intersect, and which triangles are found near others.
+/// Which triangles are found near others.
 #include <gmock/gmock.h>
 
 #include <random>
 
 #include "filters/region_grow_patch.hpp"
 #include "region_grow/intersections.hpp"
+#include "scanmill/geometry/distance/triangles_intersect.hpp"
 
 namespace scanmill::growing {
 namespace {
@@ -30,8 +31,9 @@ public:
     }
     /// Tests all triangles.
     bool intersects_any(const Triangle& triangle) const {
-        return std::ranges::any_of(
-            added_, [&](const Triangle& other) { return intersect(patch_.surface().positions, triangle, other); });
+        return std::ranges::any_of(added_, [&](const Triangle& other) {
+            return triangles_intersect(patch_.surface().positions, triangle, other);
+        });
     }
     const Surface& surface() const { return patch_.surface(); }
 
@@ -76,27 +78,6 @@ TEST(RegionGrowNearTriangles_OfManySizes, AreFoundAsByTestingAll) {
     for (u32 i = 0; i < 6; ++i) scattered.join(i, 100 + i, 200 + i);
     for (u32 i = 6; i < 100; ++i) compare(i);
     EXPECT_GT(intersecting, before);
-}
-
-const std::vector<Vec3> positions{Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0), Vec3(1, 1, -1), Vec3(1, 1, 1),
-                                  Vec3(5, 5, 0), Vec3(1, 1, 0), Vec3(9, 9, 5), Vec3(9, 8, 5),  Vec3(8, 9, 5)};
-
-TEST(RegionGrowIntersect_Triangles, CountBeyondTheirCommonCornersAndEdges) {
-    const auto do_intersect = [](const Triangle& one, const Triangle& other) {
-        EXPECT_EQ(intersect(positions, one, other), intersect(positions, other, one));
-        return intersect(positions, one, other);
-    };
-    const Triangle floor{0, 1, 2};
-    EXPECT_TRUE(do_intersect(floor, {3, 4, 5})) << "passes through it";
-    EXPECT_FALSE(do_intersect(floor, {7, 8, 9})) << "far away";
-    EXPECT_TRUE(do_intersect(floor, {6, 7, 8})) << "a corner of the other lies in it";
-    EXPECT_FALSE(do_intersect(floor, {0, 7, 8})) << "one common corner";
-    EXPECT_TRUE(do_intersect(floor, {0, 3, 4})) << "one common corner, and the edge opposite passes through it";
-    EXPECT_TRUE(do_intersect(floor, {0, 6, 7})) << "one common corner, and a corner in it";
-    EXPECT_FALSE(do_intersect(floor, {2, 1, 5})) << "the next triangle in its plane";
-    EXPECT_FALSE(do_intersect(floor, {2, 1, 4})) << "at an angle on a common edge";
-    EXPECT_TRUE(do_intersect(floor, {2, 1, 6})) << "folded flat onto it";
-    EXPECT_TRUE(do_intersect(floor, {1, 2, 0})) << "itself";
 }
 
 }  // namespace

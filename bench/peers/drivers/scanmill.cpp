@@ -9,10 +9,10 @@
 #include "alpha_solid/alpha_solid.hpp"
 #include "answer.hpp"
 #include "delaunay/delaunay.hpp"
-#include "measure/sampled_distances.hpp"
 #include "outlier_removal/outlier_removal.hpp"
 #include "region_grow/region_grow.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/distance/nearest_distances.hpp"
 #include "scanmill/geometry/fit/local_surface.hpp"
 #include "sculpt/sculpt.hpp"
 #include "voxel_thin/voxel_thin.hpp"
@@ -184,9 +184,8 @@ Json distances(Held& held, const Json& request) {
     std::optional<TriangleTree> tree;
     const double building = peers::seconds_of(
         [&] { tree.emplace(held.cloud.positions.span(), std::span(held.triangles), context.threads()); });
-    measuring::NearestDistances found;
-    const double asking =
-        peers::seconds_of([&] { found = measuring::nearest_distances(held.queries, *tree, 0, context); });
+    NearestDistances found;
+    const double asking = peers::seconds_of([&] { found = nearest_distances(held.queries, *tree, 0, context); });
     double sum = 0, squares = 0;
     for (const double distance : found.distances) sum += distance, squares += distance * distance;
     const auto count = static_cast<double>(found.distances.size());

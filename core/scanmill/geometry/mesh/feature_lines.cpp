@@ -14,6 +14,7 @@
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/mesh/sharp_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill {
@@ -187,49 +188,6 @@ void require_measurable(const TriangleMesh& mesh) {
                 throw Error("vertex {} of triangle {} is not finite; features need the position of every vertex",
                             vertex, t)
                     .hint("remove the triangles at such vertices");
-}
-
-/// Marks both half-edges of the mesh's declared sharp edges; those on the boundary are feature lines anyway.
-void mark_declared(const TriangleMesh& mesh, std::span<const u32> opposite, std::vector<bool>& sharp) {
-    if (mesh.sharp_edges.empty()) return;
-    struct Declared {
-        Edge edge;
-        bool found;
-    };
-    std::vector<Declared> declared;
-    for (const Edge& edge : mesh.sharp_edges) declared.push_back({make_edge(edge[0], edge[1]), false});
-    std::ranges::sort(declared, {}, &Declared::edge);
-    for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
-        if (opposite[half_edge] == half_edges::no_half_edge) continue;
-        const Edge edge = make_edge(half_edges::start(mesh, half_edge), half_edges::end(mesh, half_edge));
-        for (Declared& same : std::ranges::equal_range(declared, edge, {}, &Declared::edge)) {
-            same.found = true;
-            sharp[half_edge] = opposite[half_edge] != half_edges::boundary;
-        }
-    }
-    const auto missing = std::ranges::count(declared, false, &Declared::found);
-    if (missing == 0) return;
-    const Edge& first = std::ranges::find(declared, false, &Declared::found)->edge;
-    throw Error("{} of the mesh's {} {} of no triangle; the first is between vertices {} and {}", missing,
-                count_text(declared.size(), "sharp edge", "sharp edges"),
-                by_count(static_cast<std::size_t>(missing), "is an edge", "are edges"), first[0], first[1])
-        .hint("write the mesh again with the sharp edges of its own triangles, or without any");
-}
-
-std::vector<bool> sharp_half_edges(const TriangleMesh& mesh, std::span<const u32> opposite,
-                                   std::span<const Vec3> normals, double sharp_angle, unsigned threads) {
-    Array<u8> is_sharp(opposite.size());  // bytes, unlike std::vector<bool>, can be written in parallel
-    constexpr std::size_t chunk = 3 << 13;
-    for_each_chunk(threads, opposite.size(), chunk, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t half_edge = begin; half_edge < end; ++half_edge) {
-            const u32 other = opposite[half_edge];
-            is_sharp[half_edge] = other < half_edges::no_half_edge &&
-                                  angle_between(normals[half_edge / 3], normals[other / 3]) > sharp_angle;
-        }
-    });
-    std::vector<bool> sharp(is_sharp.begin(), is_sharp.end());
-    mark_declared(mesh, opposite, sharp);
-    return sharp;
 }
 
 double length_of(const TriangleMesh& mesh, std::span<const u32> half_edges) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "measure/certified_hausdorff.hpp"
+#include "scanmill/geometry/distance/certified_hausdorff.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -11,159 +10,15 @@
 #include <vector>
 
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/distance/detail/triangle_part.hpp"
 
 namespace scanmill {
 
-namespace measuring {
-
 namespace {
 
-/// A part that crosses an edge by less is not cut there: a share of its distance, over which that distance hardly
-/// grows, and of its size, so that cuts do not leave slivers.
-constexpr double harmless_of_distance = 0.05;
-constexpr double harmless_of_size = 1e-3;
+using namespace triangle_parts;
 
-/// The distance to one triangle is convex: nowhere on the part is it larger than at one of the corners.
-void try_triangle(TrianglePart& part, u32 slot) {
-    if (slot == NearestTriangle::none) return;
-    const double least = part.upper * part.upper;
-    double farthest = 0;
-    for (const PartCorner& corner : part.corners) {
-        farthest = std::max(farthest, part.other->squared_distance(corner.position, slot));
-        if (farthest > least) return;
-    }
-    if (std::sqrt(farthest) >= part.upper) return;
-    part.upper = std::sqrt(farthest);
-    part.bounding = slot;
-}
-
-Vec3 centre_of(const TrianglePart& part) {
-    return (part.corners[0].position + part.corners[1].position + part.corners[2].position) / 3;
-}
-
-std::size_t longest_edge(const TrianglePart& part) {
-    std::size_t longest = 0;
-    double length = -1;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double edge = (part.corners[(i + 1) % 3].position - part.corners[i].position).squaredNorm();
-        if (edge > length) {
-            length = edge;
-            longest = i;
-        }
-    }
-    return longest;
-}
-
-/// Signed distances of a part's corners to a plane: positive outside.
-using PlaneDistances = std::array<double, 3>;
-
-double overhang(const PlaneDistances& distances) {
-    return std::min(std::ranges::max(distances), -std::ranges::min(distances));
-}
-
-/// To that plane through an edge of the triangle below the part which the part crosses farthest.
-PlaneDistances farthest_crossed(const TrianglePart& part) {
-    const std::array<Vec3, 3> below = part.other->corners(part.below);
-    const Vec3 normal = (below[1] - below[0]).cross(below[2] - below[0]);
-    PlaneDistances best{};
-    for (std::size_t edge = 0; edge < 3; ++edge) {
-        const Vec3 outwards = (below[(edge + 1) % 3] - below[edge]).cross(normal);
-        const double length = outwards.norm();
-        if (!(length > 0)) continue;
-        PlaneDistances distances;
-        for (std::size_t i = 0; i < 3; ++i)
-            distances[i] = outwards.dot(part.corners[i].position - below[edge]) / length;
-        if (overhang(distances) > overhang(best)) best = distances;
-    }
-    return best;
-}
-
-PartCorner between(const PartCorner& from, const PartCorner& to, double share) {
-    return {from.position + share * (to.position - from.position)};
-}
-
-TrianglePart with_corners(const TrianglePart& part, const PartCorner& a, const PartCorner& b, const PartCorner& c) {
-    TrianglePart result = part;
-    result.corners = {a, b, c};
-    result.seen = 0;
-    return result;
-}
-
-/// Along the plane with these distances. Pre: corners on both sides of it.
-Cut cut_along(const TrianglePart& part, const PlaneDistances& distances) {
-    // The corner that is alone on its side; one on the plane belongs to the larger group.
-    std::size_t alone = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double next = distances[(i + 1) % 3], last = distances[(i + 2) % 3];
-        if ((distances[i] > 0 && next <= 0 && last <= 0) || (distances[i] < 0 && next >= 0 && last >= 0)) alone = i;
-    }
-    const PartCorner& a = part.corners[alone];
-    const PartCorner& b = part.corners[(alone + 1) % 3];
-    const PartCorner& c = part.corners[(alone + 2) % 3];
-    const auto share = [&](std::size_t to) { return distances[alone] / (distances[alone] - distances[to]); };
-    const PartCorner on_ab = between(a, b, share((alone + 1) % 3)), on_ac = between(a, c, share((alone + 2) % 3));
-    return {{with_corners(part, a, on_ab, on_ac), with_corners(part, on_ab, b, c), with_corners(part, on_ab, c, on_ac)},
-            3};
-}
-
-Cut cut_across_longest_edge(const TrianglePart& part) {
-    const std::size_t longest = longest_edge(part);
-    const PartCorner& a = part.corners[longest];
-    const PartCorner& b = part.corners[(longest + 1) % 3];
-    const PartCorner& c = part.corners[(longest + 2) % 3];
-    const PartCorner middle = between(a, b, 0.5);
-    return {{with_corners(part, a, middle, c), with_corners(part, middle, b, c)}, 2};
-}
-
-}  // namespace
-
-void bound_by_known(TrianglePart& part, double enough) {
-    for (const u32 slot :
-         {part.below, part.bounding, part.corners[0].nearest, part.corners[1].nearest, part.corners[2].nearest}) {
-        try_triangle(part, slot);
-        if (part.upper <= enough) return;
-    }
-}
-
-void bound(TrianglePart& part, double enough) {
-    bound_by_known(part, enough);
-    if (part.upper <= enough) return;
-    const Vec3 centre = centre_of(part);
-    const NearestTriangle at_centre = part.other->nearest(centre, part.below);
-    double radius = 0;
-    for (const PartCorner& corner : part.corners) radius = std::max(radius, (corner.position - centre).norm());
-    const double distance = std::sqrt(at_centre.squared_distance);
-    part.seen = std::max(part.seen, distance);
-    part.upper = std::min(part.upper, distance + radius);
-    part.below = at_centre.slot;
-    try_triangle(part, part.below);
-    for (PartCorner& corner : part.corners) {
-        if (corner.nearest != NearestTriangle::none || part.upper <= enough) continue;
-        const NearestTriangle found = part.other->nearest(corner.position, part.below);
-        corner.nearest = found.slot;
-        part.seen = std::max(part.seen, std::sqrt(found.squared_distance));
-        try_triangle(part, corner.nearest);
-    }
-}
-
-Cut cut(const TrianglePart& part, double enough) {
-    assert(part.below != NearestTriangle::none);
-    const std::size_t longest = longest_edge(part);
-    const double size = (part.corners[(longest + 1) % 3].position - part.corners[longest].position).norm();
-    const double harmless = std::max(harmless_of_distance * part.seen, harmless_of_size * size);
-    const PlaneDistances distances = farthest_crossed(part);
-    Cut result = overhang(distances) > harmless ? cut_along(part, distances) : cut_across_longest_edge(part);
-    for (std::size_t i = 0; i < result.count; ++i) bound(result.parts[i], enough);
-    return result;
-}
-
-}  // namespace measuring
-
-namespace {
-
-using namespace measuring;
-
-/// Bounds below this share of the diagonal are not refined further.
+/// Bounds below this share of the diagonal are not refined further, unless the limits' bound is smaller.
 constexpr double negligible = 1e-9;
 /// Parts cut between two updates of the lower bound; the same for any number of threads.
 constexpr std::size_t round_size = 1024;
@@ -177,15 +32,21 @@ constexpr u64 most_parts_to_find = 15'000;
 /// All parts that may still contain the largest distance, and the bounds so far.
 class Search {
 public:
-    /// No distance below `floor` matters. At most `most_waiting` parts are kept, or one class of equal order more.
-    Search(double floor, double gap, double weight, u64 most_waiting)
+    /// No distance below `floor` matters. At most `most_waiting` parts are kept, or one class of equal order more. The
+    /// search is for an upper bound of at most `target` too.
+    Search(double floor, double gap, double weight, u64 most_waiting,
+           double target = std::numeric_limits<double>::infinity())
         : floor_(floor),
           gap_(gap),
           weight_(weight),
-          most_waiting_(most_waiting) {}
+          most_waiting_(most_waiting),
+          target_(target) {}
 
+    /// An upper bound of at most this is near enough to the lower one.
+    double near_lower() const { return std::max(lower_ / (1 - gap_), floor_); }
     /// A part with an upper bound of at most this need not be refined.
-    double enough() const { return std::max(lower_ / (1 - gap_), floor_); }
+    double enough() const { return std::min(near_lower(), target_); }
+    bool is_hopeless() const { return lower_ > target_; }
     void observe(double distance) { lower_ = std::max(lower_, distance); }
     /// A part with this upper bound is not kept.
     void pass_over(double upper) { passed_over_ = std::max(passed_over_, upper); }
@@ -243,6 +104,7 @@ private:
 
     double floor_, gap_, weight_;
     u64 most_waiting_;
+    double target_;
     double lower_ = 0, passed_over_ = 0;
     std::map<int, std::vector<TrianglePart>, std::greater<>> waiting_;
     u64 waiting_parts_ = 0;
@@ -263,7 +125,7 @@ Array<double> largest_seen(const CertifiedSurface& surface) {
 
 /// Adds the triangles of a surface that may contain the largest distance, bounded by `bound_triangle`.
 template <class Bound>
-void add_triangles(const CertifiedSurface& surface, const TriangleTree& other, Search& search, Context& context,
+void add_triangles(const CertifiedSurface& surface, const TriangleTree& other, Search& search, Execution& execution,
                    const Bound& bound_triangle) {
     const Array<double> largest = largest_seen(surface);
     for (const double seen : largest) search.observe(seen);
@@ -276,8 +138,8 @@ void add_triangles(const CertifiedSurface& surface, const TriangleTree& other, S
         const std::size_t count = std::min(block, surface.triangles.size() - first);
         const double enough = search.enough();
         std::vector<Chunk> chunks((count + chunk - 1) / chunk);
-        for_each_chunk(context.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
-            context.check_cancelled();
+        for_each_chunk(execution.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
+            execution.check_cancelled();
             Chunk& mine = chunks[begin / chunk];
             for (std::size_t row = first + begin; row < first + end; ++row) {
                 TrianglePart part;
@@ -309,16 +171,17 @@ Cut bounded_and_cut(TrianglePart part, double enough) {
     return part.upper > enough ? cut(part, enough) : Cut{{part}, 1};
 }
 
-/// Takes parts until all are near enough, at most `most`. Returns the number of parts taken.
-u64 refine(Search& search, u64 most, Context& context) {
+/// Takes parts until all are near enough or the target cannot be reached, at most `most`. Returns the number of parts
+/// taken.
+u64 refine(Search& search, u64 most, Execution& execution) {
     u64 taken = 0;
-    while (taken < most) {
-        context.check_cancelled();
+    while (taken < most && !search.is_hopeless()) {
+        execution.check_cancelled();
         const double enough = search.enough();
         const std::vector<TrianglePart> parts = search.take(std::min<u64>(round_size, most - taken));
         if (parts.empty()) break;
         std::vector<Cut> results(parts.size());
-        for_each_chunk(context.threads(), parts.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for_each_chunk(execution.threads(), parts.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) results[i] = bounded_and_cut(parts[i], enough);
         });
         taken += parts.size();
@@ -346,39 +209,61 @@ Extent extent_of(const CertifiedSurface& one, const CertifiedSurface& other) {
                 box.high = box.high.cwiseMax(position);
                 largest = std::max(largest, position.cwiseAbs().maxCoeff());
             }
-    return {box.diagonal(), rounding_of(largest)};
+    return {box.diagonal(), position_rounding(largest)};
 }
 
 }  // namespace
 
-double largest_distance(const CertifiedSurface& one, const CertifiedSurface& other, double gap, Context& context) {
+double largest_distance(const CertifiedSurface& one, const CertifiedSurface& other, double gap, Execution& execution) {
     assert(gap > 0 && gap < 1);
     const Extent extent = extent_of(one, other);
     Search search(negligible * extent.diagonal, gap, weight_to_find, most_parts_to_find);
-    add_triangles(one, other.tree, search, context, bound_by_known);
-    add_triangles(other, one.tree, search, context, bound_by_known);
-    refine(search, most_parts_to_find, context);
+    add_triangles(one, other.tree, search, execution, bound_by_known);
+    add_triangles(other, one.tree, search, execution, bound_by_known);
+    refine(search, most_parts_to_find, execution);
     return search.lower() > extent.rounding ? search.lower() : 0;
 }
 
 CertifiedHausdorff certified_hausdorff(const CertifiedSurface& one, const CertifiedSurface& other, double seen,
-                                       const CertifyLimits& limits, Context& context) {
+                                       const CertifyLimits& limits, Execution& execution) {
     assert(limits.gap > 0 && limits.gap < 1);
     const Extent extent = extent_of(one, other);
-    Search search(negligible * extent.diagonal, limits.gap, weight_to_prove, limits.most_cuts);
+    assert(!limits.bound || *limits.bound >= 0);
+    double floor = negligible * extent.diagonal, target = std::numeric_limits<double>::infinity();
+    if (limits.bound) {
+        floor = std::max(floor, limits.gap * *limits.bound);
+        target = std::max(*limits.bound - extent.rounding, extent.rounding);
+    }
+    Search search(floor, limits.gap, weight_to_prove, limits.most_cuts, target);
     search.observe(seen);
-    add_triangles(one, other.tree, search, context, bound);
-    add_triangles(other, one.tree, search, context, bound);
+    add_triangles(one, other.tree, search, execution, bound);
+    add_triangles(other, one.tree, search, execution, bound);
 
     CertifiedHausdorff result;
-    result.cuts = refine(search, limits.most_cuts, context);
-    result.reached = search.upper() <= search.enough();
+    result.cuts = refine(search, limits.most_cuts, execution);
+    result.reached = search.upper() <= search.near_lower();
     if (search.upper() > extent.rounding) {
         result.upper = search.upper() + extent.rounding;
         result.lower = std::max(0.0, search.lower() - extent.rounding);
     }
     result.found = search.lower() > extent.rounding ? search.lower() : 0;
     return result;
+}
+
+CertifiedHausdorff certified_hausdorff(const TriangleMesh& one, const TriangleMesh& other, const CertifyLimits& limits,
+                                       Execution& execution) {
+    const auto tree_of = [&](const TriangleMesh& mesh) {
+        return TriangleTree(mesh.positions.span(), mesh.triangles.span(), execution.threads());
+    };
+    const auto distances = [&](const TriangleMesh& mesh, const TriangleTree& to) {
+        return nearest_of_vertices(mesh.positions.span(), mesh.triangles.span(), to, 0, execution);
+    };
+    const TriangleTree tree = tree_of(one), other_tree = tree_of(other);
+    const NearestDistances of_one = distances(one, other_tree), of_other = distances(other, tree);
+    const CertifiedSurface surface{one.positions.span(), one.triangles.span(), tree, of_one};
+    const CertifiedSurface other_surface{other.positions.span(), other.triangles.span(), other_tree, of_other};
+    const double seen = largest_distance(surface, other_surface, limits.gap, execution);
+    return certified_hausdorff(surface, other_surface, seen, limits, execution);
 }
 
 }  // namespace scanmill

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/distance/detail/exact_intersection.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
+#include <CGAL/Intersections_3/Triangle_3_Triangle_3.h>
+
+namespace scanmill::exact {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+Kernel::Point_3 point(const Vec3* p) { return {p->x(), p->y(), p->z()}; }
+
+Kernel::Triangle_3 triangle(const Corners& t) { return {point(t[0]), point(t[1]), point(t[2])}; }
+
+/// Opposite the first corner.
+Kernel::Segment_3 edge(const Corners& t) { return {point(t[1]), point(t[2])}; }
+
+}  // namespace
+
+bool collinear(const Corners& triangle) {
+    return CGAL::collinear(point(triangle[0]), point(triangle[1]), point(triangle[2]));
+}
+
+bool triangles_intersect(const Corners& one, const Corners& other, std::size_t common) {
+    switch (common) {
+        case 0: return CGAL::do_intersect(triangle(one), triangle(other));
+        case 1:
+            // Any other common part extends to the edge opposite the common corner, in one of the triangles.
+            return CGAL::do_intersect(triangle(one), edge(other)) || CGAL::do_intersect(triangle(other), edge(one));
+        case 2: {
+            // Triangles with a common edge overlap if one is folded flat onto the other.
+            const Kernel::Point_3 a = point(one[0]), b = point(one[1]), c = point(one[2]), d = point(other[2]);
+            return CGAL::coplanar(a, b, c, d) && CGAL::coplanar_orientation(a, b, c, d) == CGAL::POSITIVE;
+        }
+        default: return true;  // the same triangle twice
+    }
+}
+
+}  // namespace scanmill::exact

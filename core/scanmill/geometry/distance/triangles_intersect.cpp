@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/geometry/distance/triangles_intersect.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "scanmill/geometry/distance/detail/exact_intersection.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using exact::Corners;
+
+/// A bound of the rounding error of a determinant of differences, as a share of the sum of the absolute values of its
+/// terms (Shewchuk 1997, orient3d), and of what underflow may add to it for coordinates in the permitted range.
+constexpr double epsilon = 0x1p-53;
+constexpr double rounding = (7 + 56 * epsilon) * epsilon, underflow = 0x1p-900;
+
+/// A plane whose sides are decided in rounded arithmetic where that is certain.
+struct Plane {
+    Vec3 origin, normal;
+    /// Sums of the absolute values of the terms of the normal's coordinates.
+    Vec3 magnitude;
+
+    /// The plane with this normal exactly.
+    Plane(const Vec3& at, const Vec3& across) : origin(at), normal(across), magnitude(across.cwiseAbs()) {}
+    /// The plane spanned by the exact values of two differences, or of one and a vector.
+    Plane(const Vec3& at, const Vec3& u, const Vec3& v) : origin(at) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+            const double one = u[next] * v[last], other = u[last] * v[next];
+            normal[axis] = one - other;
+            magnitude[axis] = std::abs(one) + std::abs(other);
+        }
+    }
+    /// -1 or 1, or 0 if rounding may decide. Overflow makes it 0 too.
+    int side_of(const Vec3& point) const {
+        const Vec3 to = point - origin;
+        const double value = normal.dot(to), error = rounding * magnitude.dot(to.cwiseAbs()) + underflow;
+        return (value > error) - (value < -error);
+    }
+};
+
+Plane plane_of(const Corners& triangle) {
+    return {*triangle[0], *triangle[1] - *triangle[0], *triangle[2] - *triangle[0]};
+}
+
+/// Whether all corners from `first` on lie strictly on one side of the plane.
+bool is_beside(const Plane& plane, const Corners& triangle, std::size_t first) {
+    const int side = plane.side_of(*triangle[2]);
+    for (std::size_t i = first; i < 2 && side != 0; ++i)
+        if (plane.side_of(*triangle[i]) != side) return false;
+    return side != 0;
+}
+
+/// Whether a plane through the common first corner is between the triangles: the one across the difference of the mean
+/// directions of their edges.
+bool are_opposite(const Corners& one, const Corners& other) {
+    const Vec3& corner = *one[0];
+    const auto direction = [&](const Vec3& to) -> Vec3 { return (to - corner) / (to - corner).lpNorm<1>(); };
+    const Plane between(corner, direction(*one[1]) + direction(*one[2]) - direction(*other[1]) - direction(*other[2]));
+    return between.side_of(*one[1]) + between.side_of(*one[2]) - between.side_of(*other[1]) -
+               between.side_of(*other[2]) ==
+           4;
+}
+
+/// Whether the plane through an edge of `one` and perpendicular to `one` is between the triangles. Common corners may
+/// be on that edge.
+bool edge_separates(const Corners& one, const Vec3& normal, const Corners& other, std::size_t common) {
+    for (std::size_t opposite = common; opposite < 3; ++opposite) {
+        const Vec3 &from = *one[(opposite + 1) % 3], &to = *one[(opposite + 2) % 3];
+        const Plane along(from, to - from, normal);
+        const int side = along.side_of(*one[opposite]);
+        if (side != 0 && along.side_of(*other[2]) == -side && is_beside(along, other, common)) return true;
+    }
+    return false;
+}
+
+/// Reorders both so that their common corners come first, in the same order. Returns how many there are.
+std::size_t bring_common_first(Triangle& one, Triangle& other) {
+    std::size_t common = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = common; j < 3; ++j)
+            if (one[i] == other[j]) {
+                std::swap(one[common], one[i]);
+                std::swap(other[common], other[j]);
+                ++common;
+                break;
+            }
+    return common;
+}
+
+bool boxes_meet(const Corners& one, const Corners& other) {
+    const auto low = [](const Corners& t) -> Vec3 { return t[0]->cwiseMin(*t[1]).cwiseMin(*t[2]); };
+    const auto high = [](const Corners& t) -> Vec3 { return t[0]->cwiseMax(*t[1]).cwiseMax(*t[2]); };
+    return (low(one).array() <= high(other).array()).all() && (low(other).array() <= high(one).array()).all();
+}
+
+Corners corners_of(std::span<const Vec3> positions, const Triangle& triangle) {
+    return {&positions[triangle[0]], &positions[triangle[1]], &positions[triangle[2]]};
+}
+
+/// Whether a plane between the triangles is found, in rounded arithmetic: then they touch in common corners only.
+bool are_apart(const Corners& one, const Corners& other, std::size_t common) {
+    if (common == 0 && !boxes_meet(one, other)) return true;
+    if (common == 1 && are_opposite(one, other)) return true;
+    const Plane plane = plane_of(one);
+    if (is_beside(plane, other, common)) return true;
+    const Plane other_plane = plane_of(other);
+    return is_beside(other_plane, one, common) || edge_separates(one, plane.normal, other, common) ||
+           edge_separates(other, other_plane.normal, one, common);
+}
+
+bool is_collinear(const Corners& triangle) {
+    const Plane plane = plane_of(triangle);
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(plane.normal[axis]) > rounding * plane.magnitude[axis] + underflow) return false;
+    return exact::collinear(triangle);
+}
+
+}  // namespace
+
+bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) { return is_collinear({&a, &b, &c}); }
+
+bool triangles_intersect(std::span<const Vec3> positions, const Triangle& first, const Triangle& second) {
+    Triangle of_one = first, of_other = second;
+    const std::size_t common = bring_common_first(of_one, of_other);
+    const Corners one = corners_of(positions, of_one), other = corners_of(positions, of_other);
+    if (common < 3 && are_apart(one, other, common)) return false;
+    if (is_collinear(one) || is_collinear(other)) return false;
+    return exact::triangles_intersect(one, other, common);
+}
+
+}  // namespace scanmill
