@@ -9,42 +9,79 @@
 #include "scanmill/data/points.hpp"
 #include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
+#include "scanmill/geometry/distance/certified_hausdorff.hpp"
 
 namespace scanmill {
 
+enum class DecimateMode {
+    direct,  ///< errors are measured to the input surface, and to the data points if there are any
+    accumulated  ///< the paper: two bounds per triangle, which grow with every removal
+};
+
 struct DecimateParams {
-    enum class Mode {
-        direct,  ///< distances are measured to the input surface, and to the data points if there are any
-        accumulated  ///< the paper: two bounds per triangle, which grow with every removal
-    };
-    /// Largest distance between input and result.
+    /// Largest distance between input and result; 0 or more.
     Length max_error = Length::percent_of_diagonal(0.1);
-    /// In place of max_error for the parts of the input outside the result, and inside it.
+    /// In place of max_error where the input is outside the result, and where it is inside.
     std::optional<Length> outside, inside;
-    Mode mode = Mode::direct;
+    DecimateMode mode = DecimateMode::direct;
     /// Edges whose triangles' normals differ by more are sharp. 20 to 75 degrees.
     Angle sharp_angle = Angle::degrees(40);
-    /// A feature line that turns by more has a corner there.
+    /// A feature line that turns by more has a corner there. 0 to 180 degrees.
     Angle corner_angle = Angle::degrees(35);
-    /// The normal of a new triangle differs by at most this from the mean normal of the triangles it replaces.
+    /// Largest angle between the normal of a new triangle and the mean normal of those it replaces. 0 to 89 degrees.
     Angle normal_deviation = Angle::degrees(60);
-    /// No new triangle has a smaller angle, unless one of those it replaces had.
-    Angle min_angle = Angle::degrees(5);
-    /// Vertices with more edges are neither removed nor made.
+    /// No new triangle has a smaller angle, unless one of those it replaces has. 0 to 30 degrees.
+    Angle min_angle = Angle::degrees(15);
+    /// Vertices with more edges are not removed, and none gets more. 6 to 64.
     u32 max_valence = 25;
-    /// Removal ends with at most so many triangles; 0: no such limit.
+    /// Removal ends with at most so many triangles; 0: only the errors end it.
     u64 target_triangles = 0;
-    /// Whether edges are flipped in the end to raise the least angles.
+    /// Whether edges are flipped in the end, within the same limits, to raise the triangles' least angles.
     bool final_flips = true;
 };
 
-enum class VertexClass : u8 { smooth, crease, corner, boundary };
-
-struct DecimateResult {
-    TriangleMesh mesh;
-    std::size_t removed = 0;
+/// The column `class` of vertices. A vertex of several classes has the first of corner, boundary, crease.
+enum class VertexClass : u8 {
+    smooth,  ///< without feature edges
+    crease,  ///< between two sharp edges of one line
+    corner,  ///< an end, a fork or a turn of feature lines, or the apex of a cone
+    boundary  ///< between two boundary edges of one line
 };
 
+struct DecimateResult {
+    /// Vertices and triangles in input order. Vertex columns of the input and `class`; face columns `corner-normals`,
+    /// `error-outside`, `error-inside`; the sharp edges.
+    TriangleMesh mesh;
+    /// Bounds of the distance between the input and the result, computed independently of the errors that steered.
+    CertifiedHausdorff certificate;
+    std::size_t removed = 0, flips = 0;
+    /// Lines of sharp edges, from corner to corner or closed; vertices of class corner.
+    std::size_t creases = 0, corners = 0;
+    /// Of the data points: the largest distance to the result, how many are farther than max_error, and how many were
+    /// so from the input. Absent without points.
+    std::optional<double> points_max;
+    std::size_t points_beyond = 0, points_left_out = 0;
+};
+
+/// Removes vertices, the flattest surroundings first, and triangulates the holes, until no more is possible.
+///
+/// Pre:  a 2-manifold, closed or open, of any number of components, consistently oriented, finite; see EditableMesh for
+///       what is refused. Throws Error with numbers and a hint otherwise. Triangles without area stay. `points`, if not
+///       null, are data points beside the vertices, in the mesh's frame.
+/// Post: vertices of the result are vertices of the input, bit for bit. Same topology: boundary loops, components,
+///       genus. No point of either surface is farther from the other than max_error (the larger one of outside and
+///       inside), proven by `certificate`; otherwise Error. In mode direct also no data point, except those that were
+///       farther from the input. No removal is left that keeps the limits.
+///       Lines of sharp edges and boundaries stay lines between vertices of theirs, with no part of the input's lines
+///       farther than max_error; corners stay. Roughness is no feature: see feature_network.hpp.
+///       The new triangles intersect only what the triangles they replace intersected.
+/// Ties: of equal estimates the vertex with the lower number goes first; of equally good triangulations the first.
+/// Bytes do not depend on the number of threads.
+/// Cost: O(n log n) time; about 10 µs per removed vertex. About 300 bytes per triangle.
+/// Metrics and warnings: see plugin.cpp.
+/// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 4, for removal, classes and accumulated errors; direct
+/// errors
+///         and the certificate are our own.
 DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, const DecimateParams& params,
                         Context& context);
 

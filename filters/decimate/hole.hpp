@@ -1,61 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The polygon that the removal of a vertex leaves, on one side of a feature line or all around, and its best
-/// triangulation.
+/// The polygon that an edit leaves, all around or on one side of a feature line, and its best triangulation.
 
 #include <array>
-#include <functional>
+#include <span>
 #include <vector>
 
-#include "decimate/surface.hpp"
+#include "decimate/errors.hpp"
+#include "scanmill/data/mesh.hpp"
 
 namespace scanmill::decimating {
 
-class Hole {
+struct HoleCorner {
+    u32 vertex;
+    u32 ring_position;
+    Vec3 position;
+};
+
+/// Judges the parts of a triangulation. Corners are given by their positions in the polygon, ascending.
+class HoleErrors {
 public:
-    static constexpr u32 most_corners = 64;
+    virtual ~HoleErrors() = default;
+    /// Whether a new edge may be made; adds its errors.
+    virtual bool add_edge(u32 i, u32 j, SignedErrors& errors) = 0;
+    /// Adds the errors of a triangle with this unit normal, without those of its edges. False if they are not allowed.
+    virtual bool add_triangle(u32 i, u32 k, u32 j, const Vec3& normal, SignedErrors& errors) = 0;
+};
 
-    /// Corners are ring positions, counter-clockwise seen from `up`.
-    struct Corner {
-        u32 ring_position, vertex;
-        Vec3 position;
-    };
-    std::vector<Corner> corners;
-    /// Unit mean normal of the triangles that the triangulation replaces.
-    Vec3 up = Vec3::Zero();
-    /// Whether the edge from the last corner to the first is new (a feature edge), and not one of the ring.
-    bool is_closed_by_new_edge = false;
-    /// Sine of the least angle allowed.
-    double angle_sine = 0;
-    /// Numbers of the points to be assigned to its triangles.
-    std::vector<u32> points;
+struct HoleTriangle {
+    std::array<u32, 3> corners;  ///< ascending
+    SignedErrors errors;
+};
 
-    /// Finds the triangulation of least cost; false if none is within the limits.
-    bool triangulate(const Surface& surface, const Limits& limits);
+/// Triangulates polygons by dynamic programming over all triangulations (Klincsek 1980).
+class HoleTriangulator {
+public:
+    /// The triangulation with the least sum of the costs of its triangles; false if none is within the limits. The cost
+    /// of a triangle is 0 for an equilateral one without error: it counts its error, as a share of the limits, and its
+    /// shape. Every triangle faces `up` within the limits and has no angle with a sine below `angle_sine`.
+    /// Cost: O(n³) for n corners.
+    bool triangulate(std::span<const HoleCorner> corners, const Vec3& up, double angle_sine, const Limits& limits,
+                     HoleErrors& judge);
 
-    /// Results: positions in `corners`, ascending.
-    std::vector<std::array<u32, 3>> triangles;
-    std::vector<SignedErrors> errors;  ///< by triangle, of its points and of the paths at its new edges
-    std::vector<u32> owners;  ///< by point: the triangle
+    const std::vector<HoleTriangle>& triangles() const { return triangles_; }
 
 private:
-    struct Chord {
-        SignedErrors path;
-        bool is_known = false, is_possible = false;
-    };
-    bool is_possible(const Surface& surface, const Limits& limits, u32 i, u32 j);
-    void find_sides(const Surface& surface);
-    /// Cost of a triangle, infinite beyond the limits.
-    double cost(const Limits& limits, u32 i, u32 k, u32 j, SignedErrors& errors) const;
-    void collect(const Limits& limits, u32 i, u32 j);
+    double cost(u32 i, u32 k, u32 j, SignedErrors& errors);
+    bool is_possible(u32 i, u32 j);
+    void collect(u32 i, u32 j);
+    std::size_t index(u32 i, u32 j) const { return i * corners_.size() + j; }
 
-    std::size_t index(u32 i, u32 j) const { return i * corners.size() + j; }
-    std::vector<Chord> chords_;
-    std::vector<double> least_;
-    std::vector<u32> middles_;
-    std::size_t words_ = 0;
-    std::vector<u64> left_;  ///< by chord, one bit per point: whether it is on the left
-    std::vector<Vec3> positions_;  ///< of the points
+    std::span<const HoleCorner> corners_;
+    Vec3 up_;
+    double angle_sine_ = 0;
+    const Limits* limits_ = nullptr;
+    HoleErrors* judge_ = nullptr;
+    std::vector<double> least_;  ///< by chord: cost of the polygon beyond it
+    std::vector<u32> middles_;  ///< by chord: the third corner of its triangle
+    std::vector<SignedErrors> edges_, faces_;  ///< by chord: its own errors, and those of that triangle
+    std::vector<HoleTriangle> triangles_;
 };
 
 }  // namespace scanmill::decimating

@@ -7,13 +7,65 @@ using namespace scanmill;
 SCANMILL_FILTER() {
     using P = DecimateParams;
     return Declare<P>("decimate", 1)
-        .summary("Removes vertices while the surface stays within a distance.")
+        .summary("Removes vertices while the surface stays within a distance, and proves the distance.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 4")
-        .in<TriangleMesh>("mesh", "A manifold.")
-        .out<TriangleMesh>("mesh", "The lighter mesh.")
-        .param("max-error", &P::max_error, "Largest distance.", at_least(0))
+        .ties(
+            "Of equal estimates the vertex with the lower number is removed first; of equally good triangulations of a "
+            "hole the first is taken.")
+        .not_finite("Refused, with their number and the first of them.")
+        .adds({"class", "corner-normals", "error-outside", "error-inside"})
+        .in<TriangleMesh>("mesh",
+                          "A manifold, closed or open, oriented consistently. Its sharp edges count beside those that "
+                          "are sharp by their angle.")
+        .in<PointCloud>("points",
+                        "Data points that the result must be near to, besides the mesh's vertices: the scan, for points "
+                        "that thinning or sculpting left off the mesh.",
+                        optional)
+        .out<TriangleMesh>("mesh",
+                           "Vertices of the input, with their columns and `class` (0 smooth, 1 crease, 2 corner, 3 "
+                           "boundary); triangles with `corner-normals`, `error-outside` and `error-inside`; the sharp "
+                           "edges.")
+        .param("max-error", &P::max_error, "Largest distance between the input and the result, in both directions.",
+               at_least(0))
+        .param("outside", &P::outside, "In place of max-error where the input is outside the result.", at_least(0))
+        .param("inside", &P::inside, "In place of max-error where the input is inside the result.", at_least(0))
+        .choice("mode", &P::mode,
+                {{"direct", DecimateMode::direct,
+                  "Errors are measured to the input mesh, and to the points if there are any."},
+                 {"accumulated", DecimateMode::accumulated,
+                  "Two error bounds per triangle grow with every removal, as in the paper: more triangles are left."}},
+                "How the errors that decide are found; the certificate does not depend on it.")
+        .param("sharp-angle", &P::sharp_angle, "An edge is sharp if the normals of its triangles differ by more.",
+               at_least(20), at_most(75))
+        .param("corner-angle", &P::corner_angle, "A feature line that turns by more has a corner there.", at_least(0),
+               at_most(180))
+        .param("normal-deviation", &P::normal_deviation,
+               "Largest angle between the normal of a new triangle and the mean normal of those it replaces.",
+               at_least(0), at_most(89))
+        .param("min-angle", &P::min_angle,
+               "No new triangle has a smaller angle, unless one of those it replaces has. A larger one makes better "
+               "triangles, and more of them.",
+               at_least(0), at_most(30))
+        .param("max-valence", &P::max_valence, "Vertices with more edges are not removed, and none gets more.",
+               at_least(6), at_most(64))
+        .param("target-triangles", &P::target_triangles,
+               "Removal ends with at most so many triangles, or earlier because of max-error; 0: no such limit.",
+               at_least(0))
+        .param("final-flips", &P::final_flips,
+               "Whether edges are flipped, within the same limits, to raise the triangles' least angles.")
+        .metric("triangles", Unit::count, "Triangles of the result.", headline)
+        .metric("removed", Unit::count, "Vertices removed.")
+        .metric("flips", Unit::count, "Edges flipped.")
+        .metric("hausdorff-lower", Unit::length, "Lower bound of the distance between the input and the result.")
+        .metric("hausdorff-upper", Unit::length, "Upper bound; the filter fails if it exceeds max-error.", headline)
+        .metric("certified", Unit::boolean, "Whether the upper bound is proven to be within max-error: always 1.")
+        .metric("creases", Unit::count, "Lines of sharp edges, from corner to corner or closed.")
+        .metric("corners", Unit::count, "Vertices of class corner.")
+        .metric("points-max", Unit::length, "Largest distance from a point at `points` to the result.")
+        .metric("points-beyond", Unit::count, "Points at `points` that are farther than max-error from the result.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
-            DecimateResult result = decimate(inputs.get<TriangleMesh>("mesh"), nullptr, params, context);
-            return Outputs().set("mesh", std::move(result.mesh));
+            const PointCloud* points = inputs.find<PointCloud>("points");
+            return Outputs().set(
+                "mesh", decimate(inputs.get<TriangleMesh>("mesh"), points, params, context).mesh);
         });
 }

@@ -23,8 +23,10 @@ void require_proper_triangles(const TriangleMesh& mesh) {
 
 }  // namespace
 
-EditableMesh::EditableMesh(const TriangleMesh& mesh)
-    : opposite_(half_edges::opposites(mesh)),
+EditableMesh::EditableMesh(const TriangleMesh& mesh) : EditableMesh(mesh, half_edges::opposites(mesh)) {}
+
+EditableMesh::EditableMesh(const TriangleMesh& mesh, Array<u32> opposite)
+    : opposite_(std::move(opposite)),
       first_(mesh.positions.size(), none),
       triangles_(mesh.triangles.size()) {
     require_proper_triangles(mesh);

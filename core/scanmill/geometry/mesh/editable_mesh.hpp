@@ -24,6 +24,8 @@ public:
     /// Error as half_edges::opposites() does, and for such vertices and triangles, naming the first.
     /// Cost: linear, 24 bytes per triangle and 4 per vertex, and 24 bytes per triangle during construction.
     explicit EditableMesh(const TriangleMesh& mesh);
+    /// `opposite`: half_edges::opposites(mesh).
+    EditableMesh(const TriangleMesh& mesh, Array<u32> opposite);
 
     std::size_t vertices() const { return first_.size(); }
     /// Rows, empty ones included.

@@ -13,8 +13,8 @@ namespace scanmill {
 /// differ by more than `sharp_angle`, in radians, or if it is one of the mesh's declared sharp edges. Opposite
 /// half-edges are equal; no edge on the boundary is sharp.
 ///
-/// Pre: `opposite` by half_edges::opposites(), `normals` by facet_normals(). Throws Error for a declared sharp edge that
-/// is in no triangle. Cost: linear, one bit per half-edge.
+/// Pre: `opposite` by half_edges::opposites(), `normals` by facet_normals(). Throws Error for a declared sharp edge
+/// that is in no triangle. Cost: linear, one bit per half-edge.
 std::vector<bool> sharp_half_edges(const TriangleMesh& mesh, std::span<const u32> opposite,
                                    std::span<const Vec3> normals, double sharp_angle, unsigned threads);
 

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "decimate/feature_network.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <queue>
+#include <tuple>
+
+#include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/mesh/facet_normals.hpp"
+#include "scanmill/geometry/mesh/sharp_edges.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
+
+namespace scanmill::decimating {
+
+namespace {
+
+constexpr u32 none = ~u32(0);
+
+}  // namespace
+
+FeatureNetwork::FeatureNetwork(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> normals,
+                               const FeatureScale& scale, unsigned threads)
+    : mesh_(mesh),
+      opposite_(opposite),
+      first_(mesh.positions.size(), half_edges::boundary),
+      classes_(mesh.positions.size(), VertexClass::smooth) {
+    for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
+        u32& first = first_[half_edges::start(mesh, half_edge)];
+        if (first == half_edges::boundary || opposite[half_edge] == half_edges::boundary) first = half_edge;
+    }
+    features_ = sharp_half_edges(mesh, opposite, normals, scale.sharp_angle + angle_tie, threads);
+    for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge)
+        if (opposite[half_edge] == half_edges::boundary) features_[half_edge] = true;
+    count_features();
+    do prune_branches(scale.reach);
+    while (merge_small_faces(scale.reach * scale.reach));
+    classify(scale);
+    find_singular();
+    if (mesh.sharp_edges.empty()) return;
+    std::size_t kept = 0;
+    for (u32 half_edge = 0; half_edge < opposite.size(); ++half_edge) {
+        if (!features_[half_edge] || opposite[half_edge] < half_edge) continue;
+        const Edge edge = make_edge(half_edges::start(mesh, half_edge), half_edges::end(mesh, half_edge));
+        kept += std::ranges::binary_search(mesh.sharp_edges, edge);
+    }
+    ignored_declared_ = mesh.sharp_edges.size() - kept;
+}
+
+std::array<u32, 2> FeatureNetwork::line_neighbours(u32 vertex) const {
+    std::array<u32, 2> found{};
+    std::size_t count = 0;
+    for_each_line(vertex, [&](u32, u32 other) {
+        if (count < 2) found[count++] = other;
+    });
+    return found;
+}
+
+void FeatureNetwork::count_features() {
+    counts_.assign(first_.size(), 0);
+    for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge) {
+        if (!features_[half_edge]) continue;
+        ++counts_[half_edges::start(mesh_, half_edge)];
+        if (opposite_[half_edge] == half_edges::boundary) ++counts_[half_edges::end(mesh_, half_edge)];
+    }
+}
+
+void FeatureNetwork::remove_feature(u32 half_edge) {
+    features_[half_edge] = features_[opposite_[half_edge]] = false;
+    --counts_[half_edges::start(mesh_, half_edge)];
+    --counts_[half_edges::end(mesh_, half_edge)];
+}
+
+void FeatureNetwork::prune_branches(double reach) {
+    // The shortest branch first: of two branches at a fork the longer one then continues the line.
+    struct Branch {
+        double length;
+        u32 end;
+        auto operator<=>(const Branch&) const = default;
+    };
+    std::vector<u32> path;
+    const auto follow = [&](u32 end) {
+        path.clear();
+        double length = 0;
+        u32 vertex = end, last = none;
+        do {
+            u32 next = none, edge = none;
+            for_each_line(vertex, [&](u32 half_edge, u32 other) {
+                if (other != last) next = other, edge = half_edge;
+            });
+            if (next == none) break;
+            path.push_back(edge);
+            length += (position(next) - position(vertex)).norm();
+            last = std::exchange(vertex, next);
+        } while (counts_[vertex] == 2 && length < reach);
+        return length;
+    };
+    std::priority_queue<Branch, std::vector<Branch>, std::greater<>> branches;
+    for (u32 vertex = 0; vertex < first_.size(); ++vertex)
+        if (counts_[vertex] == 1) branches.push({follow(vertex), vertex});
+    while (!branches.empty()) {
+        const Branch branch = branches.top();
+        branches.pop();
+        if (counts_[branch.end] != 1) continue;
+        const double length = follow(branch.end);
+        if (!(length < reach)) continue;
+        if (length > branch.length) {  // another branch at its fork was removed
+            branches.push({length, branch.end});
+            continue;
+        }
+        for (const u32 half_edge : path) remove_feature(half_edge);
+        for (const u32 end : {half_edges::start(mesh_, path.back()), half_edges::end(mesh_, path.back())})
+            if (counts_[end] == 1) branches.push({follow(end), end});
+    }
+}
+
+bool FeatureNetwork::merge_small_faces(double least_area) {
+    // A face: triangles connected across edges that are no features. It joins the neighbour with the longest border.
+    const u32 triangles = static_cast<u32>(mesh_.triangles.size());
+    DisjointSets faces(triangles);
+    std::vector<u32> sharp;
+    for (u32 half_edge = 0; half_edge < opposite_.size(); ++half_edge) {
+        const u32 other = opposite_[half_edge];
+        if (other == half_edges::boundary || other < half_edge) continue;
+        if (features_[half_edge])
+            sharp.push_back(half_edge);
+        else
+            faces.unite(half_edge / 3, other / 3);
+    }
+    if (sharp.empty()) return false;
+    std::vector<double> areas(triangles, 0);
+    for (u32 t = 0; t < triangles; ++t) {
+        const auto& [a, b, c] = mesh_.triangles[t];
+        areas[faces.find(t)] += (position(b) - position(a)).cross(position(c) - position(a)).norm() / 2;
+    }
+    struct Border {
+        double area;
+        u32 face, half_edge;
+        auto operator<=>(const Border&) const = default;
+    };
+    std::vector<Border> borders;
+    for (const u32 half_edge : sharp)
+        for (const u32 side : {half_edge, opposite_[half_edge]}) {
+            const u32 face = faces.find(side / 3);
+            if (areas[face] < least_area) borders.push_back({areas[face], face, side});
+        }
+    std::ranges::sort(borders);
+    bool is_changed = false;
+    for (std::size_t begin = 0, end = 0; begin < borders.size(); begin = end) {
+        const Border& first = borders[begin];
+        while (end < borders.size() && borders[end].face == first.face) ++end;
+        if (faces.find(first.face) != first.face || areas[first.face] != first.area) continue;  // it has grown
+        std::map<u32, double> lengths;
+        for (std::size_t i = begin; i < end; ++i) {
+            const u32 side = borders[i].half_edge, neighbour = faces.find(opposite_[side] / 3);
+            if (neighbour == first.face) continue;
+            lengths[neighbour] +=
+                (position(half_edges::end(mesh_, side)) - position(half_edges::start(mesh_, side))).norm();
+        }
+        if (lengths.empty()) continue;
+        const u32 longest =
+            std::ranges::max_element(lengths, {}, [](const auto& entry) { return entry.second; })->first;
+        for (std::size_t i = begin; i < end; ++i) {
+            const u32 side = borders[i].half_edge;
+            if (features_[side] && faces.find(opposite_[side] / 3) == longest) remove_feature(side);
+        }
+        const double area = areas[first.face] + areas[longest];
+        faces.unite(first.face, longest);
+        areas[faces.find(first.face)] = area;
+        is_changed = true;
+    }
+    return is_changed;
+}
+
+Vec3 FeatureNetwork::point_on_line(u32 vertex, u32 next, double distance, bool& is_closed) const {
+    for (const u32 begin = vertex;;) {
+        const Vec3 step = position(next) - position(vertex);
+        const double length = step.norm();
+        if (length >= distance) return position(vertex) + distance / length * step;
+        is_closed = is_closed || next == begin;
+        if (next == begin || counts_[next] != 2) return position(next);
+        distance -= length;
+        const auto [one, other] = line_neighbours(next);
+        vertex = std::exchange(next, one == vertex ? other : one);
+    }
+}
+
+bool FeatureNetwork::turns(u32 vertex, const FeatureScale& scale) const {
+    const double limit = scale.corner_angle + angle_tie;
+    const Vec3& here = position(vertex);
+    const auto [last, next] = line_neighbours(vertex);
+    if (!(angle_between(here - position(last), position(next) - here) > limit)) return false;
+    bool is_closed = false;
+    const Vec3 arriving = here - point_on_line(vertex, last, scale.reach, is_closed);
+    const Vec3 leaving = point_on_line(vertex, next, scale.reach, is_closed) - here;
+    return !is_closed && angle_between(arriving, leaving) > limit;
+}
+
+void FeatureNetwork::classify(const FeatureScale& scale) {
+    for (u32 vertex = 0; vertex < first_.size(); ++vertex) {
+        if (counts_[vertex] == 0) continue;
+        if (counts_[vertex] != 2 || turns(vertex, scale))
+            classes_[vertex] = VertexClass::corner;
+        else
+            classes_[vertex] =
+                opposite_[first_[vertex]] == half_edges::boundary ? VertexClass::boundary : VertexClass::crease;
+    }
+}
+
+void FeatureNetwork::find_singular() {
+    // An apex: the curvature round it does not grow with the disc, as that of a smooth tip does.
+    constexpr double least_curvature = 0.5, largest_growth = 0.2, near = 3, far = 6;
+    Array<double> defects(first_.size(), 0);
+    Array<double> lengths;
+    for (u32 t = 0; t < mesh_.triangles.size(); ++t)
+        for (u32 i = 0; i < 3; ++i) {
+            const Triangle& corners = mesh_.triangles[t];
+            const u32 a = corners[i], b = corners[(i + 1) % 3], c = corners[(i + 2) % 3];
+            defects[a] += angle_between(position(b) - position(a), position(c) - position(a));
+            lengths.push_back((position(b) - position(a)).norm());
+        }
+    if (lengths.empty()) return;
+    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+    std::ranges::nth_element(lengths, middle);
+    const double edge = *middle;
+    for (double& defect : defects) defect = 2 * std::numbers::pi - defect;
+
+    const auto for_each_neighbour = [&](u32 vertex, auto&& action) {
+        u32 half_edge = first_[vertex];
+        do {
+            action(half_edges::end(mesh_, half_edge));
+            const u32 last = half_edges::before(half_edge);
+            if (opposite_[last] == half_edges::boundary) action(half_edges::start(mesh_, last));
+            half_edge = opposite_[last];
+        } while (half_edge != half_edges::boundary && half_edge != first_[vertex]);
+    };
+    struct Disc {
+        double curvature = 0;
+        bool is_largest = true, has_features = false;
+    };
+    std::vector<u32> disc;
+    std::vector<u32> visited(first_.size(), none);
+    u32 visit = 0;
+    const auto disc_around = [&](u32 centre, double radius) {
+        Disc found;
+        disc.assign(1, centre);
+        visited[centre] = visit;
+        for (std::size_t i = 0; i < disc.size(); ++i) {
+            const u32 vertex = disc[i];
+            found.curvature += defects[vertex];
+            found.has_features = found.has_features || counts_[vertex] > 0;
+            found.is_largest = found.is_largest && (defects[vertex] < defects[centre] || vertex == centre);
+            for_each_neighbour(vertex, [&](u32 other) {
+                if (visited[other] == visit || (position(other) - position(centre)).norm() > radius) return;
+                visited[other] = visit;
+                disc.push_back(other);
+            });
+        }
+        ++visit;
+        return found;
+    };
+    for (u32 vertex = 0; vertex < first_.size(); ++vertex) {
+        if (first_[vertex] == half_edges::boundary || counts_[vertex] > 0 || !(defects[vertex] > 0)) continue;
+        bool is_peak = true;
+        for_each_neighbour(vertex, [&](u32 other) { is_peak = is_peak && defects[other] < defects[vertex]; });
+        if (!is_peak) continue;
+        const Disc small = disc_around(vertex, near * edge);
+        if (!small.is_largest || small.has_features || !(small.curvature > least_curvature)) continue;
+        const Disc large = disc_around(vertex, far * edge);
+        if (large.has_features || !(std::abs(large.curvature - small.curvature) < largest_growth * small.curvature))
+            continue;
+        classes_[vertex] = VertexClass::corner;
+    }
+}
+
+}  // namespace scanmill::decimating

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The feature edges of the mesh that is decimated, at the scale of the largest error, and the classes of its vertices.
+///
+/// Noise makes many edges sharp. A branch that ends freely within a few times the largest error, and a face enclosed by
+/// sharp edges that is as small, are roughness that the result may smooth; the edges between larger faces are features.
+
+#include <span>
+#include <vector>
+
+#include "decimate/decimate.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
+
+namespace scanmill::decimating {
+
+struct FeatureScale {
+    double sharp_angle = 0, corner_angle = 0;  ///< radians
+    /// Branches with a free end that are shorter, faces with an area below its square, and turns of a line that are
+    /// gone within this distance on both sides are no features.
+    double reach = 0;
+};
+
+class FeatureNetwork {
+public:
+    /// `opposite`: half_edges::opposites(mesh), `normals`: facet_normals(). Keeps references to mesh and opposite.
+    /// Throws Error as sharp_half_edges() does.
+    FeatureNetwork(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> normals,
+                   const FeatureScale& scale, unsigned threads);
+
+    VertexClass vertex_class(u32 vertex) const { return classes_[vertex]; }
+    /// Whether the vertex is the apex of a cone: a corner without feature edges.
+    bool is_singular(u32 vertex) const { return classes_[vertex] == VertexClass::corner && counts_[vertex] == 0; }
+    /// Whether the edge of the half-edge is sharp or on the boundary.
+    bool is_feature(u32 half_edge) const { return features_[half_edge]; }
+    /// Of the mesh's declared sharp edges those that are no features at this scale.
+    std::size_t ignored_declared() const { return ignored_declared_; }
+
+    /// Any half-edge from the vertex; on the boundary the first of its fan, counter-clockwise. half_edges::boundary for
+    /// a vertex without triangles.
+    u32 first(u32 vertex) const { return first_[vertex]; }
+    /// Calls action(half-edge, other end) for every feature edge at the vertex, counter-clockwise. The half-edge starts
+    /// at the vertex, except for the last one of an open fan, which ends there. Pre: the vertex has triangles.
+    template <class Action>
+    void for_each_line(u32 vertex, Action&& action) const {
+        u32 half_edge = first_[vertex];
+        do {
+            if (features_[half_edge]) action(half_edge, half_edges::end(mesh_, half_edge));
+            const u32 last = half_edges::before(half_edge);
+            if (opposite_[last] == half_edges::boundary) action(last, half_edges::start(mesh_, last));
+            half_edge = opposite_[last];
+        } while (half_edge != half_edges::boundary && half_edge != first_[vertex]);
+    }
+    /// Both neighbours on the feature line through a vertex. Pre: it has two feature edges.
+    std::array<u32, 2> line_neighbours(u32 vertex) const;
+    /// Follows the line from a vertex over its neighbour `next` to the first vertex for which `is_end` holds, calling
+    /// passed(vertex) for those between, which must have two feature edges.
+    template <class IsEnd, class Passed>
+    u32 follow_line(u32 vertex, u32 next, IsEnd&& is_end, Passed&& passed) const {
+        while (!is_end(next)) {
+            passed(next);
+            const auto [one, other] = line_neighbours(next);
+            vertex = std::exchange(next, one == vertex ? other : one);
+        }
+        return next;
+    }
+
+private:
+    const Vec3& position(u32 vertex) const { return mesh_.positions[vertex]; }
+    void count_features();
+    void remove_feature(u32 half_edge);
+    void prune_branches(double reach);
+    bool merge_small_faces(double least_area);
+    Vec3 point_on_line(u32 vertex, u32 next, double distance, bool& is_closed) const;
+    bool turns(u32 vertex, const FeatureScale& scale) const;
+    void classify(const FeatureScale& scale);
+    void find_singular();
+
+    const TriangleMesh& mesh_;
+    std::span<const u32> opposite_;
+    Array<u32> first_;
+    std::vector<bool> features_;  ///< by half-edge
+    Array<u32> counts_;  ///< by vertex: feature edges at it
+    Array<VertexClass> classes_;
+    std::size_t ignored_declared_ = 0;
+};
+
+}  // namespace scanmill::decimating
