@@ -12,6 +12,7 @@ def main():
     for name, draw in (
         ("alpha_solid", surfaces.alpha_solid),
         ("delaunay", surfaces.delaunay_filter),
+        ("edge_flip", surfaces.edge_flip),
         ("features", surfaces.features),
         ("measure", surfaces.measure),
         ("merge", clouds.merge),
