@@ -18,7 +18,7 @@ one.
 
 All programs get the same mesh, with coordinates rounded to float, and their default settings, except that
 fast-simplification's *agg* is 4, with which it needs fewer triangles than with the default 7, and that PyMeshLab also
-runs with *planarquadric*, with which it needs fewer on models with planes.
+runs with *planarquadric*, with which it can need fewer on models with planes.
 
 `decimate` keeps vertices of the input. The other programs, except meshoptimizer, move vertices; on smooth convex
 surfaces they can then do with half as many triangles, because the surface can lie on both sides of the input's."""
