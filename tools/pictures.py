@@ -13,6 +13,7 @@ def main():
         ("alpha_solid", surfaces.alpha_solid),
         ("decimate", surfaces.decimate),
         ("delaunay", surfaces.delaunay_filter),
+        ("edge_flip", surfaces.edge_flip),
         ("features", surfaces.features),
         ("measure", surfaces.measure),
         ("merge", clouds.merge),

@@ -5,7 +5,7 @@ import math
 import random
 
 from drawing import BRIGHT, INK, PALE, SOLID, Picture
-from plane_geometry import delaunay, nearest_on_profile, scattered, spread_over
+from plane_geometry import circumcircle, delaunay, nearest_on_profile, scattered, spread_over
 
 
 def region_grow():
@@ -152,6 +152,57 @@ def decimate():
         picture.dot(profile[i], BRIGHT if i == corner else INK, 6 if i == corner else 5)
     picture.text((profile[corner][0] - 0.35, profile[corner][1] + 0.25), "corner", BRIGHT)
     return picture
+
+
+def edge_flip():
+    picture = Picture(11.2, 4.3)
+    source = random.Random(4)
+    points = scattered(source, 26, 0.5, 4.6, 3.6)
+    triangles = swept(points)
+    flipped = flip_to_delaunay(triangles)
+    for x, corners_of, before in ((0.3, triangles, None), (6.3, flipped, triangles)):
+        seen = lambda p: (p[0] + x, p[1] + 0.35)
+        edges = lambda all_of: {frozenset(pair) for t in all_of for pair in itertools.combinations(t, 2)}
+        kept = edges(before or flipped)
+        for corners in corners_of:
+            picture.polygon([seen(p) for p in corners], SOLID, PALE)
+        for a, b in sorted(sorted(edge) for edge in edges(corners_of)):
+            new = frozenset((a, b)) not in kept
+            picture.line(seen(a), seen(b), BRIGHT if new else INK, 2 if new else 1)
+        for p in points:
+            picture.dot(seen(p), INK, 3)
+    picture.arrow((5.1, 2.15), (6.1, 2.15))
+    return picture
+
+
+def swept(points):
+    """A triangulation of the hull with bad angles: points by x, each joined to the hull of those before it."""
+    left_of = lambda a, b, c: (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0
+    triangles, lower, upper = [], [], []
+    for p in sorted(points):
+        for chain, left in ((lower, True), (upper, False)):
+            while len(chain) > 1 and left_of(chain[-2], chain[-1], p) != left:
+                triangles.append((chain[-2], chain[-1], p))
+                chain.pop()
+            chain.append(p)
+    return triangles
+
+
+def flip_to_delaunay(triangles):
+    """Flips edges while a corner is inside the circumcircle of the triangle beyond an edge of its own triangle."""
+    triangles = [tuple(sorted(t)) for t in triangles]
+    while True:
+        for one, two in itertools.combinations(triangles, 2):
+            a, b = sorted(set(one) & set(two)) if len(set(one) & set(two)) == 2 else (None, None)
+            if a is None:
+                continue
+            (c,), (d,) = set(one) - {a, b}, set(two) - {a, b}
+            centre, radius = circumcircle(*one)
+            if math.dist(d, centre) < radius - 1e-9:
+                triangles = [t for t in triangles if t not in (one, two)] + [tuple(sorted((a, c, d))), tuple(sorted((b, c, d)))]
+                break
+        else:
+            return triangles
 
 
 def features():

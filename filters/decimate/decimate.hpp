@@ -19,7 +19,7 @@ enum class DecimateMode {
 };
 
 struct DecimateParams {
-    /// Largest distance between input and result; 0 or more.
+    /// Largest distance between input and result; 0 or more. Below 1e-10 of the mesh's diagonal it counts as that.
     Length max_error = Length::percent_of_diagonal(0.1);
     /// In place of max_error where the input is outside the result, and where it is inside.
     std::optional<Length> outside, inside;

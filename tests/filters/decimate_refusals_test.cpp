@@ -173,7 +173,9 @@ TEST(DecimateWarns, OfDuplicateVertices_WhichStayASeam) {
     EXPECT_THAT(warnings_of_decimate(seam, within(0.01)),
                 Contains("5 vertices have the position of another one; the mesh is open between them, and stays so"));
     const DecimateResult result = decimated(seam, 0.01);
-    expect_laws(seam, result, 0.01);
+    EXPECT_EQ(topology(result.mesh).components, 2u);
+    EXPECT_EQ(topology(result.mesh).boundary_loops, 2u);
+    EXPECT_LE(result.certificate.upper, 1e-12);
     EXPECT_LT(result.mesh.triangles.size(), 20u);
 }
 

@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "edge_flip/edge_flip.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/mesh/editable_mesh.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Criterion = EdgeFlipParams::Criterion;
+
+constexpr double least_gain = 1e-9;  // in radians, or of the length
+constexpr double straight = 1e-6;  // radians below π at which two angles form a straight line
+/// Of a triangle's height to its longest edge: below, it has no normal (as in facet_normals.hpp).
+constexpr double no_height = 1e-9;
+/// Of cosines of dihedral deviations, and of distances to lengths: covers rounding in planes.
+constexpr double cosine_rounding = 1e-12, distance_rounding = 1e-9;
+
+/// Series, because the C library's cosine depends on the processor. Pre: 0 ≤ radians ≤ π / 3.
+double cosine_of(double radians) {
+    double term = 1, sum = 1;
+    for (int i = 2; i <= 20; i += 2) sum += term *= -radians * radians / ((i - 1) * i);
+    return sum;
+}
+
+/// The direction of an angle in [0, π]: ratios of its cosine and sine.
+struct Direction {
+    double cosine, sine;
+};
+/// Pre: the angles differ by less than π.
+bool is_less(const Direction& a, const Direction& b) { return a.cosine * b.sine > a.sine * b.cosine; }
+
+/// The least angle of the triangle with the edges `one` and `two` from one of its corners. Of the three angles, which
+/// have the same cross product, it is the one with the largest dot product.
+Direction least_angle(const Vec3& one, const Vec3& two, const Vec3& normal) {
+    const double dot = one.dot(two);
+    return {std::max({dot, one.squaredNorm() - dot, two.squaredNorm() - dot}), normal.norm()};
+}
+
+/// Whether the sum of the angles from `one` to `middle` and from `middle` to `two` is less than π - straight. The
+/// cross products of the two angles have the lengths `one_sine` and `two_sine`.
+bool is_convex(const Vec3& one, const Vec3& middle, const Vec3& two, double one_sine, double two_sine) {
+    const double one_cosine = one.dot(middle), two_cosine = two.dot(middle);
+    if (one_cosine <= 0 && two_cosine <= 0) return false;
+    const double cosine = one_cosine * two_cosine - one_sine * two_sine;
+    const double sine = one_cosine * two_sine + one_sine * two_cosine;
+    return sine + straight * cosine > 0;
+}
+
+/// The squared distance between the segments from `a` along `u` and from `c` along `v`. Pre: u and v are not zero.
+/// (Ericson 2005, Real-time collision detection, section 5.1.9.)
+double squared_distance(const Vec3& a, const Vec3& u, const Vec3& c, const Vec3& v) {
+    const Vec3 r = a - c;
+    const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), ur = u.dot(r), vr = v.dot(r);
+    const double denominator = uu * vv - uv * uv;
+    double s = denominator > 0 ? std::clamp((uv * vr - ur * vv) / denominator, 0.0, 1.0) : 0;
+    double t = (uv * s + vr) / vv;
+    if (t < 0 || t > 1) {
+        t = std::clamp(t, 0.0, 1.0);
+        s = std::clamp((uv * t - ur) / uu, 0.0, 1.0);
+    }
+    return (r + s * u - t * v).squaredNorm();
+}
+
+/// Two triangles at an edge, (a, b, c) and (b, a, d), and those at the other diagonal, (c, a, d) and (d, b, c).
+struct Quadrilateral {
+    Vec3 a, ab, ac, ad, bc, bd, cd;
+    Vec3 abc, bad, cad, dbc;  ///< normals, twice the areas long
+
+    Quadrilateral(const Vec3& a_, const Vec3& b, const Vec3& c, const Vec3& d)
+        : a(a_),
+          ab(b - a),
+          ac(c - a),
+          ad(d - a),
+          bc(c - b),
+          bd(d - b),
+          cd(d - c),  //
+          abc(ab.cross(ac)),
+          bad(ad.cross(ab)),
+          cad(ad.cross(ac)),
+          dbc(bc.cross(bd)) {}
+
+    bool gains_angle() const {
+        const auto lesser = [](const Direction& one, const Direction& two) { return is_less(one, two) ? one : two; };
+        const Direction now = lesser(least_angle(ab, ac, abc), least_angle(ab, ad, bad));
+        const Direction then = lesser(least_angle(ac, ad, cad), least_angle(bc, bd, dbc));
+        return is_less({now.cosine - least_gain * now.sine, now.sine + least_gain * now.cosine}, then);
+    }
+    bool gets_shorter() const {
+        constexpr double factor = (1 - least_gain) * (1 - least_gain);
+        return cd.squaredNorm() < ab.squaredNorm() * factor;
+    }
+    bool is_convex() const {
+        const double c_sine = abc.norm(), d_sine = bad.norm();
+        return scanmill::is_convex(ac, ab, ad, c_sine, d_sine) && scanmill::is_convex(bc, -ab, bd, c_sine, d_sine);
+    }
+    bool deviates(double share) const {
+        const double shorter = std::min(ab.squaredNorm(), cd.squaredNorm());
+        const double limit = share + distance_rounding;
+        return squared_distance(a, ab, a + ac, cd) > limit * limit * shorter;
+    }
+};
+
+/// Zero without area. `longest` is the squared length of the longest edge.
+Vec3 unit_normal(const Vec3& normal, double longest) {
+    const double length = normal.norm();
+    return length > no_height * longest ? Vec3(normal / length) : Vec3::Zero();
+}
+Vec3 unit_normal(const Vec3& normal, const Vec3& e, const Vec3& f, const Vec3& g) {
+    return unit_normal(normal, std::max({e.squaredNorm(), f.squaredNorm(), g.squaredNorm()}));
+}
+
+enum class Decision : u8 { stays, flips, sharp, connected, folding, deviating, too_long };
+
+class Flipping {
+public:
+    Flipping(const TriangleMesh& mesh, const EdgeFlipParams& params)
+        : mesh_(mesh),
+          positions_(mesh.positions.begin(), mesh.positions.end()),
+          criterion_(params.criterion),
+          keep_cosine_(cosine_of(params.keep_angle.in_radians())),
+          deviation_(params.deviation.value()),
+          flags_(3 * mesh.triangles.size(), 0),
+          queue_(3 * mesh.triangles.size()) {
+        if (params.max_edge) squared_max_edge_ = params.max_edge->value() * params.max_edge->value();
+        mark_sharp_edges(mesh.sharp_edges);
+    }
+
+    void run(Context& context) {
+        for (u32 row = 0; row < mesh_.rows(); ++row)
+            if (normal_of(row).isZero(0)) push(longest_edge(row));
+        for (u32 h = 0; h < half_edges(); ++h)
+            if (h < mesh_.opposite(h)) push(h);
+        do {
+            empty_queue(context);
+            // A flip also changes the rules for edges that are not at its triangles.
+            left_ = {};
+            for (u32 h = 0; h < half_edges(); ++h) {
+                if (h % check_interval == 0) context.check_cancelled();
+                if (h < mesh_.opposite(h)) count(h, decide(h));
+            }
+        } while (queued_ > 0);
+    }
+
+    double least_angle() const {
+        Direction least{-1, 1};
+        for (u32 row = 0; row < mesh_.rows(); ++row) {
+            const auto [one, two, normal] = shape(row);
+            if (const Direction angle = scanmill::least_angle(one, two, normal); is_less(angle, least)) least = angle;
+        }
+        return angle_of(least.cosine, least.sine);
+    }
+
+    Array<Triangle> triangles() const { return mesh_.compact_triangles(); }
+    Array<EdgeFlip> flips() { return std::move(flips_); }
+    const BlockedEdges& left() const { return left_; }
+
+private:
+    static constexpr u8 sharp = 1, pending = 2;
+    static constexpr u32 check_interval = 1 << 14;
+
+    u32 half_edges() const { return static_cast<u32>(3 * mesh_.rows()); }
+
+    void mark_sharp_edges(std::span<const Edge> edges) {
+        std::size_t missing = 0;
+        const Edge* first = nullptr;
+        for (const Edge& edge : edges) {
+            u32 h = mesh_.between(edge[0], edge[1]);
+            if (h == EditableMesh::none) h = mesh_.between(edge[1], edge[0]);
+            if (h == EditableMesh::none) {
+                if (missing++ == 0) first = &edge;
+                continue;
+            }
+            flags_[h] |= sharp;
+            if (!mesh_.is_boundary(h)) flags_[mesh_.opposite(h)] |= sharp;
+        }
+        if (missing > 0)
+            throw Error("{} of the mesh's {} {} of no triangle; the first is between vertices {} and {}", missing,
+                        count_text(edges.size(), "sharp edge", "sharp edges"),
+                        by_count(missing, "is an edge", "are edges"), (*first)[0], (*first)[1])
+                .hint("write the mesh again with the sharp edges of its own triangles, or without any");
+        has_sharp_ = !edges.empty();
+    }
+
+    struct Shape {
+        Vec3 one, two, normal;
+    };
+    Shape shape(u32 row) const {
+        const auto [a, b, c] = mesh_.triangle(row);
+        const Vec3 one = positions_[b] - positions_[a], two = positions_[c] - positions_[a];
+        return {one, two, one.cross(two)};
+    }
+    Vec3 normal_of(u32 row) const {
+        const auto [one, two, normal] = shape(row);
+        return unit_normal(normal, one, two, two - one);
+    }
+    u32 longest_edge(u32 row) const {
+        const auto length = [&](u32 h) {
+            return (positions_[mesh_.end(h)] - positions_[mesh_.start(h)]).squaredNorm();
+        };
+        u32 longest = 3 * row;
+        for (const u32 h : {3 * row + 1, 3 * row + 2})
+            if (length(h) > length(longest)) longest = h;
+        return longest;
+    }
+
+    void push(u32 h) {
+        const u32 other = mesh_.opposite(h);
+        if (other == half_edges::boundary || ((flags_[h] | flags_[other]) & pending)) return;
+        flags_[h] |= pending;
+        queue_[(queue_begin_ + queued_++) % queue_.size()] = h;
+    }
+    u32 pop() {
+        const u32 h = queue_[queue_begin_];
+        queue_begin_ = (queue_begin_ + 1) % queue_.size();
+        --queued_;
+        flags_[h] &= static_cast<u8>(~pending);
+        return h;
+    }
+
+    void empty_queue(Context& context) {
+        for (std::size_t examined = 1; queued_ > 0; ++examined) {
+            const u32 h = pop();
+            if (decide(h) == Decision::flips) flip(h);
+            if (examined % check_interval != 0) continue;
+            context.check_cancelled();
+            const double done = static_cast<double>(examined);
+            progress_ = std::max(progress_, done / (done + static_cast<double>(queued_)));
+            context.progress(progress_);
+        }
+    }
+
+    Decision decide(u32 h) const {
+        const u32 other = mesh_.opposite(h);
+        if (other == half_edges::boundary) return Decision::stays;
+        const u32 c = mesh_.apex(h), d = mesh_.apex(other);
+        const Quadrilateral quad(positions_[mesh_.start(h)], positions_[mesh_.end(h)], positions_[c], positions_[d]);
+        // The criterion first: it rejects most edges.
+        if (!(criterion_ == Criterion::delaunay ? quad.gains_angle() : quad.gets_shorter())) return Decision::stays;
+        if (criterion_ == Criterion::paper ? quad.cad.dot(quad.dbc) >= 0 : !quad.is_convex()) return Decision::stays;
+        if (flags_[h] & sharp) return Decision::sharp;
+        if (!mesh_.can_flip(h)) return Decision::connected;
+        if (criterion_ != Criterion::paper) {
+            if (folds(h, quad)) return Decision::folding;
+            if (quad.deviates(deviation_)) return Decision::deviating;
+        }
+        if (!(quad.cd.squaredNorm() < squared_max_edge_)) return Decision::too_long;
+        return Decision::flips;
+    }
+
+    bool folds(u32 h, const Quadrilateral& quad) const {
+        Vec3 abc = unit_normal(quad.abc, quad.ab, quad.ac, quad.bc),
+             bad = unit_normal(quad.bad, quad.ab, quad.ad, quad.bd);
+        const Vec3 cad = unit_normal(quad.cad, quad.ac, quad.ad, quad.cd),
+                   dbc = unit_normal(quad.dbc, quad.bc, quad.bd, quad.cd);
+        const Vec3 mean = quad.abc + quad.bad;
+        if (!(cad.dot(dbc) > 0 && cad.dot(mean) > 0 && dbc.dot(mean) > 0)) return true;
+        if (abc.isZero(0) && bad.isZero(0)) return true;
+        if (abc.isZero(0)) abc = bad;
+        if (bad.isZero(0)) bad = abc;
+        double before = std::min(keep_cosine_, abc.dot(bad)), after = cad.dot(dbc);
+        const auto add_outer = [&](u32 edge, const Vec3& old_normal, const Vec3& new_normal) {
+            const u32 beyond = mesh_.opposite(edge);
+            if (beyond == half_edges::boundary) return;
+            const Vec3 outer = normal_of(beyond / 3);
+            if (outer.isZero(0)) return;
+            before = std::min(before, outer.dot(old_normal));
+            after = std::min(after, outer.dot(new_normal));
+        };
+        const u32 other = mesh_.opposite(h);
+        add_outer(EditableMesh::after(h), abc, dbc);
+        add_outer(EditableMesh::before(h), abc, cad);
+        add_outer(EditableMesh::after(other), bad, cad);
+        add_outer(EditableMesh::before(other), bad, dbc);
+        return after < before - cosine_rounding;
+    }
+
+    void flip(u32 h) {
+        const u32 other = mesh_.opposite(h);
+        flips_.push_back({mesh_.start(h), mesh_.end(h), mesh_.apex(h), mesh_.apex(other)});
+        const u32 h1 = EditableMesh::after(h), h2 = EditableMesh::before(h);
+        const u32 o1 = EditableMesh::after(other), o2 = EditableMesh::before(other);
+        if (has_sharp_) {  // the outer edges move on by one half-edge
+            const u8 bc = flags_[h1] & sharp, ca = flags_[h2] & sharp, ad = flags_[o1] & sharp, db = flags_[o2] & sharp;
+            const auto set = [&](u32 edge, u8 flag) {
+                flags_[edge] = static_cast<u8>((flags_[edge] & pending) | flag);
+            };
+            set(h1, ca), set(h2, ad), set(o1, db), set(o2, bc);
+        }
+        mesh_.flip(h);
+        for (const u32 edge : {h1, h2, o1, o2}) push(edge);
+    }
+
+    void count(u32 h, Decision decision) {
+        switch (decision) {
+            case Decision::stays: break;
+            case Decision::flips: push(h); break;
+            case Decision::sharp: ++left_.sharp; break;
+            case Decision::connected: ++left_.connected; break;
+            case Decision::folding: ++left_.folding; break;
+            case Decision::deviating: ++left_.deviating; break;
+            case Decision::too_long: ++left_.too_long; break;
+        }
+    }
+
+    EditableMesh mesh_;
+    std::span<const Vec3> positions_;
+    Criterion criterion_;
+    double keep_cosine_, deviation_, squared_max_edge_ = std::numeric_limits<double>::infinity();
+    bool has_sharp_ = false;
+    /// By half-edge: whether its edge is sharp; whether it is in the queue. A flip gives some half-edges to other
+    /// edges; those are in the queue from then on, too.
+    std::vector<u8> flags_;
+    /// A ring: every half-edge at most once.
+    Array<u32> queue_;
+    std::size_t queue_begin_ = 0, queued_ = 0;
+    double progress_ = 0;
+    Array<EdgeFlip> flips_;
+    BlockedEdges left_;
+};
+
+std::string vertex_text(const TriangleMesh& mesh, u32 vertex) {
+    const Vec3 world = mesh.frame.origin + mesh.positions[vertex];
+    return fmt::format("{} ({:.9g}, {:.9g}, {:.9g})", vertex, world.x(), world.y(), world.z());
+}
+
+/// Of the vertices in triangles.
+void require_distinct_positions(const TriangleMesh& mesh) {
+    const std::size_t slots = std::bit_ceil(2 * mesh.positions.size() + 1);
+    constexpr u32 empty = ~u32(0);
+    std::vector<u32> at(slots, empty);
+    std::vector<bool> used(mesh.positions.size());
+    for (const Triangle& triangle : mesh.triangles)
+        for (const u32 vertex : triangle) used[vertex] = true;
+    std::size_t repeats = 0;
+    Edge first{empty, empty};
+    for (u32 vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+        if (!used[vertex]) continue;
+        const Vec3& position = mesh.positions[vertex];
+        u64 hash = 0;
+        for (const double coordinate : {position.x(), position.y(), position.z()})
+            hash = (std::rotl(hash, 21) ^ std::bit_cast<u64>(coordinate + 0.0)) * 0x9e3779b97f4a7c15u;  // -0 is 0
+        std::size_t slot = (hash ^ (hash >> 32)) & (slots - 1);
+        while (at[slot] != empty && mesh.positions[at[slot]] != position) slot = (slot + 1) & (slots - 1);
+        if (at[slot] == empty)
+            at[slot] = vertex;
+        else if (repeats++ == 0)
+            first = {at[slot], vertex};
+    }
+    if (repeats > 0)
+        throw Error("vertices {} and {} of the mesh are at the same position ({} {} an earlier position)",
+                    vertex_text(mesh, first[0]), first[1], count_text(repeats, "vertex", "vertices"),
+                    by_count(repeats, "repeats", "repeat"))
+            .hint(
+                "merge equal vertices first: writing the mesh as STL and reading it does so; sculpt and region-grow "
+                "make "
+                "meshes without them");
+}
+
+void require_usable(const TriangleMesh& mesh, const EdgeFlipParams& params) {
+    const double keep = params.keep_angle.in_degrees(), deviation = params.deviation.value();
+    if (!(keep >= 0 && keep <= 60)) throw Error("keep-angle must be from 0 to 60 deg; it is {:g} deg", keep);
+    if (!(deviation >= 0)) throw Error("deviation must be 0 or more; it is {:g}", deviation);
+    if (params.max_edge && !(params.max_edge->value() > 0))
+        throw Error("max-edge must be above 0; it is {:g}", params.max_edge->value());
+    if (mesh.triangles.empty())
+        throw Error("the mesh has no triangles; edge-flip needs at least one")
+            .hint("`scanmill info` shows what a file contains");
+    require_consistent(mesh);
+    require_finite(mesh.positions.span(), "vertices");
+    require_distinct_positions(mesh);
+}
+
+void warn_of_dropped(const ColumnTable& columns, std::string_view element, Context& context) {
+    if (columns.empty()) return;
+    std::string names;
+    for (const Column& column : columns) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", column.name());
+    context.warn(
+        fmt::format("{} {}: dropped, because flips replace {}s",
+                    by_count(columns.size(), fmt::format("{} column", element), fmt::format("{} columns", element)),
+                    names, element == "face" ? "triangle" : element));
+}
+
+void warn_of_left(const BlockedEdges& left, const EdgeFlipParams& params, Context& context) {
+    if (left.total() == 0) return;
+    std::string reasons;
+    const auto add = [&](std::size_t edges, std::string_view reason) {
+        if (edges > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", edges, reason);
+    };
+    add(left.sharp, "sharp");
+    add(left.connected, "whose other diagonal is an edge already");
+    add(left.folding, fmt::format("where the surface would fold or bend by more than {}", params.keep_angle.text()));
+    add(left.deviating,
+        fmt::format("where the surface would move by more than {} of the shorter diagonal", params.deviation.text()));
+    add(left.too_long, "whose other diagonal is not shorter than max-edge");
+    context.warn(fmt::format("{} not flipped although the criterion asks for it: {}",
+                             count_text(left.total(), "edge is", "edges are"), reasons));
+}
+
+}  // namespace
+
+EdgeFlipResult edge_flip(const TriangleMesh& mesh, const EdgeFlipParams& params, Context& context) {
+    require_usable(mesh, params);
+    context.check_cancelled();
+    Flipping flipping(mesh, params);
+    EdgeFlipResult result;
+    result.min_angle_before = flipping.least_angle();
+    flipping.run(context);
+    result.min_angle_after = flipping.least_angle();
+    result.left = flipping.left();
+    result.flips = flipping.flips();
+
+    warn_of_dropped(mesh.face_columns, "face", context);
+    warn_of_dropped(mesh.edge_columns, "edge", context);
+    warn_of_left(result.left, params, context);
+    result.mesh.frame = mesh.frame;
+    result.mesh.positions = mesh.positions;
+    result.mesh.vertex_columns = mesh.vertex_columns;
+    result.mesh.sharp_edges = mesh.sharp_edges;
+    result.mesh.triangles = flipping.triangles();
+
+    context.metric("flips", static_cast<double>(result.flips.size()));
+    context.metric("min-angle-before", result.min_angle_before, Unit::angle);
+    context.metric("min-angle-after", result.min_angle_after, Unit::angle);
+    context.metric("left", static_cast<double>(result.left.total()));
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill
