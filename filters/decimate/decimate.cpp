@@ -282,6 +282,7 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     Array<Vec3> data;
     if (points != nullptr) data = data_positions(*points, mesh.frame);
     const Array<u32> opposite = half_edges::opposites(mesh);
+    (void)EditableMesh(mesh, opposite);  // refuses repeated vertices and several fans, which the rest relies on
     warn_about(mesh, context);
     if (max_error >= box.diagonal())
         context.warn(fmt::format(
