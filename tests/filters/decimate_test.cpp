@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "filters/decimate_cases.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -478,7 +479,8 @@ TEST(Decimate, MinAngle_HoldsForNewTriangles) {
 }
 
 TEST(Decimate, MaxValence_HoldsAlsoOnTheBoundary) {
-    for (const TriangleMesh& mesh : {bumpy_grid(20, 20, 0.01, 6), geodesic_sphere(1, 12), gridded_cube(9)}) {
+    for (const TriangleMesh& mesh :
+         {bumpy_grid(20, 20, 0.01, 6), geodesic_sphere(1, 12), gridded_cube(9), grid(15, 15)}) {
         DecimateParams params = with_any_angle(0.1);
         params.max_valence = 8;
         const DecimateResult result = decimated(mesh, params);
@@ -490,6 +492,24 @@ TEST(Decimate, MaxValence_HoldsAlsoOnTheBoundary) {
             }
         for (const auto& [vertex, others] : neighbours) EXPECT_LE(others.size(), 8u) << vertex;
         EXPECT_GT(result.removed, 0u);
+    }
+}
+
+TEST(Decimate, TwoSheetsNearEachOther_DoNotIntersect) {
+    // Alone, each of them would become flat within the error, through the other.
+    const auto wavy = [](double height) {
+        return with_positions(grid(16, 4), [&](const Vec3& p) -> Vec3 {
+            return p + Vec3(0, 0, height + 0.1 * std::sin(0.8 * p.x()) * std::sin(pi * p.y() / 4));
+        });
+    };
+    const TriangleMesh sheets = both(wavy(0), wavy(0.02));
+    Execution execution;
+    for (const double max_error : {0.03, 0.06, 0.15}) {
+        const DecimateResult result = decimated(sheets, with_any_angle(max_error));
+        const TriangleTree tree(result.mesh.positions.span(), result.mesh.triangles.span(), 1);
+        EXPECT_EQ(self_intersections(result.mesh.positions.span(), result.mesh.triangles.span(), tree, execution).count,
+                  0u);
+        EXPECT_GT(result.removed, 10u);
     }
 }
 
