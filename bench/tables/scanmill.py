@@ -26,9 +26,9 @@ def info(program, file, limit=60):
     return report([str(program), "info", str(file), "--json"], limit)["files"][0]
 
 
-def measure(program, mesh, truth, limit, settings=()):
+def measure(program, mesh, truth, limit, settings=(), threads=0):
     """The metrics of `scanmill measure --json`."""
-    command = [str(program), "measure", str(mesh), str(truth), "--json"]
+    command = [str(program), "measure", str(mesh), str(truth), "--json", "--threads", str(threads)]
     for setting in settings:
         command += ["--set", setting]
     return report(command, limit)["metrics"]

@@ -24,6 +24,10 @@ using namespace decimating;
 constexpr double feature_reach = 4;
 /// Removal stays within this share of the largest error, so that the certificate needs few cuts to prove the whole.
 constexpr double steering_share = 1 - 0x1p-10;
+/// If the certificate exceeds the largest error nevertheless, everything is done again within this share of what would
+/// have sufficed, at most so often.
+constexpr double again_share = 0.98;
+constexpr int most_attempts = 4;
 /// Shares of the progress.
 constexpr double prepared = 0.1, removed = 0.75;
 
@@ -38,7 +42,8 @@ double length_of(const char* name, const Length& length) {
     return value;
 }
 
-Limits limits_for(const DecimateParams& params, double rounding) {
+/// `share`: of the largest errors.
+Limits limits_for(const DecimateParams& params, double share, double rounding) {
     require_angle("sharp-angle", params.sharp_angle, 20, 75);
     require_angle("corner-angle", params.corner_angle, 0, 180);
     require_angle("normal-deviation", params.normal_deviation, 0, 89);
@@ -50,7 +55,7 @@ Limits limits_for(const DecimateParams& params, double rounding) {
         params.outside ? length_of("outside", *params.outside) : length_of("max-error", params.max_error);
     limits.error.inside =
         params.inside ? length_of("inside", *params.inside) : length_of("max-error", params.max_error);
-    for (double* error : {&limits.error.outside, &limits.error.inside}) *error = *error * steering_share + rounding;
+    for (double* error : {&limits.error.outside, &limits.error.inside}) *error = *error * share + rounding;
     limits.normal_cosine = std::cos(params.normal_deviation.in_radians()) - 1e-9;
     limits.angle_sine = std::sin(params.min_angle.in_radians());
     limits.max_valence = params.max_valence;
@@ -209,18 +214,11 @@ TriangleMesh result_mesh(const TriangleMesh& mesh, const Surface& surface, std::
     return result;
 }
 
-void require_within(const CertifiedHausdorff& certificate, double bound) {
-    if (certificate.upper <= bound) return;
-    if (certificate.lower > bound)
-        throw Error(
-            "the result is farther than max-error from the input: the distance is between {:.6g} u and {:.6g} u, "
-            "max-error is {:.6g} u",
-            certificate.lower, certificate.upper, bound)
-            .hint("use a smaller max-error, or mode: direct");
+[[noreturn]] void throw_exceeded(const CertifiedHausdorff& certificate, double bound) {
     throw Error(
-        "the distance between input and result is not proven to be within max-error: it is between {:.6g} u and {:.6g} "
-        "u, max-error is {:.6g} u",
-        certificate.lower, certificate.upper, bound)
+        "the distance between input and result is not proven to be within max-error, which is {:.6g} u: it is "
+        "at least {:.6g} u, and at most {:.6g} u",
+        bound, certificate.lower, certificate.upper)
         .hint("use a slightly different max-error");
 }
 
@@ -239,6 +237,33 @@ void report(const DecimateResult& result, Context& context) {
     count("points-beyond", result.points_beyond);
 }
 
+/// The input, and what does not depend on the attempt.
+struct Input {
+    const TriangleMesh& mesh;
+    const Array<u32>& opposite;
+    const FacetNormals& normals;
+    const OriginalSurface& original;
+    std::span<const Vec3> data;
+    std::span<const u32> data_triangles;  ///< NearestTriangle::none: left out
+};
+
+DecimateResult attempt(const Input& input, const Limits& limits, const DecimateParams& params, Context& context) {
+    Surface surface(input.original, EditableMesh(input.mesh, input.opposite), input.data);
+    for (u32 i = 0; i < input.data.size(); ++i)
+        if (input.data_triangles[i] != NearestTriangle::none)
+            surface.assign(static_cast<u32>(input.mesh.positions.size()) + i, input.data_triangles[i]);
+    Decimator decimator(surface, limits, params.mode, params.target_triangles, context);
+    const DecimatorCounts counts = decimator.run(params.final_flips);
+    DecimateResult result;
+    result.removed = counts.removed;
+    result.flips = counts.flips;
+    result.mesh = result_mesh(input.mesh, surface, input.opposite, input.normals.unit);
+    const std::span<const u8> classes = result.mesh.vertex_columns.find("class")->values<u8>();
+    result.creases = count_lines(result.mesh.sharp_edges.span(), classes);
+    result.corners = static_cast<std::size_t>(std::ranges::count(classes, static_cast<u8>(VertexClass::corner)));
+    return result;
+}
+
 }  // namespace
 
 DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, const DecimateParams& params,
@@ -246,61 +271,57 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     require_usable(mesh);
     const BoundingBox box = surface_box(mesh);
     const double rounding = position_rounding(std::max(box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff()));
-    const Limits limits = limits_for(params, rounding);
+    (void)limits_for(params, steering_share, rounding);  // refuses before any work
     const double max_error =
         std::max(params.outside.value_or(params.max_error).value(), params.inside.value_or(params.max_error).value());
     Array<Vec3> data;
     if (points != nullptr) data = data_positions(*points, mesh.frame);
     const Array<u32> opposite = half_edges::opposites(mesh);
-    EditableMesh edited(mesh, opposite);
     warn_about(mesh, context);
-    context.progress(prepared / 2);
-
     const FeatureScale scale{params.sharp_angle.in_radians(), params.corner_angle.in_radians(),
                              feature_reach * max_error};
     const FacetNormals normals = facet_normals(mesh, opposite, context.threads());
     const FeatureNetwork features(mesh, opposite, normals.unit, scale, context.threads());
     if (features.ignored_declared() > 0)
-        context.warn(fmt::format(
-            "{} of the {} sharp edges of the mesh {} treated as smooth: within {} max-error they end, or they enclose "
-            "no larger face",
-            features.ignored_declared(), mesh.sharp_edges.size(), by_count(features.ignored_declared(), "is", "are"),
-            feature_reach));
+        context.warn(
+            fmt::format("{} of the {} sharp edges of the mesh {} treated as smooth: their lines end within {} "
+                        "max-error, or enclose no larger face",
+                        features.ignored_declared(), mesh.sharp_edges.size(),
+                        by_count(features.ignored_declared(), "is", "are"), feature_reach));
     const OriginalSurface original(mesh, opposite, features);
-    Surface surface(original, std::move(edited), data);
-    DecimateResult result;
-    if (points != nullptr) {
+    context.progress(prepared / 2);
+    NearestDistances nearest;
+    std::size_t left_out = 0;
+    if (!data.empty()) {
         const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
-        const NearestDistances nearest = nearest_distances(data, tree, rounding, context);
-        for (u32 i = 0; i < data.size(); ++i) {
-            if (nearest.distances[i] > max_error + rounding)
-                ++result.points_left_out;
-            else
-                surface.assign(static_cast<u32>(mesh.positions.size()) + i, nearest.triangles[i]);
-        }
+        nearest = nearest_distances(data, tree, rounding, context);
+        for (std::size_t i = 0; i < data.size(); ++i)
+            if (nearest.distances[i] > max_error + rounding) nearest.triangles[i] = NearestTriangle::none, ++left_out;
     }
     context.progress(prepared);
 
-    const DecimatorCounts counts =
-        Decimator(surface, limits, params.mode, params.target_triangles, context).run(params.final_flips);
-    result.removed = counts.removed;
-    result.flips = counts.flips;
-    result.mesh = result_mesh(mesh, surface, opposite, normals.unit);
-    const Column& classes = *result.mesh.vertex_columns.find("class");
-    result.creases = count_lines(result.mesh.sharp_edges.span(), classes.values<u8>());
-    result.corners =
-        static_cast<std::size_t>(std::ranges::count(classes.values<u8>(), static_cast<u8>(VertexClass::corner)));
-    context.progress(removed);
-
+    const Input input{mesh, opposite, normals, original, data, nearest.triangles};
     const double bound = max_error + 2 * rounding;
-    result.certificate = certified_hausdorff(result.mesh, mesh, {0.01, 100'000'000, bound}, context);
-    require_within(result.certificate, bound);
+    double share = steering_share;
+    DecimateResult result;
+    for (int attempts = 1;; ++attempts) {
+        result = attempt(input, limits_for(params, share, rounding), params, context);
+        context.progress(removed);
+        result.certificate = certified_hausdorff(result.mesh, mesh, {0.01, 100'000'000, bound}, context);
+        if (result.certificate.upper <= bound) break;
+        if (attempts == most_attempts) throw_exceeded(result.certificate, bound);
+        share *= again_share * std::min(1.0, bound / result.certificate.lower);
+    }
+    result.points_left_out = left_out;
     if (points != nullptr) {
-        const TriangleTree result_tree(result.mesh.positions.span(), result.mesh.triangles.span(), context.threads());
-        const NearestDistances nearest = nearest_distances(data, result_tree, rounding, context);
-        result.points_max = data.empty() ? 0.0 : std::ranges::max(nearest.distances);
-        result.points_beyond = static_cast<std::size_t>(
-            std::ranges::count_if(nearest.distances, [&](double distance) { return distance > bound; }));
+        result.points_max = 0;
+        if (!data.empty()) {
+            const TriangleTree tree(result.mesh.positions.span(), result.mesh.triangles.span(), context.threads());
+            const NearestDistances to_result = nearest_distances(data, tree, rounding, context);
+            result.points_max = std::ranges::max(to_result.distances);
+            result.points_beyond = static_cast<std::size_t>(
+                std::ranges::count_if(to_result.distances, [&](double distance) { return distance > bound; }));
+        }
     }
     report(result, context);
     context.progress(1);

@@ -29,7 +29,6 @@ Decimator::Decimator(Surface& surface, const Limits& limits, DecimateMode mode, 
       execution_(execution),
       planner_(surface, limits, mode),
       estimates_(surface.mesh().vertices(), infinite),
-      is_settled_(3 * surface.mesh().rows(), false),
       touched_(surface.mesh().vertices(), 0),
       begin_triangles_(surface.mesh().triangles()) {}
 
@@ -76,20 +75,32 @@ void Decimator::pick_vertices() {
     std::ranges::sort(picked_);  // neighbours in memory are planned after each other
 }
 
+void Decimator::open_all_edges() {
+    const EditableMesh& mesh = surface_.mesh();
+    open_edges_.clear();
+    for (u32 half_edge = 0; half_edge < 3 * mesh.rows(); ++half_edge)
+        if (!mesh.is_empty(half_edge / 3) && !mesh.is_boundary(half_edge) && half_edge < mesh.opposite(half_edge))
+            open_edges_.push_back(half_edge);
+}
+
 void Decimator::pick_edges() {
     const EditableMesh& mesh = surface_.mesh();
+    std::ranges::sort(open_edges_);
+    open_edges_.erase(std::unique(open_edges_.begin(), open_edges_.end()), open_edges_.end());
     picked_.clear();
-    for (u32 half_edge = 0; half_edge < is_settled_.size(); ++half_edge) {
-        if (is_settled_[half_edge] || mesh.is_empty(half_edge / 3)) continue;
-        if (mesh.is_boundary(half_edge) || mesh.opposite(half_edge) < half_edge) continue;
+    std::size_t left = 0;
+    for (const u32 half_edge : open_edges_) {
+        if (mesh.is_empty(half_edge / 3) || mesh.is_boundary(half_edge) || surface_.is_feature(half_edge)) continue;
         const std::array<u32, 4> vertices{mesh.start(half_edge), mesh.end(half_edge), mesh.apex(half_edge),
                                           mesh.apex(mesh.opposite(half_edge))};
-        if (std::ranges::any_of(vertices, [&](u32 vertex) { return touched_[vertex] == round_; })) continue;
-        is_settled_[half_edge] = true;
-        if (surface_.is_feature(half_edge)) continue;
+        if (std::ranges::any_of(vertices, [&](u32 vertex) { return touched_[vertex] == round_; })) {
+            open_edges_[left++] = half_edge;
+            continue;
+        }
         for (const u32 vertex : vertices) touched_[vertex] = round_;
         picked_.push_back(half_edge);
     }
+    open_edges_.resize(left);
 }
 
 template <class Plan>
@@ -104,14 +115,12 @@ void Decimator::plan_all(Plan&& plan) {
 
 bool Decimator::apply(const Edit& edit) {
     if (planner_.intersects(edit, round_)) return false;
-    const EditableMesh& mesh = surface_.mesh();
     new_rows_.clear();
     surface_.apply(edit, round_, new_rows_);
+    const EditableMesh& mesh = surface_.mesh();
     for (const u32 row : new_rows_)
-        for (u32 half_edge = 3 * row; half_edge < 3 * row + 3; ++half_edge) {
-            is_settled_[half_edge] = false;
-            if (!mesh.is_boundary(half_edge)) is_settled_[mesh.opposite(half_edge)] = false;
-        }
+        for (u32 half_edge = 3 * row; half_edge < 3 * row + 3; ++half_edge)
+            open_edges_.push_back(std::min(half_edge, mesh.opposite(half_edge)));
     return true;
 }
 
@@ -149,7 +158,7 @@ std::size_t Decimator::flip_edges() {
         for (std::size_t i = 0; i < picked_.size(); ++i) {
             if (!plans_[i].is_possible) continue;
             if (!apply(plans_[i])) {
-                is_settled_[picked_[i]] = false;
+                open_edges_.push_back(picked_[i]);
                 continue;
             }
             ++flips;
@@ -165,7 +174,7 @@ std::size_t Decimator::flip_edges() {
 
 void Decimator::run_until_stuck(bool flips_edges) {
     update_all_estimates();
-    std::fill(is_settled_.begin(), is_settled_.end(), false);
+    open_all_edges();
     for (;;) {
         const std::size_t before = counts_.removed;
         remove_vertices();

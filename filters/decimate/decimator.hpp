@@ -31,7 +31,9 @@ private:
     void update_all_estimates();
     /// Independent vertices with small estimates, ascending.
     void pick_vertices();
+    /// Independent ones of the open edges, which are then no longer open.
     void pick_edges();
+    void open_all_edges();
     /// Plans edits of all picked elements in parallel.
     template <class Plan>
     void plan_all(Plan&& plan);
@@ -48,7 +50,7 @@ private:
     Execution& execution_;
     Planner planner_;
     Array<float> estimates_;  ///< by vertex; infinite: not to be tried
-    std::vector<bool> is_settled_;  ///< by half-edge: its flip was not possible
+    std::vector<u32> open_edges_;  ///< half-edges to try to flip, one per edge; may have repeats and stale ones
     Array<u32> touched_;  ///< by vertex: the last round that took it or a neighbour
     u32 round_ = 0;
     std::vector<u32> picked_, ring_, new_rows_;

@@ -33,7 +33,6 @@ double HoleTriangulator::cost(u32 i, u32 k, u32 j, SignedErrors& errors) {
     const double longer_two = x * y * z / std::min({x, y, z});
     if (twice_area * twice_area < angle_sine_ * angle_sine_ * longer_two) return infinite;
     if (!judge_->add_triangle(i, k, j, normal / twice_area, errors)) return infinite;
-    for (const std::size_t edge : {index(i, k), index(k, j), index(i, j)}) errors.add(edges_[edge]);
     const double share = errors.share_of(limits_->error);
     constexpr double perfect = 3.4641016151377544;  // 2 √3: an equilateral triangle
     return share * share + shape_weight * (1 - perfect * twice_area / (x + y + z));
@@ -55,7 +54,6 @@ bool HoleTriangulator::triangulate(std::span<const HoleCorner> corners, const Ve
     for (u32 span = 2; span < size; ++span)
         for (u32 i = 0; i + span < size; ++i) {
             const u32 j = i + span;
-            if (!is_possible(i, j)) continue;
             const std::size_t chord = index(i, j);
             for (u32 k = i + 1; k < j; ++k) {
                 const double parts = least_[index(i, k)] + least_[index(k, j)];
@@ -67,6 +65,13 @@ bool HoleTriangulator::triangulate(std::span<const HoleCorner> corners, const Ve
                 middles_[chord] = k;
                 faces_[chord] = errors;
             }
+            if (!(least_[chord] < infinite)) continue;
+            if (!is_possible(i, j)) {
+                least_[chord] = infinite;
+                continue;
+            }
+            const double share = edges_[chord].share_of(limits.error);
+            least_[chord] += share * share;
         }
     triangles_.clear();
     if (!(least_[index(0, size - 1)] < infinite)) return false;
@@ -77,7 +82,9 @@ bool HoleTriangulator::triangulate(std::span<const HoleCorner> corners, const Ve
 void HoleTriangulator::collect(u32 i, u32 j) {
     if (j == i + 1) return;
     const u32 k = middles_[index(i, j)];
-    triangles_.push_back({{i, k, j}, faces_[index(i, j)]});
+    SignedErrors errors = faces_[index(i, j)];
+    for (const std::size_t edge : {index(i, k), index(k, j), index(i, j)}) errors.add(edges_[edge]);
+    triangles_.push_back({{i, k, j}, errors});
     collect(i, k);
     collect(k, j);
 }

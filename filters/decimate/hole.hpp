@@ -35,10 +35,10 @@ struct HoleTriangle {
 /// Triangulates polygons by dynamic programming over all triangulations (Klincsek 1980).
 class HoleTriangulator {
 public:
-    /// The triangulation with the least sum of the costs of its triangles; false if none is within the limits. The cost
-    /// of a triangle is 0 for an equilateral one without error: it counts its error, as a share of the limits, and its
-    /// shape. Every triangle faces `up` within the limits and has no angle with a sine below `angle_sine`.
-    /// Cost: O(n³) for n corners.
+    /// The triangulation with the least sum of costs; false if none is within the limits. The cost of an edge is the
+    /// square of its error, as a share of the limits; that of a triangle likewise, and more for a poor shape. Every
+    /// triangle faces `up` within the limits and has no angle with a sine below `angle_sine`. Cost: O(n³) for n
+    /// corners.
     bool triangulate(std::span<const HoleCorner> corners, const Vec3& up, double angle_sine, const Limits& limits,
                      HoleErrors& judge);
 

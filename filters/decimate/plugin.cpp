@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "decimate/decimate.hpp"
 #include "scanmill/plugin/plugin.hpp"
+#include "decimate/decimate.hpp"
 
 using namespace scanmill;
 
@@ -17,10 +17,11 @@ SCANMILL_FILTER() {
         .in<TriangleMesh>("mesh",
                           "A manifold, closed or open, oriented consistently. Its sharp edges count beside those that "
                           "are sharp by their angle.")
-        .in<PointCloud>("points",
-                        "Data points that the result must be near to, besides the mesh's vertices: the scan, for points "
-                        "that thinning or sculpting left off the mesh.",
-                        optional)
+        .in<PointCloud>(
+            "points",
+            "Data points that the result must be near to, besides the mesh's vertices: the scan, for points "
+            "that thinning or sculpting left off the mesh.",
+            optional)
         .out<TriangleMesh>("mesh",
                            "Vertices of the input, with their columns and `class` (0 smooth, 1 crease, 2 corner, 3 "
                            "boundary); triangles with `corner-normals`, `error-outside` and `error-inside`; the sharp "
@@ -65,7 +66,6 @@ SCANMILL_FILTER() {
         .metric("points-beyond", Unit::count, "Points at `points` that are farther than max-error from the result.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const PointCloud* points = inputs.find<PointCloud>("points");
-            return Outputs().set(
-                "mesh", decimate(inputs.get<TriangleMesh>("mesh"), points, params, context).mesh);
+            return Outputs().set("mesh", decimate(inputs.get<TriangleMesh>("mesh"), points, params, context).mesh);
         });
 }

@@ -29,8 +29,8 @@ SCANMILL_FILTER() {
                above(0))
         .param("radius", &P::radius,
                "Points at most this far from each other are connected; with `method: radius` also the radius of the "
-               "test.",
-               at_least(0))
+               "test. `3 spacing` is three times the median distance between distinct positions.",
+               at_least(0), takes_spacings)
         .param("min-component", &P::min_component,
                "Connected components with fewer than this share of the distinct positions are removed; 0 removes all "
                "suspects instead, as PCL does.",

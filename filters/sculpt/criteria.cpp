@@ -119,7 +119,8 @@ double Gains::of(u32 cell, unsigned open, Without without) const {
         } else if (is_open(c) || is_open(d)) {
             const int before = is_open(c) ? c : d, after = is_open(c) ? d : c;
             const Vec3 outer = outer_normal(cell, after, before, without);
-            change = angle_between(normals[before], outer) - angle_between(-normals[after], outer);
+            const auto [angle_before, angle_after] = angles_between(normals[before], outer, -normals[after], outer);
+            change = angle_before - angle_after;
         } else {
             change = -angle_between(normals[c], normals[d]);
         }

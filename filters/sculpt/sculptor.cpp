@@ -17,7 +17,9 @@ Sculptor::Sculptor(CarvedSolid& solid, const SculptParams& params, std::size_t i
       interior_points_(interior_points),
       smoothing_(tets_),
       exposing_(tets_),
+      is_due_(tets_.cells.size()),
       evaluated_(tets_.cells.size()) {
+    std::ranges::fill(is_due_, u8(0));
     std::ranges::fill(evaluated_, 0);
     find_candidates(threads);
 }
@@ -70,7 +72,7 @@ bool Sculptor::smooth() {
     };
     WaitingStep best;
     if (!smoothing_.pop(best, still_flips)) return false;
-    remove(best.cell, SculptStep::smoothing);
+    remove(best.cell, SculptStep::smoothing, best.gain);
     return true;
 }
 
@@ -88,14 +90,18 @@ bool Sculptor::expose() {
     const auto still_exposes = [&](const WaitingStep& step) {
         return is_current(step) && solid_.exposes(step.cell, solid_.open_facets(step.cell));
     };
+    evaluate_due();
     WaitingStep best;
     while (exposing_.pop(best, still_exposes)) {
-        // The smoothing step of the look-ahead may have become impossible.
-        const double gain = criteria_.exposing(best.cell, solid_.open_facets(best.cell));
-        if (gain < best.gain) {
-            best.gain = gain;
-            exposing_.push(best);
-            continue;
+        if (best.time != now_) {
+            // The smoothing step of the look-ahead may have become impossible.
+            const double gain = criteria_.exposing(best.cell, solid_.open_facets(best.cell));
+            if (gain < best.gain) {
+                best.gain = gain;
+                best.time = evaluated_[best.cell] = now_;
+                exposing_.push(best);
+                continue;
+            }
         }
         remove(best.cell, SculptStep::exposing);
         return true;
@@ -111,8 +117,9 @@ bool Sculptor::open() {
     return true;
 }
 
-void Sculptor::remove(u32 cell, SculptStep step) {
-    removals_.push_back({cell, step, criteria_.gains().of(cell, solid_.open_facets(cell))});
+void Sculptor::remove(u32 cell, SculptStep step, double gain) {
+    assert(gain == criteria_.gains().of(cell, solid_.open_facets(cell)));
+    removals_.push_back({cell, step, gain});
     solid_.remove(cell);
     ++now_;
     if (step == SculptStep::exposing) {
@@ -127,10 +134,23 @@ void Sculptor::refresh(u32 cell) {
     evaluated_[cell] = now_;
     const unsigned open = solid_.open_facets(cell);
     if (open == 0) return;
-    if (solid_.exposes(cell, open))
-        exposing_.push(exposing_step(cell, open));
-    else if (const std::optional<double> gain = criteria_.smoothing(cell, open))
+    if (solid_.exposes(cell, open)) {
+        if (std::exchange(is_due_[cell], u8(1)) == 0) due_.push_back(cell);
+    } else if (const std::optional<double> gain = criteria_.smoothing(cell, open)) {
         smoothing_.push({*gain, 0, cell, now_});
+    }
+}
+
+void Sculptor::evaluate_due() {
+    for (u32 cell : due_) {
+        is_due_[cell] = 0;
+        if (!solid_.has(cell)) continue;
+        const unsigned open = solid_.open_facets(cell);
+        if (!solid_.exposes(cell, open)) continue;
+        evaluated_[cell] = now_;
+        exposing_.push(exposing_step(cell, open));
+    }
+    due_.clear();
 }
 
 void Sculptor::refresh_near(u32 removed) {

@@ -30,12 +30,16 @@ private:
     bool smooth_by_chain();
     bool expose();
     bool open();
-    void remove(u32 cell, SculptStep step);
+    void remove(u32 cell, SculptStep step) { remove(cell, step, criteria_.gains().of(cell, solid_.open_facets(cell))); }
+    /// `gain`: of removing the cell now.
+    void remove(u32 cell, SculptStep step, double gain);
     bool is_current(const WaitingStep& step) const {
         return solid_.has(step.cell) && evaluated_[step.cell] == step.time;
     }
-    /// Evaluates the cell again, unless that was done since the last removal.
+    /// Evaluates the cell again, unless that was done since the last removal. Exposing steps only become due: most
+    /// change several times before one of them is taken.
     void refresh(u32 cell);
+    void evaluate_due();
     /// Evaluates all cells again whose gain the removal may have changed.
     void refresh_near(u32 removed);
     void allow_smoothing(u32 cell);
@@ -48,8 +52,11 @@ private:
     Openings openings_;
     std::size_t interior_points_;
     StepQueue smoothing_, exposing_;
+    /// Cells whose exposing steps must be evaluated before the next one is taken; per cell whether it is among them.
+    std::vector<u32> due_;
+    Array<u8> is_due_;
     Array<SculptRemoval> removals_;
-    /// Per cell the number of removals when it was last evaluated.
+    /// Per cell the number of removals when it was last evaluated, or became due.
     Array<u32> evaluated_;
     u32 now_ = 0;
     std::vector<u32> changed_;

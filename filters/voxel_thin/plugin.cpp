@@ -22,7 +22,7 @@ SCANMILL_FILTER() {
         .param("tolerance", &P::tolerance,
                "Largest distance between the scanned surface and a triangulation of the kept points. This and the "
                "parameters down to `guarantee` are used with `bin-size: auto`.",
-               above(0))
+               above(0), unless_given("bin-size"))
         .choice("rule", &P::rule,
                 {{"minimum", P::Rule::minimum, "The smallest size that any point allows."},
                  {"quantile", P::Rule::quantile, "The size that all points but a small share allow."},

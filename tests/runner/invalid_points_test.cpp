@@ -37,7 +37,7 @@ TEST_F(InvalidPoints, DroppedPoints_AreInTheTableTheJsonAndTheRecords) {
     const ProgramResult table = run({"a.xyz", "--invalid", "drop"});
     EXPECT_EQ(table.exit_code, 0) << table.err;
     EXPECT_THAT(table.out, AllOf(HasSubstr("dropped-points"), testing::ContainsRegex("a.xyz +4 +1 ")));
-    EXPECT_THAT(table.err, HasSubstr("warning: 'a.xyz': 1 of 5 points were dropped"));
+    EXPECT_THAT(table.err, HasSubstr("warning: 'a.xyz': 1 of 5 points was dropped"));
     const Json report = Json::parse(run({"a.xyz", "--invalid", "drop", "--json"}).out);
     const Json read = of_step(report, "read").at(0);
     EXPECT_EQ(read["properties"]["points"], 4);
@@ -45,7 +45,7 @@ TEST_F(InvalidPoints, DroppedPoints_AreInTheTableTheJsonAndTheRecords) {
     const Json recorded_read = of_step(recorded(1), "read").at(0);
     EXPECT_EQ(recorded_read["properties"]["dropped-points"], 1);
     EXPECT_EQ(recorded_read["authored"]["invalid"], "drop");
-    EXPECT_THAT(recorded_read["warnings"].dump(), HasSubstr("1 of 5 points were dropped"));
+    EXPECT_THAT(recorded_read["warnings"].dump(), HasSubstr("1 of 5 points was dropped"));
 }
 
 TEST_F(InvalidPoints, WorkflowAndBatch_CanDropThem) {
@@ -95,7 +95,7 @@ TEST_F(InvalidPoints, Measure_DropsPointsOfTheTruth) {
     EXPECT_THAT(refused.err, HasSubstr("--invalid drop"));
     const ProgramResult dropped = scanmill({"measure", "m.off", "t.xyz", "--invalid", "drop"});
     EXPECT_EQ(dropped.exit_code, 0) << dropped.err;
-    EXPECT_THAT(dropped.err, HasSubstr("1 of 4 points were dropped"));
+    EXPECT_THAT(dropped.err, HasSubstr("1 of 4 points was dropped"));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by the Python drivers: reads requests as JSON lines, writes answers, and reads raw arrays. See answer.hpp."""
+"""Shared by the Python drivers: reads requests as JSON lines, writes answers, and reads and writes raw arrays. See
+answer.hpp."""
 import json
 import os
 import pathlib
@@ -43,6 +44,14 @@ def read_triangles(path):
     path = pathlib.Path(path + ".triangles")
     indices = numpy.fromfile(path, dtype=numpy.uint32) if path.exists() else numpy.zeros(0, numpy.uint32)
     return indices.reshape(-1, 3)
+
+
+def of_decimation(request, seconds, points, triangles):
+    """The answer to "decimate"; with "into" in the request, writes the mesh into raw arrays."""
+    if "into" in request:
+        numpy.ascontiguousarray(points, numpy.float64).tofile(request["into"] + ".points")
+        numpy.ascontiguousarray(triangles, numpy.uint32).tofile(request["into"] + ".triangles")
+    return {"seconds": seconds, "triangles": len(triangles)}
 
 
 def of_distances(seconds, building, distances):

@@ -23,6 +23,7 @@ int main() {
                    {"optimal-alpha-shape", of_input(optimal_alpha_shape)},
                    {"advancing-front", of_input(advancing_front)},
                    {"remove-outliers", of_input(remove_outliers)},
+                   {"decimate", of_input(decimate)},
                    {"distances", [&](const Json& request) { return distances(input, points, request); }}},
                   {{"CGAL", CGAL_VERSION_STR}});
 }

@@ -20,5 +20,7 @@ Json advancing_front(const RawInput& input, const Json& request);
 Json distances(const RawInput& mesh, const RawInput& points, const Json& request);
 /// remove_outliers, which removes the "percent" with the largest mean squared distances.
 Json remove_outliers(const RawInput& input, const Json& request);
+/// edge_collapse with Garland and Heckbert's quadrics until "triangles" are left. Writes the mesh "into" raw arrays.
+Json decimate(const RawInput& input, const Json& request);
 
 }  // namespace peers

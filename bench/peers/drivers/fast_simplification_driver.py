@@ -4,7 +4,7 @@ import importlib.metadata
 
 import fast_simplification
 
-from answer import answer, read_points, read_triangles, timed
+from answer import answer, of_decimation, read_points, read_triangles, timed
 
 held = {}
 
@@ -17,10 +17,10 @@ def load(request):
 
 def decimate(request):
     work = fast_simplification.simplify
-    seconds, (_, triangles) = timed(
-        lambda: work(held["points"], held["triangles"], target_count=request["triangles"])
+    seconds, (points, triangles) = timed(
+        lambda: work(held["points"], held["triangles"], target_count=request["triangles"], agg=request["agg"])
     )
-    return {"seconds": seconds, "triangles": len(triangles)}
+    return of_decimation(request, seconds, points, triangles)
 
 
 answer(

@@ -41,8 +41,8 @@ RawInput scan(const std::string& file) {
         for (const Vec3& p : shape.positions) raw.points.push_back(rounded(shape.frame.origin + p));
     };
     if (const auto* mesh = value.find<scanmill::TriangleMesh>()) {
-        take(**mesh);
-        raw.triangles.assign((*mesh)->triangles.begin(), (*mesh)->triangles.end());
+        take(*mesh);
+        raw.triangles.assign(mesh->triangles.begin(), mesh->triangles.end());
     } else {
         take(*value.get<scanmill::PointCloud>());
     }

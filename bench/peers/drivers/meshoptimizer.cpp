@@ -3,6 +3,7 @@
 
 #include <meshoptimizer.h>
 
+#include <span>
 #include <stdexcept>
 
 #include "answer.hpp"
@@ -26,7 +27,16 @@ Json load(Mesh& mesh, const Json& request) {
     return raw.counts();
 }
 
-/// Simplifies to "triangles" triangles, without an error bound.
+void write(const std::string& path, const Mesh& mesh, std::span<const unsigned> indices) {
+    peers::RawInput raw;
+    for (std::size_t i = 0; i < mesh.coordinates.size(); i += 3)
+        raw.points.push_back({mesh.coordinates[i], mesh.coordinates[i + 1], mesh.coordinates[i + 2]});
+    for (std::size_t i = 0; i < indices.size(); i += 3)
+        raw.triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    peers::write_raw(path, raw);
+}
+
+/// Simplifies to "triangles" triangles, without an error bound. Writes the mesh "into" raw arrays.
 Json simplify(const Mesh& mesh, const Json& request) {
     const auto wanted = request.at("triangles").get<std::size_t>();
     if (mesh.indices.empty()) throw std::runtime_error("there are no triangles to simplify");
@@ -37,6 +47,7 @@ Json simplify(const Mesh& mesh, const Json& request) {
         count = meshopt_simplify(left.data(), mesh.indices.data(), mesh.indices.size(), mesh.coordinates.data(),
                                  mesh.coordinates.size() / 3, 3 * sizeof(float), 3 * wanted, any_error);
     });
+    if (request.contains("into")) write(request["into"], mesh, std::span(left).first(count));
     return {{"seconds", seconds}, {"triangles", count / 3}};
 }
 

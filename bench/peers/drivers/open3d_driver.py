@@ -2,7 +2,7 @@
 """Open3D: voxels, alpha shapes, distances, decimation."""
 import open3d
 
-from answer import answer, of_distances, read_points, read_triangles, timed
+from answer import answer, of_decimation, of_distances, read_points, read_triangles, timed
 
 held = {}
 
@@ -46,7 +46,7 @@ def distances(request):
 
 def decimate(request):
     seconds, mesh = timed(lambda: held["mesh"].simplify_quadric_decimation(request["triangles"]))
-    return {"seconds": seconds, "triangles": len(mesh.triangles)}
+    return of_decimation(request, seconds, mesh.vertices, mesh.triangles)
 
 
 answer(

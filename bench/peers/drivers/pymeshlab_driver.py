@@ -4,7 +4,7 @@ import importlib.metadata
 
 import pymeshlab
 
-from answer import answer, read_points, read_triangles, timed
+from answer import answer, of_decimation, read_points, read_triangles, timed
 
 held = {}
 
@@ -32,12 +32,14 @@ def distances(request):
 
 
 def decimate(request):
-    """Decimates a fresh copy, because the filter changes its mesh. The copy is not timed."""
+    """Decimates a fresh copy, because the filter changes its mesh. The copy is not timed. The options that the rows use
+    are always set: PyMeshLab takes those of the previous call as defaults."""
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.add_mesh(pymeshlab.Mesh(vertex_matrix=held["mesh"][0], face_matrix=held["mesh"][1]))
     work = meshes.meshing_decimation_quadric_edge_collapse
-    seconds, _ = timed(lambda: work(targetfacenum=request["triangles"]))
-    return {"seconds": seconds, "triangles": meshes.current_mesh().face_number()}
+    seconds, _ = timed(lambda: work(targetfacenum=request["triangles"], planarquadric=request["planarquadric"]))
+    mesh = meshes.current_mesh()
+    return of_decimation(request, seconds, mesh.vertex_matrix(), mesh.face_matrix())
 
 
 answer(

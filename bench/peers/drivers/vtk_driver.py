@@ -5,12 +5,12 @@ import os
 import numpy
 import vtkmodules.vtkIOGeometry as geometry
 import vtkmodules.vtkIOPLY as ply
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints, vtkVersion
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkQuadricDecimation
 
-from answer import answer, read_points, read_triangles, timed
+from answer import answer, of_decimation, read_points, read_triangles, timed
 
 readers = {"ply": ply.vtkPLYReader, "stl": geometry.vtkSTLReader}
 writers = {"ply": ply.vtkPLYWriter, "stl": geometry.vtkSTLWriter}
@@ -57,7 +57,9 @@ def decimate(request):
     filter.SetInputData(held["mesh"])
     filter.SetTargetReduction(1 - request["triangles"] / held["mesh"].GetNumberOfPolys())
     seconds, _ = timed(filter.Update)
-    return {"seconds": seconds, "triangles": filter.GetOutput().GetNumberOfPolys()}
+    made = filter.GetOutput()
+    points, triangles = made.GetPoints().GetData(), made.GetPolys().GetConnectivityArray()
+    return of_decimation(request, seconds, vtk_to_numpy(points), vtk_to_numpy(triangles).reshape(-1, 3))
 
 
 answer({"load": load, "read": read, "write": write, "decimate": decimate}, {"VTK": vtkVersion.GetVTKVersion()})

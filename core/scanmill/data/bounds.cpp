@@ -28,25 +28,26 @@ BoundingBox bounding_box(std::span<const Vec3> positions) {
     return box;
 }
 
+bool is_too_long(const BoundingBox& box) { return !box.empty() && !((box.high - box.low).maxCoeff() <= largest_side); }
+
 void require_supported_range(const BoundingBox& box) {
     if (box.empty()) return;
     const Vec3 sides = box.high - box.low;
     int axis = 0;
     const double side = sides.maxCoeff(&axis);
-    if (side == 0 || (side >= least_side && side <= largest_side)) return;
+    if (side == 0 || (side >= least_side && !is_too_long(box))) return;
     throw Error("the scan is {:.3g} of its own unit long, from {:.3g} to {:.3g} in {}; supported are {:g} to {:g}",
                 side, box.low[axis], box.high[axis], "xyz"[axis], least_side, largest_side)
-        .hint(side > largest_side ? "remove stray points, or scale the scan" : "scale the scan to a larger unit");
+        .hint(is_too_long(box) ? "remove stray points, or scale the scan" : "scale the scan to a larger unit");
 }
 
 Vec3 distant_origin(const BoundingBox& box) {
     Vec3 origin = Vec3::Zero();
     const double diagonal = box.diagonal();
     if (box.empty() || !box.low.allFinite() || !box.high.allFinite() || !std::isfinite(diagonal)) return origin;
-    constexpr double far = 16;  // diagonals from zero; nearer, doubles have bits to spare
     for (int axis = 0; axis < 3; ++axis) {
         const double middle = 0.5 * box.low[axis] + 0.5 * box.high[axis];
-        if (!(std::abs(middle) > far * diagonal)) continue;
+        if (!(std::abs(middle) > distant_diagonals * diagonal)) continue;
         // A multiple of a power of two at least as coarse as any coordinate's last bit: the difference of two such
         // numbers this close together has a short mantissa, so no bit is lost.
         // Not below the normal numbers: a step of 0 would make the origin NaN.

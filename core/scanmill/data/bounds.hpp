@@ -27,13 +27,18 @@ BoundingBox bounding_box(std::span<const Vec3> positions);
 
 /// Sides of a scan's box, in its own unit, for which squares and cubes of all its lengths keep all their digits.
 inline constexpr double least_side = 1e-9, largest_side = 1e9;
+/// Whether a side of the box is longer than largest_side.
+bool is_too_long(const BoundingBox& box);
 /// Throws Error with the box's range if its longest side is above largest_side, or above 0 and below least_side.
 /// Scans are checked once, when they are read; algorithms rely on it.
 void require_supported_range(const BoundingBox& box);
 
-/// A good origin for world positions inside `box`: along every axis whose coordinates are large against the diagonal, a
-/// coarse power-of-two multiple near the middle, else 0. Chosen so that p - origin, and origin + (p - origin), are
-/// exact in double for every p in the box. Zero for a box without points or with an infinite bound.
+/// The coordinates of an axis are distant if the box's middle is more than this many diagonals from zero. Nearer,
+/// doubles have bits to spare.
+inline constexpr double distant_diagonals = 16;
+/// A good origin for world positions inside `box`: along every axis whose coordinates are distant, a coarse
+/// power-of-two multiple near the middle, else 0. Chosen so that p - origin, and origin + (p - origin), are exact in
+/// double for every p in the box. Zero for a box without points or with an infinite bound.
 Vec3 distant_origin(const BoundingBox& box);
 
 struct FiniteBounds {

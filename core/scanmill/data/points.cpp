@@ -63,8 +63,6 @@ Vec3 median_of(std::span<const Vec3> positions) {
     return median;
 }
 
-bool is_too_long(const BoundingBox& box) { return !box.empty() && !((box.high - box.low).maxCoeff() <= largest_side); }
-
 bool is_near(const Vec3& position, const Vec3& median) { return ((position - median).array().abs() <= farthest).all(); }
 
 /// Throws Error for a scan with invalid rows, all of them finite.
@@ -81,6 +79,16 @@ bool is_near(const Vec3& position, const Vec3& median) { return ((position - med
         .remedy(Remedy::drop_invalid_rows);
 }
 
+/// Throws Error for a scan that is too long because of many rows, not of a few invalid ones.
+void refuse_length(const BoundingBox& box, std::size_t far, std::size_t finite) {
+    try {
+        require_supported_range(box);
+    } catch (const Error& error) {
+        throw error.reworded(fmt::format("{}; {} of {} points lie farther than {:g} u from the median of all",
+                                         error.sentence(), far, finite, farthest));
+    }
+}
+
 }  // namespace
 
 Array<u32> valid_rows(std::span<const Vec3> positions) {
@@ -90,7 +98,7 @@ Array<u32> valid_rows(std::span<const Vec3> positions) {
     const Vec3 median = median_of(positions);
     const std::size_t finite = rows.size();
     std::erase_if(rows, [&](u32 row) { return !is_near(positions[row], median); });
-    if (rows.size() <= finite / 2) require_supported_range(box);
+    if (rows.size() <= finite / 2) refuse_length(box, finite - rows.size(), finite);
     return rows;
 }
 

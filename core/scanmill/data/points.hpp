@@ -33,8 +33,8 @@ Array<u32> finite_rows(std::span<const Vec3> positions);
 
 /// The rows that a scan may have, ascending: those with three finite coordinates and, if the box of these has a side
 /// longer than largest_side, within half of largest_side of the median along every axis. So the box of the valid rows
-/// is not too long. Throws Error if at most half of the finite rows are near the median: the scan itself is too long.
-/// Cost: one pass; a selection per axis if the box is too long.
+/// is not too long. Throws Error with the number of far rows if at most half of the finite rows are near the median:
+/// the scan itself is too long. Cost: one pass; a selection per axis if the box is too long.
 Array<u32> valid_rows(std::span<const Vec3> positions);
 
 /// What happens to invalid rows where a scan enters.

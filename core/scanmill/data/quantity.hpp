@@ -4,8 +4,8 @@
 ///
 /// A Length is relative (`0.1 %diag`, `3 spacing`), absolute (`0.2 mm`) or in the scan's own unit (`0.5 u`); resolved()
 /// converts it to the scan's unit. Algorithms read lengths by value(), which requires a resolved one: the engine
-/// resolves all lengths before a filter runs; a C++ caller writes `params.tolerance = 0.2` (scan units) or resolves
-/// with length_scale(cloud).
+/// resolves the lengths that a filter uses before it runs (but see takes_spacings); a C++ caller writes
+/// `params.tolerance = 0.2` (scan units) or resolves with length_scale(cloud).
 
 #include <functional>
 #include <string>

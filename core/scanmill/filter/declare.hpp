@@ -57,6 +57,13 @@ inline constexpr auto required = [](ParameterSpec& spec) {
     spec.required = true;
     spec.default_value = std::monostate{};
 };
+/// If the other parameter is given, the default of this one is not used, and relative lengths in it need no scan.
+inline auto unless_given(std::string other) {
+    return [other = std::move(other)](ParameterSpec& spec) { spec.unless_given = other; };
+}
+/// The filter computes the spacing itself, as a part of what it computes anyway: lengths in `spacing` reach it as they
+/// are written, other ones resolved.
+inline constexpr auto takes_spacings = [](ParameterSpec& spec) { spec.takes_spacings = true; };
 /// A list of exactly this many values.
 inline auto size(std::size_t count) {
     return [count](ParameterSpec& spec) { spec.size = count; };

@@ -227,6 +227,19 @@ WrittenParameter written(const ParameterValue& value) {
     return result;
 }
 
+bool has_value(const ParameterValue* value) {
+    if (!value || std::holds_alternative<std::monostate>(*value)) return false;
+    const auto* one = std::get_if<ParameterScalar>(value);
+    return !one || !std::holds_alternative<Word>(*one);
+}
+
+bool is_in_spacings(const ParameterValue& value) {
+    return std::ranges::any_of(items_of(value), [](const ParameterScalar& item) {
+        const Length* length = std::get_if<Length>(&item);
+        return length && length->in() == Length::In::spacing;
+    });
+}
+
 ParameterValue resolved(ParameterValue value, const LengthScale& scale) {
     for (ParameterScalar& item : items_of(value))
         if (auto* length = std::get_if<Length>(&item)) *length = length->resolved(scale);

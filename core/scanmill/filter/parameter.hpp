@@ -53,6 +53,9 @@ struct ParameterSpec {
     std::string word;                 ///< accepted in place of a value; empty: none
     std::optional<Bound> low, high;   ///< of the amount as written; for angles in degrees, for ratios the fraction
     std::vector<Choice> choices;
+    /// Another parameter; if it has a value, the default of this one is not used.
+    std::string unless_given;
+    bool takes_spacings = false;   ///< lengths in `spacing` reach the filter as they are written
     ParameterValue default_value;  ///< nothing: required, or optional without default
 
     bool operator==(const ParameterSpec&) const = default;
@@ -80,6 +83,10 @@ std::string canonical_text(const ParameterValue& value);
 /// The text(s) that parse() reads back to the same value. Pre: not nothing.
 WrittenParameter written(const ParameterValue& value);
 
+/// Whether there is a value, neither nothing nor a word.
+bool has_value(const ParameterValue* value);
+/// Whether a length in it is in `spacing`.
+bool is_in_spacings(const ParameterValue& value);
 /// The value with all lengths in the scan's own unit.
 ParameterValue resolved(ParameterValue value, const LengthScale& scale);
 

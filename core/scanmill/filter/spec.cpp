@@ -59,7 +59,14 @@ void require_remark(std::string_view filter, std::string_view subject, std::stri
     require_sentence(filter, "remark on", subject, remark);
 }
 
-void require_sound_parameter(std::string_view filter, const ParameterSpec& parameter) {
+void require_sound_parameter(const FilterSpec& spec, const ParameterSpec& parameter) {
+    const std::string_view filter = spec.name;
+    if (!parameter.unless_given.empty() && !spec.parameter(parameter.unless_given))
+        throw Error("filter {}: parameter '{}' is used unless '{}' is given, which is not a parameter", filter,
+                    parameter.name, parameter.unless_given);
+    if (parameter.takes_spacings && (parameter.list || parameter.type != ParameterType::length))
+        throw Error("filter {}: parameter '{}' takes lengths in spacing as they are written and is not a single length",
+                    filter, parameter.name);
     if (parameter.type == ParameterType::choice && parameter.choices.size() < 2)
         throw Error("filter {}: parameter '{}' has fewer than two choices", filter, parameter.name);
     std::set<std::string_view> names;
@@ -134,7 +141,7 @@ void require_sound(const FilterSpec& spec) {
         return port.takes(kind_of<PointCloud>()) || port.takes(kind_of<TriangleMesh>());
     };
     if (std::ranges::any_of(spec.inputs, has_coordinates)) require_remark(spec.name, "NaN", spec.not_finite);
-    for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec.name, parameter);
+    for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec, parameter);
     if (spec.streams) require_sound_stream(spec);
 }
 

@@ -20,11 +20,11 @@ bool is_marked_text(std::string_view bytes) {
 
 LoadedFile read_named(const FileBytes& file, const ReadOptions& options) {
     if (file.bytes.empty()) throw Error("is empty (0 bytes)");
-    const std::optional<Array<char>> content = unwrapped(file.bytes);
+    const OnWarning on_warning = warnings_with_file_name(file.path, options.on_warning);
+    const std::optional<Array<char>> content = unwrapped(file.bytes, on_warning);
     FileBytes plain{file.path, content ? std::string_view(content->data(), content->size()) : file.bytes};
     if (is_marked_text(plain.bytes)) plain.bytes = without_byte_order_mark(plain.bytes);
-    LoadedFile loaded =
-        format_of(plain).read(plain, {warnings_with_file_name(file.path, options.on_warning), options.unit});
+    LoadedFile loaded = format_of(plain).read(plain, {on_warning, options.unit});
     if (content) loaded.encoding += wrapping_of(file.bytes) == Wrapping::gzip ? ", gzip" : ", UTF-16";
     return loaded;
 }
@@ -106,8 +106,8 @@ Cleaned<PointCloud> accepted_points(const LoadedFile& loaded, const std::filesys
     const std::shared_ptr<const PointCloud> cloud = points_in(loaded, path, options);
     Cleaned<PointCloud> result = with_file_name(path, [&] { return accepted(*cloud, rule, loaded.nan_is_no_return); });
     if (result.points > 0)
-        warn(options.on_warning, "'{}': {} of {} dropped: {}", path.string(), result.points,
-             count_text(cloud->size(), "point was", "points were"),
+        warn(options.on_warning, "'{}': {} of {} {} dropped: {}", path.string(), result.points,
+             count_text(cloud->size(), "point", "points"), by_count(result.points, "was", "were"),
              loaded.nan_is_no_return ? "no return, or a coordinate that is too far"
                                      : "a coordinate is NaN, infinite or too far");
     return result;

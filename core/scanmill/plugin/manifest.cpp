@@ -117,6 +117,7 @@ void members(Archive& archive, ParameterSpec& parameter) {
     archive.optional("list", parameter.list).optional("size", parameter.size);
     archive.optional("required", parameter.required).optional("word", parameter.word);
     archive.optional("low", parameter.low).optional("high", parameter.high).optional("choices", parameter.choices);
+    archive.optional("unless-given", parameter.unless_given).optional("takes-spacings", parameter.takes_spacings);
     archive.default_value("default", parameter);
 }
 void members(Archive& archive, Manifest& manifest) {

@@ -8,24 +8,6 @@ namespace scanmill {
 
 namespace {
 
-bool is_in_spacings(const ParameterScalar& value) {
-    const Length* length = std::get_if<Length>(&value);
-    return length && length->in() == Length::In::spacing;
-}
-
-bool is_in_spacings(const ParameterValue& value) {
-    if (const auto* items = std::get_if<std::vector<ParameterScalar>>(&value))
-        return std::ranges::any_of(*items, [](const ParameterScalar& item) { return is_in_spacings(item); });
-    const auto* one = std::get_if<ParameterScalar>(&value);
-    return one && is_in_spacings(*one);
-}
-
-bool has_value(const ParameterValue* value) {
-    if (!value || std::holds_alternative<std::monostate>(*value)) return false;
-    const auto* one = std::get_if<ParameterScalar>(value);
-    return !one || !std::holds_alternative<Word>(*one);
-}
-
 /// The steps and outputs that read one scan.
 struct Readers {
     std::size_t all = 0, streaming = 0;

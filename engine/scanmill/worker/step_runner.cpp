@@ -18,7 +18,9 @@ namespace scanmill {
 namespace {
 
 struct ResolvedParameters {
-    ParameterSet values;  ///< defaults that cannot be resolved stay as they are declared
+    /// Defaults that cannot be resolved or are not used stay as they are declared, spacings that the filter takes as
+    /// they are written.
+    ParameterSet values;
     std::vector<UnresolvedLength> unresolved;  ///< the reasons
 };
 
@@ -26,12 +28,18 @@ struct ResolvedParameters {
 ResolvedParameters resolved_parameters(const PlannedStep& step, const LengthScale& scale) {
     ResolvedParameters result;
     for (const auto& [name, value] : step.parameters.values) {
+        const ParameterSpec* spec = step.spec.parameter(name);
+        const bool is_default = spec && spec->default_value == value;
+        if ((spec && spec->takes_spacings && is_in_spacings(value)) ||
+            (is_default && !spec->unless_given.empty() && has_value(step.parameters.find(spec->unless_given)))) {
+            result.values.values.emplace_back(name, value);
+            continue;
+        }
         try {
             result.values.values.emplace_back(name, resolved(value, scale));
         } catch (UnresolvedLength& reason) {
             reason.add_frame(fmt::format("in the parameter '{}'", name));
-            const ParameterSpec* spec = step.spec.parameter(name);
-            if (!spec || spec->default_value != value) throw;
+            if (!is_default) throw;
             result.unresolved.push_back(reason);
             result.values.values.emplace_back(name, value);
         }
@@ -203,8 +211,7 @@ std::shared_ptr<const PointStream> open_leaf(const LeafSource& leaf, unsigned th
     assert(leaf.is_streamed && leaf.kind == kind_of<PointCloud>() && !leaf.pose);
     std::shared_ptr<PointStream> scan = open_point_stream(leaf.file, reading(leaf, on_warning), threads, on_positions);
     if (!scan) return nullptr;
-    if (const BoundingBox& box = scan->bounds(); (box.high - box.low).maxCoeff() > largest_side)
-        return nullptr;  // it may have invalid rows
+    if (is_too_long(scan->bounds())) return nullptr;  // it may have invalid rows
     naming_file(leaf.file, [&] { require_supported_range(scan->bounds()); });
     if (std::string name = scan->frame().name; take_declared_name(leaf, name, on_warning)) scan->rename_frame(name);
     return scan;

@@ -109,6 +109,14 @@ std::vector<u32> valid(const std::vector<Vec3>& positions) {
     return {rows.begin(), rows.end()};
 }
 
+TEST(IsTooLong, Box_IsIfASideIsAboveOneGigaUnit) {
+    const auto box = [](const Vec3& high) { return BoundingBox{Vec3::Zero(), high}; };
+    EXPECT_FALSE(is_too_long(BoundingBox{}));
+    EXPECT_FALSE(is_too_long(box({1, 1e9, 1e9})));
+    for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(is_too_long(box(std::nextafter(1e9, 2e9) * Vec3::Unit(axis))));
+    EXPECT_TRUE(is_too_long({Vec3::Constant(-1.5e308), Vec3::Constant(1.5e308)}));
+}
+
 TEST(ValidRows, NotFiniteRows_AreInvalid) {
     EXPECT_THAT(valid({{0, 0, 0}, {1, nan, 2}, {3, 4, 5}, {-infinity, 0, 0}}), ElementsAre(0u, 2u));
     EXPECT_THAT(valid({{nan, 0, 0}}), testing::IsEmpty());
@@ -127,7 +135,8 @@ TEST(ValidRows, ScanOfTheLongestLength_HasNoInvalidRow) {
 
 TEST(ValidRows, ScanOfWhichHalfIsFar_IsTooLongItself) {
     const std::vector<Vec3> spread{{0, 0, 0}, {1e9, 0, 0}, {2e9, 0, 0}, {3e9, 0, 0}};
-    EXPECT_THAT(sentence_of([&] { valid_rows(spread); }), HasSubstr("supported are"));
+    EXPECT_THAT(sentence_of([&] { valid_rows(spread); }),
+                AllOf(HasSubstr("supported are"), HasSubstr("3 of 4 points lie farther than 5e+08 u from the median")));
 }
 
 TEST(Accepted, InvalidRows_AreRefusedWithTheWayOutOrDropped) {

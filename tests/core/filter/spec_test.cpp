@@ -187,6 +187,35 @@ TEST(RequireSound, NoDefault_IsSound) {
     EXPECT_NO_THROW(require_sound(spec));
 }
 
+TEST(RequireSound, UnlessGiven_NamesAnotherParameter) {
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.parameters[0].unless_given = "size"; }),
+              "filter voxel-thin: parameter 'bin-size' is used unless 'size' is given, which is not a parameter");
+    FilterSpec spec = sound_spec();
+    spec.parameters.push_back(number_parameter("size"));
+    spec.parameters[0].unless_given = "size";
+    EXPECT_NO_THROW(require_sound(spec));
+}
+
+TEST(RequireSound, TakesSpacings_IsForOneLength) {
+    const std::string refusal =
+        "filter voxel-thin: parameter 'bin-size' takes lengths in spacing as they are written and is not a single "
+        "length";
+    EXPECT_EQ(verdict([](FilterSpec& spec) { spec.parameters[0].takes_spacings = true; }), refusal);
+    const auto make_length = [](FilterSpec& spec) {
+        spec.parameters[0].type = ParameterType::length;
+        spec.parameters[0].default_value = ParameterScalar(Length(1));
+        spec.parameters[0].takes_spacings = true;
+    };
+    FilterSpec spec = sound_spec();
+    make_length(spec);
+    EXPECT_NO_THROW(require_sound(spec));
+    EXPECT_EQ(verdict([&](FilterSpec& list) {
+                  make_length(list);
+                  list.parameters[0].list = true;
+              }),
+              refusal);
+}
+
 TEST(RequireSound, Stream_IsOfOneCloudAndAsksForParametersThatMayLackAValue) {
     const auto add_stream = [](FilterSpec& spec, std::vector<std::string> given) {
         ParameterSpec optional = number_parameter("with-word"), empty = number_parameter("empty");

@@ -54,6 +54,18 @@ TEST(GzipContent, OfSeveralMembers_IsReadToTheEnd_AndPaddingIsIgnored) {
     EXPECT_EQ(points_in(gzipped("1 2 3\n") + gzipped("4 5 6\n") + std::string(512, '\0'), "a.xyz.gz")->size(), 2u);
 }
 
+TEST(GzipContent, BytesAfterIt_AreReported) {
+    Warnings warnings;
+    EXPECT_EQ(points_in(gzipped(rows) + std::string(512, '\0'), "a.xyz.gz", &warnings)->size(), 2u);
+    EXPECT_THAT(warnings.sentences, testing::IsEmpty());
+    EXPECT_EQ(points_in(gzipped(rows) + "1 2 3\n", "a.xyz.gz", &warnings)->size(), 2u);
+    EXPECT_THAT(warnings.sentences, ElementsAre("'a.xyz.gz': 6 bytes after the end of the gzip data were ignored; they "
+                                                "are not gzip data"));
+    warnings.sentences.clear();
+    points_in(gzipped(rows) + std::string(3, '\0') + "x", "a.xyz.gz", &warnings);
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("4 bytes after")));
+}
+
 TEST(GzipContent, OfManyTimesItsSize_IsWhole) {
     std::string many;
     for (int i = 0; i < 100000; ++i) many += "0 0 1\n";

@@ -67,6 +67,8 @@ Manifest everything() {
     spec.parameters[9].size = 3;
     spec.parameters[10].list = true;
     spec.parameters[11].required = true;
+    spec.parameters[6].takes_spacings = true;
+    spec.parameters[2].unless_given = "alpha";
     using enum Unit;
     for (const Unit unit : {count, length, area, volume, angle, ratio, seconds, number, boolean})
         spec.metrics.push_back({"in-" + std::string(name_of(unit)), unit, "Measures something.", unit == ratio});
@@ -113,6 +115,8 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[2].low->inclusive = false; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[9].size.reset(); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[11].required = false; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[6].takes_spacings = false; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[2].unless_given = "count"; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].headline = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].numbered = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.streams.emplace(); }));

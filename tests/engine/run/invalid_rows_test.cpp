@@ -114,7 +114,7 @@ TEST_F(InvalidRowsRun, PtxWithNan_DropsItUnlessRefusalIsAskedFor) {
     EXPECT_TRUE(report.outcome() == Outcome::ok);
     EXPECT_EQ(report.nodes[0].properties.find("points")->value, 4);
     EXPECT_EQ(report.nodes[0].properties.find("dropped-points")->value, 1);
-    EXPECT_THAT(report.nodes[0].warnings, Contains(HasSubstr("1 of 5 points were dropped: no return")));
+    EXPECT_THAT(report.nodes[0].warnings, Contains(HasSubstr("1 of 5 points was dropped: no return")));
     EXPECT_FALSE(run_over(file, "{scan: {kind: points, invalid: refuse}}").outcome() == Outcome::ok);
 }
 
@@ -179,6 +179,8 @@ TEST_F(StrayPointRun, StreamedOrWhole_IsTheSame) {
 }
 
 TEST_F(StrayPointRun, LengthInUnits_NeedsNoWarning) {
+    for (const bool whole : {false, true})
+        EXPECT_THAT(run_thin("bin-size: 1 u", sphere("b.ply", 1), whole).nodes[1].warnings, IsEmpty());
     EXPECT_THAT(run_logging(sphere("b.ply", 1), "length: 1 u").nodes[1].warnings, IsEmpty());
     EXPECT_EQ(run_logging(sphere("b.ply", 1)).nodes[1].warnings.size(), 1u);
 }

@@ -51,6 +51,9 @@ protected:
         for (const ParameterSpec& spec : filter_.spec.parameters)
             step_.parameters.values.emplace_back(spec.name, spec.default_value);
     }
+    ParameterSpec& spec(const std::string& name) {
+        return *std::ranges::find(step_.spec.parameters, name, &ParameterSpec::name);
+    }
     void set(const std::string& name, ParameterScalar value) {
         for (auto& [key, known] : step_.parameters.values)
             if (key == name) known = std::move(value);
@@ -97,6 +100,27 @@ TEST_F(ReaderStep, DefaultWithoutAMeasure_IsRefusedWhereItIsReadForItsOwnReason)
     EXPECT_EQ(thresholds.sentence(), "2 spacing cannot be resolved: the scan's point spacing is 0");
     EXPECT_THAT(thresholds.frames(), ElementsAre("in the parameter 'thresholds'"));
     EXPECT_THAT(thresholds.hint(), HasSubstr("in the scan's unit"));
+}
+
+TEST_F(ReaderStep, DefaultThatIsNotUsed_IsNotResolved) {
+    const std::vector<Vec3> points{Vec3(0, 0, 0), Vec3(3, 4, 0)};
+    spec("tolerance").unless_given = "size";
+    sum_over(points);
+    EXPECT_EQ(text(*report_.resolved.find("tolerance")), "10 %diag") << "as it is declared";
+    set("tolerance", Length::percent_of_diagonal(5));
+    sum_over(points);
+    EXPECT_EQ(text(*report_.resolved.find("tolerance")), "0.25 u");
+}
+
+TEST_F(ReaderStep, Spacings_ReachAFilterThatTakesThem) {
+    const std::vector<Vec3> points{Vec3(0, 0, 0), Vec3(3, 4, 0)};
+    spec("tolerance").takes_spacings = true;
+    set("tolerance", Length::spacings(3));
+    sum_over(points);
+    EXPECT_EQ(text(*report_.resolved.find("tolerance")), "3 spacing");
+    set("tolerance", Length::percent_of_diagonal(5));
+    sum_over(points);
+    EXPECT_EQ(text(*report_.resolved.find("tolerance")), "0.25 u");
 }
 
 TEST_F(ReaderStep, OtherRefusals_AreNotTakenForOnesOfADefault) {

@@ -12,9 +12,8 @@ namespace scanmill {
 namespace {
 
 /// The multiples of the largest power of ten within the given number of diagonals that are nearest to the middle, on
-/// the axes that are far from zero. Zero for a box beyond the supported range.
+/// the axes whose coordinates are distant. Zero for a box beyond the supported range.
 Vec3 round_shift(const BoundingBox& world, double diagonals) {
-    constexpr double far = 16;  // diagonals from zero, as distant_origin()
     Vec3 shift = Vec3::Zero();
     const double diagonal = world.diagonal();
     if (!(diagonal >= least_side && diagonal <= 2 * largest_side)) return shift;
@@ -24,7 +23,7 @@ Vec3 round_shift(const BoundingBox& world, double diagonals) {
     while (1 / parts > diagonals * diagonal) parts *= 10;
     for (int axis = 0; axis < 3; ++axis) {
         const double middle = 0.5 * world.low[axis] + 0.5 * world.high[axis];
-        if (!(std::abs(middle) > far * diagonal)) continue;
+        if (!(std::abs(middle) > distant_diagonals * diagonal)) continue;
         shift[axis] = parts > 1 ? std::round(middle * parts) / parts : std::round(middle / step) * step;
     }
     return shift;

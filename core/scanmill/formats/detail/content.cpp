@@ -10,6 +10,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/formats/common/reading.hpp"
 #include "scanmill/io/memory.hpp"
 
 namespace scanmill {
@@ -37,6 +38,8 @@ public:
         while (filled < room.size() && !is_at_end_) filled += step(room.subspan(filled));
         return filled;
     }
+    /// After the end: what follows the last member.
+    std::string_view rest() const { return input_; }
 
 private:
     std::size_t step(std::span<char> room) {
@@ -65,7 +68,7 @@ private:
         return filled;
     }
 
-    /// What follows a member and does not begin another one is padding, which gunzip ignores as well.
+    /// What follows a member and does not begin another one is ignored, as by gunzip.
     void next_member() {
         is_at_end_ = !input_.starts_with(gzip_magic);
         if (!is_at_end_) ::inflateReset(&stream_);
@@ -128,7 +131,7 @@ Wrapping wrapping_of(std::string_view bytes) {
     return utf16_order(bytes) ? Wrapping::utf16 : Wrapping::none;
 }
 
-Array<char> decompressed(std::string_view gzip, std::uint64_t most) {
+Array<char> decompressed(std::string_view gzip, std::uint64_t most, const OnWarning& on_warning) {
     constexpr std::size_t usual_ratio = 4;
     Inflater inflater(gzip);
     Array<char> content(std::min<std::uint64_t>(most, usual_ratio * gzip.size() + 1));
@@ -148,6 +151,9 @@ Array<char> decompressed(std::string_view gzip, std::uint64_t most) {
     }
     content.resize(filled);
     if (content.empty()) throw Error("is empty: its gzip data hold 0 bytes");
+    if (const std::string_view rest = inflater.rest(); rest.find_first_not_of('\0') != rest.npos)
+        warn(on_warning, "{} after the end of the gzip data {} ignored; they are not gzip data",
+             count_text(rest.size(), "byte", "bytes"), by_count(rest.size(), "was", "were"));
     return content;
 }
 
@@ -173,10 +179,10 @@ Array<char> utf8_of(std::string_view utf16) {
     return text;
 }
 
-std::optional<Array<char>> unwrapped(std::string_view bytes) {
+std::optional<Array<char>> unwrapped(std::string_view bytes, const OnWarning& on_warning) {
     std::optional<Array<char>> content;
     if (wrapping_of(bytes) == Wrapping::gzip) {
-        content = decompressed(bytes, available_memory() / 2);
+        content = decompressed(bytes, available_memory() / 2, on_warning);
         bytes = {content->data(), content->size()};
         if (wrapping_of(bytes) == Wrapping::gzip)
             throw Error("is compressed twice with gzip").hint("decompress it with gunzip -k");

@@ -68,15 +68,14 @@ struct Soup {
 
     LoadedFile mesh(std::vector<std::string> comments, std::string encoding, const ReadOptions& options) {
         if (triangles.empty()) throw Error("holds no points: the STL file has no facets");
-        const auto is_degenerate = [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
-        const auto count = static_cast<u64>(std::ranges::count_if(triangles, is_degenerate));
-        if (count == triangles.size())
-            throw Error("holds no surface: {} of the STL file {} two equal corners",
-                        count > 1 ? fmt::format("all {} facets", count) : std::string("the only facet"),
-                        by_count(count, "has", "have"))
-                .hint(
-                    "the program that wrote it lost digits, as single precision does far from zero: move the object "
-                    "near zero there, or export it as PLY");
+        const auto has_equal_corners = [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
+        const auto is_finite = [&](const Triangle& t) {
+            return std::ranges::all_of(t, [&](u32 corner) { return merger.positions[corner].allFinite(); });
+        };
+        u64 count = 0, not_finite = 0;
+        for (const Triangle& triangle : triangles)
+            if (has_equal_corners(triangle)) ++(is_finite(triangle) ? count : not_finite);
+        if (count + not_finite == triangles.size()) refuse(count, not_finite);
         if (count > 0)
             warn(options.on_warning, "{} of {} {} degenerate (two equal corners); {} kept", count,
                  count_text(triangles.size(), "facet", "facets"), by_count(count, "is", "are"),
@@ -91,6 +90,22 @@ struct Soup {
     PositionMerger merger;
     Array<Triangle> triangles;
     ColumnTable columns;
+
+private:
+    /// Throws Error for a file whose facets all have equal corners; `not_finite` of them also NaN or infinity.
+    [[noreturn]] static void refuse(u64 finite, u64 not_finite) {
+        const u64 facets = finite + not_finite;
+        const std::string all = facets > 1 ? fmt::format("all {} facets", facets) : std::string("the only facet");
+        if (not_finite > 0)
+            throw Error("holds no surface: {} of the STL file {} two equal corners{} NaN or infinite coordinates", all,
+                        by_count(facets, "has", "have"),
+                        finite > 0 ? fmt::format(", {} of them with", not_finite) : std::string(" with"))
+                .hint("the program that wrote it failed to compute the positions: export the object again");
+        throw Error("holds no surface: {} of the STL file {} two equal corners", all, by_count(facets, "has", "have"))
+            .hint(
+                "the program that wrote it lost digits, as single precision does far from zero: move the object near "
+                "zero there, or export it as PLY");
+    }
 };
 
 LoadedFile read_binary(std::string_view bytes, const ReadOptions& options) {

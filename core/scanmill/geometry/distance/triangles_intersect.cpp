@@ -48,12 +48,12 @@ Plane plane_of(const Corners& triangle) {
     return {*triangle[0], *triangle[1] - *triangle[0], *triangle[2] - *triangle[0]};
 }
 
-/// Whether all corners from `first` on lie strictly on one side of the plane.
-bool is_beside(const Plane& plane, const Corners& triangle, std::size_t first) {
+/// The side of the plane on which all corners from `first` on are, or 0.
+int common_side(const Plane& plane, const Corners& triangle, std::size_t first) {
     const int side = plane.side_of(*triangle[2]);
-    for (std::size_t i = first; i < 2 && side != 0; ++i)
-        if (plane.side_of(*triangle[i]) != side) return false;
-    return side != 0;
+    for (std::size_t i = first; i < 2; ++i)
+        if (plane.side_of(*triangle[i]) != side) return 0;
+    return side;
 }
 
 /// Whether a plane through the common first corner is between the triangles: the one across the difference of the mean
@@ -62,9 +62,7 @@ bool are_opposite(const Corners& one, const Corners& other) {
     const Vec3& corner = *one[0];
     const auto direction = [&](const Vec3& to) -> Vec3 { return (to - corner) / (to - corner).lpNorm<1>(); };
     const Plane between(corner, direction(*one[1]) + direction(*one[2]) - direction(*other[1]) - direction(*other[2]));
-    return between.side_of(*one[1]) + between.side_of(*one[2]) - between.side_of(*other[1]) -
-               between.side_of(*other[2]) ==
-           4;
+    return common_side(between, one, 1) == 1 && common_side(between, other, 1) == -1;
 }
 
 /// Whether the plane through an edge of `one` and perpendicular to `one` is between the triangles. Common corners may
@@ -73,8 +71,7 @@ bool edge_separates(const Corners& one, const Vec3& normal, const Corners& other
     for (std::size_t opposite = common; opposite < 3; ++opposite) {
         const Vec3 &from = *one[(opposite + 1) % 3], &to = *one[(opposite + 2) % 3];
         const Plane along(from, to - from, normal);
-        const int side = along.side_of(*one[opposite]);
-        if (side != 0 && along.side_of(*other[2]) == -side && is_beside(along, other, common)) return true;
+        if (along.side_of(*one[opposite]) * common_side(along, other, common) == -1) return true;
     }
     return false;
 }
@@ -108,9 +105,9 @@ bool are_apart(const Corners& one, const Corners& other, std::size_t common) {
     if (common == 0 && !boxes_meet(one, other)) return true;
     if (common == 1 && are_opposite(one, other)) return true;
     const Plane plane = plane_of(one);
-    if (is_beside(plane, other, common)) return true;
+    if (common_side(plane, other, common) != 0) return true;
     const Plane other_plane = plane_of(other);
-    return is_beside(other_plane, one, common) || edge_separates(one, plane.normal, other, common) ||
+    return common_side(other_plane, one, common) != 0 || edge_separates(one, plane.normal, other, common) ||
            edge_separates(other, other_plane.normal, one, common);
 }
 
@@ -129,7 +126,7 @@ bool triangles_intersect(std::span<const Vec3> positions, const Triangle& first,
     Triangle of_one = first, of_other = second;
     const std::size_t common = bring_common_first(of_one, of_other);
     const Corners one = corners_of(positions, of_one), other = corners_of(positions, of_other);
-    if (common < 3 && are_apart(one, other, common)) return false;
+    if (are_apart(one, other, common)) return false;
     if (is_collinear(one) || is_collinear(other)) return false;
     return exact::triangles_intersect(one, other, common);
 }

@@ -20,8 +20,8 @@ bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 /// order. Collinear triangles, also those with a repeated index, intersect nothing.
 ///
 /// Pre: finite coordinates below 1e40. The order of the triangles and of their corners does not matter.
-/// Cost: about 30 ns where rounded arithmetic finds a plane between the triangles, which it does for nearly all pairs of
-/// a mesh that does not intersect itself; some microseconds at most otherwise.
+/// Cost: about 30 ns where rounded arithmetic finds a plane between the triangles, which it does for nearly all pairs
+/// of a mesh that does not intersect itself; some microseconds at most otherwise.
 /// Source: the cases are those of CGAL's Polygon_mesh_processing::self_intersections.
 bool triangles_intersect(std::span<const Vec3> positions, const Triangle& one, const Triangle& other);
 

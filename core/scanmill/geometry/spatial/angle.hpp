@@ -6,6 +6,8 @@
 /// Decisions by angles, or by sums of angles, use these functions instead. They consist of +, -, *, /, sqrt and
 /// comparisons, which IEEE 754 rounds in exactly one way. (All of Scanmill is compiled with -ffp-contract=off.)
 
+#include <array>
+
 #include "scanmill/data/frame.hpp"
 
 namespace scanmill {
@@ -20,5 +22,7 @@ double angle_of(double cosine, double sine);
 /// The angle between two vectors, in radians, in [0, π]; 0 if one of them is zero. Angles near 0 and π keep their
 /// digits.
 double angle_between(const Vec3& a, const Vec3& b);
+/// The angles between a and b and between c and d: the same bits, in little more than the time for one.
+std::array<double, 2> angles_between(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 }  // namespace scanmill

@@ -38,11 +38,10 @@ std::uint64_t hash_of(const Vec3& p) {
     return hash;
 }
 
-/// All rows of `points`, or a sample chosen by a hash of the coordinates.
+/// A sample of rows of `points`, chosen by a hash of the coordinates. Pre: more than most_queries points.
 std::vector<u32> sampled_rows(std::span<const Vec3> points) {
     std::vector<u32> rows(points.size());
     std::iota(rows.begin(), rows.end(), u32(0));
-    if (rows.size() <= most_queries) return rows;
     std::vector<std::uint64_t> hashes(points.size());
     std::ranges::transform(points, hashes.begin(), hash_of);
     std::ranges::sort(rows, [&](u32 a, u32 b) {
@@ -65,6 +64,15 @@ double point_spacing(std::span<const Vec3> positions) {
     std::vector<u32> rows_at(tree.positions().size(), 0);
     for (const u32 index : tree.index_of_row()) ++rows_at[index];
     std::vector<double> distances;
+    if (points.size() <= most_queries) {
+        distances.resize(points.size(), 0);  // those of repeated points stay 0
+        tree.for_each_nearest(1, 1, [&](const NeighbourBatch& batch) {
+            for (std::size_t i = 0; i < batch.each * batch.indices.size(); ++i)
+                if (rows_at[batch.indices[i]] == 1)
+                    distances[batch.indices[i]] = std::sqrt(batch.neighbours[i].squared);
+        });
+        return median(distances);
+    }
     NeighbourBuffer buffer;
     for (const u32 row : sampled_rows(points)) {
         const u32 index = tree.index_of_row()[row];

@@ -145,6 +145,12 @@ TEST(StlThatCollapsed, IsRefusedWhenItIsRead) {
                 HasSubstr("holds no surface: all 2 facets of the STL file have two equal corners"));
     EXPECT_THAT(refusal_of("solid\n" + facet + "endsolid\n", "a.stl"),
                 HasSubstr("holds no surface: the only facet of the STL file has two equal corners"));
+    const std::string invalid =
+        "facet normal 0 0 0\nouter loop\nvertex nan nan nan\nvertex nan nan nan\nvertex 2 1 1\nendloop\nendfacet\n";
+    EXPECT_THAT(refusal_of("solid\n" + invalid + invalid + "endsolid\n", "a.stl"),
+                HasSubstr("all 2 facets of the STL file have two equal corners with NaN or infinite coordinates"));
+    EXPECT_THAT(refusal_of("solid\n" + facet + invalid + facet + "endsolid\n", "a.stl"),
+                HasSubstr("all 3 facets of the STL file have two equal corners, 1 of them with NaN or infinite"));
 }
 
 TEST(StlLosses, ColumnsThatFiltersAdded_AreLeftOutWithoutAWarning_TheUsersAreNot) {

@@ -79,6 +79,12 @@ TEST(StlReader_Binary, DegenerateFacets_AreKeptAndCounted) {
     const auto mesh = mesh_in(binary(facets), "a.stl", &warnings);
     EXPECT_EQ(mesh->triangles[2], (Triangle{0, 1, 0}));
     EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("1 of 3 facets is degenerate")));
+
+    // Facets with NaN are not counted: what checks coordinates reports them.
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    facets.push_back({{{{0, 0, 0}, {nan, 0, 0}, {0, 0, 0}}}});
+    mesh_in(binary(facets), "a.stl", &warnings);
+    EXPECT_THAT(warnings.sentences.back(), HasSubstr("1 of 4 facets is degenerate"));
 }
 
 TEST(StlReader_Binary, InvalidCoordinates_AreReadAsTheyAre) {

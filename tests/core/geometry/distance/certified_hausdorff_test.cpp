@@ -197,6 +197,124 @@ TEST(CertifiedHausdorff, BoundsHoldAfterAnyNumberOfCuts) {
     EXPECT_LE(found.upper - found.lower, 0.01 * found.upper + 1e-12);
 }
 
+/// A sphere of 2,880 triangles and one of 80, with random bumps: at least a few hundred cuts.
+std::pair<TriangleMesh, TriangleMesh> bumpy_spheres(std::uint64_t seed) {
+    Random random(seed);
+    const auto bumpy = [&](u32 frequency, double height) {
+        return with_positions(geodesic_sphere(1, frequency),
+                              [&](const Vec3& p) -> Vec3 { return p * random.uniform(1, 1 + height); });
+    };
+    TriangleMesh fine = bumpy(12, 0.02), coarse = bumpy(2, 0.2);
+    return {std::move(fine), std::move(coarse)};
+}
+
+TEST(CertifiedHausdorffBound, AboveTheDistance_IsProvenHoweverSmallTheSlack) {
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+        const auto [fine, coarse] = bumpy_spheres(seed);
+        const CertifiedHausdorff tight = bounds(fine, coarse, {1e-6, 1'000'000});
+        ASSERT_TRUE(tight.reached);
+        EXPECT_GT(bounds(fine, coarse, {0.3, 1'000'000}).upper, 1.0005 * tight.upper) << "the gap alone proves less";
+        for (const double slack : {1.0005, 1.01, 1.2}) {
+            const double bound = slack * tight.upper;
+            const CertifiedHausdorff found = bounds(fine, coarse, {0.3, 1'000'000, bound});
+            EXPECT_LE(found.upper, bound) << slack;
+            EXPECT_LE(found.lower, tight.upper);
+            EXPECT_GE(found.upper, tight.lower);
+            EXPECT_TRUE(found.reached);
+        }
+    }
+}
+
+TEST(CertifiedHausdorffBound, AboveTheDistance_LeavesTheGapAsItIs) {
+    const auto [fine, coarse] = bumpy_spheres(7);
+    const CertifiedHausdorff plain = bounds(fine, coarse);
+    const CertifiedHausdorff found = bounds(fine, coarse, {0.01, 1'000'000, 2 * plain.upper});
+    EXPECT_EQ(found.lower, plain.lower);
+    EXPECT_EQ(found.upper, plain.upper);
+    EXPECT_EQ(found.cuts, plain.cuts);
+}
+
+TEST(CertifiedHausdorffBound, BelowTheDistance_IsRefutedBeforeTheGapIsReached) {
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+        const auto [fine, coarse] = bumpy_spheres(seed);
+        const CertifiedHausdorff tight = bounds(fine, coarse, {1e-6, 1'000'000});
+        for (const double share : {0.999, 0.9, 0.3, 0.0}) {
+            const double bound = share * tight.lower;
+            const CertifiedHausdorff found = bounds(fine, coarse, {1e-6, 1'000'000, bound});
+            EXPECT_GT(found.lower, bound) << share;
+            EXPECT_LE(found.lower, tight.upper);
+            EXPECT_GE(found.upper, tight.lower);
+            EXPECT_FALSE(found.reached);
+            EXPECT_LT(found.cuts, tight.cuts);
+        }
+        EXPECT_LT(bounds(fine, coarse, {1e-6, 1'000'000, 0.3 * tight.lower}).cuts, 10u);
+    }
+}
+
+TEST(CertifiedHausdorffBound, FarAboveTheDistance_NeedsNoGap) {
+    // At 1 % of the bound the distance is negligible.
+    const TriangleMesh one = geodesic_sphere(1, 12), other = geodesic_sphere(1, 11);
+    const CertifiedHausdorff found = bounds(one, other, {0.01, 1'000'000, 5.0});
+    EXPECT_TRUE(found.reached);
+    EXPECT_LE(found.upper, 0.05);
+    EXPECT_LT(2 * found.cuts, bounds(one, other).cuts);
+}
+
+TEST(CertifiedHausdorffBound, Zero_IsProvenForEqualSurfacesOfDifferentTriangles) {
+    // An n × n grid in a slanted plane against the two triangles of its square; all positions are exact.
+    constexpr u32 n = 16;
+    const auto point = [](u32 x, u32 y) -> Vec3 { return {x / 16.0, y / 16.0, x / 32.0 + 1}; };
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    for (u32 y = 0; y <= n; ++y)
+        for (u32 x = 0; x <= n; ++x) positions.push_back(point(x, y));
+    for (u32 y = 0; y < n; ++y)
+        for (u32 x = 0; x < n; ++x) {
+            const u32 corner = y * (n + 1) + x;
+            triangles.push_back({corner, corner + 1, corner + n + 2});
+            triangles.push_back({corner, corner + n + 2, corner + n + 1});
+        }
+    const TriangleMesh grid = soup(positions, triangles);
+    const TriangleMesh square = soup({point(0, 0), point(n, 0), point(n, n), point(0, n)}, {{0, 1, 3}, {1, 2, 3}});
+    const CertifiedHausdorff found = bounds(grid, square, {0.01, 10'000, 0.0});
+    EXPECT_EQ(found.upper, 0);
+    EXPECT_LT(found.cuts, 10 * triangles.size());
+    EXPECT_GT(bounds(grid, shifted(square, {0, 0, 1e-9}), {0.01, 10'000, 0.0}).lower, 0);
+}
+
+TEST(CertifiedHausdorffBound, CutsUsedUp_LeavesItOpen) {
+    const auto [fine, coarse] = bumpy_spheres(2);
+    const double bound = 1.0005 * bounds(fine, coarse, {1e-6, 1'000'000}).upper;
+    const CertifiedHausdorff found = bounds(fine, coarse, {0.01, 20, bound});
+    EXPECT_EQ(found.cuts, 20u);
+    EXPECT_LE(found.lower, bound);
+    EXPECT_GT(found.upper, bound);
+}
+
+TEST(CertifiedHausdorff, TwoMeshes_NeedNoTrees) {
+    const auto [fine, coarse] = bumpy_spheres(1);
+    Execution execution({2, {}, {}});
+    const CertifiedHausdorff tight = bounds(fine, coarse, {1e-6, 1'000'000});
+    const CertifiedHausdorff found = certified_hausdorff(fine, coarse, {0.001}, execution);
+    EXPECT_TRUE(found.reached);
+    EXPECT_LE(found.lower, tight.upper);
+    EXPECT_GE(found.upper, tight.lower);
+    EXPECT_LE(found.upper - found.lower, 0.001 * found.upper + 1e-12);
+    // Vertices in no triangle are no part of the surface.
+    Array<Vec3> positions(fine.positions.begin(), fine.positions.end());
+    positions.push_back({100, 0, 0});
+    TriangleMesh with_unused = fine;
+    with_unused.positions = std::move(positions);
+    EXPECT_EQ(certified_hausdorff(with_unused, coarse, {0.001}, execution).upper, found.upper);
+    EXPECT_EQ(certified_hausdorff(fine, fine, {}, execution).upper, 0);
+}
+
+TEST(CertifiedHausdorff, Cancelled_Ends) {
+    const auto [fine, coarse] = bumpy_spheres(1);
+    Execution execution({2, {}, [] { return true; }});
+    EXPECT_THROW(certified_hausdorff(fine, coarse, {}, execution), Cancelled);
+}
+
 TEST(CertifiedHausdorff, ExchangedSurfaces_HaveTheSameDistance) {
     const TriangleMesh one = geodesic_sphere(1, 6), other = icosahedron(1.1);
     const CertifiedHausdorff there = bounds(one, other), back = bounds(other, one);

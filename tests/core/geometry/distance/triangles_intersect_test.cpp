@@ -185,7 +185,7 @@ TEST(TrianglesIntersect, CoplanarTriangles_AreAsConstructedExactly) {
 TEST(TrianglesIntersect, RoundedPositions_AreAsConstructedExactly) {
     // Nearly coplanar, nearly on common lines, by a few roundings; also where products underflow.
     const Eigen::Matrix3d turn = (Eigen::Matrix3d() << 0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6).finished();
-    for (const double scale : {0.1, 1e-9, 1e7, 1e-110, 1e30})
+    for (const double scale : {0.1, 1e-9, 1e7, 1e30, 1e-105, 1e-107, 1e-160})
         for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(1.1, -20.3, 300.7)})
             expect_both_often(compared(3000, 6, 7,
                                        [&](Random& random) -> Vec3 {

@@ -58,5 +58,17 @@ TEST(AngleBetween, IsRightForSmallAndForFlatAngles) {
     EXPECT_EQ(angle_between(Vec3::Zero(), Vec3(1, 0, 0)), 0);
 }
 
+TEST(AnglesBetween, TwoPairs_HaveTheBitsOfEach) {
+    std::vector<Vec3> vectors{Vec3::Zero(), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0)};
+    for (int i = 1; i < 40; ++i) vectors.push_back(Vec3(std::sin(7.0 * i), std::sin(11.0 * i), std::sin(13.0 * i)) / i);
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        for (std::size_t j = 0; j < vectors.size(); ++j) {
+            const Vec3 &a = vectors[i], &b = vectors[j], &c = vectors[vectors.size() - 1 - j];
+            const auto [first, second] = angles_between(a, b, c, a);
+            ASSERT_EQ(first, angle_between(a, b)) << i << ' ' << j;
+            ASSERT_EQ(second, angle_between(c, a)) << i << ' ' << j;
+        }
+}
+
 }  // namespace
 }  // namespace scanmill
