@@ -51,14 +51,15 @@ reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculp
 # Filters that thin a scan, make an open mesh of it and find its features.
 hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features
 
-bench-quality: deps ## compare `scanmill measure` with trimesh and Open3D, and our results with two papers
+bench-quality: deps ## compare our results with trimesh, Open3D, two papers and other decimations: LARGE=1
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
-	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid)
+	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) scanmill-decimate peers-drivers
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/decimate.py build/bench $(if $(LARGE),--large)
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench

@@ -7,15 +7,18 @@ from tables import page
 NOTES = """\
 `decimate` gets the *max-error*, in percent of the diagonal of the mesh. *measured* is the largest distance between its
 result and the input, in both directions: the upper bound of `scanmill measure --certify`, which is at most 1 % above
-the lower one. The other programs take a number of triangles. A search finds the smallest number with which the same
-measurement is at most ours (or 0.0001 % of the diagonal, the rounding of floats). It ends when a number that is at most
-1 % smaller is too small. The distance does not fall monotonically with the number of triangles, so the search also
-tries smaller numbers in steps of 10 %, down to 60 %. The other programs therefore get the best of many results, and
-`decimate` has one.
+the lower one. It can therefore be above the max-error, although `decimate` proves the max-error itself; the exit code
+shows whether the lower bound is above it.
+
+The other programs take a number of triangles. A search finds the smallest number with which the same measurement is at
+most ours (or 0.0001 % of the diagonal, the rounding of floats). It ends when a number that is at most 1 % smaller is
+too small. The distance does not fall monotonically with the number of triangles, so the search also tries smaller
+numbers in steps of 10 %, down to 60 %. The other programs therefore get the best of many results, and `decimate` has
+one.
 
 All programs get the same mesh, with coordinates rounded to float, and their default settings, except that
 fast-simplification's *agg* is 4, with which it needs fewer triangles than with the default 7, and that PyMeshLab also
-runs with *planarquadric*, with which it needs fewer on models with planes.
+runs with *planarquadric*, with which it can need fewer on models with planes.
 
 `decimate` keeps vertices of the input. The other programs, except meshoptimizer, move vertices; on smooth convex
 surfaces they can then do with half as many triangles, because the surface can lie on both sides of the input's."""

@@ -278,6 +278,11 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     if (points != nullptr) data = data_positions(*points, mesh.frame);
     const Array<u32> opposite = half_edges::opposites(mesh);
     warn_about(mesh, context);
+    if (max_error >= box.diagonal())
+        context.warn(fmt::format(
+            "max-error is {:.6g} u and the mesh's diagonal {:.6g} u: only the topology and the shapes of triangles "
+            "limit the result",
+            max_error, box.diagonal()));
     const FeatureScale scale{params.sharp_angle.in_radians(), params.corner_angle.in_radians(),
                              feature_reach * max_error};
     const FacetNormals normals = facet_normals(mesh, opposite, context.threads());

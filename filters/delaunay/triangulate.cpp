@@ -7,6 +7,7 @@
 #include <CGAL/Regular_triangulation_3.h>
 #include <CGAL/Regular_triangulation_cell_base_3.h>
 #include <CGAL/Regular_triangulation_vertex_base_3.h>
+#include <CGAL/Spatial_lock_grid_3.h>
 #include <CGAL/Spatial_sort_traits_adapter_3.h>
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
@@ -23,7 +24,6 @@
 
 #include "delaunay/canonical_cells.hpp"
 #include "delaunay/cell_containers.hpp"
-#include "delaunay/lock_grid.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 
@@ -39,8 +39,11 @@ using VertexBase = RowVertexBase<Kernel, CGAL::Triangulation_vertex_base_3<Kerne
 using CellBase = NumberedCellBase<Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
 template <class Concurrency>
 using DataStructure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase, Concurrency>;
+/// A grid over space: threads lock its boxes before they change cells there. A failed attempt to lock returns at once;
+/// CGAL's default would spin, for a whole time slice when the owner of the lock waits for a core.
+using Locks = CGAL::Spatial_lock_grid_3<CGAL::Tag_non_blocking>;
 using SharedTriangulation =
-    CGAL::Delaunay_triangulation_3<Kernel, DataStructure<CGAL::Parallel_tag>, CGAL::Default, LockGrid>;
+    CGAL::Delaunay_triangulation_3<Kernel, DataStructure<CGAL::Parallel_tag>, CGAL::Default, Locks>;
 /// For one thread: synchronisation costs time.
 using LoneTriangulation = CGAL::Delaunay_triangulation_3<Kernel, DataStructure<CGAL::Sequential_tag>>;
 
@@ -143,7 +146,7 @@ private:
     {
         CGAL::Bbox_3 box;
         for (const auto& [point, row] : points_) box += point.bbox();
-        LockGrid locks(box, lock_boxes_per_axis);
+        Locks locks(box, lock_boxes_per_axis);
         triangulation_.set_lock_data_structure(&locks);
         tbb::enumerable_thread_specific<Vertex> last_of_thread(last_);
         for_each_chunk(context_.threads(), points_.size() - begin, chunk, [&](std::size_t first, std::size_t last) {

@@ -8,11 +8,14 @@
 
 #include "alpha_solid/alpha_solid.hpp"
 #include "answer.hpp"
+#include "decimate/decimate.hpp"
 #include "delaunay/delaunay.hpp"
 #include "outlier_removal/outlier_removal.hpp"
 #include "region_grow/region_grow.hpp"
+#include "scanmill/data/bounds.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
+#include "scanmill/geometry/distance/certified_hausdorff.hpp"
 #include "scanmill/geometry/fit/local_surface.hpp"
 #include "sculpt/sculpt.hpp"
 #include "voxel_thin/voxel_thin.hpp"
@@ -196,6 +199,28 @@ Json distances(Held& held, const Json& request) {
             {"max", *std::ranges::max_element(found.distances)}};
 }
 
+/// Removes vertices until "triangles" are left, within "max_error" percent of the diagonal. The seconds include the
+/// certificate; a second computation of it shows its part.
+Json decimated(Held& held, const Json& request) {
+    TriangleMesh mesh;
+    mesh.positions = held.cloud.positions;
+    mesh.triangles = held.triangles;
+    DecimateParams params;
+    const BoundingBox box = bounding_box(mesh.positions.span());
+    const double max_error = request.at("max_error").get<double>() / 100 * (box.high - box.low).norm();
+    params.max_error = max_error;
+    params.target_triangles = request.at("triangles").get<u64>();
+    Context context = context_for(request);
+    DecimateResult result;
+    const double seconds = peers::seconds_of([&] { result = decimate(mesh, nullptr, params, context); });
+    const CertifyLimits limits{.gap = 0.01, .most_cuts = 100'000'000, .bound = max_error};
+    const double certifying = peers::seconds_of([&] { certified_hausdorff(result.mesh, mesh, limits, context); });
+    return {{"seconds", seconds},
+            {"certificate_seconds", certifying},
+            {"input_triangles", mesh.triangles.size()},
+            {"triangles", result.mesh.triangles.size()}};
+}
+
 }  // namespace
 
 int main() {
@@ -213,6 +238,7 @@ int main() {
                           {"alpha-solid", with_held(solid)},
                           {"sculpt", with_held(sculpted)},
                           {"region-grow", with_held(grown)},
+                          {"decimate", with_held(decimated)},
                           {"distances", with_held(distances)}},
                          {{"Scanmill", SCANMILL_VERSION}});
 }
