@@ -11,6 +11,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 
 namespace scanmill {
@@ -75,8 +76,8 @@ void require_usable(const TriangleMesh& mesh) {
     require_finite(mesh.positions.span(), "vertices");
 }
 
-/// Warns about what the result loses, and about seams.
-void warn_about(const TriangleMesh& mesh, Context& context) {
+/// Warns about what the result loses, and about seams. `lowest`: lowest_at_position().
+void warn_about(const TriangleMesh& mesh, std::span<const u32> lowest, Context& context) {
     std::size_t unused = mesh.positions.size();
     std::vector<bool> is_used(mesh.positions.size(), false);
     for (const Triangle& triangle : mesh.triangles)
@@ -97,16 +98,13 @@ void warn_about(const TriangleMesh& mesh, Context& context) {
         context.warn(fmt::format("edge columns are dropped, because the edges are new: {}", names(mesh.edge_columns)));
     if (mesh.vertex_columns.find("class"))
         context.warn("the vertex column 'class' is replaced by the classes of this filter");
-    std::vector<u32> order;
-    for (u32 vertex = 0; vertex < mesh.positions.size(); ++vertex)
-        if (is_used[vertex]) order.push_back(vertex);
-    const auto less = [&](u32 a, u32 b) {
-        const Vec3 &p = mesh.positions[a], &q = mesh.positions[b];
-        return std::tuple(p.x(), p.y(), p.z()) < std::tuple(q.x(), q.y(), q.z());
-    };
-    std::ranges::sort(order, less);
+    std::vector<bool> is_taken(mesh.positions.size(), false);
     std::size_t duplicates = 0;
-    for (std::size_t i = 1; i < order.size(); ++i) duplicates += !less(order[i - 1], order[i]);
+    for (u32 vertex = 0; vertex < mesh.positions.size(); ++vertex)
+        if (is_used[vertex]) {
+            duplicates += is_taken[lowest[vertex]];
+            is_taken[lowest[vertex]] = true;
+        }
     if (duplicates > 0)
         context.warn(fmt::format("{} the position of another one; the mesh is open between them, and stays so",
                                  count_text(duplicates, "vertex has", "vertices have")));
@@ -283,7 +281,8 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
     if (points != nullptr) data = data_positions(*points, mesh.frame);
     const Array<u32> opposite = half_edges::opposites(mesh);
     (void)EditableMesh(mesh, opposite);  // refuses repeated vertices and several fans, which the rest relies on
-    warn_about(mesh, context);
+    const Array<u32> lowest = lowest_at_position(mesh.positions.span());
+    warn_about(mesh, lowest, context);
     if (max_error >= box.diagonal())
         context.warn(fmt::format(
             "max-error is {:.6g} u and the mesh's diagonal {:.6g} u: only the topology and the shapes of triangles "
@@ -299,7 +298,7 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
                         "max-error, or enclose no larger face",
                         features.ignored_declared(), mesh.sharp_edges.size(),
                         by_count(features.ignored_declared(), "is", "are"), feature_reach));
-    const OriginalSurface original(mesh, opposite, features);
+    const OriginalSurface original(mesh, opposite, lowest, features);
     context.progress(Decimator::progress_begin / 2);
     NearestDistances nearest;
     std::size_t left_out = 0;

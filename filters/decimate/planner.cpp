@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/spatial/triangle_distance.hpp"
 
 namespace scanmill::decimating {
@@ -235,7 +234,7 @@ bool Planner::intersects(const Edit& edit, u32 stamp) {
         all.add(boxes_.back().high);
     }
     const auto intersect = [&](const Triangle& one, const Triangle& other) {
-        return triangles_intersect(surface_.original.positions(), one, other);
+        return surface_.original.intersect(one, other);
     };
     bool found = false;
     surface_.boxes().for_each_meeting(

@@ -13,6 +13,7 @@
 
 #include "decimate/decimator.hpp"
 #include "filters/decimate_cases.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 
@@ -34,7 +35,8 @@ public:
           opposite_(half_edges::opposites(mesh_)),
           normals_(facet_normals(mesh_, opposite_, 1)),
           features_(mesh_, opposite_, normals_.unit, {0.7, 0.6, 4 * max_error}, 1),
-          original_(mesh_, opposite_, features_),
+          lowest_(lowest_at_position(mesh_.positions.span())),
+          original_(mesh_, opposite_, lowest_, features_),
           surface_(original_, EditableMesh(mesh_, opposite_), {}) {
         limits_.error = {max_error, max_error};
         limits_.angle_sine = std::sin(least_angle_degrees * std::numbers::pi / 180);
@@ -276,6 +278,7 @@ private:
     Array<u32> opposite_;
     FacetNormals normals_;
     FeatureNetwork features_;
+    Array<u32> lowest_;
     OriginalSurface original_;
     Surface surface_;
     Limits limits_;

@@ -10,10 +10,7 @@
 
 namespace scanmill {
 
-namespace {
-
-/// For every vertex the smallest row among those at its position.
-Array<u32> merged_vertices(std::span<const Vec3> positions) {
+Array<u32> lowest_at_position(std::span<const Vec3> positions) {
     Array<u32> order(positions.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::sort(order, [&](u32 a, u32 b) {
@@ -27,6 +24,8 @@ Array<u32> merged_vertices(std::span<const Vec3> positions) {
     return merged;
 }
 
+namespace {
+
 BoundingBox box_of(std::span<const Vec3> positions, const Triangle& triangle) {
     BoundingBox box;
     for (const u32 vertex : triangle) box.add(positions[vertex]);
@@ -37,7 +36,7 @@ BoundingBox box_of(std::span<const Vec3> positions, const Triangle& triangle) {
 
 SelfIntersections self_intersections(std::span<const Vec3> positions, std::span<const Triangle> triangles,
                                      const TriangleTree& tree, Execution& execution, u64 most_pairs) {
-    const Array<u32> vertices = merged_vertices(positions);
+    const Array<u32> vertices = lowest_at_position(positions);
     const auto merged = [&](u32 row) -> Triangle {
         const auto& [a, b, c] = triangles[row];
         return {vertices[a], vertices[b], vertices[c]};
