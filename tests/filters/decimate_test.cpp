@@ -497,12 +497,13 @@ TEST(Decimate, MaxValence_HoldsAlsoOnTheBoundary) {
 
 TEST(Decimate, TwoSheetsNearEachOther_DoNotIntersect) {
     // Alone, each of them would become flat within the error, through the other.
-    const auto wavy = [](double height) {
-        return with_positions(grid(16, 4), [&](const Vec3& p) -> Vec3 {
+    const auto wavy = [](int m, int n, double height) {
+        return with_positions(grid(m, n), [&](const Vec3& q) -> Vec3 {
+            const Vec3 p(q.x() * 16 / m, q.y() * 4 / n, 0);
             return p + Vec3(0, 0, height + 0.1 * std::sin(0.8 * p.x()) * std::sin(pi * p.y() / 4));
         });
     };
-    const TriangleMesh sheets = both(wavy(0), wavy(0.02));
+    const TriangleMesh sheets = both(wavy(16, 4, 0), wavy(23, 7, 0.03));
     Execution execution;
     for (const double max_error : {0.03, 0.06, 0.15}) {
         const DecimateResult result = decimated(sheets, with_any_angle(max_error));

@@ -59,8 +59,9 @@ TEST(SharpEdges, Declared_AreSharpWhateverTheirAngle) {
 }
 
 TEST(SharpEdges, OnTheBoundary_AreNone) {
-    TriangleMesh mesh = without_triangles(cube(), {0});
-    const auto& [a, b, c] = cube().triangles[0];
+    const TriangleMesh closed = cube();
+    const auto& [a, b, c] = closed.triangles[0];
+    TriangleMesh mesh = without_triangles(closed, {0});
     // The three edges of the missing triangle: two edges of the cube and a diagonal.
     EXPECT_EQ(sharp_edges_of(mesh, 40).size(), 10u);
     mesh.sharp_edges = {make_edge(a, b)};
