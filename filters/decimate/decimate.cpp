@@ -23,6 +23,8 @@ using namespace decimating;
 /// Features smaller than this many times the largest error are roughness. On scanned models 4 leaves few corners of
 /// noise, and on CAD models it loses no line of the model at errors up to 1 % of the diagonal.
 constexpr double feature_reach = 4;
+/// Sine of 5 degrees, the least angle of triangles in flat faces.
+constexpr double flat_angle_sine = 0.08715574274765817;
 /// Removal stays within this share of the largest error, so that the certificate needs few cuts to prove the whole.
 constexpr double steering_share = 1 - 0x1p-10;
 /// If the certificate exceeds the largest error nevertheless, everything is done again within this share of what would
@@ -63,6 +65,7 @@ Limits limits_for(const DecimateParams& params, double share, double rounding) {
     for (double* error : {&limits.error.outside, &limits.error.inside}) *error = *error * share + rounding;
     limits.normal_cosine = std::cos(params.normal_deviation.in_radians()) - 1e-9;
     limits.angle_sine = std::sin(params.min_angle.in_radians());
+    limits.flat_angle_sine = std::min(limits.angle_sine, flat_angle_sine);
     limits.max_valence = params.max_valence;
     return limits;
 }

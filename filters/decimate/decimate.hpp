@@ -30,7 +30,8 @@ struct DecimateParams {
     Angle corner_angle = Angle::degrees(35);
     /// Largest angle between the normal of a new triangle and the mean normal of those it replaces. 0 to 89 degrees.
     Angle normal_deviation = Angle::degrees(60);
-    /// No new triangle has a smaller angle, unless one of those it replaces has. 0 to 30 degrees.
+    /// No new triangle has a smaller angle, unless one of those it replaces has; where the surface is flat to 0.1
+    /// degrees, 5 degrees suffice. 0 to 30 degrees.
     Angle min_angle = Angle::degrees(15);
     /// Vertices with more edges are not removed, and none gets more. 6 to 64.
     u32 max_valence = 25;

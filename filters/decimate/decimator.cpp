@@ -190,13 +190,14 @@ void Decimator::run_until_stuck(bool flips_edges) {
 }
 
 DecimatorCounts Decimator::run(bool flips_edges) {
-    const double least = limits_.angle_sine;
+    const double least = limits_.angle_sine, least_on_flat = limits_.flat_angle_sine;
     for (const double sine : first_angle_sines) {
         if (!(sine > least)) continue;
-        limits_.angle_sine = sine;
+        limits_.angle_sine = limits_.flat_angle_sine = sine;
         run_until_stuck(flips_edges);
     }
     limits_.angle_sine = least;
+    limits_.flat_angle_sine = least_on_flat;
     // Edits make others possible that are farther away, so all are tried until none is.
     DecimatorCounts before;
     do {

@@ -32,6 +32,9 @@ struct Limits {
     double normal_cosine = 0.5;
     /// Sine of the least angle of a new triangle.
     double angle_sine = 0;
+    /// The same where the surface is flat: there the shape of a triangle does not change its normal, and large faces
+    /// need slim triangles.
+    double flat_angle_sine = 0;
     unsigned max_valence = 25;
 };
 

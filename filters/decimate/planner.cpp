@@ -15,6 +15,9 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Cosine of the largest angle between the normals of neighbours: 170 degrees. Beyond it one is folded onto the other.
 constexpr double fold_cosine = -0.984807753012208;
 
+/// Cosine of 0.1 degrees: the surface is flat where no normal differs more from the mean.
+constexpr double flat_cosine = 0.999998476913288;
+
 bool meet(const BoundingBox& one, const BoundingBox& other) {
     return (one.low.array() <= other.high.array()).all() && (other.low.array() <= one.high.array()).all();
 }
@@ -58,8 +61,14 @@ void Planner::find_side(u32 vertex, u32 first, u32 corners, bool is_cut, Side& s
                 {surface_.position(vertex), side.corners[i].position, {i, i > 0 ? i - 1 : triangles - 1}});
     }
     side.ring_triangles.resize(corners, triangles);
-    side.angle_sine *= 1 - 1e-9;
     side.up.normalize();
+    bool is_flat = true;
+    for (u32 i = 0; i < triangles && is_flat; ++i) {
+        const Vec3 normal = normal_of(surface_.mesh().triangle(star_[at(i)] / 3));
+        is_flat = normal.dot(side.up) >= flat_cosine * normal.norm();
+    }
+    if (is_flat) side.angle_sine = std::min(side.angle_sine, limits_.flat_angle_sine);
+    side.angle_sine *= 1 - 1e-9;
 }
 
 bool Planner::find_sides(u32 vertex) {

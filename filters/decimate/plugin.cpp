@@ -44,8 +44,8 @@ SCANMILL_FILTER() {
                "Largest angle between the normal of a new triangle and the mean normal of those it replaces.",
                at_least(0), at_most(89))
         .param("min-angle", &P::min_angle,
-               "No new triangle has a smaller angle, unless one of those it replaces has. A larger one makes better "
-               "triangles, and more of them.",
+               "No new triangle has a smaller angle, unless one of those it replaces has; on flat faces 5 degrees "
+               "suffice. A larger one makes better triangles, and more of them.",
                at_least(0), at_most(30))
         .param("max-valence", &P::max_valence, "Vertices with more edges are not removed, and none gets more.",
                at_least(6), at_most(64))

@@ -40,6 +40,7 @@ public:
           surface_(original_, EditableMesh(mesh_, opposite_), {}) {
         limits_.error = {max_error, max_error};
         limits_.angle_sine = std::sin(least_angle_degrees * std::numbers::pi / 180);
+        limits_.flat_angle_sine = limits_.angle_sine;
         Execution execution;
         removed_ = Decimator(surface_, limits_, DecimateMode::direct, 0, execution).run(flips).removed;
         for (u32 row = 0; row < surface_.mesh().rows(); ++row)

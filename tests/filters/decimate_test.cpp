@@ -82,7 +82,7 @@ TEST(Decimate, OfTwoVertices_TheFlatterGoesFirst) {
 TEST(Decimate, FlatGrid_BecomesTwoTriangles) {
     for (const double max_error : {0.0, 1e-9, 0.01})
         for (const DecimateMode mode : {DecimateMode::direct, DecimateMode::accumulated}) {
-            DecimateParams params = with_any_angle(max_error);
+            DecimateParams params = within(max_error);
             params.mode = mode;
             const TriangleMesh flat = grid(10, 7);
             const DecimateResult result = decimated(flat, params);
@@ -103,7 +103,7 @@ TEST(Decimate, CubeOfGrids_BecomesTheCube) {
         for (const double max_error : {0.0, 1e-3}) {
             const TriangleMesh fine = gridded_cube(10);
             ASSERT_EQ(fine.positions.size(), 602u);
-            DecimateParams params = with_any_angle(max_error);
+            DecimateParams params = within(max_error);
             params.mode = mode;
             const DecimateResult result = decimated(fine, params);
             EXPECT_EQ(result.mesh.positions.size(), 8u);
@@ -147,6 +147,14 @@ TEST(Decimate, Sphere_IsInscribedWithFewTriangles) {
         EXPECT_LE(largest_in(result.mesh, "error-inside"), 1e-12);
         EXPECT_THAT(classes_of(result.mesh), Each(0));
         EXPECT_EQ(result.mesh.sharp_edges.size(), 0u);
+    }
+}
+
+TEST(Decimate, CubesOfOtherGrids_BecomeTheCube) {
+    for (const int cells : {3, 8, 12, 20}) {
+        const DecimateResult result = decimated(gridded_cube(cells), within(1e-3));
+        EXPECT_EQ(result.mesh.positions.size(), 8u) << cells;
+        EXPECT_EQ(result.mesh.triangles.size(), 12u) << cells;
     }
 }
 
@@ -227,7 +235,7 @@ TEST(Decimate, LargerMaxError_GivesNoMoreTriangles) {
         for (const DecimateMode mode : {DecimateMode::direct, DecimateMode::accumulated}) {
             double last = static_cast<double>(mesh.triangles.size());
             for (const double max_error : {0.0, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1}) {
-                DecimateParams params = with_any_angle(max_error);
+                DecimateParams params = within(max_error);
                 params.mode = mode;
                 const DecimateResult result = decimated(mesh, params);
                 expect_laws(mesh, result, max_error);
