@@ -40,7 +40,7 @@ bool DirectErrors::add_edge(u32 i, u32 j, SignedErrors& errors) {
 
 template <class Action>
 void DirectErrors::for_each_point(u32 i, u32 k, u32 j, Action&& action) const {
-    const u64 *ik = &left_[index(i, k)], *kj = &left_[index(k, j)], *ij = &left_[index(i, j)];
+    const u64 *ik = left_.data() + index(i, k), *kj = left_.data() + index(k, j), *ij = left_.data() + index(i, j);
     for (std::size_t word = 0; word < words_; ++word) {
         const std::size_t first = 64 * word, count = std::min<std::size_t>(64, points_.size() - first);
         u64 bits = ik[word] & kj[word] & ~ij[word];
