@@ -81,8 +81,8 @@ struct DecimateResult {
 /// Cost: O(n log n) time; about 40 µs per removed vertex with one thread. About 340 bytes per triangle, the input's own
 /// included.
 /// Metrics and warnings: see plugin.cpp.
-/// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 4, for removal, classes and accumulated errors. Direct errors
-///         and the certificate are our own.
+/// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 4, for removal, classes and accumulated errors. The direct
+/// errors and the certificate are our own.
 DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, const DecimateParams& params,
                         Context& context);
 
