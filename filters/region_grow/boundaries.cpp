@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "region_grow/given_normals.hpp"
 #include "region_grow/search_radii.hpp"
 
 namespace scanmill::growing {

@@ -2,8 +2,8 @@
 #pragma once
 /// Boundaries where the surface may continue: at parts too thin for the points' spacing, and at seams of given normals.
 
-#include "region_grow/components.hpp"
 #include "scanmill/filter/context.hpp"
+#include "scanmill/geometry/growing/components.hpp"
 
 namespace scanmill::growing {
 

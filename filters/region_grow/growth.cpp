@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "region_grow/overlaps.hpp"
+#include "scanmill/geometry/growing/overlaps.hpp"
 
 namespace scanmill::growing {
 

@@ -9,15 +9,16 @@
 #include <numbers>
 
 #include "region_grow/boundaries.hpp"
-#include "region_grow/components.hpp"
-#include "region_grow/finished_mesh.hpp"
+#include "region_grow/given_normals.hpp"
 #include "region_grow/growth.hpp"
-#include "region_grow/holes.hpp"
+#include "region_grow/patch_edges.hpp"
 #include "region_grow/search_radii.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/geometry/growing/components.hpp"
+#include "scanmill/geometry/growing/holes.hpp"
 #include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill {
@@ -253,11 +254,12 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     if (!oriented) orient_outwards(surface, components, groups);
     if (!given.doubtful.empty()) orient_like_normals(surface, components, given.doubtful);
 
-    FinishedMesh finished = finish_mesh(cloud, surface, patch_edges, params.sharp_angle);
+    FinishedMesh finished = finish_mesh(cloud, surface);
+    add_sharp_edges(finished, surface, patch_edges, params.sharp_angle);
     FeatureParams feature_params;
     feature_params.sharp_angle = params.sharp_angle;
     FeatureLines lines = find_features(finished.mesh, feature_params, context.threads());
-    set_normals_beyond(lines.graph, finished, points, patch_edges);
+    set_normals_beyond(lines.graph, finished, patch_edges);
     result.mesh = std::move(finished.mesh);
     result.rows = std::move(finished.rows);
     result.passes = std::move(surface.passes);

@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "region_grow/overlaps.hpp"
+#include "scanmill/geometry/growing/overlaps.hpp"
 
 namespace scanmill::growing {
 
@@ -134,7 +134,7 @@ bool PointChooser::may_find(u32 from, u32 to, const Vec3& joined, double radius,
     rate(from, to, joined, limits);
     const auto kept = std::partition(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
         return satisfies_limits(from, to, candidate, limits, false) &&
-               sectors_are_free({from, candidate.point, to}, candidate.normal, limits.pass);
+               sectors_are_free(surface_, {from, candidate.point, to}, candidate.normal, limits.pass != 0);
     });
     return std::any_of(candidates_.begin(), kept, [&](const Candidate& candidate) {
         // Those with lower scores are rejected before this one is considered, unless their scores might count as equal.
@@ -256,7 +256,8 @@ bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, con
     if (!satisfies_limits(from, to, candidate, limits, is_seed)) return false;
     if (is_seed) return true;
     const Triangle triangle{from, candidate.point, to};
-    return sectors_are_free(triangle, candidate.normal, limits.pass) && !overlaps_others(triangle, candidate.normal);
+    return sectors_are_free(surface_, triangle, candidate.normal, limits.pass != 0) &&
+           !overlaps_others(triangle, candidate.normal);
 }
 
 bool PointChooser::satisfies_limits(u32 from, u32 to, const Candidate& candidate, const Limits& limits,
@@ -274,7 +275,7 @@ bool PointChooser::satisfies_limits(u32 from, u32 to, const Candidate& candidate
     // A triangle that shares nothing but the point with those at the point: later triangles will connect them.
     const bool touches =
         !fans.empty(point) && fans.left_of(point, from) == invalid_index && fans.left_of(to, point) == invalid_index;
-    return !touches || fan_normal(point, Vec3::Zero()).dot(candidate.normal) >= limits.touch_cosine;
+    return !touches || fan_normal(surface_, point, Vec3::Zero()).dot(candidate.normal) >= limits.touch_cosine;
 }
 
 bool PointChooser::has_good_angles(u32 from, u32 to, u32 point, const Limits& limits) const {
@@ -301,16 +302,6 @@ bool PointChooser::agrees_with_joined(u32 from, u32 to, const Vec3& normal, doub
     return third == invalid_index || surface_.facet_normal(to, from, third).dot(normal) >= least_cosine;
 }
 
-bool PointChooser::sectors_are_free(const Triangle& triangle, const Vec3& normal, Pass pass) const {
-    for (std::size_t i = 0; i < 3; ++i) {
-        const u32 corner = triangle[i];
-        if (surface_.fans.empty(corner)) continue;
-        const Vec3 axis = pass == 0 ? surface_.normals[corner] : fan_normal(corner, normal);
-        if (!sector_is_free(surface_, corner, triangle[(i + 1) % 3], triangle[(i + 2) % 3], axis)) return false;
-    }
-    return true;
-}
-
 bool PointChooser::overlaps_others(const Triangle& triangle, const Vec3& normal) {
     const auto& p = surface_.positions;
     double longest = 0;
@@ -328,15 +319,6 @@ bool PointChooser::overlaps_others(const Triangle& triangle, const Vec3& normal)
         if (boundary_crosses(surface_, x, triangle[0], triangle[1], triangle[2], normal, height)) return true;
     }
     return false;
-}
-
-Vec3 PointChooser::fan_normal(u32 vertex, const Vec3& more) const {
-    Vec3 sum = more;
-    surface_.fans.any(vertex, [&](const Fans::LinkEdge& edge) {
-        sum += surface_.facet_normal(vertex, edge.first, edge.last);
-        return false;
-    });
-    return sum.normalized();
 }
 
 bool PointChooser::is_neighbour(u32 point, u32 vertex) const {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "region_grow/intersections.hpp"
-#include "region_grow/surface.hpp"
+#include "scanmill/geometry/growing/intersections.hpp"
+#include "scanmill/geometry/growing/surface.hpp"
 
 namespace scanmill::growing {
 
@@ -114,11 +114,8 @@ private:
     bool has_good_angles(u32 from, u32 to, u32 point, const Limits& limits) const;
     bool agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const;
     bool agrees_with_joined(u32 from, u32 to, const Vec3& normal, double least_cosine) const;
-    bool sectors_are_free(const Triangle& triangle, const Vec3& normal, Pass pass) const;
     /// Whether a rejected candidate lies in the triangle, or the boundary crosses it.
     bool overlaps_others(const Triangle& triangle, const Vec3& normal);
-    /// The direction of the summed normals of the vertex's triangles and one more.
-    Vec3 fan_normal(u32 vertex, const Vec3& more) const;
     bool is_neighbour(u32 point, u32 vertex) const;
 
     const Surface& surface_;

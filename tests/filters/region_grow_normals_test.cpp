@@ -7,7 +7,7 @@
 #include <random>
 
 #include "filters/region_grow_cases.hpp"
-#include "region_grow/normals.hpp"
+#include "region_grow/given_normals.hpp"
 #include "support/doubts.hpp"
 #include "support/point_sets.hpp"
 

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 const std::vector<std::string> layers{
     "base",     "io",   "data",  "geometry", "kinds", "formats", "filter", "plugin",    // core
     "workflow", "plan", "batch", "graph",    "cache", "worker",  "run",    "records", "session", "describe"};  // engine
-const std::vector<std::string> geometry_layers{"spatial", "mesh", "fit", "tets", "distance"};
+const std::vector<std::string> geometry_layers{"spatial", "mesh", "fit", "tets", "distance", "growing"};
 
 struct Include {
     std::string file;  ///< relative to core/ or engine/: "scanmill/io/atomic_file.cpp"

@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "region_grow/surface.hpp"
+#include "scanmill/geometry/growing/surface.hpp"
 
 namespace scanmill::growing {
 
@@ -28,6 +28,14 @@ inline int side_of(const Surface& surface, u32 a, u32 b, u32 c, const Vec3& axis
 /// Whether the sector from first to last, counter-clockwise around `vertex` seen against `axis`, is narrower than 180
 /// degrees and does not overlap the triangles there; common edges are allowed.
 bool sector_is_free(const Surface& surface, u32 vertex, u32 first, u32 last, const Vec3& axis);
+
+/// The direction of the summed unit normals of the vertex's triangles, and of `more`; zero where the sum is.
+Vec3 fan_normal(const Surface& surface, u32 vertex, const Vec3& more);
+
+/// Whether sector_is_free() at every corner of the triangle that is a vertex of the surface. `normal`: of the triangle.
+/// A corner's axis is its point's normal or, with `along_fans`, fan_normal() with the triangle's normal. Along the fans
+/// the test holds where the point's normal does not fit the surface, as at edges and tips, and takes longer.
+bool sectors_are_free(const Surface& surface, const Triangle& triangle, const Vec3& normal, bool along_fans);
 
 /// Whether the closed triangle contains the point, projected along the normal.
 bool contains(const Surface& surface, const Triangle& triangle, const Vec3& normal, u32 point);

@@ -2,12 +2,15 @@
 #pragma once
 /// Closing loops that growth left open although they are no holes: loops of few edges, and loops that are too narrow.
 
+#include <limits>
 #include <vector>
 
-#include "region_grow/intersections.hpp"
-#include "scanmill/filter/context.hpp"
+#include "scanmill/base/execution.hpp"
+#include "scanmill/geometry/growing/intersections.hpp"
 
 namespace scanmill::growing {
+
+inline constexpr double any_length = std::numeric_limits<double>::infinity();
 
 /// Limits of the triangles that close a hole.
 struct TriangulationLimits {
@@ -15,6 +18,8 @@ struct TriangulationLimits {
     double largest_radius;
     /// Least cosine between the normals of triangles that share an edge.
     double dihedral_cosine;
+    /// Edges of the triangulation other than those of the loop are shorter than this.
+    double longest_edge = any_length;
 };
 
 inline constexpr double any_dihedral = -2;
@@ -34,10 +39,12 @@ std::vector<Triangle> triangulate_hole(const Surface& surface, NearTriangles& ne
 
 /// Closes every loop of at most `most_edges` boundary edges with the triangles of least total area, unless one would
 /// fold back on a joined triangle by more than 150 degrees (so a single triangle keeps its boundary), repeat an edge,
-/// or intersect others. Where several fans meet in a vertex, a loop continues with the next fan around it. Returns the
-/// number of closed loops. Cost: linear in the triangles, most_edges² per boundary edge, and most_edges³ per loop,
-/// which is solved once whether it can be closed or not.
-std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Context& context);
+/// intersect others, or would need a new edge that is not shorter than `longest_edge`. Where several fans meet in a
+/// vertex, a loop continues with the next fan around it. Returns the number of closed loops. Cost: linear in the
+/// triangles, most_edges² per boundary edge, and most_edges³ per loop, which is solved once whether it can be closed or
+/// not.
+std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Execution& execution,
+                              double longest_edge = any_length);
 
 struct NarrowHoles {
     std::size_t closed = 0;
@@ -53,10 +60,12 @@ struct NarrowHoleLimits {
     /// Largest dihedral deviation, in radians, within the triangulation of a longer loop, between it and the surface,
     /// and between any two triangles around the loop. From 172 degrees on tips are closed.
     double largest_dihedral;
+    /// New edges, also those of loops of at most `most_edges` edges, are shorter than this.
+    double longest_edge = any_length;
 };
 
 /// Closes every loop that has a triangulation whose enclosing radii are at most `largest_radius`. No point of it is
-/// farther than that from a vertex, so the loop contains no larger empty circle: by the filter's rule it is surface,
+/// farther than that from a vertex, so the loop contains no larger empty circle: it is too narrow to be a hole,
 /// whatever the number of its edges, unless the surface ends at a sharp edge there. Such loops are left at tips,
 /// creases and folds, where the boundary arrives from several sides and no single triangle continues it.
 ///
@@ -68,6 +77,6 @@ struct NarrowHoleLimits {
 ///
 /// Pre: every vertex has one fan. Cost: linear in the points; edges³ per loop, up to 30 times as much where one
 /// triangle may be replaced and 156 times where two, and the intersection tests.
-NarrowHoles close_narrow_holes(Surface& surface, const NarrowHoleLimits& limits, const Context& context);
+NarrowHoles close_narrow_holes(Surface& surface, const NarrowHoleLimits& limits, const Execution& execution);
 
 }  // namespace scanmill::growing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "region_grow/finished_mesh.hpp"
+#include "region_grow/patch_edges.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -78,52 +78,25 @@ std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& ch
     return edges;
 }
 
-FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const PatchEdge> patch_edges,
-                         Angle sharp_angle) {
-    const auto& rows = surface.points.rows;
-    FinishedMesh finished;
-    Array<u32> vertex_of_row(cloud.size());
-    std::ranges::fill(vertex_of_row, invalid_index);
-    for (u32 point = 0; point < rows.size(); ++point)
-        if (!surface.fans.empty(point)) vertex_of_row[rows[point]] = 0;
-    for (u32 row = 0; row < cloud.size(); ++row) {
-        if (vertex_of_row[row] == invalid_index) continue;
-        vertex_of_row[row] = static_cast<u32>(finished.rows.size());
-        finished.rows.push_back(row);
-    }
-    const auto vertex = [&](u32 point) { return vertex_of_row[rows[point]]; };
-
-    TriangleMesh& mesh = finished.mesh;
-    mesh.frame = cloud.frame;
-    mesh.positions = gather(cloud.positions, finished.rows);
-    mesh.vertex_columns = cloud.columns.gather(finished.rows);
-    Array<Triangle> triangles(surface.triangles.size());
-    for (std::size_t row = 0; row < triangles.size(); ++row) {
-        const auto& [a, b, c] = surface.triangles[row];
-        triangles[row] = {vertex(a), vertex(b), vertex(c)};
-        std::ranges::rotate(triangles[row], std::ranges::min_element(triangles[row]));
-    }
-    mesh.triangles = std::move(triangles);
+void add_sharp_edges(FinishedMesh& finished, const Surface& surface, std::span<const PatchEdge> patch_edges,
+                     Angle sharp_angle) {
+    const auto& vertex = finished.vertex_of_point;
     Array<Edge> sharp;
-    for (const auto& [a, b] : sharp_edges(surface, sharp_angle)) sharp.push_back(make_edge(vertex(a), vertex(b)));
-    for (const PatchEdge& edge : patch_edges) sharp.push_back(make_edge(vertex(edge.from), vertex(edge.to)));
+    for (const auto& [a, b] : sharp_edges(surface, sharp_angle)) sharp.push_back(make_edge(vertex[a], vertex[b]));
+    for (const PatchEdge& edge : patch_edges) sharp.push_back(make_edge(vertex[edge.from], vertex[edge.to]));
     std::ranges::sort(sharp);
-    mesh.sharp_edges = std::move(sharp);
-    return finished;
+    finished.mesh.sharp_edges = std::move(sharp);
 }
 
-void set_normals_beyond(FeatureGraph& features, const FinishedMesh& finished, const DistinctPoints& points,
-                        std::span<const PatchEdge> patch_edges) {
+void set_normals_beyond(FeatureGraph& features, const FinishedMesh& finished, std::span<const PatchEdge> patch_edges) {
     if (patch_edges.empty()) return;
-    const auto vertex = [&](u32 point) {
-        return static_cast<u32>(std::ranges::lower_bound(finished.rows, points.rows[point]) - finished.rows.begin());
-    };
+    const auto& vertex = finished.vertex_of_point;
     std::map<u32, Vec3> normals;
     std::map<std::pair<Coordinates, Coordinates>, u32> beyond;
     const auto& p = finished.mesh.positions;
     for (const PatchEdge& edge : patch_edges) {
-        beyond[segment(p[vertex(edge.from)], p[vertex(edge.to)])] = vertex(edge.beyond);
-        normals[vertex(edge.beyond)] = Vec3::Zero();
+        beyond[segment(p[vertex[edge.from]], p[vertex[edge.to]])] = vertex[edge.beyond];
+        normals[vertex[edge.beyond]] = Vec3::Zero();
     }
     add_normals(finished.mesh, normals);
 

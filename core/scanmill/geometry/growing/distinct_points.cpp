@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "region_grow/distinct_points.hpp"
+#include "scanmill/geometry/growing/distinct_points.hpp"
 
 #include <algorithm>
 #include <cmath>

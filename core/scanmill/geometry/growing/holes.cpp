@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "region_grow/holes.hpp"
+#include "scanmill/geometry/growing/holes.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -18,10 +18,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr TriangulationLimits small_hole_limits{infinity, fold_cosine};
-
 /// Most edges of narrow loops: of those that are closed at all, with one replaced triangle, with two. The first is the
-/// largest close-holes; the others keep the number of attempts (edges⁴ and edges⁵) below the cost of the longest loop.
+/// most that callers offer as a parameter; the others keep the number of attempts (edges⁴ and edges⁵) below the cost of
+/// the longest loop.
 constexpr std::array<std::size_t, 3> most_corners{100, 30, 12};
 /// Of 172 degrees. The sides of a cone of half angle 12 differ by 156, and a triangulation over its tip divides that
 /// unevenly. The rest to 180 keeps rounding from putting triangles on each other.
@@ -69,11 +68,15 @@ private:
     bool is_free(u32 a, u32 b) const {
         return surface_.fans.left_of(a, b) == invalid_index && surface_.fans.left_of(b, a) == invalid_index;
     }
+    bool is_short(u32 a, u32 b) const {
+        return (surface_.positions[b] - surface_.positions[a]).norm() < limits_.longest_edge;
+    }
     bool is_last_edge(std::size_t i, std::size_t j) const { return i == 0 && j + 1 == corners_.size(); }
 
     void solve(std::size_t i, std::size_t j) {
         Part best{infinity, 0, Vec3::Zero()};
-        if (is_last_edge(i, j) || is_free(corners_[i], corners_[j]))
+        const u32 from = corners_[i], to = corners_[j];
+        if (is_last_edge(i, j) || (is_short(from, to) && is_free(from, to)))
             for (std::size_t k = i + 1; k < j; ++k) {
                 const double others = part(i, k).cost + part(k, j).cost;
                 if (others < best.cost) try_apex(i, k, j, others, best);
@@ -196,15 +199,15 @@ struct LoopShape {
 
 class NarrowHoleCloser {
 public:
-    NarrowHoleCloser(Surface& surface, const NarrowHoleLimits& limits, const Context& context)
+    NarrowHoleCloser(Surface& surface, const NarrowHoleLimits& limits, const Execution& execution)
         : surface_(surface),
           narrow_(limits),
           dihedral_cosine_(std::max(tip_cosine, std::cos(limits.largest_dihedral) - 1e-9)),
-          context_(context) {}
+          execution_(execution) {}
 
     /// Corners counter-clockwise as the triangles of a lid.
     bool close(const std::vector<u32>& corners) {
-        context_.check_cancelled();
+        execution_.check_cancelled();
         const bool of_any_size = corners.size() <= narrow_.most_edges;
         const bool ends_at_sharp_edges = !of_any_size && dihedral_cosine_ > tip_cosine;
         const LoopShape loop(surface_, corners, ends_at_sharp_edges);
@@ -212,12 +215,11 @@ public:
         const bool is_long = loop.farthest > long_in_radii * radius;
         if (loop.facing < (is_long ? least_facing_of_long : least_facing)) return false;
         if (ends_at_sharp_edges && loop.least_cosine < dihedral_cosine_) return false;
-        limits_ =
-            of_any_size ? TriangulationLimits{infinity, tip_cosine} : TriangulationLimits{radius, dihedral_cosine_};
+        limits_ = {of_any_size ? infinity : radius, of_any_size ? tip_cosine : dihedral_cosine_, narrow_.longest_edge};
         if (triangulate(corners, 0)) return true;
         // If only larger triangles would do, replacing one makes the hole larger still.
         if (corners.size() > most_corners[1] ||
-            !can_be_triangulated(surface_, corners, {limits_.largest_radius, any_dihedral}))
+            !can_be_triangulated(surface_, corners, {limits_.largest_radius, any_dihedral, narrow_.longest_edge}))
             return false;
         return triangulate(corners, 1) || (corners.size() <= most_corners[2] && triangulate(corners, 2));
     }
@@ -243,7 +245,7 @@ private:
             const Triangle obstacle{to, from, third};
             std::vector<u32> larger = corners;
             larger.insert(larger.begin() + static_cast<std::ptrdiff_t>(i) + 1, third);
-            context_.check_cancelled();
+            execution_.check_cancelled();
             surface_.fans.remove(obstacle);
             if (triangulate(larger, replacements - 1)) {
                 replaced.push_back(obstacle);
@@ -257,7 +259,7 @@ private:
     Surface& surface_;
     NarrowHoleLimits narrow_;
     double dihedral_cosine_;
-    const Context& context_;
+    const Execution& execution_;
     TriangulationLimits limits_{};
     NearTriangles near_;
 };
@@ -284,8 +286,10 @@ std::vector<Triangle> triangulate_hole(const Surface& surface, NearTriangles& ne
     return triangles;
 }
 
-std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Context& context) {
+std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Execution& execution,
+                              double longest_edge) {
     if (most_edges < 3) return 0;
+    const TriangulationLimits limits{infinity, fold_cosine, longest_edge};
     std::size_t closed = 0;
     // Each from its lowest corner. Closing other loops cannot make them possible: their boundary edges keep their
     // triangles, and edges across them can only be used up.
@@ -293,7 +297,7 @@ std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Co
     NearTriangles near;
     const std::size_t count = surface.triangles.size();
     for (std::size_t row = 0; row < count; ++row) {
-        if (row % 1024 == 0) context.check_cancelled();
+        if (row % 1024 == 0) execution.check_cancelled();
         const Triangle triangle = surface.triangles[row];
         for (std::size_t i = 0; i < 3; ++i) {
             const u32 from = triangle[i], to = triangle[(i + 1) % 3];
@@ -305,8 +309,8 @@ std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Co
             std::vector<u32> from_lowest = hole;
             std::ranges::rotate(from_lowest, std::ranges::min_element(from_lowest));
             if (impossible_loops.contains(from_lowest)) continue;
-            context.check_cancelled();  // a long loop takes as long as a million triangles
-            const std::vector<Triangle> lid = triangulate_hole(surface, near, hole, small_hole_limits);
+            execution.check_cancelled();  // a long loop takes as long as a million triangles
+            const std::vector<Triangle> lid = triangulate_hole(surface, near, hole, limits);
             for (const Triangle& added : lid) surface.add(added, closing_pass);
             if (lid.empty())
                 impossible_loops.insert(std::move(from_lowest));
@@ -317,9 +321,9 @@ std::size_t close_small_holes(Surface& surface, std::size_t most_edges, const Co
     return closed;
 }
 
-NarrowHoles close_narrow_holes(Surface& surface, const NarrowHoleLimits& limits, const Context& context) {
+NarrowHoles close_narrow_holes(Surface& surface, const NarrowHoleLimits& limits, const Execution& execution) {
     NarrowHoles result;
-    NarrowHoleCloser closer(surface, limits, context);
+    NarrowHoleCloser closer(surface, limits, execution);
     std::vector<bool> visited(surface.states.size(), false);
     for (u32 begin = 0; begin < visited.size(); ++begin) {
         if (surface.states[begin] != PointState::front || visited[begin]) continue;

@@ -5,10 +5,10 @@
 #include <array>
 #include <vector>
 
-#include "region_grow/distinct_points.hpp"
-#include "region_grow/normals.hpp"
 #include "scanmill/data/array.hpp"
 #include "scanmill/data/mesh.hpp"
+#include "scanmill/geometry/growing/distinct_points.hpp"
+#include "scanmill/geometry/growing/point_normals.hpp"
 
 namespace scanmill::growing {
 
@@ -114,14 +114,17 @@ private:
 /// In no triangle, on the boundary of the surface, or with a closed fan of triangles.
 enum class PointState : u8 { unused, front, interior };
 
-/// The limits under which a triangle was formed: 0 the given ones, 1 to 3 relaxed ones, 4 none (it closed a hole).
+/// The limits under which a triangle was formed: 0 the given ones, then relaxed ones in order; closing_pass: it closed
+/// a hole.
 using Pass = u8;
 inline constexpr Pass closing_pass = 4;
 
 /// Cosine of a dihedral deviation (angle between normals) of 150 degrees. Beyond it a triangle lies on its neighbour.
 inline constexpr double fold_cosine = -0.8660254037844387;
 
+/// A surface without triangles at first. Keeps references to the points and the neighbourhoods.
 struct Surface {
+    /// `search_radii`, `density_radii`: per point. `signs_count`: see `oriented`.
     Surface(const DistinctPoints& from, const Neighbourhoods& near, PointNormals point_normals,
             Array<double> search_radii, Array<double> density_radii, bool signs_count);
 
@@ -132,12 +135,12 @@ struct Surface {
     Array<Vec3> normals;
     /// Surface variation, see PointNormals.
     Array<float> variation;
-    /// Per point.
+    /// Per point: no triangle at the point reaches farther, unless the limits are relaxed.
     Array<double> search_radius;
     /// The search radius that follows from the density alone. Triangles that are small compared with it are as small as
     /// the points' spacing requires.
     Array<double> density_radius;
-    /// Normals came with the cloud: a triangle must agree with their sign.
+    /// The signs of the normals are known: a triangle must agree with them.
     bool oriented;
     /// The power of two above the longest side of the points' box. Exact predicates use a point this far along a unit
     /// normal; a shorter distance would lose digits of the normal in the sum.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The mesh that the filter returns: vertices in input order, sharp edges, and the normals beyond edges of patches.
+/// The edges of patches, where a sharp edge ends the growth; the sharp edges of the mesh, and the normals beyond them.
 
 #include "region_grow/suitable_point.hpp"
 #include "scanmill/data/features.hpp"
-#include "scanmill/data/points.hpp"
 #include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
+#include "scanmill/geometry/growing/finished_mesh.hpp"
 
 namespace scanmill::growing {
 
@@ -23,20 +23,12 @@ struct PatchEdge {
 std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits,
                                         const Context& context);
 
-struct FinishedMesh {
-    TriangleMesh mesh;
-    /// Per vertex its row in the cloud.
-    Array<u32> rows;
-};
-
-/// The used points in input order with all their columns. Triangles in the order of their creation, lowest vertex
-/// first. Sharp edges: edges with a dihedral deviation above `sharp_angle`, and patch edges. Cost: linear.
-FinishedMesh finish_mesh(const PointCloud& cloud, const Surface& surface, std::span<const PatchEdge> patch_edges,
-                         Angle sharp_angle);
+/// Sets the mesh's sharp edges: edges with a dihedral deviation above `sharp_angle`, and patch edges. Cost: linear.
+void add_sharp_edges(FinishedMesh& finished, const Surface& surface, std::span<const PatchEdge> patch_edges,
+                     Angle sharp_angle);
 
 /// Sets the right normal of every boundary segment that is a patch edge to the normal of the other patch: the mean over
 /// its triangles at the point beyond. Pre: `features` of `finished`. Cost: linear, and a search per segment.
-void set_normals_beyond(FeatureGraph& features, const FinishedMesh& finished, const DistinctPoints& points,
-                        std::span<const PatchEdge> patch_edges);
+void set_normals_beyond(FeatureGraph& features, const FinishedMesh& finished, std::span<const PatchEdge> patch_edges);
 
 }  // namespace scanmill::growing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "region_grow/intersections.hpp"
+#include "scanmill/geometry/growing/intersections.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,39 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "region_grow/normals.hpp"
+#include "region_grow/given_normals.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "scanmill/base/error.hpp"
-#include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/fit/covariance.hpp"
 
 namespace scanmill::growing {
 
 namespace {
-
-/// Few enough that at a boundary, where they all lie on one side, they belong to the same sheet.
-constexpr std::size_t counted_neighbours = 12;
 
 constexpr double opposed_cosine = -0.9;  // of 154 degrees
 /// Shares of the distance to the neighbour, along the normal. A neighbour beside is no higher than the first; less than
 /// the second is rounding and curvature.
 constexpr double most_height = 0.3;
 constexpr double least_height = 0.01;
-
-Scatter scatter_at(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, u32 point) {
-    const auto near = neighbourhoods.of(point);
-    const std::size_t count = std::min(counted_neighbours, near.size());
-    std::array<Vec3, counted_neighbours + 1> offsets;
-    offsets[0] = Vec3::Zero();
-    for (std::size_t i = 0; i < count; ++i) offsets[i + 1] = points.positions[near[i]] - points.positions[point];
-    return scatter_of(std::span(offsets).first(count + 1));
-}
 
 void require_vectors(const Column& column, std::size_t points) {
     if (column.components() == 3 && column.rows() == points) return;
@@ -131,20 +116,6 @@ void require_across(std::size_t lying, std::size_t given, Context& context) {
 }
 
 }  // namespace
-
-PointNormals principal_normals(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, unsigned threads) {
-    PointNormals normals;
-    normals.directions.resize(points.size());
-    normals.variation.resize(points.size());
-    for_each_chunk(threads, points.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t point = begin; point < end; ++point) {
-            const Scatter scatter = scatter_at(points, neighbourhoods, static_cast<u32>(point));
-            normals.directions[point] = scatter.normal;
-            normals.variation[point] = static_cast<float>(scatter.surface_variation);
-        }
-    });
-    return normals;
-}
 
 GivenNormals take_given_normals(const PointCloud& cloud, const DistinctPoints& points,
                                 const Neighbourhoods& neighbourhoods, PointNormals& normals, Context& context) {

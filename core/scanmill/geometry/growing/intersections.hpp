@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "region_grow/surface.hpp"
+#include "scanmill/geometry/growing/surface.hpp"
 
 namespace scanmill::growing {
 

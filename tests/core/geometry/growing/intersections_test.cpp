@@ -5,8 +5,8 @@
 #include <random>
 
 #include "filters/region_grow_patch.hpp"
-#include "region_grow/intersections.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
+#include "scanmill/geometry/growing/intersections.hpp"
 
 namespace scanmill::growing {
 namespace {

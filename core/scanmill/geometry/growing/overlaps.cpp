@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "region_grow/overlaps.hpp"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include "scanmill/geometry/growing/overlaps.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "scanmill/geometry/growing/detail/exact_orientation.hpp"
+
 namespace scanmill::growing {
-
-namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-}  // namespace
 
 int exact_side_of(const Surface& surface, u32 a, u32 b, u32 c, const Vec3& axis) {
     const auto& p = surface.positions;
-    const Vec3 above = p[a] + surface.axis_length * axis;
-    const auto point = [](const Vec3& x) { return Kernel::Point_3(x.x(), x.y(), x.z()); };
-    return static_cast<int>(CGAL::orientation(point(p[a]), point(p[b]), point(p[c]), point(above)));
+    return exact::orientation(p[a], p[b], p[c], p[a] + surface.axis_length * axis);
 }
 
 bool sector_is_free(const Surface& surface, u32 vertex, u32 first, u32 last, const Vec3& axis) {
@@ -32,6 +24,25 @@ bool sector_is_free(const Surface& surface, u32 vertex, u32 first, u32 last, con
                is_between(edge.first, last, edge.last) || is_between(first, edge.first, last) ||
                is_between(first, edge.last, last);
     });
+}
+
+Vec3 fan_normal(const Surface& surface, u32 vertex, const Vec3& more) {
+    Vec3 sum = more;
+    surface.fans.any(vertex, [&](const Fans::LinkEdge& edge) {
+        sum += surface.facet_normal(vertex, edge.first, edge.last);
+        return false;
+    });
+    return sum.normalized();
+}
+
+bool sectors_are_free(const Surface& surface, const Triangle& triangle, const Vec3& normal, bool along_fans) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const u32 corner = triangle[i];
+        if (surface.fans.empty(corner)) continue;
+        const Vec3 axis = along_fans ? fan_normal(surface, corner, normal) : surface.normals[corner];
+        if (!sector_is_free(surface, corner, triangle[(i + 1) % 3], triangle[(i + 2) % 3], axis)) return false;
+    }
+    return true;
 }
 
 bool contains(const Surface& surface, const Triangle& triangle, const Vec3& normal, u32 point) {

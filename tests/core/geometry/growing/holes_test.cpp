@@ -4,9 +4,9 @@
 
 #include "filters/region_grow_cases.hpp"
 #include "filters/region_grow_patch.hpp"
-#include "region_grow/holes.hpp"
 #include "region_grow/normals.hpp"
 #include "scanmill/base/random.hpp"
+#include "scanmill/geometry/growing/holes.hpp"
 #include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "region_grow/surface.hpp"
+#include "scanmill/geometry/growing/surface.hpp"
 
 namespace scanmill::growing {
 
