@@ -18,6 +18,7 @@
 /// At tips and edges the points of adjacent voxels lie on two sides, and empty circles are larger than on a face. There
 /// B is not less than the estimate from the density.
 
+#include "scanmill/filter/context.hpp"
 #include "scanmill/geometry/growing/surface.hpp"
 
 namespace scanmill::growing {
