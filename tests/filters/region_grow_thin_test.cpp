@@ -4,8 +4,8 @@
 
 #include <numbers>
 
+#include "core/geometry/growing/patch.hpp"
 #include "filters/region_grow_cases.hpp"
-#include "filters/region_grow_patch.hpp"
 #include "region_grow/boundaries.hpp"
 #include "support/doubts.hpp"
 

@@ -2,30 +2,29 @@
 /// Hole triangulations, and which loops are closed: one on either side of every limit.
 #include <gmock/gmock.h>
 
-#include "filters/region_grow_cases.hpp"
-#include "filters/region_grow_patch.hpp"
-#include "region_grow/normals.hpp"
-#include "scanmill/base/random.hpp"
+#include <cmath>
+#include <numbers>
+
+#include "core/geometry/growing/patch.hpp"
 #include "scanmill/geometry/growing/holes.hpp"
-#include "voxel_thin/voxel_thin.hpp"
 
 namespace scanmill {
 namespace {
 
 using namespace growing;
-using namespace test;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
 /// The triangulation of a hole, as sorted corners. `angle`: largest dihedral deviation in degrees.
-std::vector<Triangle> triangles_of(const Patch& patch, const std::vector<u32>& loop, double radius, double angle) {
+std::vector<Triangle> triangles_of(const Patch& patch, const std::vector<u32>& loop, double radius, double angle,
+                                   double longest_edge = any_length) {
     std::vector<u32> corners;
     for (u32 x : loop) corners.push_back(patch.point(x));
     NearTriangles near;
     std::vector<Triangle> triangles;
-    for (Triangle t :
-         triangulate_hole(patch.surface(), near, corners, {radius, std::cos(angle / 180 * std::numbers::pi)})) {
+    const TriangulationLimits limits{radius, std::cos(angle / 180 * std::numbers::pi), longest_edge};
+    for (Triangle t : triangulate_hole(patch.surface(), near, corners, limits)) {
         for (u32& corner : t) corner = patch.name_of(corner);
         EXPECT_LT(std::ranges::find(loop, t[0]), std::ranges::find(loop, t[1])) << "in the loop's direction";
         std::ranges::sort(t);
@@ -40,12 +39,12 @@ constexpr double any = std::numeric_limits<double>::infinity();
 /// one of √6.
 const std::vector<Vec3> lifted{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 1), Vec3(0, 2, 0)};
 
-TEST(RegionGrowHoleTriangulation_FourCorners, TakesTheDiagonalOfLessArea) {
+TEST(HoleTriangulation_FourCorners, TakesTheDiagonalOfLessArea) {
     EXPECT_THAT(triangles_of(Patch(lifted), {0, 1, 2, 3}, any, 150),
                 UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
 }
 
-TEST(RegionGrowHoleTriangulation_Square, BreaksTheTieByTheFirstCorners) {
+TEST(HoleTriangulation_Square, BreaksTheTieByTheFirstCorners) {
     const std::vector<Vec3> square{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)};
     EXPECT_THAT(triangles_of(Patch(square), {0, 1, 2, 3}, any, 150),
                 UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
@@ -53,7 +52,7 @@ TEST(RegionGrowHoleTriangulation_Square, BreaksTheTieByTheFirstCorners) {
                 UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(RegionGrowHoleTriangulation_LargestRadius, LimitsTheTrianglesNotTheirNumber) {
+TEST(HoleTriangulation_LargestRadius, LimitsTheTrianglesNotTheirNumber) {
     const std::vector<Vec3> square{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 2, 0), Vec3(0, 2, 0)};
     EXPECT_THAT(triangles_of(Patch(square), {0, 1, 2, 3}, 1.415, 150), testing::SizeIs(2));
     EXPECT_THAT(triangles_of(Patch(square), {0, 1, 2, 3}, 1.414, 150), IsEmpty());
@@ -72,7 +71,17 @@ TEST(RegionGrowHoleTriangulation_LargestRadius, LimitsTheTrianglesNotTheirNumber
     EXPECT_THAT(triangles_of(Patch(round), loop, 1.51, 150), testing::SizeIs(10));
 }
 
-TEST(RegionGrowHoleTriangulation_AnObstacle, IsAvoidedOrNothingIsFound) {
+TEST(HoleTriangulation_NewEdges, AreShorterThanTheLongestEdge) {
+    // A rhombus with diagonals of 4 and 2 and sides of √5. Both diagonals give the same area.
+    const Patch rhombus({Vec3(0, -1, 0), Vec3(2, 0, 0), Vec3(0, 1, 0), Vec3(-2, 0, 0)});
+    const auto found = [&](double longest_edge) { return triangles_of(rhombus, {0, 1, 2, 3}, any, 150, longest_edge); };
+    EXPECT_THAT(found(4.001), UnorderedElementsAre(Triangle{0, 1, 3}, Triangle{1, 2, 3}));
+    EXPECT_THAT(found(4), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
+    EXPECT_THAT(found(2.001), UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3})) << "the sides are longer";
+    EXPECT_THAT(found(2), IsEmpty());
+}
+
+TEST(HoleTriangulation_AnObstacle, IsAvoidedOrNothingIsFound) {
     // One that intersects triangle 0 1 3 in (0.5, 0.5, 0) but neither 0 1 2 nor 0 2 3, and one that intersects all.
     std::vector<Vec3> positions = lifted;
     for (const Vec3& p : {Vec3(0.5, 0.5, -3), Vec3(0.4, 0.6, -3), Vec3(0.5, 0.5, 0.1)}) positions.push_back(p);
@@ -86,7 +95,7 @@ TEST(RegionGrowHoleTriangulation_AnObstacle, IsAvoidedOrNothingIsFound) {
     EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any, 150), IsEmpty());
 }
 
-TEST(RegionGrowHoleTriangulation_AnObstacle, IsFoundHoweverFarItsCornersAre) {
+TEST(HoleTriangulation_AnObstacle, IsFoundHoweverFarItsCornersAre) {
     // Through the whole lid, with corners ten search radii away.
     std::vector<Vec3> positions = lifted;
     for (const Vec3& p : {Vec3(0.5, 0.5, -40), Vec3(0.4, 0.6, -40), Vec3(0.5, 0.5, 40)}) positions.push_back(p);
@@ -96,7 +105,7 @@ TEST(RegionGrowHoleTriangulation_AnObstacle, IsFoundHoweverFarItsCornersAre) {
     EXPECT_THAT(triangles_of(through, {0, 1, 2, 3}, any, 150), IsEmpty());
 }
 
-TEST(RegionGrowHoleTriangulation_ExistingEdges, AreNotRepeated) {
+TEST(HoleTriangulation_ExistingEdges, AreNotRepeated) {
     std::vector<Vec3> positions = lifted;
     positions.push_back(Vec3(1, 1, -3));
     Patch patch(positions);
@@ -105,7 +114,7 @@ TEST(RegionGrowHoleTriangulation_ExistingEdges, AreNotRepeated) {
                 UnorderedElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}));
 }
 
-TEST(RegionGrowHoleTriangulation_DihedralDeviation, IsLimited) {
+TEST(HoleTriangulation_DihedralDeviation, IsLimited) {
     // Beyond edge 0-1 the surface folds back over the hole, 15 degrees above it: a deviation of 165 degrees.
     const double slope = std::tan(std::numbers::pi / 12);
     Patch patch({Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(1, 1, 0), Vec3(1, 1.5, 1.5 * slope)});
@@ -178,28 +187,27 @@ Patch slit(u32 length, double fall) {
 
 /// `angle`: largest dihedral deviation in degrees.
 NarrowHoles closed(Patch patch, double largest_radius, double angle = 180, std::size_t most_edges = 4) {
-    ContextOptions options;
-    return close_narrow_holes(patch.surface(), {largest_radius / 4, most_edges, angle * degree}, Context(options));
+    return close_narrow_holes(patch.surface(), {largest_radius / 4, most_edges, angle * degree}, Execution());
 }
 
-TEST(RegionGrowNarrow_RoundHoles, AreClosedBelowTheLargestRadius) {
+TEST(NarrowHoles_RoundHoles, AreClosedBelowTheLargestRadius) {
     EXPECT_EQ(closed(ring(16, 1, 0), 1.001).closed, 1u);
     EXPECT_EQ(closed(ring(16, 1, 0), 0.99).closed, 0u);
     EXPECT_EQ(closed(ring(16, 1, 0), 0.99, 180, 15).closed, 0u);
     EXPECT_EQ(closed(ring(16, 1, 0), 0.99, 180, 16).closed, 1u) << "of any size";
 }
 
-TEST(RegionGrowNarrow_Slits, OfAtMost100EdgesAreClosed) {
+TEST(NarrowHoles_Slits, OfAtMost100EdgesAreClosed) {
     EXPECT_EQ(closed(slit(49, 0), 0.75).closed, 1u) << "100 edges";
     EXPECT_EQ(closed(slit(50, 0), 0.75).closed, 0u) << "102 edges";
 }
 
-TEST(RegionGrowNarrow_LoopsThatTheSurfaceFacesAwayFrom, StayOpen) {
+TEST(NarrowHoles_LoopsThatTheSurfaceFacesAwayFrom, StayOpen) {
     for (const double fall : {0.0, 60.0, 90.0, 117.0}) EXPECT_EQ(closed(ring(16, 1, fall), 1.1).closed, 1u) << fall;
     for (const double fall : {123.0, 150.0}) EXPECT_EQ(closed(ring(16, 1, fall), 1.1).closed, 0u) << fall;
 }
 
-TEST(RegionGrowNarrow_LongLoops, StayOpenWithSidesBetween78And120Degrees) {
+TEST(NarrowHoles_LongLoops, StayOpenWithSidesBetween78And120Degrees) {
     // The corners lie up to 15.008 from the middle.
     for (const double fall : {0.0, 60.0, 75.0}) EXPECT_EQ(closed(slit(30, fall), 1).closed, 1u) << fall;
     for (const double fall : {81.0, 90.0, 110.0}) EXPECT_EQ(closed(slit(30, fall), 1).closed, 0u) << fall;
@@ -207,7 +215,7 @@ TEST(RegionGrowNarrow_LongLoops, StayOpenWithSidesBetween78And120Degrees) {
     EXPECT_EQ(closed(slit(30, 90), 15.00 / 2).closed, 0u);
 }
 
-TEST(RegionGrowNarrow_DihedralDeviation, EndsTheSurfaceAboveItsLimit) {
+TEST(NarrowHoles_DihedralDeviation, EndsTheSurfaceAboveItsLimit) {
     // A lid deviates from the strip by its fall, opposite parts of the strip from each other by twice as much.
     EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 103).closed, 1u);
     EXPECT_EQ(closed(ring(16, 1, 50), 1.1, 97).closed, 0u) << "opposite parts of the strip differ too much";
@@ -217,7 +225,22 @@ TEST(RegionGrowNarrow_DihedralDeviation, EndsTheSurfaceAboveItsLimit) {
     EXPECT_EQ(closed(ring(16, 1, 88), 1.1, 172).closed, 1u) << "a tip";
 }
 
-TEST(RegionGrowNarrow_OneObstacle, IsReplacedAtLoopsOfAtMost30Corners) {
+TEST(NarrowHoles_NewEdges, AreShorterThanTheLongestEdge) {
+    // A triangulation of 16 corners on a circle of radius 1 has an edge of at least 1.66: a triangle contains the
+    // centre.
+    for (const auto& [longest_edge, count] : {std::pair(1.65, 0u), std::pair(2.01, 1u)}) {
+        for (const std::size_t most_edges : {4, 16}) {
+            Patch patch = ring(16, 1, 0);
+            EXPECT_EQ(close_narrow_holes(patch.surface(), {0.3, most_edges, 3, longest_edge}, Execution()).closed,
+                      count)
+                << longest_edge << " up to " << most_edges << " edges";
+        }
+        Patch patch = ring(16, 1, 0);
+        EXPECT_EQ(close_small_holes(patch.surface(), 16, Execution(), longest_edge), count) << longest_edge;
+    }
+}
+
+TEST(NarrowHoles_OneObstacle, IsReplacedAtLoopsOfAtMost30Corners) {
     const NarrowHoles at_30 = closed(ring(30, 3, 0, 1), 3.1);
     EXPECT_EQ(at_30.closed, 1u);
     EXPECT_EQ(at_30.replaced, 1u);
@@ -227,74 +250,18 @@ TEST(RegionGrowNarrow_OneObstacle, IsReplacedAtLoopsOfAtMost30Corners) {
     EXPECT_EQ(closed(ring(30, 3, 0, 1), 2.5).replaced, 0u) << "a hole in any case";
 }
 
-TEST(RegionGrowNarrow_TwoObstacles, AreReplacedAtLoopsOfAtMost12Corners) {
+TEST(NarrowHoles_TwoObstacles, AreReplacedAtLoopsOfAtMost12Corners) {
     const NarrowHoles at_12 = closed(ring(12, 1, 0, 2), 1.1);
     EXPECT_EQ(at_12.closed, 1u);
     EXPECT_EQ(at_12.replaced, 2u);
     EXPECT_EQ(closed(ring(13, 1, 0, 2), 1.1).closed, 0u);
 }
 
-TEST(RegionGrowNarrow_Closing, CanBeCancelledAtEveryLoop) {
+TEST(NarrowHoles_Closing, CanBeCancelledAtEveryLoop) {
     Patch patch = ring(16, 1, 0);
-    ContextOptions options;
+    ExecutionOptions options;
     options.is_cancelled = [] { return true; };
-    EXPECT_THROW(close_narrow_holes(patch.surface(), {0.3, 4, 3}, Context(options)), Cancelled);
-}
-
-/// Two planes of step 1 that meet in a crease of `angle` degrees, which fades out towards both of its ends.
-PointCloud fading_crease(double angle) {
-    std::vector<Vec3> points;
-    for (int across = -10; across <= 10; ++across)
-        for (int y = -20; y <= 20; ++y) {
-            const double half = angle / 2 * degree * std::cos(std::numbers::pi * y / 40);
-            points.push_back(Vec3(across * std::cos(half), y, -std::abs(across) * std::sin(half)));
-        }
-    return cloud_from(std::move(points));
-}
-
-TEST(RegionGrow_CreasesThatFadeOut, ArePatchEdgesWhateverIsClosed) {
-    for (const double angle : {70.0, 90.0, 100.0, 110.0, 120.0, 130.0}) {
-        SCOPED_TRACE(angle);
-        RegionGrowParams params = with_max_normal_angle(60);
-        params.search_radius = Length(2 * std::numbers::sqrt3);
-        const RegionGrowResult result = grown(fading_crease(angle), params);
-        expect_consistent(result);
-        params.close_holes = 0;
-        const RegionGrowResult open = grown(fading_crease(angle), params);
-        EXPECT_EQ(result.loops, angle > 80 ? 2u : 1u);
-        EXPECT_EQ(result.patch_edges > 0, angle > 80);
-        EXPECT_EQ(result.patch_edges, open.patch_edges);
-        EXPECT_EQ(result.mesh.triangles.size(), open.mesh.triangles.size());
-    }
-}
-
-TEST(RegionGrow_OpenPocket, StaysOpenThoughNarrow) {
-    // 30 x 2.5 x 10: no circle as large as a hole fits into its opening.
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        Random random(seed);
-        std::vector<Vec3> points;
-        const Vec3 size(30, 2.5, 10);
-        const double sides = size.x() * size.z(), ends = size.y() * size.z(), floor = size.x() * size.y();
-        for (int i = 0; i < 60'000; ++i) {
-            Vec3 p(random.uniform(0, size.x()), random.uniform(0, size.y()), random.uniform(0, size.z()));
-            const double face = random.uniform(0, 2 * sides + 2 * ends + floor);
-            if (face < 2 * sides)
-                p.y() = face < sides ? 0 : size.y();
-            else if (face < 2 * sides + 2 * ends)
-                p.x() = face < 2 * sides + ends ? 0 : size.x();
-            else
-                p.z() = 0;
-            points.push_back(p + Vec3(0.3, 0.2, 0.1));
-        }
-        VoxelThinParams params;
-        params.bin_size = Length(1);
-        Context context;
-        const RegionGrowResult result = grown(voxel_thin(cloud_from(std::move(points)), params, context).points);
-        expect_consistent(result);
-        EXPECT_EQ(result.components, 1u) << seed;
-        EXPECT_EQ(result.loops, 1u) << seed;
-        EXPECT_EQ(topology(result.mesh).euler, 1) << seed;
-    }
+    EXPECT_THROW(close_narrow_holes(patch.surface(), {0.3, 4, 3}, Execution(options)), Cancelled);
 }
 
 }  // namespace

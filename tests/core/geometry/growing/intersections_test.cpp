@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "filters/region_grow_patch.hpp"
+#include "core/geometry/growing/patch.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
 #include "scanmill/geometry/growing/intersections.hpp"
 
@@ -57,7 +57,7 @@ private:
     std::vector<Triangle> added_;
 };
 
-TEST(RegionGrowNearTriangles_OfManySizes, AreFoundAsByTestingAll) {
+TEST(NearTriangles_OfManySizes, AreFoundAsByTestingAll) {
     constexpr u32 small = 300, large = 5;
     Scattered scattered(small, large);
     NearTriangles near;
