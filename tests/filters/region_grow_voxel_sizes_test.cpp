@@ -4,7 +4,6 @@
 
 #include "filters/region_grow_cases.hpp"
 #include "merge/merge.hpp"
-#include "region_grow/normals.hpp"
 #include "region_grow/search_radii.hpp"
 #include "scanmill/base/random.hpp"
 #include "scanmill/formats/files.hpp"
