@@ -135,7 +135,7 @@ struct Surface {
     Array<Vec3> normals;
     /// Surface variation, see PointNormals.
     Array<float> variation;
-    /// Per point: no triangle at the point reaches farther, unless the limits are relaxed.
+    /// Per point: the distance within which points are sought to continue the surface.
     Array<double> search_radius;
     /// The search radius that follows from the density alone. Triangles that are small compared with it are as small as
     /// the points' spacing requires.
