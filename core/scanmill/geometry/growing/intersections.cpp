@@ -59,12 +59,13 @@ void NearTriangles::gather_around(const Surface& surface, std::span<const u32> c
     }
 }
 
-void NearTriangles::gather_near(const Surface& surface, const Triangle& triangle) {
+void NearTriangles::gather_near(const Surface& surface, const Triangle& triangle, std::span<const u32> near) {
     const Box region = box_of(surface, triangle);
     clear(surface);
     for (u32 corner : triangle) gather_at(surface, corner, region);
     for (u32 corner : triangle)
         for (u32 other : surface.neighbourhoods.of(corner)) gather_at(surface, other, region);
+    for (u32 point : near) gather_at(surface, point, region);
 }
 
 void NearTriangles::clear(const Surface& surface) {

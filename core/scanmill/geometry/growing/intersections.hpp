@@ -28,7 +28,8 @@ public:
     /// surface's list of triangles was only appended to; its fans may have lost triangles and got them back.
     void gather_around(const Surface& surface, std::span<const u32> corners);
     /// Gathers triangles at the triangle's corners and their nearest neighbours that may intersect the triangle.
-    void gather_near(const Surface& surface, const Triangle& triangle);
+    /// With `near`, also those at these points.
+    void gather_near(const Surface& surface, const Triangle& triangle, std::span<const u32> near = {});
     /// Whether the triangle intersects one of the gathered ones other than itself. Pre: it lies in the gathered region.
     bool intersect(const Surface& surface, const Triangle& triangle) const;
 

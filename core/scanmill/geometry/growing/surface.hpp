@@ -3,6 +3,7 @@
 /// The growing surface: its triangles, the triangles around every vertex, and the state and normal of every point.
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "scanmill/data/array.hpp"
@@ -72,6 +73,13 @@ public:
     /// Pre: it was added.
     void remove(const Triangle& triangle) {
         for (std::size_t i = 0; i < 3; ++i) remove(triangle[i], {triangle[(i + 1) % 3], triangle[(i + 2) % 3]});
+    }
+
+    /// Reverses all triangles at the vertex. Between calls for all vertices of a component its triangles disagree.
+    void reverse(u32 vertex) {
+        for (u32 index = vertex; index != invalid_index; index = blocks_[index].next)
+            for (u32 i = 0; i < blocks_[index].count; ++i)
+                std::swap(blocks_[index].link[i].first, blocks_[index].link[i].last);
     }
 
 private:

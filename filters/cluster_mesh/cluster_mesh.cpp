@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cluster_mesh/cluster_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <numbers>
+#include <tuple>
+
+#include "cluster_mesh/clusters.hpp"
+#include "cluster_mesh/insertion_order.hpp"
+#include "cluster_mesh/triangulation.hpp"
+#include "edge_flip/edge_flip.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/frame.hpp"
+#include "scanmill/geometry/growing/components.hpp"
+#include "scanmill/geometry/growing/finished_mesh.hpp"
+#include "scanmill/geometry/growing/holes.hpp"
+#include "scanmill/geometry/growing/point_normals.hpp"
+#include "scanmill/geometry/mesh/boundary_loops.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using namespace clustering;
+using growing::DistinctPoints;
+using growing::Neighbourhoods;
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr std::size_t most_near = 1000;
+
+/// The given limits and relaxed ones. The limits to the points' own normals keep sheets apart and boundaries open.
+const std::array<Limits, 4> passes{{{std::sin(5 * degree), 0, std::cos(60 * degree), std::cos(85 * degree), true, true, false},
+                                    {std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree),
+                                     std::cos(110 * degree), true, true, true},
+{std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree),
+                                     std::cos(110 * degree), false, true, true},
+                                    {std::sin(0.5 * degree), std::cos(120 * degree), std::cos(80 * degree), -1, false, false,
+                                     true}}};
+
+/// Inserts all points, and completes the mesh.
+class Insertion {
+public:
+    Insertion(Surface& surface, double max_edge, const Vec3& up, const WinnerLimits& winner, Context& context)
+        : surface_(surface),
+          max_edge_(max_edge),
+          clusters_(surface.positions.size()),
+          triangulation_(surface, max_edge, up, winner),
+          inserted_(surface.positions.size(), false),
+          context_(context) {}
+
+    void insert_all(std::span<const u32> order) {
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            if (i % 1024 == 0) {
+                context_.check_cancelled();
+                context_.progress(0.3 + 0.4 * static_cast<double>(i) / static_cast<double>(order.size()));
+            }
+            insert(order[i]);
+        }
+    }
+
+    void complete() {
+        for (const Limits& limits : passes)
+            while (complete_once(limits)) context_.check_cancelled();
+    }
+
+    void count(ClusterMeshResult& result) {
+        result.cases = cases_;
+        result.splits = splits_;
+        result.extra = extra_;
+    }
+    Clusters& clusters() { return clusters_; }
+
+private:
+    std::span<const u32> near(u32 point) {
+        near_.clear();
+        surface_.neighbourhoods.within(point, max_edge_ * max_edge_, buffer_, near_);
+        return near_;
+    }
+
+    void insert(u32 point) {
+        const auto around = near(point);
+        if (around.size() > most_near)
+            throw Error("max-edge {:.3g} u is too large: {} other points are nearer than that to the point at {}",
+                        max_edge_, around.size(), at(surface_.positions[point]))
+                .hint(fmt::format("leave max-edge at `auto`, or use about {:.3g} u",
+                                  2.5 * std::sqrt(surface_.neighbourhoods.squared_reach(point)) / 2));
+        inserted_near_.clear();
+        for (u32 other : around)
+            if (inserted_[other]) inserted_near_.push_back(other);
+        inserted_[point] = true;
+        const int found = clusters_.meet(point, inserted_near_);
+        ++cases_[static_cast<std::size_t>(found - 1)];
+        if (!try_point(point, around, passes[0], false)) return;
+        // Points that waited may follow now.
+        waiting_.assign(1, point);
+        while (!waiting_.empty()) {
+            const u32 joined = waiting_.front();
+            waiting_.pop_front();
+            loose_.clear();
+            for (u32 other : near(joined))
+                if (triangulation_.is_loose(other)) loose_.push_back(other);
+            for (u32 other : loose_)
+                if (triangulation_.is_loose(other) && try_point(other, near(other), passes[0], true))
+                    waiting_.push_back(other);
+        }
+    }
+
+    static std::string at(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z()); }
+
+    /// Returns whether the point is in a triangle now.
+    bool try_point(u32 point, std::span<const u32> around, const Limits& limits, bool again) {
+        const bool may_start = again ? false : true;
+        const Outcome outcome = triangulation_.insert(point, around, may_start && may_start_at(point), limits);
+        if (outcome == Outcome::extra) {
+            extra_ += !again;
+            return false;
+        }
+        if (!again) clusters_.join(point);
+        if (outcome == Outcome::loose) return false;
+        splits_ += outcome == Outcome::split;
+        clusters_.unite(point, triangulation_.partner());
+        clusters_.set_meshed(point);
+        return true;
+    }
+
+    /// A cluster without triangles starts with the first three points that form one.
+    bool may_start_at(u32 point) {
+        for (u32 other : inserted_near_)
+            if (!clusters_.is_meshed(other)) return true;
+        return inserted_near_.empty() ? false : !clusters_.is_meshed(point);
+    }
+
+    /// Points that wait and boundary points, those nearest to their next edge first.
+    bool complete_once(const Limits& limits) {
+        std::vector<u32> open;
+        for (u32 point = 0; point < surface_.states.size(); ++point)
+            if (triangulation_.is_loose(point) || triangulation_.is_open(point)) open.push_back(point);
+        bool changed = false;
+        for (u32 point : open) {
+            const auto around = near(point);
+            if (triangulation_.is_loose(point)) {
+                const Outcome outcome = triangulation_.insert(point, around, true, limits);
+                if (outcome == Outcome::loose || outcome == Outcome::extra) continue;
+                splits_ += outcome == Outcome::split;
+                clusters_.unite(point, triangulation_.partner());
+                changed = true;
+            } else if (triangulation_.is_open(point))
+                changed = triangulation_.complete(point, around, limits) || changed;
+        }
+        return changed;
+    }
+
+    Surface& surface_;
+    double max_edge_;
+    Clusters clusters_;
+    Triangulation triangulation_;
+    std::vector<bool> inserted_;
+    Context& context_;
+    std::vector<u32> near_, inserted_near_, loose_;
+    std::deque<u32> waiting_;
+    NeighbourBuffer buffer_;
+    std::array<std::size_t, 4> cases_{};
+    std::size_t splits_ = 0, extra_ = 0;
+};
+
+double median_distance(const DistinctPoints& points, const Neighbourhoods& neighbourhoods) {
+    std::vector<double> squares(points.size());
+    for (u32 point = 0; point < points.size(); ++point)
+        squares[point] = (points.positions[neighbourhoods.of(point)[0]] - points.positions[point]).squaredNorm();
+    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+    std::ranges::nth_element(squares, middle);
+    return std::sqrt(*middle);
+}
+
+double automatic_max_edge(const PointCloud& cloud, double spacing, Context& context) {
+    double largest = 0, smallest = std::numeric_limits<double>::infinity();
+    if (const Column* sizes = cloud.columns.find("bin-size"); sizes && sizes->components() == 1)
+        for (std::size_t row = 0; row < sizes->rows(); ++row) {
+            const double size = sizes->number(row);
+            if (!(size > 0 && std::isfinite(size))) continue;
+            largest = std::max(largest, size);
+            smallest = std::min(smallest, size);
+        }
+    if (largest == 0) return 2.5 * spacing;
+    if (largest > 2 * smallest)
+        context.warn(fmt::format(
+            "the column 'bin-size' has values from {:.3g} to {:.3g} u; max-edge follows the largest and may bridge what "
+            "is closer in the finer parts; give max-edge, or thin with one voxel size",
+            smallest, largest));
+    return std::max(2.3 * largest, 2.5 * spacing);
+}
+
+/// The list of triangles from the fans, in the order of their lowest points.
+void list_triangles(Surface& surface) {
+    surface.triangles.clear();
+    surface.passes.clear();
+    for (u32 point = 0; point < surface.states.size(); ++point) {
+        const std::size_t before = surface.triangles.size();
+        surface.fans.any(point, [&](const growing::Fans::LinkEdge& edge) {
+            if (edge.first > point && edge.last > point) surface.triangles.push_back({point, edge.first, edge.last});
+            return false;
+        });
+        std::sort(surface.triangles.begin() + static_cast<std::ptrdiff_t>(before), surface.triangles.end());
+    }
+    surface.passes.resize(surface.triangles.size());
+    std::ranges::fill(surface.passes, growing::Pass(0));
+}
+
+/// Flips edges as edge_flip() does, except where the new triangles would intersect others. Returns the number of flips.
+std::size_t flip_edges(const PointCloud& cloud, Surface& surface, double max_edge, Context& context) {
+    list_triangles(surface);
+    const growing::FinishedMesh finished = growing::finish_mesh(cloud, surface);
+    ContextOptions options;
+    options.threads = context.threads();
+    options.is_cancelled = [&] { return context.cancelled(); };
+    Context silent(std::move(options));
+    EdgeFlipParams params;
+    params.max_edge = Length(max_edge);
+    const EdgeFlipResult flipped = edge_flip(finished.mesh, params, silent);
+    std::vector<u32> point_of_vertex(finished.rows.size());
+    for (u32 point = 0; point < finished.vertex_of_point.size(); ++point)
+        if (finished.vertex_of_point[point] != growing::invalid_index)
+            point_of_vertex[finished.vertex_of_point[point]] = point;
+    growing::NearTriangles near;
+    std::size_t flips = 0;
+    for (const EdgeFlip& flip : flipped.flips) {
+        const u32 a = point_of_vertex[flip.a], b = point_of_vertex[flip.b], c = point_of_vertex[flip.c],
+                  d = point_of_vertex[flip.d];
+        growing::Fans& fans = surface.fans;
+        const std::array<Triangle, 2> before{{{a, b, c}, {b, a, d}}}, after{{{c, a, d}, {d, b, c}}};
+        // An earlier flip that was left out may have kept one of the triangles from being made.
+        if (fans.left_of(a, b) != c || fans.left_of(b, a) != d || fans.left_of(c, d) != growing::invalid_index ||
+            fans.left_of(d, c) != growing::invalid_index)
+            continue;
+        for (const Triangle& triangle : before) fans.remove(triangle);
+        const bool intersects = std::ranges::any_of(after, [&](const Triangle& triangle) {
+            near.gather_near(surface, triangle);
+            return near.intersect(surface, triangle);
+        });
+        for (const Triangle& triangle : intersects ? before : after) fans.add(triangle);
+        flips += !intersects;
+    }
+    return flips;
+}
+
+void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, TriangleMesh& mesh) {
+    const auto column = [&](const char* name, const Clusters::Numbers& numbers) {
+        Array<u32> values(mesh.positions.size());
+        for (u32 point = 0; point < numbers.of_point.size(); ++point)
+            if (const u32 vertex = finished.vertex_of_point[point]; vertex != growing::invalid_index)
+                values[vertex] = numbers.of_point[point];
+        mesh.vertex_columns.add(Column(name, 1, Buffer<u32>(std::move(values))));
+    };
+    column("cluster-1", clusters.first_level());
+    column("cluster-2", clusters.second_level());
+}
+
+}  // namespace
+
+ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams& params, Context& context) {
+    require_finite(cloud.positions.span());
+    const DistinctPoints points = growing::distinct_points_of(cloud.positions.span());
+    const Neighbourhoods neighbourhoods(points, context.threads());
+    context.check_cancelled();
+    context.progress(0.15);
+    const double spacing = median_distance(points, neighbourhoods);
+    ClusterMeshResult result;
+    result.max_edge = params.max_edge ? params.max_edge->value() : automatic_max_edge(cloud, spacing, context);
+    const double slice = params.slice ? params.slice->value() : 0.25 * result.max_edge;
+    const Array<u32> order = insertion_order(points, neighbourhoods, static_cast<int>(params.axis), slice,
+                                             params.in_plane == ClusterMeshParams::InPlane::paper ? InPlane::paper
+                                                                                                 : InPlane::nearest,
+                                             context);
+    Array<double> radii(points.size());
+    std::ranges::fill(radii, result.max_edge);
+    Array<double> density(points.size());
+    std::ranges::fill(density, result.max_edge);
+    Surface surface(points, neighbourhoods, growing::principal_normals(points, neighbourhoods, context.threads()),
+                    std::move(radii), std::move(density), false);
+    context.progress(0.3);
+
+    const Vec3 up = Vec3(params.up[0], params.up[1], params.up[2]).normalized();
+    const WinnerLimits winner{std::cos(params.max_normal_angle.in_radians()) - 1e-9,
+                              std::cos(params.neighbour_angle.in_radians()) + 1e-9,
+                              std::cos(params.overlap_angle.in_radians()),
+                              std::tan(params.overlap_angle.in_radians())};
+    Insertion insertion(surface, result.max_edge, up, winner, context);
+    insertion.insert_all(order);
+    context.progress(0.7);
+    insertion.complete();
+    list_triangles(surface);
+    result.removed_triangles = growing::remove_extra_fans(surface);
+    result.closed_holes = growing::close_small_holes(surface, 4, context, result.max_edge);
+    result.removed_triangles += growing::remove_extra_fans(surface);
+    const growing::NarrowHoles narrow = growing::close_narrow_holes(
+        surface, {1 / std::sqrt(3.0), 4, std::numbers::pi, result.max_edge}, context);
+    result.closed_holes += narrow.closed;
+    result.removed_triangles += narrow.replaced;
+    result.flips = flip_edges(cloud, surface, result.max_edge, context);
+    list_triangles(surface);
+    const growing::Components components = growing::find_components(surface);
+    Array<u32> groups(points.size());
+    std::ranges::fill(groups, growing::invalid_index);
+    growing::orient_outwards(surface, components, groups);
+    context.progress(0.9);
+
+    growing::FinishedMesh finished = growing::finish_mesh(cloud, surface);
+    insertion.count(result);
+    add_clusters(insertion.clusters(), finished, finished.mesh);
+    result.clusters = insertion.clusters().first_level().count;
+    result.components = components.count;
+    result.duplicates = points.repeats.size();
+    result.unused_points = points.size() - finished.rows.size();
+    result.rows = std::move(finished.rows);
+    result.mesh = std::move(finished.mesh);
+    return result;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Triangulates points one after the other: each new point joins the clusters near it and continues their mesh.
+///
+/// Points come slice after slice (insertion_order.hpp) and form clusters on two levels (clusters.hpp). A new point
+/// continues the mesh of its cluster at the nearest boundary edge, splits the triangle that it lies over, or waits
+/// (triangulation.hpp). Then the result is completed: points that wait and boundaries that face each other are tried
+/// again under relaxed limits, vertices keep one fan of triangles, small and narrow loops are closed, and edges are
+/// flipped where that makes better triangles.
+///
+/// Source: Sangveraphunsiri, Srirakulchai 2006, made robust.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/filter/context.hpp"
+
+namespace scanmill {
+
+struct ClusterMeshParams {
+    enum class Axis { x, y, z };
+    enum class InPlane {
+        paper,   ///< by distance to the slicing plane
+        nearest  ///< next comes the point nearest to an inserted one
+    };
+    /// Every edge of the mesh is shorter. Above 0; absent: 2.3 times the largest value of the column `bin-size`, or
+    /// without one 2.5 times the median distance of a point to the nearest other one.
+    std::optional<Length> max_edge;
+    /// Slicing planes are perpendicular to it.
+    Axis axis = Axis::x;
+    /// Distance of the slicing planes; above 0. Absent: a quarter of max_edge.
+    std::optional<Length> slice;
+    InPlane in_plane = InPlane::nearest;
+    /// Three numbers, not all 0. Components that are not closed face to its side, if their first triangle did.
+    std::vector<double> up{0, 0, 1};
+    /// Up to this angle between the normals of a new triangle and of the triangle whose edge it continues, the new one
+    /// is created; above, neighbours decide. Above 0, at most 180 degrees.
+    Angle max_normal_angle = Angle::degrees(90);
+    /// Beyond max_normal_angle the surface continues only if a neighbour of that triangle, and the triangle of the
+    /// edge between the two and the new point, differ by less. Above 0, at most 180 degrees.
+    Angle neighbour_angle = Angle::degrees(90);
+    /// A point lies over a triangle, and splits it, if it is inside, seen along the normal, and not higher than the
+    /// longest edge times the tangent of this. Above 0, below 90 degrees.
+    Angle overlap_angle = Angle::degrees(10);
+};
+
+struct ClusterMeshResult {
+    /// Over the used points, in input order with their columns, and the columns `cluster-1` and `cluster-2`.
+    TriangleMesh mesh;
+    /// Per vertex its row in the cloud, ascending.
+    Array<u32> rows;
+    double max_edge = 0;
+    /// How many distinct points were inserted by case 1 … 4.
+    std::array<std::size_t, 4> cases{};
+    /// Points that split a triangle, and points that waited because the surface is discontinuous at their nearest edge.
+    std::size_t splits = 0, extra = 0;
+    /// Clusters of level 1, also of unused points.
+    std::size_t clusters = 0;
+    std::size_t components = 0, loops = 0, boundary_edges = 0;
+    /// Loops closed and triangles removed in the end, and edges flipped.
+    std::size_t closed_holes = 0, removed_triangles = 0, flips = 0;
+    /// Rows without a vertex: repeats of an earlier row, and distinct points in no triangle.
+    std::size_t duplicates = 0, unused_points = 0;
+};
+
+ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams& params, Context& context);
+
+}  // namespace scanmill
