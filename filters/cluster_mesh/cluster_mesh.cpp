@@ -2,13 +2,14 @@
 #include "cluster_mesh/cluster_mesh.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <numbers>
-#include <tuple>
 
 #include "cluster_mesh/clusters.hpp"
 #include "cluster_mesh/insertion_order.hpp"
@@ -21,8 +22,7 @@
 #include "scanmill/geometry/growing/finished_mesh.hpp"
 #include "scanmill/geometry/growing/holes.hpp"
 #include "scanmill/geometry/growing/point_normals.hpp"
-#include "scanmill/geometry/mesh/boundary_loops.hpp"
-#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/mesh/doubtful_surface.hpp"
 
 namespace scanmill {
 
@@ -36,13 +36,11 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr std::size_t most_near = 1000;
 
 /// The given limits and relaxed ones. The limits to the points' own normals keep sheets apart and boundaries open.
-const std::array<Limits, 4> passes{{{std::sin(5 * degree), 0, std::cos(60 * degree), std::cos(85 * degree), true, true, false},
-                                    {std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree),
-                                     std::cos(110 * degree), true, true, true},
-{std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree),
-                                     std::cos(110 * degree), false, true, true},
-                                    {std::sin(0.5 * degree), std::cos(120 * degree), std::cos(80 * degree), -1, false, false,
-                                     true}}};
+const std::array<Limits, 4> passes{
+    {{std::sin(5 * degree), 0, std::cos(60 * degree), std::cos(85 * degree), true, true, false},
+     {std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree), std::cos(110 * degree), true, true, true},
+     {std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree), std::cos(110 * degree), false, true, true},
+     {std::sin(0.5 * degree), std::cos(120 * degree), std::cos(80 * degree), -1, false, false, true}}};
 
 /// Inserts all points, and completes the mesh.
 class Insertion {
@@ -170,6 +168,55 @@ private:
     std::size_t splits_ = 0, extra_ = 0;
 };
 
+void require_in_range(const ClusterMeshParams& params) {
+    const auto require_length = [](const char* name, const std::optional<Length>& length) {
+        if (length && !(length->value() > 0 && std::isfinite(length->value())))
+            throw Error("{} is {} u; it must be above 0", name, length->value())
+                .hint(fmt::format("leave {} at `auto`", name));
+    };
+    require_length("max-edge", params.max_edge);
+    require_length("slice", params.slice);
+    const auto finite = [](double number) { return std::isfinite(number); };
+    const auto zero = [](double number) { return number == 0; };
+    if (params.up.size() != 3 || !std::ranges::all_of(params.up, finite) || std::ranges::all_of(params.up, zero))
+        throw Error("up is [{}]; it must be three numbers, not all 0", fmt::join(params.up, ", "))
+            .hint("`up: [0, 0, 1]` is the direction of z");
+    const auto require_angle = [](const char* name, const Angle& angle, double most, bool inclusive) {
+        const double degrees = angle.in_degrees();
+        if (!(degrees > 0 && (inclusive ? degrees <= most : degrees < most)))
+            throw Error("{} is {} degrees; it must be above 0 and {} {}", name, degrees,
+                        inclusive ? "at most" : "below", most);
+    };
+    require_angle("max-normal-angle", params.max_normal_angle, 180, true);
+    require_angle("neighbour-angle", params.neighbour_angle, 180, true);
+    require_angle("overlap-angle", params.overlap_angle, 90, false);
+}
+
+/// Throws Error when most points have no other one nearer than max_edge.
+void require_neighbours(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, double max_edge,
+                        double spacing) {
+    std::size_t alone = 0;
+    for (u32 point = 0; point < points.size(); ++point) {
+        const Vec3& nearest = points.positions[neighbourhoods.of(point)[0]];
+        alone += !((nearest - points.positions[point]).squaredNorm() < max_edge * max_edge);
+    }
+    if (2 * alone > points.size())
+        throw Error(
+            "max-edge {:.3g} u is {:.2g} of the spacing {:.3g} u: {} of {} points would be clusters of one point",
+            max_edge, max_edge / spacing, spacing, alone, points.size())
+            .hint(fmt::format("try {:.3g} u, or leave max-edge at `auto`", 2.5 * spacing));
+}
+
+void require_slices(const DistinctPoints& points, int axis, double slice) {
+    const BoundingBox box = bounding_box(points.positions);
+    const double extent = (box.high - box.low)[axis];
+    constexpr double most = 1e9;
+    if (extent > most * slice)
+        throw Error("slice {:.3g} u divides {:.3g} u into {:.3g} slices; at most {:.0e} are possible", slice, extent,
+                    extent / slice, most)
+            .hint("leave slice at `auto`, a quarter of max-edge");
+}
+
 double median_distance(const DistinctPoints& points, const Neighbourhoods& neighbourhoods) {
     std::vector<double> squares(points.size());
     for (u32 point = 0; point < points.size(); ++point)
@@ -190,10 +237,11 @@ double automatic_max_edge(const PointCloud& cloud, double spacing, Context& cont
         }
     if (largest == 0) return 2.5 * spacing;
     if (largest > 2 * smallest)
-        context.warn(fmt::format(
-            "the column 'bin-size' has values from {:.3g} to {:.3g} u; max-edge follows the largest and may bridge what "
-            "is closer in the finer parts; give max-edge, or thin with one voxel size",
-            smallest, largest));
+        context.warn(
+            fmt::format("the column 'bin-size' has values from {:.3g} to {:.3g} u; max-edge follows the largest and "
+                        "may bridge what "
+                        "is closer in the finer parts; give max-edge, or thin with one voxel size",
+                        smallest, largest));
     return std::max(2.3 * largest, 2.5 * spacing);
 }
 
@@ -262,22 +310,69 @@ void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, Tri
     column("cluster-2", clusters.second_level());
 }
 
+/// Pre: one fan at every vertex.
+void count_loops(const Surface& surface, ClusterMeshResult& result) {
+    std::vector<bool> visited(surface.states.size(), false);
+    for (u32 point = 0; point < surface.states.size(); ++point) {
+        if (surface.states[point] != growing::PointState::front || visited[point]) continue;
+        ++result.loops;
+        for (u32 at = point; !visited[at]; at = surface.next_on_boundary(at)) {
+            visited[at] = true;
+            ++result.boundary_edges;
+        }
+    }
+}
+
+/// Metrics as plugin.cpp declares them, warnings and doubts.
+void report(const ClusterMeshResult& result, std::size_t points, Context& context) {
+    const auto count = [&](std::string_view name, std::size_t value) {
+        context.metric(name, static_cast<double>(value));
+    };
+    for (std::size_t i = 0; i < 4; ++i) count(fmt::format("case-{}", i + 1), result.cases[i]);
+    count("splits", result.splits);
+    count("extra", result.extra);
+    count("clusters", result.clusters);
+    count("loops", result.loops);
+    count("boundary-edges", result.boundary_edges);
+    count("components", result.components);
+    count("triangles", result.mesh.triangles.size());
+    count("unused-points", result.unused_points);
+    count("duplicates", result.duplicates);
+    count("closed-holes", result.closed_holes);
+    count("removed-triangles", result.removed_triangles);
+    count("flips", result.flips);
+    context.metric("max-edge", result.max_edge);
+
+    constexpr std::size_t points_per_unused = 50;
+    std::string text = fmt::format(
+        "{} of {} distinct points are in no triangle; thin the scan, remove its noise first, or enlarge max-edge",
+        result.unused_points, points);
+    if (points_per_unused * result.unused_points > points)
+        context.doubt(std::move(text));
+    else if (200 * result.unused_points > points)
+        context.warn(std::move(text));
+    for (std::string& doubt : doubts_about_surface(result.mesh)) context.doubt(std::move(doubt));
+}
+
 }  // namespace
 
 ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams& params, Context& context) {
     require_finite(cloud.positions.span());
+    require_in_range(params);
     const DistinctPoints points = growing::distinct_points_of(cloud.positions.span());
+    growing::require_area(points, cloud.size());
     const Neighbourhoods neighbourhoods(points, context.threads());
     context.check_cancelled();
     context.progress(0.15);
     const double spacing = median_distance(points, neighbourhoods);
     ClusterMeshResult result;
     result.max_edge = params.max_edge ? params.max_edge->value() : automatic_max_edge(cloud, spacing, context);
+    require_neighbours(points, neighbourhoods, result.max_edge, spacing);
     const double slice = params.slice ? params.slice->value() : 0.25 * result.max_edge;
-    const Array<u32> order = insertion_order(points, neighbourhoods, static_cast<int>(params.axis), slice,
-                                             params.in_plane == ClusterMeshParams::InPlane::paper ? InPlane::paper
-                                                                                                 : InPlane::nearest,
-                                             context);
+    require_slices(points, static_cast<int>(params.axis), slice);
+    const Array<u32> order = insertion_order(
+        points, neighbourhoods, static_cast<int>(params.axis), slice,
+        params.in_plane == ClusterMeshParams::InPlane::paper ? InPlane::paper : InPlane::nearest, context);
     Array<double> radii(points.size());
     std::ranges::fill(radii, result.max_edge);
     Array<double> density(points.size());
@@ -289,18 +384,21 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     const Vec3 up = Vec3(params.up[0], params.up[1], params.up[2]).normalized();
     const WinnerLimits winner{std::cos(params.max_normal_angle.in_radians()) - 1e-9,
                               std::cos(params.neighbour_angle.in_radians()) + 1e-9,
-                              std::cos(params.overlap_angle.in_radians()),
-                              std::tan(params.overlap_angle.in_radians())};
+                              std::cos(params.overlap_angle.in_radians()), std::tan(params.overlap_angle.in_radians())};
     Insertion insertion(surface, result.max_edge, up, winner, context);
     insertion.insert_all(order);
     context.progress(0.7);
     insertion.complete();
     list_triangles(surface);
+    if (surface.triangles.empty())
+        throw Error("no triangle with edges below max-edge {:.3g} u: {} points, spacing {:.3g} u", result.max_edge,
+                    points.size(), spacing)
+            .hint(fmt::format("try max-edge {:.3g} u; thin the scan with larger voxels if it is noisy", 2.5 * spacing));
     result.removed_triangles = growing::remove_extra_fans(surface);
     result.closed_holes = growing::close_small_holes(surface, 4, context, result.max_edge);
     result.removed_triangles += growing::remove_extra_fans(surface);
-    const growing::NarrowHoles narrow = growing::close_narrow_holes(
-        surface, {1 / std::sqrt(3.0), 4, std::numbers::pi, result.max_edge}, context);
+    const growing::NarrowHoles narrow =
+        growing::close_narrow_holes(surface, {1 / std::sqrt(3.0), 4, std::numbers::pi, result.max_edge}, context);
     result.closed_holes += narrow.closed;
     result.removed_triangles += narrow.replaced;
     result.flips = flip_edges(cloud, surface, result.max_edge, context);
@@ -308,7 +406,7 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     const growing::Components components = growing::find_components(surface);
     Array<u32> groups(points.size());
     std::ranges::fill(groups, growing::invalid_index);
-    growing::orient_outwards(surface, components, groups);
+    growing::orient_outwards(surface, components, groups, up);
     context.progress(0.9);
 
     growing::FinishedMesh finished = growing::finish_mesh(cloud, surface);
@@ -320,6 +418,9 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     result.unused_points = points.size() - finished.rows.size();
     result.rows = std::move(finished.rows);
     result.mesh = std::move(finished.mesh);
+    count_loops(surface, result);
+    report(result, points.size(), context);
+    context.progress(1);
     return result;
 }
 

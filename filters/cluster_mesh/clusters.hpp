@@ -24,14 +24,10 @@ namespace scanmill::clustering {
 
 class Clusters {
 public:
-    explicit Clusters(std::size_t points)
-        : first_(points),
-          second_(points),
-          size_(points, 1),
-          meshed_(points, false) {}
+    explicit Clusters(std::size_t points) : first_(points), second_(points), size_(points, 1), meshed_(points, false) {}
 
-    /// Inserts a point: `near` are the inserted points near it. Clusters of level 1 are joined at once, those of level 2
-    /// that it meets by join(), so that the point may stay a cluster of its own. Returns the case, 1 to 4; of several
+    /// Inserts a point: `near` are the inserted points near it. Clusters of level 1 are joined at once, those of level
+    /// 2 that it meets by join(), so that the point may stay a cluster of its own. Returns the case, 1 to 4; of several
     /// cases 4 counts before 1, and 1 before 3.
     int meet(u32 point, std::span<const u32> near);
     /// Joins the point and the clusters of level 2 that it met in the last call of meet().

@@ -3,3 +3,73 @@
 #include "cluster_mesh/cluster_mesh.hpp"
 
 using namespace scanmill;
+
+SCANMILL_FILTER() {
+    using P = ClusterMeshParams;
+    return Declare<P>("cluster-mesh", 1)
+        .summary("Inserts thinned points slice by slice into clusters and continues their mesh with each point.")
+        .source("Sangveraphunsiri, Srirakulchai 2006, made robust")
+        .ties(
+            "Of equally near points and edges the first along a space-filling curve through the box; of duplicates the "
+            "first row.")
+        .not_finite("Refused, with their number and the first of them.")
+        .adds({"cluster-1", "cluster-2"})
+        .in<PointCloud>("points", "Thinned: of even density. The column `bin-size` is used.")
+        .made_by("voxel-thin")
+        .out<TriangleMesh>("mesh",
+                           "An oriented manifold over the points used, with all edges shorter than `max-edge`, and the "
+                           "vertices' clusters of both levels. Closed components face outwards.")
+        .param("max-edge", &P::max_edge,
+               "Every edge is shorter, and points nearer to each other are one cluster; what is closer may be bridged. "
+               "`auto` is 2.3 times the largest value of the column `bin-size`, and at least 2.5 times the median "
+               "distance between neighbours.",
+               above(0), word("auto"))
+        .choice("axis", &P::axis,
+                {{"x", P::Axis::x, "Planes of constant x."},
+                 {"y", P::Axis::y, "Planes of constant y."},
+                 {"z", P::Axis::z, "Planes of constant z."}},
+                "The slicing planes are perpendicular to it.")
+        .param("slice", &P::slice, "Distance of the slicing planes; `auto` is a quarter of `max-edge`.", above(0),
+               word("auto"))
+        .choice("in-plane", &P::in_plane,
+                {{"paper", P::InPlane::paper, "By distance to the slicing plane."},
+                 {"nearest", P::InPlane::nearest, "The point nearest to one that is already inserted comes next."}},
+                "The order of the points of a slice.")
+        .param("up", &P::up, "First triangles face to this side; it decides how open components face that are flat.",
+               size(3))
+        .param("max-normal-angle", &P::max_normal_angle,
+               "Up to this angle between its normal and that of the triangle that it continues, a triangle is created; "
+               "smaller values ignore noise on smooth surfaces.",
+               above(0), at_most(180))
+        .param(
+            "neighbour-angle", &P::neighbour_angle,
+            "Beyond `max-normal-angle` the surface continues only if a neighbour of that triangle agrees within this "
+            "angle.",
+            above(0), at_most(180))
+        .param(
+            "overlap-angle", &P::overlap_angle,
+            "A point inside a triangle, seen along its normal, splits it if it is at most the longest edge times the "
+            "tangent of this above it.",
+            above(0), below(90))
+        .metric("triangles", Unit::count, "Triangles of the mesh.", headline)
+        .metric("components", Unit::count, "Connected components.")
+        .metric("loops", Unit::count, "Boundary loops.", headline)
+        .metric("boundary-edges", Unit::count, "Edges of all boundary loops.")
+        .metric("unused-points", Unit::count, "Distinct points in no triangle.", headline)
+        .metric("duplicates", Unit::count, "Points at the position of an earlier one.")
+        .metric("max-edge", Unit::length, "The limit of the edges, given or derived.")
+        .metric("clusters", Unit::count, "Clusters of level 1: points connected by steps below `max-edge`.")
+        .metric("case-1", Unit::count, "Points that joined a cluster of one point.")
+        .metric("case-2", Unit::count, "Points far from all before them.")
+        .metric("case-3", Unit::count, "Points near one point of a larger cluster.")
+        .metric("case-4", Unit::count, "Points near several points of a cluster.")
+        .metric("splits", Unit::count, "Points that split a triangle.")
+        .metric("extra", Unit::count, "Points that waited because the surface bends too much at the nearest edge.")
+        .metric("closed-holes", Unit::count, "Small and narrow loops that were closed.")
+        .metric("removed-triangles", Unit::count,
+                "Triangles removed again, where a vertex had several fans or to close a hole.")
+        .metric("flips", Unit::count, "Edges flipped in the end.")
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            return Outputs().set("mesh", cluster_mesh(inputs.get<PointCloud>("points"), params, context).mesh);
+        });
+}

@@ -20,12 +20,15 @@ namespace {
 /// Outside angles at a boundary vertex are closed below 170 degrees.
 const double widest_corner_cosine = std::cos(170 * 3.14159265358979323846 / 180);
 
-/// A point that divides a triangle's edge from a corner of the projected point's triangle of a smaller share of the area
-/// splits the edge.
+/// A point that divides a triangle's edge from a corner of the projected point's triangle of a smaller share of the
+/// area splits the edge.
 constexpr double least_share = 0.02;
 
-/// Where the normals of near vertices are farther than 45 degrees from a triangle's, it is tested in space.
-constexpr double flat_cosine = 0.7071067811865476;
+/// Meshes with more points join first where the surface is flat: elsewhere the sides that they face are less certain.
+constexpr std::size_t few_points = 6;
+
+/// Where the normals of near vertices are farther than 30 degrees from a triangle's, it is tested in space.
+constexpr double flat_cosine = 0.8660254037844387;
 
 /// Above this surface variation the normal of a point is meaningless: it lies at a tip.
 constexpr float tip_variation = 0.18f;
@@ -151,6 +154,14 @@ bool Triangulation::fits(const Triangle& triangle, std::span<const u32> near, co
     return is_free(triangle, normal, near, limits);
 }
 
+bool Triangulation::is_flat(const Triangle& triangle) const {
+    const Vec3 normal = surface_.facet_normal(triangle[0], triangle[1], triangle[2]);
+    return std::ranges::all_of(triangle, [&](u32 corner) {
+        return surface_.variation[corner] <= growing::sharp_variation &&
+               std::abs(surface_.normals[corner].dot(normal)) > flat_cosine;
+    });
+}
+
 bool Triangulation::is_reversed_at(const Triangle& triangle) const {
     const auto& [from, apex, to] = triangle;
     const auto& normals = surface_.normals;
@@ -163,12 +174,13 @@ bool Triangulation::is_free(const Triangle& triangle, const Vec3& normal, std::s
                             const Limits& limits) {
     if (!growing::sectors_are_free(surface_, triangle, normal, limits.in_space)) return false;
     const auto& p = surface_.positions;
-    const double longest = std::sqrt(std::max({squared(triangle[0], triangle[1]), squared(triangle[1], triangle[2]),
-                                               squared(triangle[2], triangle[0])}));
+    const double longest = std::sqrt(std::max(
+        {squared(triangle[0], triangle[1]), squared(triangle[1], triangle[2]), squared(triangle[2], triangle[0])}));
     bool faces_apart = limits.in_space;
     const Vec3 u = p[triangle[1]] - p[triangle[0]], v = p[triangle[2]] - p[triangle[0]];
     const Vec3 cross = u.cross(v);
-    const Vec3 centre = p[triangle[0]] + (u.squaredNorm() * v.cross(cross) + v.squaredNorm() * cross.cross(u)) / (2 * cross.squaredNorm());
+    const Vec3 centre = p[triangle[0]] + (u.squaredNorm() * v.cross(cross) + v.squaredNorm() * cross.cross(u)) /
+                                             (2 * cross.squaredNorm());
     const double squared_radius = (p[triangle[0]] - centre).squaredNorm() * (1 - 1e-9);
     for (u32 x : near) {
         if (x == triangle[0] || x == triangle[1] || x == triangle[2]) continue;
@@ -242,8 +254,13 @@ bool Triangulation::split_covering(u32 point, std::span<const u32> near, const L
         added = {{a, b, point}, {b, c, point}, {c, a, point}};
     const Vec3 before = surface_.facet_normal(a, b, c);
     for (const Triangle& triangle : added)
-        if (!has_good_angles(triangle, {.least_sine = 1e-3, .joint_cosine = 0, .point_cosine = 0, .sharp_cosine = 0,
-                                        .empty_circle = false, .leaves_room = false, .in_space = false}) ||
+        if (!has_good_angles(triangle, {.least_sine = 1e-3,
+                                        .joint_cosine = 0,
+                                        .point_cosine = 0,
+                                        .sharp_cosine = 0,
+                                        .empty_circle = false,
+                                        .leaves_room = false,
+                                        .in_space = false}) ||
             !(surface_.facet_normal(triangle[0], triangle[1], triangle[2]).dot(before) > 0.5))
             return false;
     const double cosine = std::abs(surface_.normals[point].dot(before));
@@ -331,6 +348,9 @@ bool Triangulation::join_others(u32 point, std::span<const u32> near, const Limi
     for (const Candidate& edge : candidates_) {
         if (edge.from == point || edge.to == point) continue;
         const Triangle triangle{edge.from, point, edge.to};
+        if (limits.empty_circle && !components_.are_joined(edge.from, point) && !is_flat(triangle) &&
+            std::min(components_.size(edge.from), components_.size(point)) > few_points)
+            continue;
         if (is_reversed_at(triangle)) {
             if (join_reversed(triangle, near, limits)) return true;
             continue;

@@ -22,29 +22,30 @@ using growing::Surface;
 
 /// Limits of every triangle. Angles are stored as the sines and cosines that are compared.
 struct Limits {
-    double least_sine;    ///< of the triangle's smallest angle
+    double least_sine;  ///< of the triangle's smallest angle
     double joint_cosine;  ///< least, between the normals of triangles that share an edge other than a winner edge
     double point_cosine;  ///< least, between the normals of the triangle and of its points
     double sharp_cosine;  ///< the same for points at edges
     bool empty_circle;
-    bool leaves_room;     ///< no point that is in no triangle yet may lie over the new triangle
-    bool in_space;        ///< test intersections in space everywhere, not only where surfaces that face apart are near
+    bool leaves_room;  ///< no point that is in no triangle yet may lie over the new triangle
+    bool in_space;  ///< test intersections in space everywhere, not only where surfaces that face apart are near
 };
 
 /// The limits of the paper's tests of a winner edge.
 struct WinnerLimits {
-    double normal_cosine;     ///< theta: least, between the normals of the new triangle and the winner edge's
+    double normal_cosine;  ///< theta: least, between the normals of the new triangle and the winner edge's
     double neighbour_cosine;  ///< gamma: above it, between a neighbour of the winner's triangle and the check triangle
-    double overlap_cosine;    ///< psi: from it on, between the winner's triangle and the check triangle, the point overlaps it
-    double overlap_tangent;   ///< tangent of the same angle
+    double overlap_cosine;  ///< psi: from it on, between the winner's triangle and the check triangle, the point
+                            ///< overlaps it
+    double overlap_tangent;  ///< tangent of the same angle
 };
 
 enum class Outcome {
     joined,  ///< new triangles at a boundary
-    split,   ///< it split a triangle
-    first,   ///< a first triangle
-    loose,   ///< no triangle
-    extra    ///< no triangle, as the surface is discontinuous at the winner edge
+    split,  ///< it split a triangle
+    first,  ///< a first triangle
+    loose,  ///< no triangle
+    extra  ///< no triangle, as the surface is discontinuous at the winner edge
 };
 
 class Triangulation {
@@ -79,6 +80,8 @@ private:
     Verdict judge(u32 point, const Candidate& edge, const WinnerLimits& winner) const;
     /// Whether triangle from → apex → to, at the boundary edge from → to, may be added. `near`: around a corner of it.
     bool fits(const Triangle& triangle, std::span<const u32> near, const Limits& limits, bool at_winner);
+    /// Whether the surface is flat at the triangle, so that its corners belong to one sheet.
+    bool is_flat(const Triangle& triangle) const;
     /// Whether the apex belongs to another mesh, whose triangles are on the other side.
     bool is_reversed_at(const Triangle& triangle) const;
     bool has_good_angles(const Triangle& triangle, const Limits& limits) const;

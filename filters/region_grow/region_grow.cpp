@@ -27,9 +27,6 @@ namespace {
 
 using namespace growing;
 
-constexpr const char* few_points_hint =
-    "check the file with `scanmill info`; use smaller voxels if the scan was thinned";
-
 void require_in_range(const RegionGrowParams& params, std::size_t points) {
     const double least = params.min_angle.in_degrees(), most = params.max_normal_angle.in_degrees();
     if (!(least >= 0 && least < 60))
@@ -44,25 +41,6 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
     if (params.close_holes > 100) throw Error("close-holes is {}; at most 100 edges are closed", params.close_holes);
     if (params.start && *params.start >= points)
         throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points);
-}
-
-/// Throws Error unless three points are not collinear. `rows`: of the cloud.
-void require_area(const DistinctPoints& points, std::size_t rows) {
-    if (rows == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(few_points_hint);
-    if (points.size() < 3)
-        throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", points.size(), rows)
-            .hint(few_points_hint);
-    // The point farthest from the first, and the one farthest from the line through both.
-    const auto& p = points.positions;
-    const auto farthest = [&](const auto& distance) { return *std::ranges::max_element(p, {}, distance); };
-    const Vec3 end = farthest([&](const Vec3& x) { return (x - p[0]).squaredNorm(); });
-    const Vec3 along = (end - p[0]).normalized();
-    const auto off_line = [&](const Vec3& x) { return (x - p[0]).cross(along).norm(); };
-    const double off = off_line(farthest(off_line));
-    if (off <= 1e-9 * (end - p[0]).norm())
-        throw Error("all {} distinct points lie on one line, to within {:.2g} u; a surface needs points off that line",
-                    points.size(), off)
-            .hint("scan more than a single profile, or check that the columns x, y and z are read as such");
 }
 
 [[noreturn]] void refuse_start(u32 row) {
@@ -212,7 +190,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     require_finite(cloud.positions.span());
     require_in_range(params, cloud.size());
     const DistinctPoints points = distinct_points_of(cloud.positions.span());
-    require_area(points, cloud.size());
+    growing::require_area(points, cloud.size());
     context.progress(0.05);
     context.check_cancelled();
     const Neighbourhoods neighbourhoods(points, context.threads());

@@ -19,11 +19,12 @@ struct Sums {
     double size = 0, volume = 0;
     bool open = false;
 
-    bool faces_inwards() const {
+    bool faces_inwards(const std::optional<Vec3>& up) const {
         // `volume` is about the origin, this one about the centroid of the area.
         const double about_centroid = size > 0 ? volume - area.dot(moment / size) / 3 : volume;
         if (!open) return volume < 0;
         if (std::abs(about_centroid) > 0.01 * size * std::sqrt(size)) return about_centroid < 0;
+        if (up) return area.dot(*up) < 0;
         int axis = 2;
         for (int other : {1, 0})
             if (std::abs(area[other]) > std::abs(area[axis]) * (1 + 1e-9)) axis = other;
@@ -50,7 +51,8 @@ Components find_components(const Surface& surface) {
     return components;
 }
 
-void orient_outwards(Surface& surface, const Components& components, std::span<const u32> groups) {
+void orient_outwards(Surface& surface, const Components& components, std::span<const u32> groups,
+                     const std::optional<Vec3>& up) {
     std::vector<bool> open(components.count, false);
     for (u32 point = 0; point < groups.size(); ++point)
         if (surface.states[point] == PointState::front) open[components.of_point[point]] = true;
@@ -77,7 +79,7 @@ void orient_outwards(Surface& surface, const Components& components, std::span<c
         sum.open = open[components.of_point[t[0]]];
     }
     for (Triangle& t : surface.triangles)
-        if (sums[sets.find(node_of(t[0]))].faces_inwards()) std::swap(t[1], t[2]);
+        if (sums[sets.find(node_of(t[0]))].faces_inwards(up)) std::swap(t[1], t[2]);
 }
 
 void orient_like_normals(Surface& surface, const Components& components, const Array<Vec3>& given) {

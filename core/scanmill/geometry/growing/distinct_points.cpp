@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/growing/distinct_points.hpp"
+#include "scanmill/base/error.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -61,6 +63,24 @@ DistinctPoints distinct_points_of(std::span<const Vec3> positions) {
         points.rows.push_back(order[i]);
     }
     return points;
+}
+
+void require_area(const DistinctPoints& points, std::size_t rows) {
+    constexpr const char* hint = "check the file with `scanmill info`; use smaller voxels if the scan was thinned";
+    if (rows == 0) throw Error("needs at least 3 distinct points; the cloud has none").hint(hint);
+    if (points.size() < 3)
+        throw Error("needs at least 3 distinct points; the cloud has {} in {} rows", points.size(), rows).hint(hint);
+    // The point farthest from the first, and the one farthest from the line through both.
+    const auto& p = points.positions;
+    const auto farthest = [&](const auto& distance) { return *std::ranges::max_element(p, {}, distance); };
+    const Vec3 end = farthest([&](const Vec3& x) { return (x - p[0]).squaredNorm(); });
+    const Vec3 along = (end - p[0]).normalized();
+    const auto off_line = [&](const Vec3& x) { return (x - p[0]).cross(along).norm(); };
+    const double off = off_line(farthest(off_line));
+    if (off <= 1e-9 * (end - p[0]).norm())
+        throw Error("all {} distinct points lie on one line, to within {:.2g} u; a surface needs points off that line",
+                    points.size(), off)
+            .hint("scan more than a single profile, or check that the columns x, y and z are read as such");
 }
 
 Neighbourhoods::Neighbourhoods(const DistinctPoints& points, unsigned threads)
