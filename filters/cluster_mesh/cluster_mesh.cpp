@@ -341,7 +341,7 @@ void report(const ClusterMeshResult& result, std::size_t points, Context& contex
     count("closed-holes", result.closed_holes);
     count("removed-triangles", result.removed_triangles);
     count("flips", result.flips);
-    context.metric("max-edge", result.max_edge);
+    context.metric("max-edge", result.max_edge, Unit::length);
 
     constexpr std::size_t points_per_unused = 50;
     std::string text = fmt::format(
