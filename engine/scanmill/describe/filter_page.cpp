@@ -167,8 +167,12 @@ std::string filter_page(const FilterSpec& spec, const FilterLibrary& library) {
 
 std::string stream_text(const FilterSpec& spec) {
     const std::vector<std::string>& given = spec.streams->given;
-    return fmt::format("{} a scan that no other step needs whole is read in chunks and never completely in memory.",
-                       given.empty() ? "As the first step," : fmt::format("With {} given,", fmt::join(given, " and ")));
+    std::vector<std::string> unwired;
+    for (const PortSpec& port : spec.inputs)
+        if (port.optional) unwired.push_back("`" + port.name + "`");
+    return fmt::format("{}{}, a scan that no other step needs whole is read in chunks and never completely in memory.",
+                       given.empty() ? "As the first step" : fmt::format("With {} given", fmt::join(given, " and ")),
+                       unwired.empty() ? "" : fmt::format(", without {}", fmt::join(unwired, " and ")));
 }
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }

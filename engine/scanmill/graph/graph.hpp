@@ -144,8 +144,8 @@ RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& 
 // Streams. A scan is read piece by piece, and never loaded whole, if all steps that read it can do so. Whether its file
 // allows it is certain only when it is opened; else it is loaded, with the same results.
 
-/// Whether the step can read its scan as a stream: its filter can, the parameters that this requires have values, and
-/// no parameter is in spacings, which need all points at once.
+/// Whether the step can read its scan as a stream: its filter can, no other input is wired, the parameters that this
+/// requires have values, and no parameter is in spacings, which need all points at once.
 bool can_stream(const PlannedStep& step);
 
 /// Whether scans of this workflow input are streamed if their files allow it: they are points, at least one step reads

@@ -22,7 +22,7 @@ struct Readers {
 }  // namespace
 
 bool can_stream(const PlannedStep& step) {
-    if (!step.spec.streams) return false;
+    if (!step.spec.streams || step.inputs.size() != 1) return false;
     const auto is_given = [&](const std::string& name) { return has_value(step.parameters.find(name)); };
     const auto needs_spacing = [](const auto& parameter) { return is_in_spacings(parameter.second); };
     return std::ranges::all_of(step.spec.streams->given, is_given) &&
