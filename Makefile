@@ -49,9 +49,9 @@ bench-peers: deps ## compare with CGAL, PCL, Open3D, VTK and others: ROWS=delaun
 # Filters that make a closed mesh from points and measure it.
 reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculpt scanmill-decimate scanmill-measure
 # Filters that thin a scan, make an open mesh of it and find its features.
-hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features
+hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features scanmill-cluster-mesh
 
-bench-quality: deps ## compare our results with trimesh, Open3D, two papers and other decimations: LARGE=1
+bench-quality: deps ## compare our results with trimesh, Open3D, three papers and other decimations: LARGE=1
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
@@ -59,6 +59,7 @@ bench-quality: deps ## compare our results with trimesh, Open3D, two papers and 
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
+	python3 bench/quality/sangveraphunsiri_table_1.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/decimate.py build/bench $(if $(LARGE),--large)
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates

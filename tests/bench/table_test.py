@@ -112,6 +112,11 @@ class PageTest(unittest.TestCase):
         self.assertIn("| ours / it, 1 thr. | ours / it, 2 thr. |", page)
         self.assertIn("| 1 | 1.00 | 0.50 |", line_of(page, "pcl"))
 
+    def test_columns_of_ratios_name_the_method_if_several_are_ours(self):
+        ours = [entry(f"scanmill {method}", [4.0], program="scanmill", ours=True) for method in ("grow", "cluster")]
+        page = self.page(*ours, entry("pcl", [4.0]))
+        self.assertIn("| grow / it | cluster / it |", page)
+
     def test_failure_is_shown_with_why_and_counts_for_nobody(self):
         page = self.page(entry("scanmill", [1.0]), entry("pcl", [9.0], failure="killed by SIGSEGV"))
         self.assertEqual(line_of(page, "pcl"), "| pcl | – | failed |  |  |  |  |  | killed by SIGSEGV |")

@@ -8,6 +8,7 @@
 
 #include "alpha_solid/alpha_solid.hpp"
 #include "answer.hpp"
+#include "cluster_mesh/cluster_mesh.hpp"
 #include "decimate/decimate.hpp"
 #include "delaunay/delaunay.hpp"
 #include "outlier_removal/outlier_removal.hpp"
@@ -182,6 +183,16 @@ Json grown(Held& held, const Json& request) {
             {"unused", result.unused_points}};
 }
 
+Json clustered(Held& held, const Json& request) {
+    Context context = context_for(request);
+    ClusterMeshResult result;
+    const double seconds = peers::seconds_of([&] { result = cluster_mesh(held.cloud, {}, context); });
+    return {{"seconds", seconds},
+            {"triangles", result.mesh.triangles.size()},
+            {"loops", result.loops},
+            {"unused", result.unused_points}};
+}
+
 Json distances(Held& held, const Json& request) {
     Context context = context_for(request);
     std::optional<TriangleTree> tree;
@@ -238,6 +249,7 @@ int main() {
                           {"alpha-solid", with_held(solid)},
                           {"sculpt", with_held(sculpted)},
                           {"region-grow", with_held(grown)},
+                          {"cluster-mesh", with_held(clustered)},
                           {"decimate", with_held(decimated)},
                           {"distances", with_held(distances)}},
                          {{"Scanmill", SCANMILL_VERSION}});

@@ -8,7 +8,7 @@ Columns:
 - *seconds*: median over the rounds; every program measures only the work itself
 - *least to most*: range over the rounds
 - *ours / it*: Scanmill's time divided by the program's time in the same round, median over the rounds; below 1
-  Scanmill is faster
+  Scanmill is faster; with the filter's name where a row has two
 - *peak*: peak memory of the program's process during the work, including the input and, for Python, the interpreter
 - *cores*: processor time divided by elapsed time
 - †: the program does different work, as explained below the table
@@ -40,8 +40,11 @@ def threads(entry):
     return str(entry["threads"]) if entry["threads"] else "–"
 
 
-def ours_column(entry):
-    return f"ours / it, {entry['threads']} thr." if entry["threads"] else "ours / it"
+def ours_column(entry, ours):
+    """With the name of the method if several methods are ours."""
+    methods = {one["name"] for one in ours}
+    whose = entry["name"].removeprefix(entry["program"]).strip() if len(methods) > 1 else "ours"
+    return f"{whose} / it, {entry['threads']} thr." if entry["threads"] else f"{whose} / it"
 
 
 def line(entry, ours):
@@ -125,7 +128,8 @@ def section(row, smaller=None):
     if row["failure"]:
         return lines[:-2] + ["", f"**failed**: {row['failure']}", ""]
     ours = [entry for entry in row["contenders"] if entry["ours"]]
-    header = ["program", "threads", "seconds", "least to most", "rounds", *map(ours_column, ours)]
+    header = ["program", "threads", "seconds", "least to most", "rounds"]
+    header += [ours_column(entry, ours) for entry in ours]
     header += ["peak", "cores", "result"]
     rows = [header, ["---"] * len(header)] + [line(entry, ours) for entry in row["contenders"]]
     lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |" for cells in rows]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An open surface through points: region growing compared with two other methods that grow a surface."""
+"""An open surface through points: region-grow and cluster-mesh compared with two methods of other libraries."""
 from harness.row import Contender, Row, in_threads
 
 #: PCL's search radius: five spacings.
@@ -26,13 +26,15 @@ def row(name, shape, cloud, radius, **more):
         title=f"A surface grown over points, {shape}",
         inputs=[cloud],
         contenders=[
-            *in_threads([1, 2], "scanmill", {"do": "region-grow"}, prepare=load),
+            *in_threads([1, 2], "scanmill", {"do": "region-grow"}, label="region-grow", prepare=load),
+            *in_threads([1, 2], "scanmill", {"do": "cluster-mesh"}, label="cluster-mesh", prepare=load),
             Contender("pcl", greedy, "GreedyProjectionTriangulation", prepare=load),
             Contender("cgal", {"do": "advancing-front"}, "advancing_front_surface_reconstruction", prepare=load),
         ],
-        equal="the points in memory, without normals. Scanmill and PCL estimate normals from the neighbours; PCL "
-        "searches within five spacings for its triangles; CGAL tetrahedralises. The surfaces differ, so the numbers of "
-        "triangles and of unused points are shown but not compared.",
+        equal="the points in memory, without normals. Scanmill and PCL estimate normals from the neighbours; "
+        "cluster-mesh makes edges below 2.5 spacings and ends with flips of edges; PCL searches within five spacings "
+        "for its triangles; CGAL tetrahedralises. The surfaces differ, so the numbers of triangles and of unused points "
+        "are shown but not compared.",
         agree={},
         peak_per="triangles",
         **more,
