@@ -64,6 +64,7 @@ public:
     }
 
     void complete() {
+        triangulation_.remove_small_meshes();
         for (const Limits& limits : passes)
             while (complete_once(limits)) context_.check_cancelled();
     }
@@ -144,7 +145,7 @@ private:
         for (u32 point : open) {
             const auto around = near(point);
             if (triangulation_.is_loose(point)) {
-                const Outcome outcome = triangulation_.insert(point, around, true, limits);
+                const Outcome outcome = triangulation_.insert(point, around, &limits != &passes[0], limits);
                 if (outcome == Outcome::loose || outcome == Outcome::extra) continue;
                 splits_ += outcome == Outcome::split;
                 clusters_.unite(point, triangulation_.partner());

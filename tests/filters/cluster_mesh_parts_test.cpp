@@ -115,6 +115,9 @@ TEST(ClusterMesh_MeshComponents, ListTheirPoints) {
     EXPECT_EQ(components.size(3), 4u);
     EXPECT_TRUE(components.are_joined(5, 3));
     EXPECT_FALSE(components.are_joined(5, 1));
+    components.separate(3);
+    for (u32 point : {0, 3, 4, 5}) EXPECT_EQ(components.size(point), 1u);
+    EXPECT_FALSE(components.are_joined(0, 3));
 }
 
 /// A surface over a few points, inserted by hand.
