@@ -11,6 +11,7 @@ def main():
     filters = pathlib.Path(__file__).resolve().parent.parent / "filters"
     for name, draw in (
         ("alpha_solid", surfaces.alpha_solid),
+        ("cluster_mesh", surfaces.cluster_mesh),
         ("decimate", surfaces.decimate),
         ("delaunay", surfaces.delaunay_filter),
         ("edge_flip", surfaces.edge_flip),
