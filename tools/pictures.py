@@ -11,6 +11,7 @@ def main():
     filters = pathlib.Path(__file__).resolve().parent.parent / "filters"
     for name, draw in (
         ("alpha_solid", surfaces.alpha_solid),
+        ("cluster_mesh", surfaces.cluster_mesh),
         ("crop", clouds.crop),
         ("decimate", surfaces.decimate),
         ("delaunay", surfaces.delaunay_filter),

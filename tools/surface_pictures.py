@@ -35,6 +35,75 @@ def region_grow():
     return picture
 
 
+def cluster_mesh():
+    """Points are inserted slice by slice; the picture shows the triangles of one that closes a corner as well."""
+    picture = Picture(8, 4)
+    max_edge, spacing = 1.15, 1.15 / 4
+    points = scattered(random.Random(22), 85, 0.4, 8, 4)
+    order = sorted(points, key=lambda p: (round(p[0] / spacing), p[1]))
+    triangles, waiting = [], []
+    for count, p in enumerate(order):
+        new = inserted(order[:count], triangles, p, max_edge)
+        if p[0] > 4.3 and len(new) == 2:
+            break
+        triangles += new
+        waiting.append(p)
+        while new:
+            waiting = [q for q in waiting if not any(q in t for t in triangles)]
+            new = next(filter(None, (inserted(order[:count + 1], triangles, q, max_edge) for q in waiting)), [])
+            triangles += new
+    for i in range(1, int(8 / spacing)):
+        picture.line((i * spacing, 0.1), (i * spacing, 3.9), PALE, 1, "2 4")
+    for t in triangles:
+        picture.polygon(t, SOLID)
+    for a, b in boundary(triangles):
+        picture.line(a, b, INK, 2.5)
+    for t in new:
+        picture.polygon(t, "none", BRIGHT, 1.5)
+    picture.line(*new[0][:2], BRIGHT, 4)
+    picture.circle(p, max_edge, BRIGHT, dash="4 3")
+    for q in order:
+        picture.dot(q, radius=3, hollow=order.index(q) > count)
+    picture.dot(p, BRIGHT, 6)
+    return picture
+
+
+def boundary(triangles):
+    """Directed edges of counterclockwise triangles that have no opposite."""
+    edges = {(t[i], t[(i + 1) % 3]) for t in triangles for i in range(3)}
+    return sorted(edge for edge in edges if edge[::-1] not in edges)
+
+
+def inserted(points, triangles, p, max_edge):
+    """The triangles that a new point adds: one at its winner edge, and one in every sharp corner beside it."""
+    left = lambda a, b, c: (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    crosses = lambda a, b, c, d: left(a, b, c) * left(a, b, d) < 0 and left(c, d, a) * left(c, d, b) < 0
+    holds = lambda t, q: q not in t and all(left(t[i], t[(i + 1) % 3], q) > 0 for i in range(3))
+    outside_angle = lambda t: math.acos(sum((t[0][i] - t[1][i]) * (t[2][i] - t[1][i]) for i in (0, 1))
+                                        / math.dist(t[0], t[1]) / math.dist(t[2], t[1]))
+
+    def fits(t, among):
+        edges = list(itertools.pairwise((*t, t[0])))
+        sides = {tuple(sorted(edge)) for one in among for edge in itertools.combinations(one, 2)}
+        return (left(*t) > 0.02 and all(math.dist(*edge) < max_edge for edge in edges)
+                and not any(holds(t, q) for q in points)
+                and not any(crosses(*edge, *side) for edge in edges for side in sides))
+
+    if not triangles:
+        firsts = [(a, b, p) for a, b in itertools.permutations(points, 2)]
+        return [t for t in firsts if fits(t, [])][:1]
+    by_distance = sorted(boundary(triangles), key=lambda edge: math.dist(p, nearest_on_profile(p, edge)))
+    new = [t for t in ((b, a, p) for a, b in by_distance) if fits(t, triangles)][:1]
+    while new:
+        rim = boundary(triangles + new)
+        corners = [(c, b, a) for a, b in rim for b2, c in rim if b == b2 and p in (a, c)]
+        corners = [t for t in corners if fits(t, triangles + new) and outside_angle(t) < math.radians(150)]
+        if not corners:
+            break
+        new.append(min(corners, key=outside_angle))
+    return new
+
+
 def delaunay_filter():
     picture = Picture(8, 4)
     points = scattered(random.Random(9), 26, 0.6, 8, 4)
