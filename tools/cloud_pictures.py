@@ -45,6 +45,37 @@ def voxel_thin():
     return picture
 
 
+def crop():
+    """A box, a ball and the neighbourhood of a second scan, each with its own profile."""
+    picture = Picture(9, 3.4)
+    source = random.Random(9)
+    height = lambda x: 1.3 + 0.6 * math.sin(2 * x)
+    profile = [(0.15 + 0.085 * i, height(0.085 * i) + source.uniform(-0.05, 0.05)) for i in range(30)]
+    low, high, centre, radius, within = (0.8, 0.9), (2.1, 2.2), (1.6, 1.6), 0.8, 0.3
+    second = [(0.15 + x, height(x) + 0.25) for x in (0.9 + 0.1 * i for i in range(9))]
+    inside = (
+        lambda p: all(low[k] <= p[k] <= high[k] for k in (0, 1)),
+        lambda p: math.dist(p, centre) <= radius,
+        lambda p: min(math.dist(p, q) for q in second) <= within,
+    )
+    for i, contains in enumerate(inside):
+        at = lambda p: (p[0] + 3 * i, p[1])
+        if i == 0:
+            corners = ((low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1]))
+            picture.polygon([at(p) for p in corners], "none", INK)
+        elif i == 1:
+            picture.circle(at(centre), radius, INK)
+        else:
+            for q in second:
+                picture.circle(at(q), within, PALE)
+            for q in second:
+                picture.dot(at(q), INK, 4)
+        for p in profile:
+            picture.dot(at(p), BRIGHT, 4, hollow=not contains(p))
+        picture.text(at(((1.25, 0.2), (0.85, 0.2), (1.15, 0.2))[i]), ("box", "centre, radius", "within")[i])
+    return picture
+
+
 def merge():
     picture = Picture(9, 4)
     source = random.Random(6)

@@ -12,6 +12,7 @@ def main():
     for name, draw in (
         ("alpha_solid", surfaces.alpha_solid),
         ("cluster_mesh", surfaces.cluster_mesh),
+        ("crop", clouds.crop),
         ("decimate", surfaces.decimate),
         ("delaunay", surfaces.delaunay_filter),
         ("edge_flip", surfaces.edge_flip),

@@ -18,6 +18,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/frame.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/growing/components.hpp"
 #include "scanmill/geometry/growing/finished_mesh.hpp"
 #include "scanmill/geometry/growing/holes.hpp"
@@ -64,6 +65,7 @@ public:
     }
 
     void complete() {
+        triangulation_.remove_small_meshes();
         for (const Limits& limits : passes)
             while (complete_once(limits)) context_.check_cancelled();
     }
@@ -144,7 +146,7 @@ private:
         for (u32 point : open) {
             const auto around = near(point);
             if (triangulation_.is_loose(point)) {
-                const Outcome outcome = triangulation_.insert(point, around, true, limits);
+                const Outcome outcome = triangulation_.insert(point, around, &limits != &passes[0], limits);
                 if (outcome == Outcome::loose || outcome == Outcome::extra) continue;
                 splits_ += outcome == Outcome::split;
                 clusters_.unite(point, triangulation_.partner());
@@ -298,6 +300,39 @@ std::size_t flip_edges(const PointCloud& cloud, Surface& surface, double max_edg
     return flips;
 }
 
+/// Removes, of every two triangles that intersect, the one with the smaller least angle, then extra fans. Returns the
+/// number of removed triangles.
+std::size_t remove_intersecting(Surface& surface, Context& context) {
+    const auto& p = surface.positions;
+    const TriangleTree tree(p, surface.triangles, context.threads());
+    const SelfIntersections found = self_intersections(p, surface.triangles, tree, context);
+    if (found.count == 0) return 0;
+    // The sine of the smallest angle is the shortest side over the diameter of the circumcircle.
+    const auto roundness = [&](u32 row) {
+        const auto& [a, b, c] = surface.triangles[row];
+        const Vec3 u = p[b] - p[a], v = p[c] - p[a];
+        const double x = u.norm(), y = v.norm(), z = (u - v).norm();
+        return u.cross(v).norm() * std::min({x, y, z}) / (x * y * z);
+    };
+    std::vector<bool> is_removed(surface.triangles.size(), false);
+    std::vector<Triangle> removed;
+    for (const auto& [one, other] : found.pairs) {
+        if (is_removed[one] || is_removed[other]) continue;
+        const u32 row = roundness(one) < roundness(other) ? one : other;
+        is_removed[row] = true;
+        removed.push_back(surface.triangles[row]);
+    }
+    for (const Triangle& triangle : removed) {
+        surface.fans.remove(triangle);
+        for (u32 corner : triangle)
+            surface.states[corner] =
+                surface.fans.empty(corner) ? growing::PointState::unused : growing::PointState::front;
+    }
+    const std::size_t count = removed.size();
+    surface.drop(std::move(removed));
+    return count + growing::remove_extra_fans(surface);
+}
+
 void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, TriangleMesh& mesh) {
     const auto column = [&](const char* name, const Clusters::Numbers& numbers) {
         Array<u32> values(mesh.positions.size());
@@ -341,7 +376,7 @@ void report(const ClusterMeshResult& result, std::size_t points, Context& contex
     count("closed-holes", result.closed_holes);
     count("removed-triangles", result.removed_triangles);
     count("flips", result.flips);
-    context.metric("max-edge", result.max_edge);
+    context.metric("max-edge", result.max_edge, Unit::length);
 
     constexpr std::size_t points_per_unused = 50;
     std::string text = fmt::format(
@@ -403,6 +438,7 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     result.removed_triangles += narrow.replaced;
     result.flips = flip_edges(cloud, surface, result.max_edge, context);
     list_triangles(surface);
+    result.removed_triangles += remove_intersecting(surface, context);
     const growing::Components components = growing::find_components(surface);
     Array<u32> groups(points.size());
     std::ranges::fill(groups, growing::invalid_index);

@@ -27,6 +27,14 @@ public:
         for_each(b, [&](u32 point) { label_[point] = label_[a]; });
         std::swap(next_[a], next_[b]);
     }
+    /// Makes every point of a component one of its own.
+    void separate(u32 point) {
+        for (u32 at = point, next = next_[at];; at = std::exchange(next, next_[next])) {
+            label_[at] = next_[at] = at;
+            size_[at] = 1;
+            if (next == point) return;
+        }
+    }
     template <class Action>
     void for_each(u32 point, Action&& action) const {
         u32 at = point;

@@ -75,6 +75,24 @@ bool Triangulation::complete(u32 point, std::span<const u32> near, const Limits&
     } while (true);
 }
 
+void Triangulation::remove_small_meshes() {
+    for (u32 point = 0; point < inserted_.size(); ++point) {
+        if (!surface_.is_used(point) || components_.size(point) > few_points) continue;
+        std::vector<u32> members;
+        components_.for_each(point, [&](u32 member) { members.push_back(member); });
+        for (u32 member : members)
+            while (!surface_.fans.empty(member)) {
+                Triangle triangle{};
+                surface_.fans.any(member, [&](const Fans::LinkEdge& edge) {
+                    triangle = {member, edge.first, edge.last};
+                    return true;
+                });
+                remove(triangle);
+            }
+        components_.separate(point);
+    }
+}
+
 void Triangulation::collect(u32 point, std::span<const u32> near) {
     const auto& p = surface_.positions;
     candidates_.clear();

@@ -60,6 +60,9 @@ public:
     /// there were any.
     bool complete(u32 point, std::span<const u32> near, const Limits& limits);
 
+    /// Removes meshes of a few points, which may hover over others; their points wait again.
+    void remove_small_meshes();
+
     /// Inserted and in no triangle.
     bool is_loose(u32 point) const { return inserted_[point] && !surface_.is_used(point); }
     /// Whether the point is in a triangle and on the boundary.

@@ -3,9 +3,9 @@
 /// Errors of a hole's triangulation as the paper accumulates them: the errors of the old triangles, and the distance
 /// between the old and the new ones.
 ///
-/// Old and new triangles are projected along `up`. Over each cell of their overlay both are planes, so their distance
-/// is largest at a corner of a cell: where an old inner edge crosses a new edge, or at the removed vertex. Source:
-/// Bernardini, Bajaj, Chen, Schikore 1997, section 4.
+/// Old and new triangles are projected along `up`, so none of them may face away from it. Over each cell of their
+/// overlay both are planes, so their distance is largest at a corner of a cell: where an old inner edge crosses a new
+/// edge, or at the removed vertex. Source: Bernardini, Bajaj, Chen, Schikore 1997, section 4.
 
 #include "decimate/hole.hpp"
 #include "decimate/surface.hpp"

@@ -220,12 +220,13 @@ TriangleMesh result_mesh(const TriangleMesh& mesh, const Surface& surface, std::
     return result;
 }
 
-[[noreturn]] void throw_exceeded(const CertifiedHausdorff& certificate, double bound) {
+[[noreturn]] void throw_exceeded(const CertifiedHausdorff& certificate, double bound, DecimateMode mode) {
     throw Error(
         "the distance between input and result is not proven to be within max-error, which is {:.6g} u: it is "
         "at least {:.6g} u, and at most {:.6g} u",
         bound, certificate.lower, certificate.upper)
-        .hint("use a slightly different max-error");
+        .hint(mode == DecimateMode::accumulated ? "use mode: direct, which measures errors to the input"
+                                                : "use a slightly different max-error");
 }
 
 void report(const DecimateResult& result, Context& context) {
@@ -322,10 +323,19 @@ DecimateResult decimate(const TriangleMesh& mesh, const PointCloud* points, cons
         context.progress(Decimator::progress_end);
         result.certificate = certified_hausdorff(result.mesh, mesh, {0.01, 100'000'000, bound}, context);
         if (result.certificate.upper <= bound) break;
-        if (attempts == most_attempts) throw_exceeded(result.certificate, bound);
+        if (attempts == most_attempts) throw_exceeded(result.certificate, bound, params.mode);
         share *= again_share * std::min(1.0, bound / result.certificate.lower);
     }
     result.points_left_out = left_out;
+    if (left_out > 0 && params.mode == DecimateMode::direct)
+        context.warn(fmt::format(
+            "{} of the {} points {} farther than max-error from the input mesh; {} not limit the result", left_out,
+            data.size(), by_count(left_out, "is", "are"), by_count(left_out, "it does", "they do")));
+    if (params.target_triangles > 0 && result.mesh.triangles.size() > params.target_triangles)
+        context.warn(
+            fmt::format("{} triangles are left, more than target-triangles, {}: max-error or another limit "
+                        "forbids further removals",
+                        result.mesh.triangles.size(), params.target_triangles));
     if (points != nullptr) {
         result.points_max = 0;
         if (!data.empty()) {

@@ -247,15 +247,18 @@ void FeatureNetwork::find_singular() {
     std::vector<u32> disc;
     std::vector<u32> visited(first_.size(), none);
     u32 visit = 0;
-    const auto disc_around = [&](u32 centre, double radius) {
+    // Ends early where the disc is refused anyway: in a part far finer than the median edge a disc holds thousands of
+    // vertices, and nearly every peak of noise has a higher one beside it.
+    const auto disc_around = [&](u32 centre, double radius, bool must_be_largest) {
         Disc found;
         disc.assign(1, centre);
         visited[centre] = visit;
-        for (std::size_t i = 0; i < disc.size(); ++i) {
+        for (std::size_t i = 0; i < disc.size() && !found.has_features; ++i) {
             const u32 vertex = disc[i];
             found.curvature += defects[vertex];
             found.has_features = found.has_features || counts_[vertex] > 0;
             found.is_largest = found.is_largest && (defects[vertex] < defects[centre] || vertex == centre);
+            if (must_be_largest && !found.is_largest) break;
             for_each_neighbour(vertex, [&](u32 other) {
                 if (visited[other] == visit || (position(other) - position(centre)).norm() > radius) return;
                 visited[other] = visit;
@@ -270,9 +273,9 @@ void FeatureNetwork::find_singular() {
         bool is_peak = true;
         for_each_neighbour(vertex, [&](u32 other) { is_peak = is_peak && defects[other] < defects[vertex]; });
         if (!is_peak) continue;
-        const Disc small = disc_around(vertex, near * edge);
+        const Disc small = disc_around(vertex, near * edge, true);
         if (!small.is_largest || small.has_features || !(small.curvature > least_curvature)) continue;
-        const Disc large = disc_around(vertex, far * edge);
+        const Disc large = disc_around(vertex, far * edge, false);
         if (large.has_features || !(std::abs(large.curvature - small.curvature) < largest_growth * small.curvature))
             continue;
         classes_[vertex] = VertexClass::corner;

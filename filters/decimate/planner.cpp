@@ -62,6 +62,10 @@ void Planner::find_side(u32 vertex, u32 first, u32 corners, bool is_cut, Side& s
     }
     side.ring_triangles.resize(corners, triangles);
     side.up.normalize();
+    side.is_height_field = true;
+    for (u32 i = 0; i < triangles && mode_ == DecimateMode::accumulated; ++i)
+        side.is_height_field =
+            side.is_height_field && !(normal_of(surface_.mesh().triangle(star_[at(i)] / 3)).dot(side.up) < 0);
     bool is_flat = true;
     for (u32 i = 0; i < triangles && is_flat; ++i) {
         const Vec3 normal = normal_of(surface_.mesh().triangle(star_[at(i)] / 3));
@@ -124,6 +128,7 @@ bool Planner::add_line_errors(u32 vertex) {
 
 bool Planner::triangulate(const Side& side, const Vec3* removed, Edit& edit) {
     const bool is_direct = mode_ == DecimateMode::direct;
+    if (!is_direct && !side.is_height_field) return false;
     if (is_direct)
         direct_.begin(side.corners, side.up, side.points);
     else
@@ -184,6 +189,7 @@ void Planner::plan_flip(u32 half_edge, Edit& edit) {
     side.up = (normal_of(old[0]) + normal_of(old[1])).normalized();
     if (!(side.up.norm() > 0.5)) return;
     side.angle_sine = 0;
+    side.is_height_field = !(normal_of(old[0]).dot(side.up) < 0) && !(normal_of(old[1]).dot(side.up) < 0);
     edit.old_rows = {half_edge / 3, other / 3};
     for (const u32 row : edit.old_rows) surface_.for_each_point(row, [&](u32 point) { side.points.push_back(point); });
     side.old_errors = {surface_.errors(half_edge / 3), surface_.errors(other / 3)};

@@ -39,6 +39,7 @@ private:
         double angle_sine = 0;
         std::vector<u32> points;
         // For accumulated errors:
+        bool is_height_field = true;  ///< over the plane across `up`, which the overlay needs
         std::vector<SignedErrors> old_errors;
         std::vector<OldEdge> old_edges;
         std::vector<u32> ring_triangles;

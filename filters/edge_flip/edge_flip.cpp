@@ -10,6 +10,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/mesh/editable_mesh.hpp"
+#include "scanmill/geometry/mesh/sharp_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill {
@@ -123,8 +124,9 @@ enum class Decision : u8 { stays, flips, sharp, connected, folding, deviating, t
 
 class Flipping {
 public:
-    Flipping(const TriangleMesh& mesh, const EdgeFlipParams& params)
-        : mesh_(mesh),
+    Flipping(const TriangleMesh& mesh, Array<u32> opposite, const std::vector<bool>& is_sharp,
+             const EdgeFlipParams& params)
+        : mesh_(mesh, std::move(opposite)),
           positions_(mesh.positions.begin(), mesh.positions.end()),
           criterion_(params.criterion),
           keep_cosine_(cosine_of(params.keep_angle.in_radians())),
@@ -132,7 +134,9 @@ public:
           flags_(3 * mesh.triangles.size(), 0),
           queue_(3 * mesh.triangles.size()) {
         if (params.max_edge) squared_max_edge_ = params.max_edge->value() * params.max_edge->value();
-        mark_sharp_edges(mesh.sharp_edges);
+        has_sharp_ = !mesh.sharp_edges.empty();
+        for (std::size_t h = 0; h < flags_.size(); ++h)
+            if (is_sharp[h]) flags_[h] = sharp;
     }
 
     void run(Context& context) {
@@ -169,27 +173,6 @@ private:
     static constexpr u32 check_interval = 1 << 14;
 
     u32 half_edges() const { return static_cast<u32>(3 * mesh_.rows()); }
-
-    void mark_sharp_edges(std::span<const Edge> edges) {
-        std::size_t missing = 0;
-        const Edge* first = nullptr;
-        for (const Edge& edge : edges) {
-            u32 h = mesh_.between(edge[0], edge[1]);
-            if (h == EditableMesh::none) h = mesh_.between(edge[1], edge[0]);
-            if (h == EditableMesh::none) {
-                if (missing++ == 0) first = &edge;
-                continue;
-            }
-            flags_[h] |= sharp;
-            if (!mesh_.is_boundary(h)) flags_[mesh_.opposite(h)] |= sharp;
-        }
-        if (missing > 0)
-            throw Error("{} of the mesh's {} {} of no triangle; the first is between vertices {} and {}", missing,
-                        count_text(edges.size(), "sharp edge", "sharp edges"),
-                        by_count(missing, "is an edge", "are edges"), (*first)[0], (*first)[1])
-                .hint("write the mesh again with the sharp edges of its own triangles, or without any");
-        has_sharp_ = !edges.empty();
-    }
 
     struct Shape {
         Vec3 one, two, normal;
@@ -328,13 +311,8 @@ private:
     BlockedEdges left_;
 };
 
-std::string vertex_text(const TriangleMesh& mesh, u32 vertex) {
-    const Vec3 world = mesh.frame.origin + mesh.positions[vertex];
-    return fmt::format("{} ({:.9g}, {:.9g}, {:.9g})", vertex, world.x(), world.y(), world.z());
-}
-
-/// Of the vertices in triangles.
-void require_distinct_positions(const TriangleMesh& mesh) {
+/// Of the vertices in triangles those at the position of an earlier one.
+std::size_t repeated_positions(const TriangleMesh& mesh) {
     const std::size_t slots = std::bit_ceil(2 * mesh.positions.size() + 1);
     constexpr u32 empty = ~u32(0);
     std::vector<u32> at(slots, empty);
@@ -342,7 +320,6 @@ void require_distinct_positions(const TriangleMesh& mesh) {
     for (const Triangle& triangle : mesh.triangles)
         for (const u32 vertex : triangle) used[vertex] = true;
     std::size_t repeats = 0;
-    Edge first{empty, empty};
     for (u32 vertex = 0; vertex < mesh.positions.size(); ++vertex) {
         if (!used[vertex]) continue;
         const Vec3& position = mesh.positions[vertex];
@@ -353,31 +330,28 @@ void require_distinct_positions(const TriangleMesh& mesh) {
         while (at[slot] != empty && mesh.positions[at[slot]] != position) slot = (slot + 1) & (slots - 1);
         if (at[slot] == empty)
             at[slot] = vertex;
-        else if (repeats++ == 0)
-            first = {at[slot], vertex};
+        else
+            ++repeats;
     }
-    if (repeats > 0)
-        throw Error("vertices {} and {} of the mesh are at the same position ({} {} an earlier position)",
-                    vertex_text(mesh, first[0]), first[1], count_text(repeats, "vertex", "vertices"),
-                    by_count(repeats, "repeats", "repeat"))
-            .hint(
-                "merge equal vertices first: writing the mesh as STL and reading it does so; sculpt and region-grow "
-                "make "
-                "meshes without them");
+    return repeats;
 }
 
 void require_usable(const TriangleMesh& mesh, const EdgeFlipParams& params) {
     const double keep = params.keep_angle.in_degrees(), deviation = params.deviation.value();
-    if (!(keep >= 0 && keep <= 60)) throw Error("keep-angle must be from 0 to 60 deg; it is {:g} deg", keep);
-    if (!(deviation >= 0)) throw Error("deviation must be 0 or more; it is {:g}", deviation);
+    if (!(keep >= 0 && keep <= 60))
+        throw Error("keep-angle must be from 0 to 60 deg; it is {:g} deg", keep)
+            .hint("leave keep-angle out for the default, which suits most meshes");
+    if (!(deviation >= 0))
+        throw Error("deviation must be 0 or more; it is {:g}", deviation)
+            .hint("`10 %` is a tenth of the shorter diagonal");
     if (params.max_edge && !(params.max_edge->value() > 0))
-        throw Error("max-edge must be above 0; it is {:g}", params.max_edge->value());
+        throw Error("max-edge must be above 0; it is {:g} u", params.max_edge->value())
+            .hint("leave max-edge out to allow new edges of any length");
     if (mesh.triangles.empty())
         throw Error("the mesh has no triangles; edge-flip needs at least one")
-            .hint("`scanmill info` shows what a file contains");
+            .hint("`scanmill info` shows what a file contains; alpha-solid and region-grow make meshes of points");
     require_consistent(mesh);
     require_finite(mesh.positions.span(), "vertices");
-    require_distinct_positions(mesh);
 }
 
 void warn_of_dropped(const ColumnTable& columns, std::string_view element, Context& context) {
@@ -411,7 +385,9 @@ void warn_of_left(const BlockedEdges& left, const EdgeFlipParams& params, Contex
 EdgeFlipResult edge_flip(const TriangleMesh& mesh, const EdgeFlipParams& params, Context& context) {
     require_usable(mesh, params);
     context.check_cancelled();
-    Flipping flipping(mesh, params);
+    Array<u32> opposite = half_edges::opposites(mesh);
+    const std::vector<bool> is_sharp = declared_sharp_half_edges(mesh, opposite);
+    Flipping flipping(mesh, std::move(opposite), is_sharp, params);
     EdgeFlipResult result;
     result.min_angle_before = flipping.least_angle();
     flipping.run(context);
@@ -419,6 +395,9 @@ EdgeFlipResult edge_flip(const TriangleMesh& mesh, const EdgeFlipParams& params,
     result.left = flipping.left();
     result.flips = flipping.flips();
 
+    if (const std::size_t repeats = repeated_positions(mesh); repeats > 0)
+        context.warn(fmt::format("{} the position of another one; the mesh is open between them, and stays so",
+                                 count_text(repeats, "vertex has", "vertices have")));
     warn_of_dropped(mesh.face_columns, "face", context);
     warn_of_dropped(mesh.edge_columns, "edge", context);
     warn_of_left(result.left, params, context);

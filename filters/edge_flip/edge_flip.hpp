@@ -78,10 +78,11 @@ struct EdgeFlipResult {
 /// for rule 5 it has the normal of the other triangle there. Other edges are examined in the order of the triangles,
 /// and again when a triangle at them changed, first in, first out; when none is left, all of them once more.
 ///
-/// Pre:  at least one triangle; finite vertices at distinct positions; at most two triangles at an edge, oriented
+/// Pre:  at least one triangle; finite vertices; at most two triangles at an edge, oriented
 ///       consistently; one fan of triangles, open or closed, at a vertex; no triangle with a repeated vertex. Throws
 ///       Error naming the first offender otherwise, for sharp edges that no triangle has, and for parameters out of
 ///       range.
+///       Vertices at one position are different vertices: the mesh is open between them, which a warning counts.
 /// Post: same vertices, edges, triangles, boundary and Euler characteristic. A second run flips nothing. With
 ///       `delaunay` the sorted list of all angles grows with every flip, in lexicographic order, and with the others
 ///       the sum of the lengths of all edges falls: so the flips end. Of a mesh in a plane `delaunay` makes a Delaunay

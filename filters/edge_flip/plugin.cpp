@@ -11,10 +11,9 @@ SCANMILL_FILTER() {
         .source("Sangveraphunsiri, Srirakulchai 2006, section 4; Lawson 1977 for the Delaunay criterion")
         .ties("An edge stays if the other diagonal is equally good, to 1e-9.")
         .not_finite("Refused; the message gives their number and the first one.")
-        .in<TriangleMesh>(
-            "mesh",
-            "One fan of triangles at every vertex, at most two triangles at an edge, oriented consistently, "
-            "no position twice. Its sharp edges are never flipped.")
+        .in<TriangleMesh>("mesh",
+                          "One fan of triangles at every vertex, at most two triangles at an edge, oriented "
+                          "consistently. Its sharp edges are never flipped.")
         .out<TriangleMesh>("mesh",
                            "The same vertices with their columns, and the same sharp edges; without face and edge "
                            "columns.")

@@ -52,6 +52,10 @@ void require_sound(Inputs inputs, const MergeParams& params) {
     const double within = params.within.value();
     if (!(within >= 0) || !std::isfinite(within))
         throw Error("the distance `within` is {} u; it must be 0 or more", within);
+    if (const std::optional<Length>& given = params.default_uncertainty)
+        if (const double value = given->value(); !(value >= 0) || !std::isfinite(value))
+            throw Error("default-uncertainty is {} u; it must be 0 or more", value)
+                .hint("give the scanner's accuracy, or none");
     if (!params.poses.empty() && params.poses.size() != inputs.size())
         throw Error("there {} {} for {}; every input needs one", by_count(params.poses.size(), "is", "are"),
                     count_text(params.poses.size(), "pose", "poses"), count_text(inputs.size(), "input", "inputs"));
@@ -67,11 +71,16 @@ std::vector<double> uncertainties(Inputs inputs) {
                 "input {} of {} has no column 'uncertainty' with one number per point, which lower-uncertainty "
                 "compares",
                 input, inputs.size())
-                .hint("`prefer: none` keeps the points of the earlier input");
+                .hint(
+                    "`default-uncertainty` stands for a missing column; `prefer: none` keeps the points of the earlier "
+                    "input");
         for (std::size_t row = 0; row < column->rows(); ++row) {
             values.push_back(column->number(row));
             if (!(values.back() >= 0))
-                throw Error("an uncertainty must be 0 or more; point {} of input {} has {}", row, input, values.back());
+                throw Error("an uncertainty must be 0 or more; point {} of input {} has {}", row, input, values.back())
+                    .hint(std::isnan(values.back())
+                              ? "`default-uncertainty` stands for NaN; `prefer: none` does not read the column"
+                              : "`prefer: none` does not read the column");
         }
     }
     return values;
@@ -155,10 +164,26 @@ PointCloud placed_points(Inputs clouds, std::span<const RigidTransform> poses) {
     return result;
 }
 
+/// The inputs with the default where they have no uncertainty. A missing column is float32 if an input has one of
+/// float32, so that equal numbers are ties.
+std::vector<std::shared_ptr<const PointCloud>> with_default(Inputs inputs, double value) {
+    ScalarType type = ScalarType::float64;
+    for (const auto& input : inputs)
+        if (const Column* column = input->columns.find("uncertainty"); column && column->type() == ScalarType::float32)
+            type = ScalarType::float32;
+    std::vector<std::shared_ptr<const PointCloud>> result;
+    for (const auto& input : inputs)
+        result.push_back(std::make_shared<const PointCloud>(merging::with_default_uncertainty(*input, type, value)));
+    return result;
+}
+
 }  // namespace
 
-MergeResult merge(Inputs inputs, const MergeParams& params, Context& context) {
-    require_sound(inputs, params);
+MergeResult merge(Inputs given, const MergeParams& params, Context& context) {
+    require_sound(given, params);
+    std::vector<std::shared_ptr<const PointCloud>> completed(given.begin(), given.end());
+    if (params.default_uncertainty) completed = with_default(given, params.default_uncertainty->value());
+    const Inputs inputs = completed;
     if (params.poses.empty()) warn_of_names(inputs, context);
     std::vector<double> preference;
     if (params.prefer == MergeParams::Prefer::lower_uncertainty) preference = uncertainties(inputs);

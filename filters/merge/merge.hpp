@@ -6,6 +6,7 @@
 /// or moved against each other, so the poses must be accurate.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct MergeParams {
     Prefer prefer = Prefer::none;
     /// Of points of different inputs within this distance of each other, one is kept; 0 keeps all.
     Length within;
+    /// Stands for the column `uncertainty` where an input lacks it, and for NaN in it; 0 or more.
+    std::optional<Length> default_uncertainty;
     /// Empty, or one for every input: from its world coordinates (frame origin included) to those of the result. A pose
     /// of unknown unit is in the unit of the clouds.
     std::vector<RigidTransform> poses;
@@ -44,22 +47,25 @@ struct MergeResult {
 /// kept points of different inputs are that near.
 ///
 /// Columns: those that all inputs have with equal shape are carried; different types become float64, with a warning. A
-/// column that some input lacks, or has with another type of lists or another number of components, is left out, with a
+/// column of floating-point numbers that some inputs lack has NaN in their rows, with a warning. Another column that
+/// some input lacks, or that has another type of lists or another number of components, is left out, with a
 /// warning. `normal` is rotated with the pose (as float64 when it was neither float32 nor float64). A new column
 /// `source`, uint32 and last, contains the number of the point's input, counted from 0. An existing column `source` is
-/// renamed `source-of-source`, an existing one of that name `source-of-source-of-source`, and so on.
+/// renamed `source-of-source`, an existing one of that name `source-of-source-of-source`, and so on. With
+/// `default_uncertainty`, the column `uncertainty` is a length and always exists: rows without a number have the
+/// default.
 ///
 /// Frame: the inputs' unit. Without poses, the origin and name of the first input's frame, with a warning about other
 /// names. With poses, the name that the first pose leads to, and an origin near the points (see distant_origin()).
 ///
 /// Throws Error for no inputs, an input without points, a NaN or infinite coordinate, different units (also known and
 /// unknown), more than 2^32 - 1 points, a negative or infinite `within`, another number of poses than of inputs, a
-/// pose in a known unit for clouds of an unknown one, moved points whose box is longer than 1e9 u, and, with
-/// lower_uncertainty, an input without a column `uncertainty` of one component, or with a NaN or a negative number in
-/// it. Deterministic: the work is done on one thread, so the bytes are the same for any number of threads.
-/// Cost: O(n) time while `within` is a few spacings; beyond, the points along the border of an overlap cost
-/// (within / spacing)² each. Beside the result about its size once more, and some 50 bytes per point when `within` > 0.
-/// Metrics: `points`, `dropped`.
+/// pose in a known unit for clouds of an unknown one, moved points whose box is longer than 1e9 u, a negative or
+/// infinite default uncertainty, and, with lower_uncertainty, an input without a column `uncertainty` of one component,
+/// or with a NaN or a negative number in it; a default replaces missing columns and NaN first. Deterministic: the work
+/// is done on one thread, so the bytes are the same for any number of threads. Cost: O(n) time while `within` is a few
+/// spacings; beyond, the points along the border of an overlap cost (within / spacing)² each. Beside the result about
+/// its size once more, and some 50 bytes per point when `within` > 0. Metrics: `points`, `dropped`.
 MergeResult merge(std::span<const std::shared_ptr<const PointCloud>> inputs, const MergeParams& params,
                   Context& context);
 

@@ -12,6 +12,10 @@
 
 namespace scanmill::merging {
 
+/// The cloud with a column `uncertainty` of lengths: `value` where it has NaN, and everywhere, as `type` (float32 or
+/// float64), where the cloud has no such column. A column of lists or of several components stays as it is.
+PointCloud with_default_uncertainty(const PointCloud& cloud, ScalarType type, double value);
+
 /// The columns of the clouds, end to end, in the order in which their names first appear, `source` last. Warns about
 /// every column that is left out or changed. Pre: `poses` is empty or as long as `clouds`, of which there is at least
 /// one.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <limits>
 #include <string>
 
 #include "merge/merge_steps.hpp"
@@ -84,9 +85,26 @@ std::string shape(const Column& column) {
                                     : fmt::format("{} x {}", column.components(), name_of(column.type()));
 }
 
+bool is_floating(const Column& column) {
+    return !column.is_list() && (column.type() == ScalarType::float32 || column.type() == ScalarType::float64);
+}
+
+/// `rows` rows of one number, with the name, type, components and exponent of `like`.
+Column constant(const Column& like, std::size_t rows, double value) {
+    const auto filled = [&](auto zero) {
+        Array<decltype(zero)> values(rows * like.components(), static_cast<decltype(zero)>(value));
+        return Column(like.name(), like.components(), Buffer<decltype(zero)>(std::move(values)))
+            .with_length_exponent(like.length_exponent());
+    };
+    return like.type() == ScalarType::float32 ? filled(float{}) : filled(double{});
+}
+
 class Merger {
 public:
-    Merger(std::vector<ColumnTable> tables, Context& context) : tables_(std::move(tables)), context_(context) {}
+    Merger(std::vector<ColumnTable> tables, std::vector<std::size_t> rows, Context& context)
+        : tables_(std::move(tables)),
+          rows_(std::move(rows)),
+          context_(context) {}
 
     ColumnTable merged() {
         ColumnTable result;
@@ -107,10 +125,25 @@ private:
         std::vector<Column> parts;
         for (const ColumnTable& table : tables_)
             if (const Column* column = table.find(name)) parts.push_back(*column);
+        const bool is_kept =
+            std::ranges::all_of(parts, is_floating) && std::ranges::all_of(parts, [&](const Column& part) {
+                return part.components() == parts.front().components();
+            });
         if (const std::size_t without = tables_.size() - parts.size(); without > 0) {
-            context_.warn(fmt::format("the column '{}' is left out: {} of {} inputs {} it", name, without,
-                                      tables_.size(), by_count(without, "lacks", "lack")));
-            return {};
+            const std::string lack =
+                fmt::format("{} of {} inputs {} it", without, tables_.size(), by_count(without, "lacks", "lack"));
+            if (!is_kept) {
+                context_.warn(fmt::format("the column '{}' is left out: {}", name, lack));
+                return {};
+            }
+            context_.warn(fmt::format("the column '{}' has NaN for some points: {}", name, lack));
+            const Column like = parts.front();
+            parts.clear();
+            for (std::size_t table = 0; table < tables_.size(); ++table) {
+                const Column* column = tables_[table].find(name);
+                parts.push_back(column ? *column
+                                       : constant(like, rows_[table], std::numeric_limits<double>::quiet_NaN()));
+            }
         }
         const Column& first = parts.front();
         const auto other = std::ranges::find_if(parts, [&](const Column& part) {
@@ -135,6 +168,7 @@ private:
     }
 
     std::vector<ColumnTable> tables_;
+    std::vector<std::size_t> rows_;
     Context& context_;
 };
 
@@ -146,9 +180,40 @@ Column source_column(std::span<const std::shared_ptr<const PointCloud>> clouds) 
 
 }  // namespace
 
+PointCloud with_default_uncertainty(const PointCloud& cloud, ScalarType type, double value) {
+    const Column* given = cloud.columns.find("uncertainty");
+    if (given && given->components() != 1) return cloud;
+    PointCloud result{cloud.frame, cloud.positions, {}};
+    for (const Column& column : cloud.columns) {
+        if (&column != given) {
+            result.columns.add(column);
+            continue;
+        }
+        if (!is_floating(column)) {
+            result.columns.add(column.with_length_exponent(1));
+            continue;
+        }
+        visit_scalar(column.type(), [&](auto zero) {
+            const auto before = column.values<decltype(zero)>();
+            Array<decltype(zero)> values(before.begin(), before.end());
+            for (auto& number : values)
+                if (number != number) number = static_cast<decltype(zero)>(value);
+            result.columns.add(
+                Column("uncertainty", 1, Buffer<decltype(zero)>(std::move(values))).with_length_exponent(1));
+        });
+    }
+    if (!given) {
+        const Column like("uncertainty", type, 1, {}, {}, 1);
+        result.columns.add(constant(like, cloud.size(), value));
+    }
+    return result;
+}
+
 ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> clouds,
                            std::span<const RigidTransform> poses, Context& context) {
     std::vector<ColumnTable> tables(clouds.size());
+    std::vector<std::size_t> rows;
+    for (const auto& cloud : clouds) rows.push_back(cloud->size());
     std::size_t with_source = 0;
     for (std::size_t cloud = 0; cloud < clouds.size(); ++cloud) {
         for (const Column& column : clouds[cloud]->columns)
@@ -159,7 +224,7 @@ ColumnTable merged_columns(std::span<const std::shared_ptr<const PointCloud>> cl
         context.warn(fmt::format("{} of {} already {} a column 'source'; it was renamed 'source{}'", with_source,
                                  count_text(clouds.size(), "input", "inputs"), by_count(with_source, "has", "have"),
                                  older));
-    ColumnTable result = Merger(std::move(tables), context).merged();
+    ColumnTable result = Merger(std::move(tables), std::move(rows), context).merged();
     result.add(source_column(clouds));
     return result;
 }

@@ -15,12 +15,12 @@ struct PosedMergeParams : MergeParams {
 
 SCANMILL_FILTER() {
     using P = PosedMergeParams;
-    return Declare<P>("merge", 1)
+    return Declare<P>("merge", 2)
         .summary("Merges several clouds, moved by their poses, and keeps one point where they overlap.")
         .source("pose files: Turk and Levoy 1994")
         .ties("Of points that overlap and have equal preference the one of the earlier input is kept.")
         .not_finite("Refused, with the input, their number and the first of them.")
-        .adds({"source"})
+        .adds({"source", "uncertainty"})
         .in<PointCloud>("points", "Clouds with finite coordinates and one unit; at least one.", list)
         .out<PointCloud>("points", "All points that are kept, in input order, with a column `source`.")
         .param("poses", &P::poses_file, "A Stanford .conf or a JSON file with the pose of each input.", word("none"))
@@ -32,6 +32,9 @@ SCANMILL_FILTER() {
                 "Which of two points is kept where inputs overlap.")
         .param("within", &P::within, "Points of different inputs within this distance overlap; 0 keeps all.",
                at_least(0))
+        .param("default-uncertainty", &P::default_uncertainty,
+               "Uncertainty of points that have none, because their input lacks the column or it is NaN there.",
+               word("none"), at_least(0))
         .metric("points", Unit::count, "Points that were kept.")
         .metric("dropped", Unit::count, "Points that were dropped for one of another input.", headline)
         .run([](const Inputs& inputs, P params, Context& context) {

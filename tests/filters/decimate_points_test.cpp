@@ -79,6 +79,11 @@ TEST(DecimateWithPoints, PointsFarFromTheMesh_AreAllLeftOut) {
     EXPECT_EQ(result.points_left_out, 3u);
     EXPECT_EQ(result.points_beyond, 3u);
     EXPECT_NEAR(*result.points_max, 1e6, 2);
+    Context context;
+    decimate(fine, &far, within(0.02), context);
+    EXPECT_EQ(context.warnings(),
+              std::vector<std::string>{"3 of the 3 points are farther than max-error from the input "
+                                       "mesh; they do not limit the result"});
     EXPECT_TRUE(same_mesh(result.mesh, decimated(fine, 0.02).mesh));
 }
 

@@ -167,6 +167,16 @@ TEST(DecimateWarns, OfColumnsThatItDrops_AndKeepsThoseOfVertices) {
     EXPECT_EQ(result.edges.size() + result.edge_columns.size(), 0u);
 }
 
+TEST(DecimateWarns, OfATargetThatTheLimitsForbid) {
+    DecimateParams params = within(0.01);
+    params.target_triangles = 2;
+    EXPECT_THAT(warnings_of_decimate(gridded_cube(4), params),
+                ElementsAre("12 triangles are left, more than target-triangles, 2: max-error or another limit forbids "
+                            "further removals"));
+    params.target_triangles = 12;
+    EXPECT_THAT(warnings_of_decimate(gridded_cube(4), params), IsEmpty());
+}
+
 TEST(DecimateWarns, OfDuplicateVertices_WhichStayASeam) {
     const TriangleMesh left = grid(4, 4), right = shifted(grid(4, 4), Vec3(4, 0, 0));
     const TriangleMesh seam = both(left, right);

@@ -2,6 +2,9 @@
 /// The columns of merged clouds: none is lost or changed without a warning.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
+
 #include "filters/merge_cases.hpp"
 #include "support/shapes.hpp"
 
@@ -52,11 +55,55 @@ TEST(MergeColumns, OfDroppedPoints_AreDropped) {
     EXPECT_THAT(result.points.columns.find("source")->values<u32>(), ElementsAre(0u, 0u, 1u));
 }
 
-TEST(MergeColumns, ThatSomeInputLacks_IsLeftOutWithAWarning) {
-    const PointCloud with = two_points(Column("intensity", 1, Buffer<float>{1, 2})), without = two_points();
+TEST(MergeColumns, OfWholeNumbersThatSomeInputLacks_IsLeftOutWithAWarning) {
+    const PointCloud with = two_points(Column("intensity", 1, Buffer<u8>{1, 2})), without = two_points();
     const Merged result = merged({without, with, without});
     EXPECT_THAT(names(result.points.columns), ElementsAre("source"));
     EXPECT_THAT(result.warnings, ElementsAre("the column 'intensity' is left out: 2 of 3 inputs lack it"));
+}
+
+TEST(MergeColumns, OfFloatsThatSomeInputLacks_HasNaNThereWithAWarning) {
+    const PointCloud with = two_points(Column("normal", 3, Buffer<float>{1, 2, 3, 4, 5, 6}).with_length_exponent(1));
+    const Merged result = merged({two_points(), with});
+    const Column& column = *result.points.columns.find("normal");
+    EXPECT_EQ(column.length_exponent(), 1);
+    const auto values = column.values<float>();
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_TRUE(std::isnan(values[i])) << i;
+    EXPECT_THAT(values.subspan(6), ElementsAre(1, 2, 3, 4, 5, 6));
+    EXPECT_THAT(result.warnings, ElementsAre("the column 'normal' has NaN for some points: 1 of 2 inputs lacks it"));
+}
+
+TEST(MergeColumns, OfFloatsOfDifferentShapesThatSomeInputLacks_IsLeftOut) {
+    const PointCloud one = two_points(Column("a", 1, Buffer<float>{1, 2}));
+    const PointCloud two = two_points(Column("a", 2, Buffer<float>{1, 2, 3, 4}));
+    EXPECT_THAT(names(merged({one, two, two_points()}).points.columns), ElementsAre("source"));
+}
+
+TEST(MergeColumns, DefaultUncertainty_FillsMissingColumnsAndNaN) {
+    MergeParams params;
+    params.default_uncertainty = Length(0.1);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const PointCloud with = with_uncertainty(two_points(), {nan, 3});
+    const Merged result = merged({two_points(), with}, params);
+    const Column& column = *result.points.columns.find("uncertainty");
+    EXPECT_THAT(column.values<float>(), ElementsAre(0.1f, 0.1f, 0.1f, 3.0f));
+    EXPECT_EQ(column.length_exponent(), 1);
+    EXPECT_THAT(result.warnings, IsEmpty());
+    EXPECT_THAT(merged({two_points()}, params).points.columns.find("uncertainty")->values<double>(),
+                ElementsAre(0.1, 0.1));
+}
+
+TEST(MergeColumns, DefaultUncertainty_IsComparedAndTiesWithAnEqualNumber) {
+    MergeParams params = within(0.5, MergeParams::Prefer::lower_uncertainty);
+    params.default_uncertainty = Length(0.1);
+    const auto source_beside = [&](float uncertainty) {
+        const Merged result =
+            merged({with_uncertainty(cloud_of({{0, 0, 0}}), {uncertainty}), cloud_of({{0, 0, 0}})}, params);
+        return result.points.columns.find("source")->values<u32>()[0];
+    };
+    EXPECT_EQ(source_beside(0.05f), 0u);
+    EXPECT_EQ(source_beside(0.1f), 0u) << "a tie: the earlier input";
+    EXPECT_EQ(source_beside(0.2f), 1u);
 }
 
 TEST(MergeColumns, OfDifferentTypes_BecomeFloat64WithAWarning) {

@@ -92,12 +92,20 @@ TEST(MergeRefusals, PosesThatMoveCloudsTooFarApart_AreRefused) {
     EXPECT_EQ(merged({point, point}, posed({pose, inverse_of(pose)})).points.size(), 2u);
 }
 
+TEST(MergeRefusals, DefaultUncertaintyBelowZeroOrNotFinite_IsRefused) {
+    for (const double value : {-1.0, nan, infinity}) {
+        MergeParams params;
+        params.default_uncertainty = Length(value);
+        EXPECT_THAT(refusal({point}, params).sentence(), HasSubstr("default-uncertainty is")) << value;
+    }
+}
+
 TEST(MergeRefusals, MissingUncertainty_IsNamed) {
     const MergeParams params = within(1, MergeParams::Prefer::lower_uncertainty);
     const PointCloud with = with_uncertainty(cloud_of({{0, 0, 0}}), {1});
     const Error error = refusal({with, point}, params);
     EXPECT_THAT(error.sentence(), HasSubstr("input 1 of 2 has no column 'uncertainty'"));
-    EXPECT_THAT(error.hint(), HasSubstr("prefer: none"));
+    EXPECT_THAT(error.hint(), AllOf(HasSubstr("default-uncertainty"), HasSubstr("prefer: none")));
     PointCloud wide = cloud_of({{0, 0, 0}});
     wide.columns.add(Column("uncertainty", 2, Buffer<float>{1, 2}));
     EXPECT_THAT(refusal({wide}, params).sentence(), HasSubstr("with one number per point"));

@@ -19,8 +19,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-const std::vector<std::string> filters{"alpha-solid",     "delaunay",    "edge-flip", "features",     "merge",
-                                       "outlier-removal", "region-grow", "sculpt",    "virtual-scan", "voxel-thin"};
+const std::vector<std::string> filters{"alpha-solid", "crop",         "delaunay",        "edge-flip",
+                                       "features",    "merge",        "outlier-removal", "region-grow",
+                                       "sculpt",      "virtual-scan", "voxel-thin"};
 
 std::string quickstart() { return std::string(SCANMILL_SOURCE_DIR) + "/workflows/quickstart.yaml"; }
 

@@ -6,6 +6,7 @@
 namespace scanmill::test {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -49,7 +50,26 @@ TEST_F(StreamingCommand, Filter_SaysThatItStreams) {
     EXPECT_THAT(scanmill({"show", "voxel-thin"}).out, HasSubstr("With bin-size given"));
     const Json shown = Json::parse(scanmill({"show", "voxel-thin", "--json"}).out);
     EXPECT_EQ(shown["filter"]["streams"]["given"], Json({"bin-size"}));
+    EXPECT_THAT(scanmill({"show", "crop"}).out, HasSubstr("As the first step, without `near`, a scan"));
     EXPECT_THAT(scanmill({"show", "delaunay"}).out, Not(HasSubstr("in chunks")));
+}
+
+TEST_F(StreamingCommand, OptionalInputThatIsWired_MakesTheScanRead) {
+    const auto workflow = [](const std::string& step) {
+        return "scanmill: 1\nname: w\ninputs: {scan: points, other: points}\nsteps:\n  - crop: " + step +
+               "\noutputs: {'{scan}.out.ply': crop}\n";
+    };
+    folder_.write("w.yaml", workflow("{within: 1 u}\n    in: {points: scan, near: other}"));
+    EXPECT_THAT(checked("text"), AllOf(HasSubstr("points <- scan\n"), HasSubstr("near <- other\n")));
+    written(folder_ / "a.ply", helix(10));
+    const ProgramResult both = scanmill({"run", "w.yaml", "a.ply", "--in", "other=a.ply", "-o", "out"});
+    EXPECT_EQ(both.exit_code, 0) << both.err;
+    EXPECT_EQ(read_points(folder_ / "out/a.out.ply")->size(), 10u);
+    // The same file at both ports.
+    folder_.write("w.yaml", workflow("{within: 1 u}\n    in: {points: scan, near: scan}"));
+    EXPECT_THAT(checked("text"), Not(HasSubstr("as a stream")));
+    folder_.write("w.yaml", workflow("{centre: [0 u, 0 u, 0 u], radius: 2 u}\n    in: {points: scan}"));
+    EXPECT_THAT(checked("text"), HasSubstr("points <- scan, as a stream\n"));
 }
 
 TEST_F(StreamingCommand, ScanLargerThanTheLimit_IsThinned) {

@@ -87,9 +87,12 @@ void require_sound_parameter(const FilterSpec& spec, const ParameterSpec& parame
 }
 
 void require_sound_stream(const FilterSpec& spec) {
-    if (spec.inputs.size() != 1 || spec.inputs.front().kind != kind_of<PointCloud>() || spec.inputs.front().list ||
+    const auto is_required = [](const PortSpec& port) { return !port.optional; };
+    if (std::ranges::count_if(spec.inputs, is_required) != 1 || !is_required(spec.inputs.front()) ||
+        spec.inputs.front().kind != kind_of<PointCloud>() || spec.inputs.front().list ||
         !spec.inputs.front().also.empty())
-        throw Error("filter {}: only a filter with one input, a cloud of points, can be streamed", spec.name);
+        throw Error("filter {}: only a filter with one required input, the first, a cloud of points, can be streamed",
+                    spec.name);
     for (const std::string& name : spec.streams->given) {
         const ParameterSpec* parameter = spec.parameter(name);
         if (!parameter) throw Error("filter {}: its stream needs '{}', which is not a parameter", spec.name, name);

@@ -42,8 +42,8 @@ struct MetricSpec {
     bool operator==(const MetricSpec&) const = default;
 };
 
-/// Of a filter that can read its one input as a stream: a scan file that is read piece by piece and never in memory as
-/// a whole.
+/// Of a filter that can read its first input as a stream, if no other input is wired: a scan file that is read piece by
+/// piece and never in memory as a whole.
 struct StreamSpec {
     /// Parameters that must have a value, that is neither be omitted nor be their word.
     std::vector<std::string> given;
@@ -77,8 +77,8 @@ struct FilterSpec {
 /// Throws Error for an unsound declaration: names that repeat or are not lower-case-with-hyphens, help that is not a
 /// sentence or only repeats the name, a default outside its range, no output; a missing remark on ties (filters with
 /// inputs) or on NaN (filters that take points or meshes); a number of neighbours whose help does not state whether the
-/// point itself is counted; a stream whose input is not one cloud of points, or that needs parameters that do not exist
-/// or always have a value.
+/// point itself is counted; a stream whose first input is not one cloud of points or that has other required inputs, or
+/// that needs parameters that do not exist or always have a value.
 void require_sound(const FilterSpec& spec);
 
 }  // namespace scanmill

@@ -14,8 +14,8 @@ constexpr std::string_view generated = "<!-- Written by `scanmill docs` from the
 
 bool is_readable(Kind kind) { return kind == kind_of<PointCloud>() || kind == kind_of<TriangleMesh>(); }
 
-/// A valid value, for examples of required parameters.
-std::string sample(const ParameterSpec& parameter) {
+/// A valid value, or a valid item of a list, for examples of parameters without a default.
+std::string sample_item(const ParameterSpec& parameter) {
     switch (parameter.type) {
         case ParameterType::boolean: return "true";
         case ParameterType::choice: return parameter.choices.front().name;
@@ -28,6 +28,12 @@ std::string sample(const ParameterSpec& parameter) {
         case ParameterType::number: break;
     }
     return number_text(parameter.low ? parameter.low->value + (parameter.low->inclusive ? 0 : 1) : 1);
+}
+
+std::string sample(const ParameterSpec& parameter) {
+    const std::string item = sample_item(parameter);
+    if (!parameter.list) return item;
+    return fmt::format("[{}]", fmt::join(std::vector<std::string>(parameter.size.value_or(1), item), ", "));
 }
 
 /// Escapes the bar, which ends a cell of a table.
@@ -167,8 +173,12 @@ std::string filter_page(const FilterSpec& spec, const FilterLibrary& library) {
 
 std::string stream_text(const FilterSpec& spec) {
     const std::vector<std::string>& given = spec.streams->given;
-    return fmt::format("{} a scan that no other step needs whole is read in chunks and never completely in memory.",
-                       given.empty() ? "As the first step," : fmt::format("With {} given,", fmt::join(given, " and ")));
+    std::vector<std::string> unwired;
+    for (const PortSpec& port : spec.inputs)
+        if (port.optional) unwired.push_back("`" + port.name + "`");
+    return fmt::format("{}{}, a scan that no other step needs whole is read in chunks and never completely in memory.",
+                       given.empty() ? "As the first step" : fmt::format("With {} given", fmt::join(given, " and ")),
+                       unwired.empty() ? "" : fmt::format(", without {}", fmt::join(unwired, " and ")));
 }
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }

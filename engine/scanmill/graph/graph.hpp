@@ -144,9 +144,10 @@ RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& 
 // Streams. A scan is read piece by piece, and never loaded whole, if all steps that read it can do so. Whether its file
 // allows it is certain only when it is opened; else it is loaded, with the same results.
 
-/// Whether the step can read its scan as a stream: its filter can, the parameters that this requires have values, and
-/// no parameter is in spacings, which need all points at once.
-bool can_stream(const PlannedStep& step);
+/// Whether the step can read its scan as a stream: its filter can, the scan is the only one of its `inputs` wired
+/// values, the parameters that this requires have values, and no parameter is in spacings, which need all points at
+/// once.
+bool can_stream(const PlannedStep& step, std::size_t inputs);
 
 /// Whether scans of this workflow input are streamed if their files allow it: they are points, at least one step reads
 /// them, all these steps can stream, and they are not outputs themselves.

@@ -21,8 +21,8 @@ struct Readers {
 
 }  // namespace
 
-bool can_stream(const PlannedStep& step) {
-    if (!step.spec.streams) return false;
+bool can_stream(const PlannedStep& step, std::size_t inputs) {
+    if (!step.spec.streams || inputs != 1) return false;
     const auto is_given = [&](const std::string& name) { return has_value(step.parameters.find(name)); };
     const auto needs_spacing = [](const auto& parameter) { return is_in_spacings(parameter.second); };
     return std::ranges::all_of(step.spec.streams->given, is_given) &&
@@ -34,7 +34,8 @@ bool is_streamed(const Plan& plan, std::size_t input) {
     Readers readers;
     for (const PlannedStep& step : plan.steps)
         for (const PlannedInput& port : step.inputs)
-            if (std::ranges::find(port.sources, scan) != port.sources.end()) readers.add(can_stream(step));
+            if (std::ranges::find(port.sources, scan) != port.sources.end())
+                readers.add(can_stream(step, step.inputs.size()));
     for (const PlannedVariant& variant : plan.variants)
         for (const PlannedOutput& output : variant.outputs)
             if (output.source == scan) readers.add(false);
@@ -44,7 +45,8 @@ bool is_streamed(const Plan& plan, std::size_t input) {
 void mark_streams(RunGraph& graph) {
     std::vector<Readers> readers(graph.nodes.size());
     for (const RunNode& node : graph.nodes)
-        for (const NodeInput& input : node.inputs) readers[input.node].add(can_stream(*graph.step(node)));
+        for (const NodeInput& input : node.inputs)
+            readers[input.node].add(can_stream(*graph.step(node), node.inputs.size()));
     for (const RunCell& cell : graph.cells)
         for (const RunOutput& output : cell.outputs) readers[output.node].add(false);
     for (std::size_t index = 0; index < graph.nodes.size(); ++index) {

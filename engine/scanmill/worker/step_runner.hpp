@@ -39,7 +39,7 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
                  const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
                  NodeReport& report);
 
-/// The same for a streamed scan. Pre: can_stream(step).
+/// The same for a streamed scan. Pre: can_stream(step, 1).
 Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclaration&()>& filter,
                  const PointStream& scan, ContextOptions options, const Recall& recall, NodeReport& report);
 

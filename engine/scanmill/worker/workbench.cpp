@@ -295,7 +295,7 @@ const Value* Workbench::find(std::size_t node, const std::string& port) const {
 }
 
 std::shared_ptr<const PointStream> Workbench::stream_for(const StepWork& work, unsigned threads) {
-    if (work.inputs.size() != 1 || !can_stream(*work.step)) return nullptr;
+    if (!can_stream(*work.step, work.inputs.size())) return nullptr;
     const JobInput& input = work.inputs.front();
     if (!input.leaf || !input.leaf->is_streamed) return nullptr;
     if (const auto scan = scans_.find(input.node)) return scan;

@@ -241,7 +241,8 @@ TEST(RequireSound, Stream_IsOfOneCloudAndAsksForParametersThatMayLackAValue) {
     EXPECT_EQ(with_stream({"k2"}, nothing), "filter voxel-thin: its stream needs 'k2', which always has a value");
     EXPECT_EQ(with_stream({"empty"}, [](FilterSpec& spec) { spec.parameters.back().required = true; }),
               "filter voxel-thin: its stream needs 'empty', which always has a value");
-    const std::string other = "filter voxel-thin: only a filter with one input, a cloud of points, can be streamed";
+    const std::string other =
+        "filter voxel-thin: only a filter with one required input, the first, a cloud of points, can be streamed";
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.clear(); }), other);
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().kind = kind_of<TriangleMesh>(); }), other);
     EXPECT_EQ(with_stream({}, [](FilterSpec& spec) { spec.inputs.front().list = true; }), other);
@@ -251,6 +252,14 @@ TEST(RequireSound, Stream_IsOfOneCloudAndAsksForParametersThatMayLackAValue) {
                               spec.inputs.push_back({"more", kind_of<PointCloud>(), help});
                           }),
               other);
+    const PortSpec optional_port{.name = "more", .kind = kind_of<PointCloud>(), .help = help, .optional = true};
+    EXPECT_EQ(with_stream({}, [&](FilterSpec& spec) { spec.inputs.insert(spec.inputs.begin(), optional_port); }), other)
+        << "the required input is the second";
+    EXPECT_EQ(with_stream({}, [&](FilterSpec& spec) { spec.inputs = {optional_port}; }), other);
+    FilterSpec with_optional = sound_spec();
+    add_stream(with_optional, {});
+    with_optional.inputs.push_back(optional_port);
+    EXPECT_NO_THROW(require_sound(with_optional));
 }
 
 TEST(FilterSpec, Parts_AreFoundByName) {

@@ -18,7 +18,7 @@ void require_proper_triangles(const TriangleMesh& mesh) {
     const Triangle& t = mesh.triangles[static_cast<std::size_t>(first)];
     throw Error("triangle {} has the vertices {}, {} and {}; three different ones are needed (such triangles: {})",
                 first, t[0], t[1], t[2], count)
-        .hint("remove triangles with a repeated vertex first");
+        .hint("remove triangles with a repeated vertex first, or mesh the points again with sculpt or region-grow");
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ Array<u32> opposites(const TriangleMesh& mesh) {
     require_consistent(mesh);
     constexpr std::size_t most = boundary / 3 - 1;  // half-edges are numbered with 32 bits
     if (mesh.triangles.size() > most)
-        throw Error("the mesh has {} triangles; at most {} are possible", mesh.triangles.size(), most);
+        throw Error("the mesh has {} triangles; at most {} are possible", mesh.triangles.size(), most)
+            .hint("cut the mesh into parts");
     Array<u32> opposite(3 * mesh.triangles.size(), no_half_edge);
     Offenders crowded, alike;
     for_each_edge(by_smaller_vertex(mesh), [&](u32, std::span<const VertexHalfEdge> edge) {
@@ -81,13 +82,14 @@ Array<u32> opposites(const TriangleMesh& mesh) {
             crowded.first[2].number / 3, crowded.edges)
             .hint(
                 "remove triangles until at most two are left at every edge, or cut the mesh there: give each sheet its "
-                "own vertices");
+                "own vertices; or mesh its points again with sculpt or region-grow");
     if (alike.edges > 0)
         throw Error(
             "triangles {} and {} pass {} in the same direction; neighbours must be oriented alike (such edges: {})",
             alike.first[0].number / 3, alike.first[1].number / 3, alike.edge_text(mesh), alike.edges)
             .hint(
-                "reverse the triangles that face the other way; a one-sided surface (a Moebius band) must be cut open");
+                "reverse the triangles that face the other way, or mesh the points again with sculpt or region-grow; a "
+                "one-sided surface (a Moebius band) must be cut open");
     return opposite;
 }
 

@@ -11,11 +11,9 @@
 
 namespace scanmill {
 
-namespace {
-
-/// Marks both half-edges of the mesh's declared sharp edges; those on the boundary are feature lines anyway.
-void mark_declared(const TriangleMesh& mesh, std::span<const u32> opposite, std::vector<bool>& sharp) {
-    if (mesh.sharp_edges.empty()) return;
+std::vector<bool> declared_sharp_half_edges(const TriangleMesh& mesh, std::span<const u32> opposite) {
+    std::vector<bool> sharp(opposite.size(), false);
+    if (mesh.sharp_edges.empty()) return sharp;
     struct Declared {
         Edge edge;
         bool found;
@@ -32,7 +30,7 @@ void mark_declared(const TriangleMesh& mesh, std::span<const u32> opposite, std:
         }
     }
     const auto missing = std::ranges::count(declared, false, &Declared::found);
-    if (missing == 0) return;
+    if (missing == 0) return sharp;
     const Edge& first = std::ranges::find(declared, false, &Declared::found)->edge;
     throw Error("{} of the mesh's {} {} of no triangle; the first is between vertices {} and {}", missing,
                 count_text(declared.size(), "sharp edge", "sharp edges"),
@@ -40,10 +38,9 @@ void mark_declared(const TriangleMesh& mesh, std::span<const u32> opposite, std:
         .hint("write the mesh again with the sharp edges of its own triangles, or without any");
 }
 
-}  // namespace
-
 std::vector<bool> sharp_half_edges(const TriangleMesh& mesh, std::span<const u32> opposite,
                                    std::span<const Vec3> normals, double sharp_angle, unsigned threads) {
+    std::vector<bool> sharp = declared_sharp_half_edges(mesh, opposite);
     Array<u8> is_sharp(opposite.size());  // bytes, unlike std::vector<bool>, can be written in parallel
     constexpr std::size_t chunk = 3 << 13;
     for_each_chunk(threads, opposite.size(), chunk, [&](std::size_t begin, std::size_t end) {
@@ -53,8 +50,8 @@ std::vector<bool> sharp_half_edges(const TriangleMesh& mesh, std::span<const u32
                                   angle_between(normals[half_edge / 3], normals[other / 3]) > sharp_angle;
         }
     });
-    std::vector<bool> sharp(is_sharp.begin(), is_sharp.end());
-    mark_declared(mesh, opposite, sharp);
+    for (std::size_t half_edge = 0; half_edge < sharp.size(); ++half_edge)
+        if (is_sharp[half_edge]) sharp[half_edge] = true;
     return sharp;
 }
 

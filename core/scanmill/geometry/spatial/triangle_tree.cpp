@@ -189,25 +189,14 @@ Vec3 TriangleTree::nearest_point(const Vec3& point, u32 slot) const {
     return nearest_on_triangle(point, a, b, c);
 }
 
-NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
-    assert(point.allFinite());
+template <class Offer>
+void TriangleTree::search(const Vec3& point, float& limit, const Offer& offer) const {
     struct Waiting {
         float bound;
         u32 node;
     };
     std::array<Waiting, (arity - 1) * deepest + 1> stack;
     std::size_t waiting = 0;
-    NearestTriangle best;
-    float limit = std::numeric_limits<float>::infinity();
-    const auto offer = [&](std::size_t slot) {
-        const double squared = squared_distance(point, static_cast<u32>(slot));
-        if (squared < best.squared_distance || (squared == best.squared_distance && rows_[slot] < best.triangle)) {
-            best = {rows_[slot], static_cast<u32>(slot), squared};
-            limit = reach(squared, scale_);
-        }
-    };
-    if (hint < corners_.size()) offer(hint);
-
     const FloatPoint query(scaled(point));
     stack[waiting++] = {0, 0};
     while (waiting > 0) {
@@ -216,7 +205,7 @@ NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
         if (next.node >= nodes_.size()) {
             const std::size_t leaf = next.node - nodes_.size();
             for (std::size_t slot = begin_of(leaf, depth_); slot < begin_of(leaf + 1, depth_); ++slot)
-                if (slot != hint) offer(slot);
+                if (offer(static_cast<u32>(slot))) return;
             continue;
         }
         const Float4 bounds = query.squared_distances(nodes_[next.node].bounds);
@@ -229,8 +218,37 @@ NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
             stack[at] = {bounds[i], static_cast<u32>(arity * next.node + 1 + i)};
         }
     }
+}
+
+NearestTriangle TriangleTree::nearest(const Vec3& point, u32 hint) const {
+    assert(point.allFinite());
+    NearestTriangle best;
+    float limit = std::numeric_limits<float>::infinity();
+    const auto offer = [&](u32 slot) {
+        const double squared = squared_distance(point, slot);
+        if (squared < best.squared_distance || (squared == best.squared_distance && rows_[slot] < best.triangle)) {
+            best = {rows_[slot], slot, squared};
+            limit = reach(squared, scale_);
+        }
+        return false;
+    };
+    if (hint < corners_.size()) offer(hint);
+    search(point, limit, [&](u32 slot) { return slot != hint && offer(slot); });
     assert(best.triangle != NearestTriangle::none);
     return best;
+}
+
+bool TriangleTree::is_within(const Vec3& point, double squared, u32& hint) const {
+    assert(point.allFinite() && squared >= 0);
+    if (hint < corners_.size() && squared_distance(point, hint) <= squared) return true;
+    bool found = false;
+    float limit = reach(squared, scale_);
+    search(point, limit, [&](u32 slot) {
+        found = squared_distance(point, slot) <= squared;
+        if (found) hint = slot;
+        return found;
+    });
+    return found;
 }
 
 void TriangleTree::meeting(const BoundingBox& box, Array<u32>& rows) const {

@@ -40,6 +40,10 @@ public:
     /// threads. Cost: O(log n) for points near the surface; far away from a round surface many triangles compete.
     NearestTriangle nearest(const Vec3& point, u32 hint = NearestTriangle::none) const;
 
+    /// Whether nearest(point).squared_distance <= `squared`. Faster, because the search ends at the first such triangle,
+    /// and does not look beyond that distance. `hint` is as above; it becomes the slot of that triangle.
+    bool is_within(const Vec3& point, double squared, u32& hint) const;
+
     /// The point of triangle `slot` (NearestTriangle::slot) nearest to `point`.
     Vec3 nearest_point(const Vec3& point, u32 slot) const;
     double squared_distance(const Vec3& point, u32 slot) const {
@@ -66,6 +70,10 @@ private:
     void sort_triangles(std::span<const Vec3> positions, std::span<const Triangle> triangles, unsigned threads);
     void bound_nodes(unsigned threads);
     void bound_node(std::size_t node);
+    /// Calls offer(slot) for triangles whose boxes are at most `limit` from the point, nearer boxes first, until it
+    /// returns true. `limit` is a squared distance in scaled coordinates and may be lowered by `offer`.
+    template <class Offer>
+    void search(const Vec3& point, float& limit, const Offer& offer) const;
     Vec3 scaled(const Vec3& point) const { return (point - centre_) * scale_; }
 
     Vec3 centre_;

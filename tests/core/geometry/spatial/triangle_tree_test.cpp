@@ -100,6 +100,49 @@ TEST(TriangleTree, EquallyNearTriangles_GiveTheSmallestRow) {
     for (u32 hint : {0u, 500u, 999u}) EXPECT_EQ(equal.nearest({3, 4, 5}, hint).triangle, 0u);
 }
 
+/// Asks with distances equal to that of the nearest triangle, a little smaller and a little larger, and far from it.
+void expect_within_as_all(const TriangleMesh& mesh, const TriangleTree& tree, const Vec3& point, u32 hint) {
+    const double nearest = nearest_of_all(mesh, point).squared_distance;
+    for (const double squared : {nearest, std::nextafter(nearest, 0.0), std::nextafter(nearest, 1e300), nearest / 2,
+                                 2 * nearest, 0.0, 1e300}) {
+        u32 slot = hint;
+        ASSERT_EQ(tree.is_within(point, squared, slot), nearest <= squared) << point.transpose() << ": " << squared;
+        if (nearest <= squared)
+            EXPECT_LE(tree.squared_distance(point, slot), squared) << "the hint is the triangle that was found";
+        else
+            EXPECT_EQ(slot, hint);
+    }
+}
+
+TEST(TriangleTree, IsWithin_AnswersAsLookingAtAllTriangles) {
+    for (std::size_t triangles : {1, 2, 5, 16, 65, 1000})
+        for (double size : {0.0, 0.02, 0.5})
+            for (const Vec3& at : {Vec3(0, 0, 0), Vec3(1e6, -2e6, 3e6)}) {
+                const TriangleMesh mesh = random_soup(triangles, triangles, size, at);
+                const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), 1);
+                Random random(triangles + 1);
+                for (int i = 0; i < 40; ++i) {
+                    const double reach = i % 3 == 0 ? 1 : i % 3 == 1 ? 10 : 1e9;
+                    const Vec3 point(random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform());
+                    const u32 hint = i % 2 ? static_cast<u32>(random.index(triangles)) : NearestTriangle::none;
+                    expect_within_as_all(mesh, tree, at + point, hint);
+                    expect_within_as_all(mesh, tree, mesh.positions[random.index(mesh.positions.size())], hint);
+                }
+            }
+}
+
+TEST(TriangleTree, IsWithin_CountsTheBorder) {
+    const TriangleMesh mesh = cube();
+    const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), 1);
+    u32 hint = NearestTriangle::none;
+    EXPECT_FALSE(tree.is_within({0.5, 0.5, 3}, std::nextafter(4.0, 0.0), hint));
+    EXPECT_EQ(hint, NearestTriangle::none);
+    EXPECT_TRUE(tree.is_within({0.5, 0.5, 3}, 4, hint));
+    EXPECT_EQ(tree.squared_distance({0.5, 0.5, 3}, hint), 4);
+    EXPECT_TRUE(tree.is_within({1, 0.5, 0.5}, 0, hint)) << "on the surface";
+    EXPECT_FALSE(tree.is_within({1.5, 0.5, 0.5}, 0, hint));
+}
+
 TEST(TriangleTree, VeryFarPoints_AreAnswered) {
     const TriangleMesh mesh = geodesic_sphere(1, 6);
     const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), 1);
