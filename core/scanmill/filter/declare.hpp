@@ -263,8 +263,8 @@ public:
     }
     /// `body(scan, params, context)` returns the same bytes as run(), from a scan file that is read piece by piece
     /// (scanmill/data/point_stream.hpp). Called instead of run() if all parameters in `given` have a value and no other
-    /// step needs the scan in memory. For filters whose first input is a cloud of points; other inputs must be optional,
-    /// and run() is called if one of them is wired.
+    /// step needs the scan in memory. For filters whose first input is a cloud of points; other inputs must be
+    /// optional, and run() is called if one of them is wired.
     template <class Body>
         requires std::is_invocable_r_v<Outputs, Body, const PointStream&, const Params&, Context&>
     Declare& run_streamed(std::vector<std::string> given, Body body) {

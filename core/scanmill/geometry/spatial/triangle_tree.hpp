@@ -40,8 +40,8 @@ public:
     /// threads. Cost: O(log n) for points near the surface; far away from a round surface many triangles compete.
     NearestTriangle nearest(const Vec3& point, u32 hint = NearestTriangle::none) const;
 
-    /// Whether nearest(point).squared_distance <= `squared`. Faster, because the search ends at the first such triangle,
-    /// and does not look beyond that distance. `hint` is as above; it becomes the slot of that triangle.
+    /// Whether nearest(point).squared_distance <= `squared`. Faster, because the search ends at the first such
+    /// triangle, and does not look beyond that distance. `hint` is as above; it becomes the slot of that triangle.
     bool is_within(const Vec3& point, double squared, u32& hint) const;
 
     /// The point of triangle `slot` (NearestTriangle::slot) nearest to `point`.
