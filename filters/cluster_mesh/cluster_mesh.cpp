@@ -34,9 +34,12 @@ using growing::DistinctPoints;
 using growing::Neighbourhoods;
 
 constexpr double degree = std::numbers::pi / 180;
+/// More points than these within max_edge of a point are refused: max_edge is far too large.
 constexpr std::size_t most_near = 1000;
 
-/// The given limits and relaxed ones. The limits to the points' own normals keep sheets apart and boundaries open.
+/// The limits of the insertion, then relaxed ones, as region-grow relaxes its own: least angle, dihedral deviation, and
+/// the angles to the normals of points on faces and at edges. The limits to the points' own normals keep sheets apart
+/// and boundaries open.
 const std::array<Limits, 4> passes{
     {{std::sin(5 * degree), 0, std::cos(60 * degree), std::cos(85 * degree), true, true, false},
      {std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree), std::cos(110 * degree), true, true, true},
@@ -51,7 +54,6 @@ public:
           max_edge_(max_edge),
           clusters_(surface.positions.size()),
           triangulation_(surface, max_edge, up, winner),
-          inserted_(surface.positions.size(), false),
           context_(context) {}
 
     void insert_all(std::span<const u32> order) {
@@ -93,8 +95,7 @@ private:
                                   2.5 * std::sqrt(surface_.neighbourhoods.squared_reach(point)) / 2));
         inserted_near_.clear();
         for (u32 other : around)
-            if (inserted_[other]) inserted_near_.push_back(other);
-        inserted_[point] = true;
+            if (triangulation_.is_inserted(other)) inserted_near_.push_back(other);
         const int found = clusters_.meet(point, inserted_near_);
         ++cases_[static_cast<std::size_t>(found - 1)];
         if (!try_point(point, around, passes[0], false)) return;
@@ -116,8 +117,7 @@ private:
 
     /// Returns whether the point is in a triangle now.
     bool try_point(u32 point, std::span<const u32> around, const Limits& limits, bool again) {
-        const bool may_start = again ? false : true;
-        const Outcome outcome = triangulation_.insert(point, around, may_start && may_start_at(point), limits);
+        const Outcome outcome = triangulation_.insert(point, around, !again, limits);
         if (outcome == Outcome::extra) {
             extra_ += !again;
             return false;
@@ -126,18 +126,10 @@ private:
         if (outcome == Outcome::loose) return false;
         splits_ += outcome == Outcome::split;
         clusters_.unite(point, triangulation_.partner());
-        clusters_.set_meshed(point);
         return true;
     }
 
-    /// A cluster without triangles starts with the first three points that form one.
-    bool may_start_at(u32 point) {
-        for (u32 other : inserted_near_)
-            if (!clusters_.is_meshed(other)) return true;
-        return inserted_near_.empty() ? false : !clusters_.is_meshed(point);
-    }
-
-    /// Points that wait and boundary points, those nearest to their next edge first.
+    /// Tries points that wait and boundary points, in order. Returns whether the mesh changed.
     bool complete_once(const Limits& limits) {
         std::vector<u32> open;
         for (u32 point = 0; point < surface_.states.size(); ++point)
@@ -161,7 +153,6 @@ private:
     double max_edge_;
     Clusters clusters_;
     Triangulation triangulation_;
-    std::vector<bool> inserted_;
     Context& context_;
     std::vector<u32> near_, inserted_near_, loose_;
     std::deque<u32> waiting_;
@@ -430,10 +421,12 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
                     points.size(), spacing)
             .hint(fmt::format("try max-edge {:.3g} u; thin the scan with larger voxels if it is noisy", 2.5 * spacing));
     result.removed_triangles = growing::remove_extra_fans(surface);
-    result.closed_holes = growing::close_small_holes(surface, 4, context, result.max_edge);
+    constexpr std::size_t few_edges = 4;
+    result.closed_holes = growing::close_small_holes(surface, few_edges, context, result.max_edge);
     result.removed_triangles += growing::remove_extra_fans(surface);
+    const double largest_radius = 1 / std::sqrt(3.0);  // of an equilateral triangle with edges of max_edge
     const growing::NarrowHoles narrow =
-        growing::close_narrow_holes(surface, {1 / std::sqrt(3.0), 4, std::numbers::pi, result.max_edge}, context);
+        growing::close_narrow_holes(surface, {largest_radius, few_edges, std::numbers::pi, result.max_edge}, context);
     result.closed_holes += narrow.closed;
     result.removed_triangles += narrow.replaced;
     result.flips = flip_edges(cloud, surface, result.max_edge, context);

@@ -35,7 +35,6 @@ void Clusters::unite(u32 a, u32 b) {
     if (!second_.unite(a, b)) return;
     const u32 all = second_.find(a);
     size_[all] = size_[a] + size_[b];
-    meshed_[all] = meshed_[a] || meshed_[b];
 }
 
 Clusters::Numbers Clusters::numbers(DisjointSets& sets) {

@@ -24,7 +24,7 @@ namespace scanmill::clustering {
 
 class Clusters {
 public:
-    explicit Clusters(std::size_t points) : first_(points), second_(points), size_(points, 1), meshed_(points, false) {}
+    explicit Clusters(std::size_t points) : first_(points), second_(points), size_(points, 1) {}
 
     /// Inserts a point: `near` are the inserted points near it. Clusters of level 1 are joined at once, those of level
     /// 2 that it meets by join(), so that the point may stay a cluster of its own. Returns the case, 1 to 4; of several
@@ -35,9 +35,6 @@ public:
     /// Joins the clusters of level 2 of two points, whose triangles met.
     void unite(u32 a, u32 b);
 
-    /// Whether the point's cluster of level 2 has triangles.
-    bool is_meshed(u32 point) { return meshed_[second_.find(point)]; }
-    void set_meshed(u32 point) { meshed_[second_.find(point)] = true; }
     std::size_t size(u32 point) { return size_[second_.find(point)]; }
 
     /// Per point the number of its cluster, counted in the order of their lowest points.
@@ -53,7 +50,6 @@ private:
 
     DisjointSets first_, second_;
     std::vector<u32> size_;
-    std::vector<bool> meshed_;
     std::vector<u32> met_, joined_;
 };
 

@@ -20,11 +20,11 @@ namespace {
 /// Outside angles at a boundary vertex are closed below 170 degrees.
 const double widest_corner_cosine = std::cos(170 * 3.14159265358979323846 / 180);
 
-/// A point that divides a triangle's edge from a corner of the projected point's triangle of a smaller share of the
-/// area splits the edge.
+/// A point over a triangle lies on one of its edges if it makes a triangle with a smaller share of the area there.
 constexpr double least_share = 0.02;
 
 /// Meshes with more points join first where the surface is flat: elsewhere the sides that they face are less certain.
+/// Of 0, 6, 20 and 60 this leaves the fewest loops on ten thinned models.
 constexpr std::size_t few_points = 6;
 
 /// Where the normals of near vertices are farther than 30 degrees from a triangle's, it is tested in space.
@@ -51,7 +51,7 @@ Outcome Triangulation::insert(u32 point, std::span<const u32> near, bool may_sta
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
         const Candidate edge = candidates_[i];
         const Triangle triangle{edge.from, point, edge.to};
-        const Verdict verdict = judge(point, edge, winner_);
+        const Verdict verdict = judge(point, edge);
         if (verdict != Verdict::create) {
             discontinuous = discontinuous || (i == 0 && verdict == Verdict::extra);
             continue;
@@ -68,11 +68,8 @@ Outcome Triangulation::insert(u32 point, std::span<const u32> near, bool may_sta
 
 bool Triangulation::complete(u32 point, std::span<const u32> near, const Limits& limits) {
     bool added = false;
-    do {
-        while (close_corners(point, near, limits)) added = true;
-        if (!is_open(point) || !join_others(point, near, limits)) return added;
-        added = true;
-    } while (true);
+    while (close_corners(point, near, limits) || (is_open(point) && join_others(point, near, limits))) added = true;
+    return added;
 }
 
 void Triangulation::remove_small_meshes() {
@@ -117,20 +114,20 @@ void Triangulation::collect(u32 point, std::span<const u32> near) {
     });
 }
 
-Triangulation::Verdict Triangulation::judge(u32 point, const Candidate& edge, const WinnerLimits& winner) const {
+Triangulation::Verdict Triangulation::judge(u32 point, const Candidate& edge) const {
     const Fans& fans = surface_.fans;
     const u32 third = fans.left_of(edge.from, edge.to);
     const Vec3 facet = surface_.facet_normal(edge.from, edge.to, third);
     const Vec3 normal = surface_.facet_normal(edge.from, point, edge.to);
-    if (facet.dot(normal) >= winner.normal_cosine) return Verdict::create;
+    if (facet.dot(normal) >= winner_.normal_cosine) return Verdict::create;
     bool continues = false;
     for (const auto& [from, to] : {std::pair(edge.to, third), std::pair(third, edge.from)}) {
         const u32 beyond = fans.right_of(from, to);
         if (beyond == invalid_index) continue;
         const Vec3 check = surface_.facet_normal(from, to, point);
-        if (!(surface_.facet_normal(to, from, beyond).dot(check) > winner.neighbour_cosine)) continue;
+        if (!(surface_.facet_normal(to, from, beyond).dot(check) > winner_.neighbour_cosine)) continue;
         continues = true;
-        if (facet.dot(check) >= winner.overlap_cosine) return Verdict::split;
+        if (facet.dot(check) >= winner_.overlap_cosine) return Verdict::split;
     }
     return continues ? Verdict::create : Verdict::extra;
 }
@@ -308,11 +305,10 @@ bool Triangulation::start(u32 point, std::span<const u32> near, const Limits& li
         }
     }
     if (least == std::numeric_limits<double>::infinity()) return false;
-    const Vec3 normal = surface_.facet_normal(best[0], best[1], best[2]);
-    if (normal.dot(up_) < 0) std::swap(best[1], best[2]);
+    if (surface_.facet_normal(best[0], best[1], best[2]).dot(up_) < 0) std::swap(best[1], best[2]);
     Limits in_space = limits;
     in_space.in_space = true;
-    if (!is_free(best, normal.dot(up_) < 0 ? Vec3(-normal) : normal, near, in_space)) return false;
+    if (!is_free(best, surface_.facet_normal(best[0], best[1], best[2]), near, in_space)) return false;
     add(best);
     partner_ = best[1];
     return true;
@@ -373,7 +369,7 @@ bool Triangulation::join_others(u32 point, std::span<const u32> near, const Limi
             if (join_reversed(triangle, near, limits)) return true;
             continue;
         }
-        if (judge(point, edge, winner_) != Verdict::create || !fits(triangle, near, limits, true)) continue;
+        if (judge(point, edge) != Verdict::create || !fits(triangle, near, limits, true)) continue;
         add(triangle);
         return true;
     }

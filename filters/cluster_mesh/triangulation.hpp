@@ -26,8 +26,8 @@ struct Limits {
     double joint_cosine;  ///< least, between the normals of triangles that share an edge other than a winner edge
     double point_cosine;  ///< least, between the normals of the triangle and of its points
     double sharp_cosine;  ///< the same for points at edges
-    bool empty_circle;
-    bool leaves_room;  ///< no point that is in no triangle yet may lie over the new triangle
+    bool empty_circle;  ///< no such point, and no boundary point, may lie in the sphere around its circumcircle
+    bool leaves_room;  ///< no point that is in no triangle yet may lie over it
     bool in_space;  ///< test intersections in space everywhere, not only where surfaces that face apart are near
 };
 
@@ -63,6 +63,7 @@ public:
     /// Removes meshes of a few points, which may hover over others; their points wait again.
     void remove_small_meshes();
 
+    bool is_inserted(u32 point) const { return inserted_[point]; }
     /// Inserted and in no triangle.
     bool is_loose(u32 point) const { return inserted_[point] && !surface_.is_used(point); }
     /// Whether the point is in a triangle and on the boundary.
@@ -79,8 +80,10 @@ private:
     };
     enum class Verdict { create, split, extra };
 
+    /// Fills candidates_: the boundary edges with both ends near the point, nearest first.
     void collect(u32 point, std::span<const u32> near);
-    Verdict judge(u32 point, const Candidate& edge, const WinnerLimits& winner) const;
+    /// The paper's tests of the angles theta, gamma and psi.
+    Verdict judge(u32 point, const Candidate& edge) const;
     /// Whether triangle from → apex → to, at the boundary edge from → to, may be added. `near`: around a corner of it.
     bool fits(const Triangle& triangle, std::span<const u32> near, const Limits& limits, bool at_winner);
     /// Whether the surface is flat at the triangle, so that its corners belong to one sheet.
@@ -89,12 +92,17 @@ private:
     bool is_reversed_at(const Triangle& triangle) const;
     bool has_good_angles(const Triangle& triangle, const Limits& limits) const;
     bool agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const;
+    /// Whether the triangle overlaps and intersects no others, and leaves the points near it uncovered.
     bool is_free(const Triangle& triangle, const Vec3& normal, std::span<const u32> near, const Limits& limits);
     bool intersects(const Triangle& triangle, std::span<const u32> near);
 
+    /// Splits the triangle that the point lies over, or the two at an edge that it lies on.
     bool split_covering(u32 point, std::span<const u32> near, const Limits& limits);
+    /// Forms the triangle of least circumradius with two other loose points.
     bool start(u32 point, std::span<const u32> near, const Limits& limits);
+    /// Adds one triangle at a corner of the boundary at the point or beside it, the narrowest that fits.
     bool close_corners(u32 point, std::span<const u32> near, const Limits& limits);
+    /// Adds one triangle between the point, which is on the boundary, and another boundary edge near it.
     bool join_others(u32 point, std::span<const u32> near, const Limits& limits);
 
     /// Joins two meshes with opposite orientations: reverses the smaller one and adds the triangle, if it fits then.
@@ -108,9 +116,6 @@ private:
 
     double squared(u32 a, u32 b) const { return (surface_.positions[a] - surface_.positions[b]).squaredNorm(); }
     bool is_short(u32 a, u32 b) const { return squared(a, b) < squared_edge_; }
-    bool is_boundary(u32 from, u32 to) const {
-        return surface_.fans.left_of(from, to) != invalid_index && surface_.fans.right_of(from, to) == invalid_index;
-    }
 
     Surface& surface_;
     double squared_edge_;

@@ -25,7 +25,7 @@ SCANMILL_FILTER() {
                   "A box with a large hole through its middle and four small ones; size: x, y, z, the two radii."},
                  {"hyperboloid", P::Shape::hyperboloid,
                   "A saddle above a disc, part of a hyperboloid of one sheet; size: radius, height in the middle."}},
-                "The surface to scan when there is no mesh, by formula and not through triangles.")
+                "The shape to scan if no mesh is given. Rays meet its exact surface, not triangles.")
         .param("size", &P::size, "The shape's dimensions in the scan's own unit; empty takes defaults around 1 u.",
                above(0))
         .param(

@@ -96,12 +96,8 @@ TEST(ClusterMesh_Clusters, APointThatDoesNotJoin_KeepsItsOwnCluster) {
     const std::vector<u32> both{0, 1};
     EXPECT_EQ(clusters.meet(2, both), 4);
     EXPECT_EQ(clusters.size(2), 1u);
-    clusters.set_meshed(0);
-    EXPECT_TRUE(clusters.is_meshed(1));
-    EXPECT_FALSE(clusters.is_meshed(2));
     clusters.unite(2, 0);
     EXPECT_EQ(clusters.size(2), 3u);
-    EXPECT_TRUE(clusters.is_meshed(2));
 }
 
 TEST(ClusterMesh_MeshComponents, ListTheirPoints) {
