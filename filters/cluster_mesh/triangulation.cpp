@@ -30,9 +30,6 @@ constexpr std::size_t few_points = 6;
 /// Where the normals of near vertices are farther than 30 degrees from a triangle's, it is tested in space.
 constexpr double flat_cosine = 0.8660254037844387;
 
-/// Above this surface variation the normal of a point is meaningless: it lies at a tip.
-constexpr float tip_variation = 0.18f;
-
 }  // namespace
 
 Triangulation::Triangulation(Surface& surface, double max_edge, const Vec3& up, const WinnerLimits& winner)
@@ -132,32 +129,13 @@ Triangulation::Verdict Triangulation::judge(u32 point, const Candidate& edge) co
     return continues ? Verdict::create : Verdict::extra;
 }
 
-bool Triangulation::has_good_angles(const Triangle& triangle, const Limits& limits) const {
-    const auto& p = surface_.positions;
-    const Vec3 u = p[triangle[1]] - p[triangle[0]], v = p[triangle[2]] - p[triangle[0]];
-    const double a = u.norm(), b = v.norm(), c = (u - v).norm();
-    const double twice_area = u.cross(v).norm();
-    return twice_area > 0 && std::min({a, b, c}) * twice_area >= limits.least_sine * a * b * c;
-}
-
-bool Triangulation::agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const {
-    for (u32 corner : triangle) {
-        const float variation = surface_.variation[corner];
-        if (variation > tip_variation) continue;
-        const double cosine = surface_.normals[corner].dot(normal);
-        const double least = variation > growing::sharp_variation ? limits.sharp_cosine : limits.point_cosine;
-        const bool sign_counts = surface_.is_used(corner);
-        if ((sign_counts ? cosine : std::abs(cosine)) < least) return false;
-    }
-    return true;
-}
-
 bool Triangulation::fits(const Triangle& triangle, std::span<const u32> near, const Limits& limits, bool at_winner) {
     const auto& [from, apex, to] = triangle;
     const Fans& fans = surface_.fans;
-    if (!is_short(from, apex) || !is_short(apex, to) || !has_good_angles(triangle, limits)) return false;
+    if (!is_short(from, apex) || !is_short(apex, to) || !has_angles_of(surface_, triangle, limits.least_sine))
+        return false;
     const Vec3 normal = surface_.facet_normal(from, apex, to);
-    if (!agrees_with_points(triangle, normal, limits)) return false;
+    if (!agrees_with_points(surface_, triangle, normal, limits.point_cosine, limits.sharp_cosine)) return false;
     if (fans.left_of(from, apex) != invalid_index || fans.left_of(apex, to) != invalid_index) return false;
     const auto agrees = [&](u32 a, u32 b, double least) {
         const u32 third = fans.right_of(a, b);
@@ -269,13 +247,7 @@ bool Triangulation::split_covering(u32 point, std::span<const u32> near, const L
         added = {{a, b, point}, {b, c, point}, {c, a, point}};
     const Vec3 before = surface_.facet_normal(a, b, c);
     for (const Triangle& triangle : added)
-        if (!has_good_angles(triangle, {.least_sine = 1e-3,
-                                        .joint_cosine = 0,
-                                        .point_cosine = 0,
-                                        .sharp_cosine = 0,
-                                        .empty_circle = false,
-                                        .leaves_room = false,
-                                        .in_space = false}) ||
+        if (!has_angles_of(surface_, triangle, 1e-3) ||
             !(surface_.facet_normal(triangle[0], triangle[1], triangle[2]).dot(before) > 0.5))
             return false;
     const double cosine = std::abs(surface_.normals[point].dot(before));
@@ -294,12 +266,16 @@ bool Triangulation::start(u32 point, std::span<const u32> near, const Limits& li
         if (!is_loose(near[i])) continue;
         for (std::size_t j = 0; j < i; ++j) {
             const Triangle triangle{point, near[j], near[i]};
-            if (!is_loose(near[j]) || !is_short(near[i], near[j]) || !has_good_angles(triangle, limits)) continue;
+            if (!is_loose(near[j]) || !is_short(near[i], near[j]) ||
+                !has_angles_of(surface_, triangle, limits.least_sine))
+                continue;
             const Vec3 normal = surface_.facet_normal(point, near[j], near[i]);
             const double a = squared(point, near[i]), b = squared(point, near[j]), c = squared(near[i], near[j]);
             const Vec3 doubled = (p[near[j]] - p[point]).cross(p[near[i]] - p[point]);
             const double circumradius = a * b * c / doubled.squaredNorm();
-            if (circumradius >= least || !agrees_with_points(triangle, normal, limits)) continue;
+            if (circumradius >= least ||
+                !agrees_with_points(surface_, triangle, normal, limits.point_cosine, limits.sharp_cosine))
+                continue;
             least = circumradius;
             best = triangle;
         }

@@ -90,8 +90,6 @@ private:
     bool is_flat(const Triangle& triangle) const;
     /// Whether the apex belongs to another mesh, whose triangles are on the other side.
     bool is_reversed_at(const Triangle& triangle) const;
-    bool has_good_angles(const Triangle& triangle, const Limits& limits) const;
-    bool agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const;
     /// Whether the triangle overlaps and intersects no others, and leaves the points near it uncovered.
     bool is_free(const Triangle& triangle, const Vec3& normal, std::span<const u32> near, const Limits& limits);
     bool intersects(const Triangle& triangle, std::span<const u32> near);

@@ -17,9 +17,6 @@ namespace {
 /// Scores that differ by less than this, relative to 1 or to themselves, are equal: rounding at points of a grid.
 constexpr double score_tolerance = 1e-9;
 
-/// Above this surface variation the normal of a point is meaningless: it lies at a tip.
-constexpr float tip_variation = 0.18f;
-
 }  // namespace
 
 OpenPoints::OpenPoints(const Surface& surface)
@@ -263,9 +260,11 @@ bool PointChooser::is_suitable(u32 from, u32 to, const Candidate& candidate, con
 bool PointChooser::satisfies_limits(u32 from, u32 to, const Candidate& candidate, const Limits& limits,
                                     bool is_seed) const {
     const u32 point = candidate.point;
-    if (surface_.states[point] == PointState::interior || !has_good_angles(from, to, point, limits)) return false;
     const Triangle triangle{from, point, to};
-    if (!agrees_with_points(triangle, candidate.normal, limits)) return false;
+    if (surface_.states[point] == PointState::interior || !has_angles_of(surface_, triangle, limits.least_sine))
+        return false;
+    if (!agrees_with_points(surface_, triangle, candidate.normal, limits.point_cosine, limits.sharp_cosine))
+        return false;
     if (is_seed) return true;
     const Fans& fans = surface_.fans;
     if (fans.left_of(from, point) != invalid_index || fans.left_of(point, to) != invalid_index) return false;
@@ -276,25 +275,6 @@ bool PointChooser::satisfies_limits(u32 from, u32 to, const Candidate& candidate
     const bool touches =
         !fans.empty(point) && fans.left_of(point, from) == invalid_index && fans.left_of(to, point) == invalid_index;
     return !touches || fan_normal(surface_, point, Vec3::Zero()).dot(candidate.normal) >= limits.touch_cosine;
-}
-
-bool PointChooser::has_good_angles(u32 from, u32 to, u32 point, const Limits& limits) const {
-    const auto& p = surface_.positions;
-    const double a = (p[point] - p[to]).norm(), b = (p[point] - p[from]).norm(), c = (p[to] - p[from]).norm();
-    // The smallest angle is opposite the shortest side. Its sine is that side over the diameter of the circumcircle.
-    const double twice_area = (p[point] - p[from]).cross(p[to] - p[from]).norm();
-    return std::min({a, b, c}) * twice_area >= limits.least_sine * a * b * c;
-}
-
-bool PointChooser::agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const {
-    return std::ranges::all_of(triangle, [&](u32 corner) {
-        const double cosine = surface_.normals[corner].dot(normal);
-        const bool sign_counts = surface_.oriented || surface_.states[corner] != PointState::unused;
-        const float variation = surface_.variation[corner];
-        if (variation > tip_variation) return true;
-        const double least = variation > sharp_variation ? limits.sharp_cosine : limits.point_cosine;
-        return (sign_counts ? cosine : std::abs(cosine)) >= least;
-    });
 }
 
 bool PointChooser::agrees_with_joined(u32 from, u32 to, const Vec3& normal, double least_cosine) const {

@@ -111,8 +111,6 @@ private:
     bool is_suitable(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool is_seed);
     /// Together with sectors_are_free() everything that does not depend on other candidates.
     bool satisfies_limits(u32 from, u32 to, const Candidate& candidate, const Limits& limits, bool is_seed) const;
-    bool has_good_angles(u32 from, u32 to, u32 point, const Limits& limits) const;
-    bool agrees_with_points(const Triangle& triangle, const Vec3& normal, const Limits& limits) const;
     bool agrees_with_joined(u32 from, u32 to, const Vec3& normal, double least_cosine) const;
     /// Whether a rejected candidate lies in the triangle, or the boundary crosses it.
     bool overlaps_others(const Triangle& triangle, const Vec3& normal);

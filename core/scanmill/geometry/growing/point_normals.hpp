@@ -9,6 +9,8 @@ namespace scanmill::growing {
 /// A point with a surface variation above this lies at an edge or a tip. At an edge of 90 degrees it is 0.1; noise of
 /// 0.3 spacings makes 0.03.
 inline constexpr float sharp_variation = 0.04f;
+/// Above this the normal of a point is meaningless: it lies at a tip.
+inline constexpr float tip_variation = 0.18f;
 
 struct PointNormals {
     /// Unit length. The sign of principal normals is arbitrary.

@@ -126,6 +126,27 @@ void Surface::drop(std::vector<Triangle> removed) {
     passes.resize(kept);
 }
 
+bool has_angles_of(const Surface& surface, const Triangle& triangle, double least_sine) {
+    const auto& p = surface.positions;
+    const auto& [from, point, to] = triangle;
+    const double a = (p[point] - p[to]).norm(), b = (p[point] - p[from]).norm(), c = (p[to] - p[from]).norm();
+    // The smallest angle is opposite the shortest side. Its sine is that side over the diameter of the circumcircle.
+    const double twice_area = (p[point] - p[from]).cross(p[to] - p[from]).norm();
+    return std::min({a, b, c}) * twice_area >= least_sine * a * b * c;
+}
+
+bool agrees_with_points(const Surface& surface, const Triangle& triangle, const Vec3& normal, double point_cosine,
+                        double sharp_cosine) {
+    return std::ranges::all_of(triangle, [&](u32 corner) {
+        const double cosine = surface.normals[corner].dot(normal);
+        const bool sign_counts = surface.oriented || surface.is_used(corner);
+        const float variation = surface.variation[corner];
+        if (variation > tip_variation) return true;
+        const double least = variation > sharp_variation ? sharp_cosine : point_cosine;
+        return (sign_counts ? cosine : std::abs(cosine)) >= least;
+    });
+}
+
 std::size_t remove_extra_fans(Surface& surface) {
     std::vector<u32> candidates;
     for (u32 vertex = 0; vertex < surface.states.size(); ++vertex)

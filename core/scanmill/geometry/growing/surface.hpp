@@ -173,6 +173,15 @@ struct Surface {
     void drop(std::vector<Triangle> removed);
 };
 
+/// Whether the sine of the triangle's smallest angle is at least this.
+bool has_angles_of(const Surface& surface, const Triangle& triangle, double least_sine);
+
+/// Whether the cosine between the triangle's normal and that of each of its points is at least `point_cosine`, or at
+/// points at edges `sharp_cosine`. Points at tips agree with every normal. The sign counts at points of the surface,
+/// and at all points if the surface is oriented.
+bool agrees_with_points(const Surface& surface, const Triangle& triangle, const Vec3& normal, double point_cosine,
+                        double sharp_cosine);
+
 /// Removes triangles until those of every vertex form one fan, open or closed. Of several fans the one with most
 /// triangles stays, of equal ones the one with the lowest vertex. Returns the number of removed triangles. Cost:
 /// linear.
