@@ -15,9 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// In each library a folder may include itself and those before it; engine may include all of core.
-const std::vector<std::string> layers{
-    "base",     "io",   "data",  "geometry", "kinds", "formats", "filter", "plugin",    // core
-    "workflow", "plan", "batch", "graph",    "cache", "worker",  "run",    "records", "session", "describe"};  // engine
+const std::vector<std::string> layers{"base",     "io",     "data",    "geometry", "kinds",   "formats",
+                                      "filter",   "plugin",    // core
+                                      "workflow", "plan",   "gate",    "batch",    "graph",   "cache",
+                                      "worker",   "run",    "records", "compare",  "session", "describe"};  // engine
 const std::vector<std::string> geometry_layers{"spatial", "mesh", "fit", "tets", "distance", "growing"};
 
 struct Include {

@@ -19,6 +19,11 @@ enum class Unit { count, length, area, volume, angle, ratio, seconds, number, bo
 std::string_view name_of(Unit unit);
 std::optional<Unit> unit_named(std::string_view name);
 
+/// Which of two values of a metric is the better one; `neither` also for those that only should not change.
+enum class Better { neither, larger, smaller };
+std::string_view name_of(Better better);
+std::optional<Better> better_named(std::string_view name);
+
 struct Metric {
     std::string name;
     double value;

@@ -155,10 +155,17 @@ enum class PortOption { optional, list };
 inline constexpr PortOption optional = PortOption::optional;
 inline constexpr PortOption list = PortOption::list;
 
-/// Metric options, none, one or both: a column in a run's summary; reported once per item (NAME, NAME@2, …).
-enum class MetricOption { headline, numbered };
+/// Option of an output: only steps that name it in `in` take it.
+enum class OutputOption { by_name };
+inline constexpr OutputOption by_name = OutputOption::by_name;
+
+/// Metric options, any of them: a column in a run's summary; reported once per item (NAME, NAME@2, …); which of two
+/// values is better, where one is.
+enum class MetricOption { headline, numbered, larger_is_better, smaller_is_better };
 inline constexpr MetricOption headline = MetricOption::headline;
 inline constexpr MetricOption numbered = MetricOption::numbered;
+inline constexpr MetricOption larger_is_better = MetricOption::larger_is_better;
+inline constexpr MetricOption smaller_is_better = MetricOption::smaller_is_better;
 
 /// One alternative of a choice: its written name, the enumerator, what it does.
 template <class Enum>
@@ -198,9 +205,10 @@ public:
         return *this;
     }
     /// The first output is the primary one.
-    template <class T>
-    Declare& out(std::string port, std::string help) {
+    template <class T, std::same_as<OutputOption>... Options>
+    Declare& out(std::string port, std::string help, Options... options) {
         declaration_.spec.outputs.push_back({std::move(port), kind_of<T>(), std::move(help)});
+        declaration_.spec.outputs.back().by_name = ((options == OutputOption::by_name) || ...);
         return *this;
     }
     /// An output of the kind of the value at the input `like`, which is declared before it.
@@ -246,9 +254,16 @@ public:
     }
     template <std::same_as<MetricOption>... Options>
     Declare& metric(std::string name, Unit unit, std::string help, Options... options) {
-        declaration_.spec.metrics.push_back({std::move(name), unit, std::move(help),
-                                             ((options == MetricOption::headline) || ...),
-                                             ((options == MetricOption::numbered) || ...)});
+        const auto has = [&](MetricOption wanted) { return ((options == wanted) || ...); };
+        declaration_.spec.metrics.push_back({std::move(name), unit, std::move(help), has(headline), has(numbered),
+                                             has(larger_is_better)    ? Better::larger
+                                             : has(smaller_is_better) ? Better::smaller
+                                                                      : Better::neither});
+        return *this;
+    }
+    /// The filter measures the value at one input by the truth at another: a batch applies it to its results.
+    Declare& measures(std::string value, std::string truth) {
+        declaration_.spec.measures = MeasureSpec{std::move(value), std::move(truth)};
         return *this;
     }
     /// `body(inputs, params, context)` returns Outputs.

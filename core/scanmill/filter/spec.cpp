@@ -102,6 +102,13 @@ void require_sound_stream(const FilterSpec& spec) {
     }
 }
 
+void require_sound_measure(const FilterSpec& spec) {
+    for (const std::string& name : {spec.measures->value, spec.measures->truth})
+        if (const PortSpec* input = spec.input(name); !input || input->optional || input->list)
+            throw Error("filter {}: it measures with '{}', which must be a required input of one value", spec.name,
+                        name);
+}
+
 }  // namespace
 
 const PortSpec* FilterSpec::input(std::string_view port) const { return find_named(inputs, port); }
@@ -146,6 +153,7 @@ void require_sound(const FilterSpec& spec) {
     if (std::ranges::any_of(spec.inputs, has_coordinates)) require_remark(spec.name, "NaN", spec.not_finite);
     for (const ParameterSpec& parameter : spec.parameters) require_sound_parameter(spec, parameter);
     if (spec.streams) require_sound_stream(spec);
+    if (spec.measures) require_sound_measure(spec);
 }
 
 }  // namespace scanmill

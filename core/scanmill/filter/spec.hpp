@@ -24,6 +24,7 @@ struct PortSpec {
     std::string
         like{};  ///< the input that determines the value's kind; outputs only. `kind` is that input's first kind
     std::string maker{};  ///< the filter that usually produces the value; empty: any of the kind
+    bool by_name = false;  ///< no later step takes it as the nearest value of its kind; outputs only
 
     bool takes(Kind other) const { return kind == other || std::ranges::find(also, other) != also.end(); }
     bool operator==(const PortSpec&) const = default;
@@ -38,6 +39,7 @@ struct MetricSpec {
     std::string help;
     bool headline = false;  ///< worth a column in a run's summary
     bool numbered = false;  ///< reported once per item: NAME of the first, NAME@2 of the second, …
+    Better better = Better::neither;
 
     bool operator==(const MetricSpec&) const = default;
 };
@@ -49,6 +51,13 @@ struct StreamSpec {
     std::vector<std::string> given;
 
     bool operator==(const StreamSpec&) const = default;
+};
+
+/// Of a filter that measures a value by its truth: the names of these two inputs.
+struct MeasureSpec {
+    std::string value, truth;
+
+    bool operator==(const MeasureSpec&) const = default;
 };
 
 struct FilterSpec {
@@ -63,6 +72,7 @@ struct FilterSpec {
     std::vector<ParameterSpec> parameters;
     std::vector<MetricSpec> metrics;
     std::optional<StreamSpec> streams;
+    std::optional<MeasureSpec> measures;
     /// Names of columns that it may add to its outputs. Formats that cannot hold them leave them out without a warning.
     std::vector<std::string> adds;
 
@@ -78,7 +88,8 @@ struct FilterSpec {
 /// sentence or only repeats the name, a default outside its range, no output; a missing remark on ties (filters with
 /// inputs) or on NaN (filters that take points or meshes); a number of neighbours whose help does not state whether the
 /// point itself is counted; a stream whose first input is not one cloud of points or that has other required inputs, or
-/// that needs parameters that do not exist or always have a value.
+/// that needs parameters that do not exist or always have a value; a filter that measures and lacks one of the two
+/// inputs.
 void require_sound(const FilterSpec& spec);
 
 }  // namespace scanmill

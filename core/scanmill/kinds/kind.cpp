@@ -47,7 +47,8 @@ struct KindTraits<TriangleMesh> : FromPositions<TriangleMesh>, NoJson<TriangleMe
         return mesh.triangles.empty() ? point_spacing(mesh.positions.span()) : edge_spacing(mesh);
     }
     static std::vector<PropertySpec> property_specs() {
-        return {{"closed", Unit::boolean, "A closed, oriented manifold: no boundary, one fan at every vertex."},
+        return {{"closed", Unit::boolean, "A closed, oriented manifold: no boundary, one fan at every vertex.",
+                 Better::larger},
                 {"components", Unit::count, "Edge-connected components."},
                 {"genus", Unit::count, "Handles, summed over the components, holes counted as filled."},
                 {"boundary-loops", Unit::count, "Boundary loops."},

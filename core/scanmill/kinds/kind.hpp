@@ -37,6 +37,7 @@ struct PropertySpec {
     std::string name;
     Unit unit = Unit::number;
     std::string help;
+    Better better = Better::neither;
 };
 
 using OnWarning = std::function<void(std::string sentence)>;

@@ -16,7 +16,8 @@ using Json = nlohmann::ordered_json;
 constexpr int manifest_version = 1;
 
 template <class T>
-concept Named = std::same_as<T, Kind> || std::same_as<T, Unit> || std::same_as<T, ParameterType>;
+concept Named =
+    std::same_as<T, Kind> || std::same_as<T, Unit> || std::same_as<T, ParameterType> || std::same_as<T, Better>;
 template <class T>
 concept List = std::same_as<T, std::vector<typename T::value_type>>;
 template <class T>
@@ -24,6 +25,7 @@ concept Optional = std::same_as<T, std::optional<typename T::value_type>>;
 
 std::optional<Kind> find_named(const std::string& name, Kind) { return kind_named(name); }
 std::optional<Unit> find_named(const std::string& name, Unit) { return unit_named(name); }
+std::optional<Better> find_named(const std::string& name, Better) { return better_named(name); }
 std::optional<ParameterType> find_named(const std::string& name, ParameterType) { return parameter_type_named(name); }
 
 /// Reads or writes the members of a JSON object.
@@ -103,14 +105,16 @@ private:
 void members(Archive& archive, Bound& bound) { archive("value", bound.value)("inclusive", bound.inclusive); }
 void members(Archive& archive, Choice& choice) { archive("name", choice.name)("help", choice.help); }
 void members(Archive& archive, StreamSpec& stream) { archive("given", stream.given); }
+void members(Archive& archive, MeasureSpec& measure) { archive("value", measure.value)("truth", measure.truth); }
 void members(Archive& archive, PortSpec& port) {
     archive("name", port.name)("kind", port.kind)("help", port.help);
     archive.optional("list", port.list).optional("optional", port.optional).optional("also", port.also);
-    archive.optional("like", port.like).optional("maker", port.maker);
+    archive.optional("like", port.like).optional("maker", port.maker).optional("by-name", port.by_name);
 }
 void members(Archive& archive, MetricSpec& metric) {
     archive("name", metric.name)("unit", metric.unit)("help", metric.help);
     archive.optional("headline", metric.headline).optional("numbered", metric.numbered);
+    archive.optional("better", metric.better);
 }
 void members(Archive& archive, ParameterSpec& parameter) {
     archive("name", parameter.name)("type", parameter.type)("help", parameter.help);
@@ -125,7 +129,7 @@ void members(Archive& archive, Manifest& manifest) {
     archive.version("scanmill-manifest")("abi", manifest.abi)("name", spec.name)("version", spec.version);
     archive("summary", spec.summary)("source", spec.source)("ties", spec.ties)("not-finite", spec.not_finite);
     archive("inputs", spec.inputs)("outputs", spec.outputs)("parameters", spec.parameters)("metrics", spec.metrics);
-    archive.optional("streams", spec.streams).optional("adds", spec.adds);
+    archive.optional("streams", spec.streams).optional("measures", spec.measures).optional("adds", spec.adds);
 }
 void members(Archive& archive, FormatManifest& manifest) {
     FormatSpec& spec = manifest.spec;

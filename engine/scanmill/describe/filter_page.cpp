@@ -73,9 +73,13 @@ std::string parameters_table(const std::vector<ParameterSpec>& parameters) {
 std::string metrics_table(const std::vector<MetricSpec>& metrics) {
     if (metrics.empty()) return {};
     std::string table = "\n## Metrics\n\n| metric | unit | meaning |\n|---|---|---|\n";
-    for (const MetricSpec& metric : metrics)
+    for (const MetricSpec& metric : metrics) {
+        std::string meaning = cell(metric.help);
+        if (metric.better != Better::neither)
+            meaning += fmt::format(" {} is better.", metric.better == Better::larger ? "Larger" : "Smaller");
         table += fmt::format("| {} | {} | {} |\n", code(metric.name) + (metric.numbered ? ", `…@2`" : ""),
-                             name_of(metric.unit), cell(metric.help));
+                             name_of(metric.unit), meaning);
+    }
     return table;
 }
 

@@ -118,7 +118,7 @@ private:
             const std::vector<PortSpec>& outputs = scope_.plan.steps[*step].spec.outputs;
             std::vector<std::string> found;
             for (const PortSpec& output : outputs)
-                if (output.kind == port.kind) found.push_back(output.name);
+                if (output.kind == port.kind && !output.by_name) found.push_back(output.name);
             if (found.size() == 1) return {{*step, 0, found.front()}};
             if (found.size() > 1) {
                 ambiguous(port, fmt::format("'{}' has {} outputs of that kind ({})", scope_.plan.steps[*step].label,

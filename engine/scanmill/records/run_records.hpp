@@ -22,6 +22,7 @@ struct RunStart {
     unsigned threads = 1;  ///< inside a filter
     unsigned jobs = 0;     ///< worker processes; 0: none
     std::string version, machine, libraries;
+    std::string gate;  ///< to_json_text() of the batch's gate; empty: this run is not of a batch, or it has no gate
 };
 
 struct FailureRecord {
@@ -43,11 +44,21 @@ struct StepRecord {
     std::vector<std::pair<std::string, std::string>> authored, resolved;  ///< parameters, as text
     Metrics metrics, properties;
     std::vector<std::string> warnings;
+    std::string measures;  ///< what it measures by the cell's truth, as "surface"; empty: it measures nothing
 };
 
 struct OutputRecord {
     std::string file, kind, outcome;
     Metrics properties;
+    std::string sha256;      ///< of the file's bytes; empty: not written
+    std::int64_t bytes = 0;  ///< of the file
+    std::string moved_to;    ///< where the file of an earlier run was moved when this cell failed; empty: nowhere
+};
+
+/// What one pass over a cell cost, all of whose steps ran in it.
+struct CostRecord {
+    double seconds = 0, cpu_seconds = 0;  ///< sums over its steps
+    std::int64_t peak_memory = 0;         ///< bytes, the largest of its steps
 };
 
 struct CellRecord {
@@ -57,6 +68,8 @@ struct CellRecord {
     std::vector<std::size_t> nodes;  ///< of the run's graph; their steps were recorded before
     std::vector<OutputRecord> outputs;
     std::vector<std::string> doubts;
+    std::string truth;              ///< the file; empty: none
+    std::vector<CostRecord> costs;  ///< one per pass; empty if a step came from the cache or failed
 };
 
 struct RunSummary {
@@ -72,6 +85,20 @@ struct RunDetails {
     RunStart start;
     std::vector<CellRecord> cells;
     std::vector<StepRecord> steps;
+};
+
+/// A run was accepted as the baseline of its batch.
+struct Acceptance {
+    std::int64_t id = 0, run = 0;
+    std::string at, who, why;
+    std::optional<std::string> revoked_at;
+    std::string revoked_by, revoked_why;
+};
+
+/// What a cell of earlier runs cost.
+struct PastCosts {
+    std::string workflow, scan, variant;
+    std::vector<CostRecord> costs;  ///< the oldest first
 };
 
 /// A step of an earlier run, for comparison with the next.
@@ -105,6 +132,18 @@ public:
     void end(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells,
              const std::string& outcome, double seconds);
     void end(std::int64_t run, const std::string& outcome, double seconds) { end(run, {}, {}, outcome, seconds); }
+
+    /// Makes the run the baseline of its batch. Throws Error for an unknown run and one that has not ended.
+    void accept(std::int64_t run, const std::string& who, const std::string& why);
+    /// Revokes the newest valid acceptance of the batch, so that the one before it holds again. Throws Error if there
+    /// is none.
+    void revoke(const std::string& batch, const std::string& who, const std::string& why);
+    /// Of all batches, with revoked ones, in the order in which they were made.
+    std::vector<Acceptance> acceptances() const;
+    /// The run that was accepted last for this batch, and not revoked.
+    std::optional<Acceptance> baseline(const std::string& batch) const;
+    /// The costs of the batch's cells in the runs `first` <= run < `end` on this machine with so many threads and jobs.
+    std::vector<PastCosts> past_costs(const RunStart& like, std::int64_t first, std::int64_t end) const;
 
     /// In the order of their numbers.
     std::vector<RunSummary> runs() const;

@@ -119,6 +119,9 @@ TEST(Manifest, EveryFieldThatDiffers_MakesAnotherText) {
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.parameters[2].unless_given = "count"; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].headline = true; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].numbered = true; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.metrics[0].better = Better::smaller; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.outputs[0].by_name = true; }));
+    EXPECT_TRUE(changed([](FilterSpec& spec) { spec.measures = MeasureSpec{"mesh", "truth"}; }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.streams.emplace(); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { spec.adds.push_back("bin-size"); }));
     EXPECT_TRUE(changed([](FilterSpec& spec) { std::swap(spec.outputs[0], spec.outputs[1]); }));
