@@ -22,12 +22,12 @@ struct RunStart {
     unsigned threads = 1;  ///< inside a filter
     unsigned jobs = 0;     ///< worker processes; 0: none
     std::string version, machine, libraries;
-    std::string gate;  ///< to_json_text() of the batch's gate; empty: this run is not of a batch, or it has no gate
+    std::string gate{};  ///< to_json_text() of the batch's gate; empty: this run is not of a batch, or it has no gate
 };
 
 struct FailureRecord {
     std::string cause;  ///< empty: none
-    int number = 0;      ///< signal or exit code
+    int number = 0;  ///< signal or exit code
     std::string error;  ///< whole text with frames and hint
 };
 
@@ -50,15 +50,15 @@ struct StepRecord {
 struct OutputRecord {
     std::string file, kind, outcome;
     Metrics properties;
-    std::string sha256;      ///< of the file's bytes; empty: not written
+    std::string sha256{};  ///< of the file's bytes; empty: not written
     std::int64_t bytes = 0;  ///< of the file
-    std::string moved_to;    ///< where the file of an earlier run was moved when this cell failed; empty: nowhere
+    std::string moved_to{};  ///< where the file of an earlier run was moved when this cell failed; empty: nowhere
 };
 
 /// What one pass over a cell cost, all of whose steps ran in it.
 struct CostRecord {
     double seconds = 0, cpu_seconds = 0;  ///< sums over its steps
-    std::int64_t peak_memory = 0;         ///< bytes, the largest of its steps
+    std::int64_t peak_memory = 0;  ///< bytes, the largest of its steps
 };
 
 struct CellRecord {
@@ -68,7 +68,7 @@ struct CellRecord {
     std::vector<std::size_t> nodes;  ///< of the run's graph; their steps were recorded before
     std::vector<OutputRecord> outputs;
     std::vector<std::string> doubts;
-    std::string truth;              ///< the file; empty: none
+    std::string truth;  ///< the file; empty: none
     std::vector<CostRecord> costs;  ///< one per pass; empty if a step came from the cache or failed
 };
 
