@@ -232,6 +232,21 @@ TEST_F(MeasureCommand, Deviation_IsWiredByItsNameAlone) {
     EXPECT_THAT(scanmill({"check", "w.yaml", "--plan"}).out, HasSubstr("mesh <- measure.deviation\n"));
 }
 
+TEST_F(MeasureCommand, DeviationThatNothingUses_IsNotCached) {
+    const auto values = [&] {
+        return json::parse(scanmill({"cache", "info", "--cache", "cache", "--json"}).out)["values"].get<int>();
+    };
+    ASSERT_EQ(run({"--keep", "always"}).exit_code, 0);
+    const int before = values();
+    folder_.write("w.yaml", workflow("mean: < 5 %diag") + "  \"{scan}-deviation.ply\": measure.deviation\n");
+    for (int i = 0; i < 2; ++i) {
+        ASSERT_EQ(run({"--keep", "always"}).exit_code, 0);
+        EXPECT_EQ(values(), before + 1);
+    }
+    const json steps = json::parse(scanmill({"runs", "out", "show", "3", "--json"}).out)["steps"];
+    EXPECT_EQ(steps.back()["origin"], "cached");
+}
+
 TEST_F(MeasureCommand, TruthIsNeverGuessed) {
     folder_.write("w.yaml",
                   "scanmill: 1\nname: w\ninputs:\n  mesh: mesh\nsteps:\n  - measure:\noutputs:\n  \"{scan}.json\": "

@@ -365,15 +365,20 @@ void Workbench::store(const Job& job, const JobCaching& caching, const std::stri
         result.warnings.push_back(warning.starts_with(path_prefix) ? warning.substr(path_prefix.size()) : warning);
     result.doubts = report.node.doubts;
     result.seconds = seconds;
-    store_values(job.node, caching, caching.inputs_cost + seconds, report);
+    store_values(job, caching, caching.inputs_cost + seconds, report);
     if (cache_->keep_step(run_key, result)) cache_->keep_run_key(caching.plan_key, run_key);
 }
 
-void Workbench::store_values(std::size_t node, const JobCaching& caching, double cost, JobReport& report) {
-    for (const auto& [port, value] : values_[node]) {
+void Workbench::store_values(const Job& job, const JobCaching& caching, double cost, JobReport& report) {
+    const auto* work = std::get_if<StepWork>(&job.work);
+    for (const auto& [port, value] : values_[job.node]) {
+        // What steps take by name alone, most workflows do not use.
+        const PortSpec* output = work ? work->step->spec.output(port) : nullptr;
+        const bool is_used =
+            !output || !output->by_name || std::ranges::find(caching.needed, port) != caching.needed.end();
         const EncodedValue encoded(value);
         bool kept = cache_->has_value(encoded.content(), encoded.size());
-        if (!kept && (caching.keep_always || rule_.is_worth(cost, encoded.size()))) {
+        if (!kept && is_used && (caching.keep_always || rule_.is_worth(cost, encoded.size()))) {
             const auto start = std::chrono::steady_clock::now();
             kept = cache_->keep_value(encoded);
             if (kept) rule_.wrote(encoded.size(), seconds_since(start));
