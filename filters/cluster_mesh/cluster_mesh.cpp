@@ -24,6 +24,7 @@
 #include "scanmill/geometry/growing/holes.hpp"
 #include "scanmill/geometry/growing/point_normals.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 
 namespace scanmill {
 
@@ -255,25 +256,21 @@ void list_triangles(Surface& surface) {
 }
 
 /// Flips edges as edge_flip() does, except where the new triangles would intersect others. Returns the number of flips.
-std::size_t flip_edges(const PointCloud& cloud, Surface& surface, double max_edge, Context& context) {
+std::size_t flip_edges(Surface& surface, double max_edge, Context& context) {
     list_triangles(surface);
-    const growing::FinishedMesh finished = growing::finish_mesh(cloud, surface);
+    TriangleMesh mesh;
+    mesh.positions = Array<Vec3>(surface.positions);
+    mesh.triangles = Array<Triangle>(surface.triangles);
     ContextOptions options;
     options.threads = context.threads();
     options.is_cancelled = [&] { return context.cancelled(); };
     Context silent(std::move(options));
     EdgeFlipParams params;
     params.max_edge = Length(max_edge);
-    const EdgeFlipResult flipped = edge_flip(finished.mesh, params, silent);
-    std::vector<u32> point_of_vertex(finished.rows.size());
-    for (u32 point = 0; point < finished.vertex_of_point.size(); ++point)
-        if (finished.vertex_of_point[point] != growing::invalid_index)
-            point_of_vertex[finished.vertex_of_point[point]] = point;
+    const EdgeFlipResult flipped = edge_flip(mesh, params, silent);
     growing::NearTriangles near;
     std::size_t flips = 0;
-    for (const EdgeFlip& flip : flipped.flips) {
-        const u32 a = point_of_vertex[flip.a], b = point_of_vertex[flip.b], c = point_of_vertex[flip.c],
-                  d = point_of_vertex[flip.d];
+    for (const auto& [a, b, c, d] : flipped.flips) {
         growing::Fans& fans = surface.fans;
         const std::array<Triangle, 2> before{{{a, b, c}, {b, a, d}}}, after{{{c, a, d}, {d, b, c}}};
         // An earlier flip that was left out may have kept one of the triangles from being made.
@@ -334,19 +331,6 @@ void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, Tri
     };
     column("cluster-1", clusters.first_level());
     column("cluster-2", clusters.second_level());
-}
-
-/// Pre: one fan at every vertex.
-void count_loops(const Surface& surface, ClusterMeshResult& result) {
-    std::vector<bool> visited(surface.states.size(), false);
-    for (u32 point = 0; point < surface.states.size(); ++point) {
-        if (surface.states[point] != growing::PointState::front || visited[point]) continue;
-        ++result.loops;
-        for (u32 at = point; !visited[at]; at = surface.next_on_boundary(at)) {
-            visited[at] = true;
-            ++result.boundary_edges;
-        }
-    }
 }
 
 /// Metrics as plugin.cpp declares them, warnings and doubts.
@@ -429,7 +413,7 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
         growing::close_narrow_holes(surface, {largest_radius, few_edges, std::numbers::pi, result.max_edge}, context);
     result.closed_holes += narrow.closed;
     result.removed_triangles += narrow.replaced;
-    result.flips = flip_edges(cloud, surface, result.max_edge, context);
+    result.flips = flip_edges(surface, result.max_edge, context);
     list_triangles(surface);
     result.removed_triangles += remove_intersecting(surface, context);
     const growing::Components components = growing::find_components(surface);
@@ -447,7 +431,9 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     result.unused_points = points.size() - finished.rows.size();
     result.rows = std::move(finished.rows);
     result.mesh = std::move(finished.mesh);
-    count_loops(surface, result);
+    const MeshTopology shape = topology(result.mesh);
+    result.loops = shape.boundary_loops;
+    result.boundary_edges = shape.boundary_edges;
     report(result, points.size(), context);
     context.progress(1);
     return result;

@@ -27,8 +27,8 @@ struct ClusterMeshParams {
         paper,   ///< by distance to the slicing plane
         nearest  ///< next comes the point nearest to an inserted one
     };
-    /// Every edge of the mesh is shorter. Above 0; absent: 2.3 times the largest value of the column `bin-size`, or
-    /// without one 2.5 times the median distance of a point to the nearest other one.
+    /// Every edge of the mesh is shorter. Above 0; absent: 2.5 times the median distance of a point to the nearest other
+    /// one, and at least 2.3 times the largest value of the column `bin-size`.
     std::optional<Length> max_edge;
     /// Slicing planes are perpendicular to it.
     Axis axis = Axis::x;
