@@ -142,7 +142,6 @@ private:
                 const Outcome outcome = triangulation_.insert(point, around, &limits != &passes[0], limits);
                 if (outcome == Outcome::loose || outcome == Outcome::extra) continue;
                 splits_ += outcome == Outcome::split;
-                clusters_.unite(point, triangulation_.partner());
                 changed = true;
             } else if (triangulation_.is_open(point))
                 changed = triangulation_.complete(point, around, limits) || changed;
@@ -321,6 +320,14 @@ std::size_t remove_intersecting(Surface& surface, Context& context) {
     return count + growing::remove_extra_fans(surface);
 }
 
+/// The completion joins clusters of level 2 that growth kept apart.
+void unite_along_triangles(Clusters& clusters, const Surface& surface) {
+    for (const auto& [a, b, c] : surface.triangles) {
+        clusters.unite(a, b);
+        clusters.unite(b, c);
+    }
+}
+
 void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, TriangleMesh& mesh) {
     const auto column = [&](const char* name, const Clusters::Numbers& numbers) {
         Array<u32> values(mesh.positions.size());
@@ -424,6 +431,7 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
 
     growing::FinishedMesh finished = growing::finish_mesh(cloud, surface);
     insertion.count(result);
+    unite_along_triangles(insertion.clusters(), surface);
     add_clusters(insertion.clusters(), finished, finished.mesh);
     result.clusters = insertion.clusters().first_level().count;
     result.components = components.count;

@@ -107,6 +107,17 @@ TEST(ClusterMesh_Levels, TheFirst_IsThePartitionIntoConnectedComponents_ForEvery
     }
 }
 
+TEST(ClusterMesh_Levels, TheSecond_ContainsPointsThatWaited) {
+    const PointCloud cloud = fibonacci_sphere(500);
+    ClusterMeshParams params = with_max_edge(0.3);
+    params.max_normal_angle = params.neighbour_angle = Angle::degrees(5);
+    const ClusterMeshResult result = clustered(cloud, params);
+    expect_laws(cloud, result);
+    EXPECT_GT(result.extra, 0u);
+    EXPECT_EQ(result.components, 1u);
+    EXPECT_THAT(result.mesh.vertex_columns.find("cluster-2")->values<u32>(), testing::Each(0u));
+}
+
 PointCloud two_sheets(double distance) {
     std::vector<Vec3> points;
     for (const Vec3& p : grid(25, 25).positions) {
