@@ -38,14 +38,18 @@ constexpr double degree = std::numbers::pi / 180;
 /// More points than these within max_edge of a point are refused: max_edge is far too large.
 constexpr std::size_t most_near = 1000;
 
-/// The limits of the insertion, then relaxed ones, as region-grow relaxes its own: least angle, dihedral deviation, and
-/// the angles to the normals of points on faces and at edges. The limits to the points' own normals keep sheets apart
-/// and boundaries open.
-const std::array<Limits, 4> passes{
-    {{std::sin(5 * degree), 0, std::cos(60 * degree), std::cos(85 * degree), true, true, false},
-     {std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree), std::cos(110 * degree), true, true, true},
-     {std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree), std::cos(110 * degree), false, true, true},
-     {std::sin(0.5 * degree), std::cos(120 * degree), std::cos(80 * degree), -1, false, false, true}}};
+/// The limits of the insertion, then relaxed ones, as region-grow relaxes its own: longest edge, least angle, dihedral
+/// deviation, and the angles to the normals of points on faces and at edges. The limits to the points' own normals keep
+/// sheets apart and boundaries open. So does the insertion, as it uses short edges: the next sheet is farther away than
+/// the next point of the same one. With two thirds, sheets 1.5 spacings apart are joined at their borders only; with
+/// 0.85 or 0.5 also inside, and thinned models keep more open edges.
+const std::array<Limits, 5> passes{
+    {{2.0 / 3, std::sin(5 * degree), 0, std::cos(60 * degree), std::cos(85 * degree), true, true, false},
+     {1, std::sin(5 * degree), 0, std::cos(60 * degree), std::cos(85 * degree), true, true, false},
+     {1, std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree), std::cos(110 * degree), true, true, true},
+     {1, std::sin(3 * degree), std::cos(105 * degree), std::cos(75 * degree), std::cos(110 * degree), false, true,
+      true},
+     {1, std::sin(0.5 * degree), std::cos(120 * degree), std::cos(80 * degree), -1, false, false, true}}};
 
 /// Inserts all points, and completes the mesh.
 class Insertion {
@@ -139,7 +143,7 @@ private:
         for (u32 point : open) {
             const auto around = near(point);
             if (triangulation_.is_loose(point)) {
-                const Outcome outcome = triangulation_.insert(point, around, &limits != &passes[0], limits);
+                const Outcome outcome = triangulation_.insert(point, around, true, limits);
                 if (outcome == Outcome::loose || outcome == Outcome::extra) continue;
                 splits_ += outcome == Outcome::split;
                 changed = true;
