@@ -3,10 +3,10 @@
 /// Triangulates points one after the other: each new point joins the clusters near it and continues their mesh.
 ///
 /// Points come slice after slice (insertion_order.hpp) and form clusters on two levels (clusters.hpp). A new point
-/// continues the mesh of its cluster at the nearest boundary edge, splits the triangle that it lies over, or waits
-/// (triangulation.hpp). Then the result is completed: points that wait and boundaries that face each other are tried
-/// again under relaxed limits, vertices keep one fan of triangles, small and narrow loops are closed, and edges are
-/// flipped where that makes better triangles.
+/// continues the mesh of its cluster at the nearest boundary edge, with edges up to two thirds of max_edge, splits the
+/// triangle that it lies over, or waits (triangulation.hpp). Then the result is completed: points that wait and
+/// boundaries that face each other are tried again with edges up to max_edge and relaxed limits, vertices keep one fan
+/// of triangles, small and narrow loops are closed, and edges are flipped where that makes better triangles.
 ///
 /// Source: Sangveraphunsiri, Srirakulchai 2006, made robust.
 
