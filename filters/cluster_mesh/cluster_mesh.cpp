@@ -343,7 +343,15 @@ std::size_t remove_intersecting(Surface& surface, Context& context) {
     return count + growing::remove_extra_fans(surface);
 }
 
-void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, TriangleMesh& mesh) {
+/// Replaces older columns of the same names, with a warning.
+void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, TriangleMesh& mesh, Context& context) {
+    ColumnTable others;
+    for (const Column& column : mesh.vertex_columns)
+        if (column.name() == "cluster-1" || column.name() == "cluster-2")
+            context.warn(fmt::format("the scan's column `{}` is replaced", column.name()));
+        else
+            others.add(column);
+    mesh.vertex_columns = std::move(others);
     const auto column = [&](const char* name, const Clusters::Numbers& numbers) {
         Array<u32> values(mesh.positions.size());
         for (u32 point = 0; point < numbers.of_point.size(); ++point)
@@ -458,7 +466,7 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
 
     growing::FinishedMesh finished = growing::finish_mesh(cloud, surface);
     insertion.count(result);
-    add_clusters(insertion.clusters(), finished, finished.mesh);
+    add_clusters(insertion.clusters(), finished, finished.mesh, context);
     result.clusters = insertion.clusters().first_level().count;
     result.components = components.count;
     result.duplicates = points.repeats.size();
