@@ -54,9 +54,12 @@ const std::array<Limits, 5> passes{
 /// Inserts all points, and completes the mesh.
 class Insertion {
 public:
-    Insertion(Surface& surface, double max_edge, const Vec3& up, const WinnerLimits& winner, Context& context)
+    /// `is_given`: max_edge is not derived.
+    Insertion(Surface& surface, double max_edge, bool is_given, const Vec3& up, const WinnerLimits& winner,
+              Context& context)
         : surface_(surface),
           max_edge_(max_edge),
+          is_given_(is_given),
           clusters_(surface.positions.size()),
           triangulation_(surface, max_edge, up, winner),
           context_(context) {}
@@ -96,7 +99,7 @@ private:
         if (around.size() > most_near)
             throw Error("max-edge {:.3g} u is too large: {} other points are nearer than that to the point at {}",
                         max_edge_, around.size(), at(surface_.positions[point]))
-                .hint(fmt::format("leave max-edge at `auto`, or use about {:.3g} u",
+                .hint(fmt::format("{}use about {:.3g} u", is_given_ ? "leave max-edge at `auto`, or " : "",
                                   2.5 * std::sqrt(surface_.neighbourhoods.squared_reach(point)) / 2));
         inserted_near_.clear();
         for (u32 other : around)
@@ -155,6 +158,7 @@ private:
 
     Surface& surface_;
     double max_edge_;
+    bool is_given_;
     Clusters clusters_;
     Triangulation triangulation_;
     Context& context_;
@@ -189,6 +193,25 @@ void require_in_range(const ClusterMeshParams& params) {
     require_angle("overlap-angle", params.overlap_angle, 90, false);
 }
 
+/// The median distance of a point to its `rank`-th nearest other point, from 0, or to the last one that is known.
+double median_distance(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, std::size_t rank) {
+    std::vector<double> squares(points.size());
+    for (u32 point = 0; point < points.size(); ++point) {
+        const auto nearest = neighbourhoods.of(point);
+        const u32 other = nearest[std::min(rank, nearest.size() - 1)];
+        squares[point] = (points.positions[other] - points.positions[point]).squaredNorm();
+    }
+    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+    std::ranges::nth_element(squares, middle);
+    return std::sqrt(*middle);
+}
+
+/// For hints: 2.5 spacings, where those of near-duplicates do not count. On a square grid the eighth nearest point is
+/// at the square root of 2.
+double suggested_max_edge(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, double spacing) {
+    return 2.5 * std::max(spacing, median_distance(points, neighbourhoods, 7) / std::numbers::sqrt2);
+}
+
 /// Throws Error when most points have no other one nearer than max_edge.
 void require_neighbours(const DistinctPoints& points, const Neighbourhoods& neighbourhoods, double max_edge,
                         double spacing) {
@@ -201,26 +224,22 @@ void require_neighbours(const DistinctPoints& points, const Neighbourhoods& neig
         throw Error(
             "max-edge {:.3g} u is {:.2g} of the spacing {:.3g} u: {} of {} points would be clusters of one point",
             max_edge, max_edge / spacing, spacing, alone, points.size())
-            .hint(fmt::format("try {:.3g} u, or leave max-edge at `auto`", 2.5 * spacing));
+            .hint(fmt::format("try {:.3g} u, or leave max-edge at `auto`",
+                              suggested_max_edge(points, neighbourhoods, spacing)));
 }
 
-void require_slices(const DistinctPoints& points, int axis, double slice) {
-    const BoundingBox box = bounding_box(points.positions);
-    const double extent = (box.high - box.low)[axis];
+/// The distance of the slicing planes. Throws Error if a given one makes too many slices.
+double slice_of(const DistinctPoints& points, const ClusterMeshParams& params, double max_edge) {
     constexpr double most = 1e9;
+    const BoundingBox box = bounding_box(points.positions);
+    const double extent = (box.high - box.low)[static_cast<int>(params.axis)];
+    if (!params.slice) return std::max(0.25 * max_edge, extent / most);
+    const double slice = params.slice->value();
     if (extent > most * slice)
         throw Error("slice {:.3g} u divides {:.3g} u into {:.3g} slices; at most {:.0e} are possible", slice, extent,
                     extent / slice, most)
             .hint("leave slice at `auto`, a quarter of max-edge");
-}
-
-double median_distance(const DistinctPoints& points, const Neighbourhoods& neighbourhoods) {
-    std::vector<double> squares(points.size());
-    for (u32 point = 0; point < points.size(); ++point)
-        squares[point] = (points.positions[neighbourhoods.of(point)[0]] - points.positions[point]).squaredNorm();
-    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-    std::ranges::nth_element(squares, middle);
-    return std::sqrt(*middle);
+    return slice;
 }
 
 double automatic_max_edge(const PointCloud& cloud, double spacing, Context& context) {
@@ -332,7 +351,15 @@ void unite_along_triangles(Clusters& clusters, const Surface& surface) {
     }
 }
 
-void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, TriangleMesh& mesh) {
+/// Replaces older columns of the same names, with a warning.
+void add_clusters(Clusters& clusters, const growing::FinishedMesh& finished, TriangleMesh& mesh, Context& context) {
+    ColumnTable others;
+    for (const Column& column : mesh.vertex_columns)
+        if (column.name() == "cluster-1" || column.name() == "cluster-2")
+            context.warn(fmt::format("the scan's column `{}` is replaced", column.name()));
+        else
+            others.add(column);
+    mesh.vertex_columns = std::move(others);
     const auto column = [&](const char* name, const Clusters::Numbers& numbers) {
         Array<u32> values(mesh.positions.size());
         for (u32 point = 0; point < numbers.of_point.size(); ++point)
@@ -385,14 +412,12 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     const Neighbourhoods neighbourhoods(points, context.threads());
     context.check_cancelled();
     context.progress(0.15);
-    const double spacing = median_distance(points, neighbourhoods);
+    const double spacing = median_distance(points, neighbourhoods, 0);
     ClusterMeshResult result;
     result.max_edge = params.max_edge ? params.max_edge->value() : automatic_max_edge(cloud, spacing, context);
     require_neighbours(points, neighbourhoods, result.max_edge, spacing);
-    const double slice = params.slice ? params.slice->value() : 0.25 * result.max_edge;
-    require_slices(points, static_cast<int>(params.axis), slice);
     const Array<u32> order = insertion_order(
-        points, neighbourhoods, static_cast<int>(params.axis), slice,
+        points, neighbourhoods, static_cast<int>(params.axis), slice_of(points, params, result.max_edge),
         params.in_plane == ClusterMeshParams::InPlane::paper ? InPlane::paper : InPlane::nearest, context);
     Array<double> radii(points.size());
     std::ranges::fill(radii, result.max_edge);
@@ -402,11 +427,11 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
                     std::move(radii), std::move(density), false);
     context.progress(0.3);
 
-    const Vec3 up = Vec3(params.up[0], params.up[1], params.up[2]).normalized();
+    const Vec3 up = Vec3(params.up[0], params.up[1], params.up[2]).stableNormalized();
     const WinnerLimits winner{std::cos(params.max_normal_angle.in_radians()) - 1e-9,
                               std::cos(params.neighbour_angle.in_radians()) + 1e-9,
                               std::cos(params.overlap_angle.in_radians()), std::tan(params.overlap_angle.in_radians())};
-    Insertion insertion(surface, result.max_edge, up, winner, context);
+    Insertion insertion(surface, result.max_edge, params.max_edge.has_value(), up, winner, context);
     insertion.insert_all(order);
     context.progress(0.7);
     insertion.complete();
@@ -414,7 +439,8 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     if (surface.triangles.empty())
         throw Error("no triangle with edges below max-edge {:.3g} u: {} points, spacing {:.3g} u", result.max_edge,
                     points.size(), spacing)
-            .hint(fmt::format("try max-edge {:.3g} u; thin the scan with larger voxels if it is noisy", 2.5 * spacing));
+            .hint(fmt::format("try max-edge {:.3g} u; thin the scan with larger voxels if it is noisy",
+                              suggested_max_edge(points, neighbourhoods, spacing)));
     result.removed_triangles = growing::remove_extra_fans(surface);
     constexpr std::size_t few_edges = 4;
     result.closed_holes = growing::close_small_holes(surface, few_edges, context, result.max_edge);
@@ -436,7 +462,7 @@ ClusterMeshResult cluster_mesh(const PointCloud& cloud, const ClusterMeshParams&
     growing::FinishedMesh finished = growing::finish_mesh(cloud, surface);
     insertion.count(result);
     unite_along_triangles(insertion.clusters(), surface);
-    add_clusters(insertion.clusters(), finished, finished.mesh);
+    add_clusters(insertion.clusters(), finished, finished.mesh, context);
     result.clusters = insertion.clusters().first_level().count;
     result.components = components.count;
     result.duplicates = points.repeats.size();

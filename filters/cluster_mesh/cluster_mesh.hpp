@@ -32,7 +32,7 @@ struct ClusterMeshParams {
     std::optional<Length> max_edge;
     /// Slicing planes are perpendicular to it.
     Axis axis = Axis::x;
-    /// Distance of the slicing planes; above 0. Absent: a quarter of max_edge.
+    /// Distance of the slicing planes; above 0. Absent: a quarter of max_edge, or as much as makes 1e9 slices.
     std::optional<Length> slice;
     InPlane in_plane = InPlane::nearest;
     /// Three numbers, not all 0. Components that are flat face to its side.
@@ -49,7 +49,8 @@ struct ClusterMeshParams {
 };
 
 struct ClusterMeshResult {
-    /// Over the used points, in input order with their columns, and the columns `cluster-1` and `cluster-2`.
+    /// Over the used points, in input order with their columns, and the columns `cluster-1` and `cluster-2`, which
+    /// replace older ones with a warning.
     TriangleMesh mesh;
     /// Per vertex its row in the cloud, ascending.
     Array<u32> rows;
@@ -75,7 +76,7 @@ struct ClusterMeshResult {
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a parameter out of range, a max_edge below the distance to the nearest point for most points, more than
-/// 1,000 points within max_edge of a point, more than 1e9 slices, and no triangle at all.
+/// 1,000 points within max_edge of a point, a slice that makes more than 1e9, and no triangle at all.
 ///
 /// Post: an oriented manifold: every edge is in one triangle, or in two with opposite half-edges; the triangles of
 /// every vertex form one fan. Every edge is shorter than max_edge. No two triangles intersect other than in common

@@ -207,6 +207,16 @@ TEST(ClusterMesh, ColumnsAndFrame_AreKept) {
     EXPECT_EQ(*result.mesh.vertex_columns.find("heat"), *cloud.columns.find("heat"));
 }
 
+TEST(ClusterMesh, ClustersOfAnEarlierRun_AreReplacedWithAWarning) {
+    PointCloud cloud = grid(4, 4);
+    cloud.columns.add(Column("cluster-1", 1, Buffer<float>(Array<float>(16, 7))));
+    Heard heard;
+    const ClusterMeshResult result = clustered(cloud, {}, 1, &heard);
+    expect_laws(cloud, result);
+    EXPECT_THAT(result.mesh.vertex_columns.find("cluster-1")->values<u32>(), testing::Each(0u));
+    EXPECT_THAT(heard.warnings, testing::ElementsAre("the scan's column `cluster-1` is replaced"));
+}
+
 TEST(ClusterMesh_MaxEdge, FollowsTheColumnBinSize_UnlessThePointsAreSparser) {
     PointCloud cloud = grid(5, 5);
     EXPECT_DOUBLE_EQ(clustered(cloud).max_edge, 2.5);
