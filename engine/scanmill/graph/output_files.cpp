@@ -48,10 +48,11 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
     if (const fs::path real = real_path(file.parent_path()); !lies_below(real, folder_))
         throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), real.string())
             .hint("a symbolic link below the output folder leads out of it; remove it");
-    if (const Identity existing = identity(file); existing != Identity() && inputs_.contains(existing))
-        throw Error("'{}' is an input; an output must not replace it", file.string())
-            .hint("choose another output folder")
-            .remedy(Remedy::choose_output_folder);
+    for (const fs::path& replaced : {file, previous_of(file)})
+        if (const Identity existing = identity(replaced); existing != Identity() && inputs_.contains(existing))
+            throw Error("'{}' is an input; an output must not replace it", replaced.string())
+                .hint("choose another output folder")
+                .remedy(Remedy::choose_output_folder);
     return file;
 }
 
@@ -79,5 +80,21 @@ OutputFiles::Identity OutputFiles::identity(const fs::path& file) {
 }
 
 fs::path description_of(const fs::path& file) { return file.string() + ".json"; }
+
+fs::path previous_of(const fs::path& file) { return file.string() + ".previous"; }
+
+bool move_aside(const fs::path& file) {
+    const auto move = [](const fs::path& from, const fs::path& to) {
+        std::error_code trouble;
+        const fs::file_status status = fs::symlink_status(from, trouble);
+        if (!fs::is_regular_file(status) && !fs::is_symlink(status)) return false;
+        fs::rename(from, to, trouble);
+        if (trouble) throw Error("'{}' cannot be moved to '{}': {}", from.string(), to.string(), trouble.message());
+        return true;
+    };
+    const fs::path previous = previous_of(file);
+    const bool was_there = move(file, previous);
+    return move(description_of(file), description_of(previous)) || was_there;
+}
 
 }  // namespace scanmill

@@ -25,7 +25,7 @@ public:
 
     /// The absolute path of `name` (relative to the output folder, in normal form). `writer` names the cell in
     /// messages. Throws Error when another content has the same path, when one output's path is another's folder, when
-    /// the file would replace an input, and when a link leads it out of the output folder.
+    /// the file, or previous_of() it, would replace an input, and when a link leads it out of the output folder.
     std::filesystem::path add(const std::string& name, const OutputContent& content, const std::string& writer);
 
 private:
@@ -46,5 +46,12 @@ private:
 
 /// The JSON file beside an output that describes it: `<output>.json`.
 std::filesystem::path description_of(const std::filesystem::path& file);
+
+/// Where an output of an earlier run is moved when its cell fails: `<output>.previous`.
+std::filesystem::path previous_of(const std::filesystem::path& file);
+
+/// Moves an output and its description to previous_of() and its description, and replaces what is there. Returns
+/// whether there was such a file. Throws Error if it cannot be moved.
+bool move_aside(const std::filesystem::path& file);
 
 }  // namespace scanmill

@@ -77,9 +77,11 @@ void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
     record.seconds = report.seconds;
     record.nodes = cell.nodes;
     record.doubts = report.doubts;
-    for (const OutputReport& output : report.outputs)
+    for (const OutputReport& output : report.outputs) {
         record.outputs.push_back({output.file.string(), std::string(name_of(output.kind)),
                                   std::string(name_of(output.outcome)), output.properties});
+        record.outputs.back().moved_to = output.moved_to.string();
+    }
     cells_.push_back(std::move(record));
     flush_when_due();
 }
