@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "scanmill/compare/detail/utf8.hpp"
 #include "scanmill/compare/formats.hpp"
 #include "scanmill/compare/tables.hpp"
 
@@ -17,7 +18,9 @@ constexpr std::size_t most_rows = 20;
 /// end.
 std::string plain(std::string_view text) {
     std::string markdown;
-    for (const char c : text) {
+    while (!text.empty()) {
+        const std::size_t length = character_length(text);
+        const char c = text.front();
         if (c == '<')
             markdown += "&lt;";
         else if (c == '&')
@@ -26,10 +29,13 @@ std::string plain(std::string_view text) {
             markdown += fmt::format("&#{};", static_cast<int>(c));
         else if (std::string_view("\\`*_{}[]()>|~!$").find(c) != std::string_view::npos)
             markdown += fmt::format("\\{}", c);
-        else if (static_cast<unsigned char>(c) < ' ' || c == 0x7f)
-            markdown += c == '\n' ? "↵" : "�";
+        else if (c == '\n')
+            markdown += "↵";
+        else if (length == 0 || is_control(c))
+            markdown += "\uFFFD";
         else
-            markdown += c;
+            markdown += text.substr(0, length);
+        text.remove_prefix(std::max<std::size_t>(1, length));
     }
     return markdown;
 }

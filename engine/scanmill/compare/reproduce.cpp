@@ -7,12 +7,21 @@
 #include <array>
 
 #include "scanmill/base/text.hpp"
+#include "scanmill/compare/detail/utf8.hpp"
 
 namespace scanmill {
 
 namespace {
 
-bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == 0x7f; }
+/// Whether a terminal or a file of text may not hold it as it is.
+bool is_unprintable(const std::string& text) {
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t length = character_length(std::string_view(text).substr(at));
+        if (length == 0 || is_control(text[at])) return true;
+        at += length;
+    }
+    return false;
+}
 
 /// Options of `run` with a value that decides results.
 constexpr std::array<std::string_view, 6> deciding{"--in", "--set", "--unit", "--invalid", "--until", "--save"};
@@ -47,19 +56,22 @@ std::string same_arguments(const std::vector<std::string>& arguments) {
 }  // namespace
 
 std::string quoted_word(const std::string& text) {
-    if (std::ranges::none_of(text, is_control)) {
+    if (!is_unprintable(text)) {
         const std::size_t dashes = std::min(text.find_first_not_of('-'), text.size());
         const std::string word = shell_word(text.substr(dashes));  // which would quote an option
         return word == text.substr(dashes) ? text : shell_word(text);
     }
     std::string word = "$'";
-    for (const char c : text) {
+    for (std::string_view rest = text; !rest.empty();) {
+        const std::size_t length = character_length(rest);
+        const char c = rest.front();
         if (c == '\n')
             word += "\\n";
-        else if (is_control(c))
+        else if (length == 0 || is_control(c))
             word += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
         else
-            word += (c == '\'' || c == '\\' ? "\\" : "") + std::string(1, c);
+            word.append(c == '\'' || c == '\\' ? "\\" : "").append(rest.substr(0, length));
+        rest.remove_prefix(std::max<std::size_t>(1, length));
     }
     return word + "'";
 }

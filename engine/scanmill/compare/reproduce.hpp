@@ -13,7 +13,8 @@ namespace scanmill {
 /// `scan`: the scan's name from the batch's folder.
 std::string reproducing_command(const RunDetails& run, const CellRecord& cell, const std::string& scan);
 
-/// The text as one word of a shell. Control characters are written as in $'a\nb', so that the word is one line.
+/// The text as one word of a shell. Control characters and bytes that are not UTF-8 are written as in
+/// $'a\nb', so that the word is one line.
 std::string quoted_word(const std::string& text);
 
 }  // namespace scanmill

@@ -434,6 +434,8 @@ TEST(QuotedWord, AnyName_IsOneWordOnOneLine) {
     EXPECT_EQ(quoted_word("a b"), "'a b'");
     EXPECT_EQ(quoted_word("it's"), "'it'\\''s'");
     EXPECT_EQ(quoted_word("a\n\x1b'\\"), "$'a\\n\\x1b\\'\\\\'");
+    EXPECT_EQ(quoted_word("ö\xff"), "$'ö\\xff'");
+    EXPECT_EQ(quoted_word("ö"), "'ö'");
     EXPECT_EQ(quoted_word("$(rm x)"), "'$(rm x)'");
     EXPECT_EQ(quoted_word(""), "''");
 }
