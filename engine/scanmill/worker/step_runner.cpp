@@ -69,9 +69,8 @@ LengthUnit common_unit(const std::vector<StepInput>& inputs) {
     return first ? frame_of(first->value)->unit : LengthUnit::unknown;
 }
 
-/// All inputs in one unit and relative to one origin, that of the first.
-Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, Context& context) {
-    const LengthUnit unit = common_unit(inputs);
+/// All inputs in `unit`, which is that of all that declare one, and relative to one origin, that of the first.
+Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, LengthUnit unit, Context& context) {
     Inputs result;
     std::map<std::string, std::size_t> without_unit;  // by port
     for (const StepInput& input : inputs) {
@@ -222,11 +221,16 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
                  NodeReport& report) {
     return run_recorded(step, filter, std::move(options), recall, report, [&](Context& context) {
         const Value* first = first_geometric(inputs);
-        Inputs ports = rebased(inputs, first, context);
+        const LengthUnit unit = common_unit(inputs);
+        Inputs ports = rebased(inputs, first, unit, context);
         // Without a geometric input, the filter resolves lengths against its own result.
         std::vector<std::string> warnings;
-        ResolvedParameters resolved = first ? resolved_parameters(step, length_scale(*first, adding_to(warnings)))
-                                            : ResolvedParameters{step.parameters, {}};
+        ResolvedParameters resolved{step.parameters, {}};
+        if (first) {
+            LengthScale scale = length_scale(*first, adding_to(warnings));
+            scale.unit = unit;
+            resolved = resolved_parameters(step, scale);
+        }
         return Prepared{
             std::move(resolved), std::move(warnings),
             [&context, ports = std::move(ports)](const FilterDeclaration& declared, const ParameterSet& parameters) {
