@@ -2,13 +2,18 @@
 #include "support/program.hpp"
 
 #include <fcntl.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
+
+#include "support/output_schemas.hpp"
 
 namespace scanmill::test {
 
@@ -79,7 +84,12 @@ std::string RunningProgram::out() const { return content_of(folder_ / "out"); }
 std::string RunningProgram::err() const { return content_of(folder_ / "err"); }
 
 ProgramResult scanmill_program(const std::vector<std::string>& arguments, const ProgramOptions& options) {
-    return RunningProgram(arguments, options).wait();
+    ProgramResult result = RunningProgram(arguments, options).wait();
+    const bool is_json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
+    for (const auto& [schema, document] :
+         is_json ? output_documents(arguments, result.out) : std::vector<OutputDocument>())
+        EXPECT_EQ(schema_errors(schema, document), "") << fmt::format("scanmill {}", fmt::join(arguments, " "));
+    return result;
 }
 
 }  // namespace scanmill::test

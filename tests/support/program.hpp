@@ -51,7 +51,7 @@ private:
     int status_ = 0;
 };
 
-/// Runs it to its end.
+/// Runs it to its end. What it prints with --json must be as the schemas say.
 ProgramResult scanmill_program(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
 
 }  // namespace scanmill::test
