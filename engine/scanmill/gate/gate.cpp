@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/gate/gate.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
@@ -129,8 +130,8 @@ Gate parse_gate_json(std::string_view text) {
     }
     const Json& repeats = member(document, "repeats");
     const std::uint64_t count = repeats.is_number_unsigned() ? repeats.get<std::uint64_t>() : 0;
-    if (count < 1 || count > most_repeats)
-        throw Error("the recorded gate: 'repeats' is not a number from 1 to {}", most_repeats);
+    if (count < 1 || count > std::numeric_limits<unsigned>::max())
+        throw Error("the recorded gate: 'repeats' is not a number of passes");
     gate.repeats = static_cast<unsigned>(count);
     return gate;
 }

@@ -43,9 +43,6 @@ struct Tolerance {
     bool is_relative = false;
 };
 
-/// `repeats` is at least 1 and at most this.
-inline constexpr unsigned most_repeats = 20;
-
 /// `lengths` is the unit of the metric's lengths, `diagonal` what `%diag` refers to (NaN: unknown). Throws Error with
 /// the forms that the unit accepts: no sign nor unit, another dimension, a length that cannot be converted.
 /// The amount of a relative rule is a share of the accepted value's magnitude. A ratio's absolute amount is a plain
