@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "scanmill/compare/comparison.hpp"
 #include "scanmill/data/metrics.hpp"
 #include "scanmill/filter/parameter.hpp"
 #include "scanmill/worker/report.hpp"
@@ -292,6 +293,92 @@ Json run_schema() {
 }
 
 /// One line of a batch: `event` decides on the members.
+Json or_null(Json schema) {
+    schema["type"] = Json::array({schema["type"], "null"});
+    return schema;
+}
+Json count_or_null() { return or_null(count()); }
+Json number_or_null() { return described("null: there is none, or it is infinite.", or_null(number())); }
+Json verdict() { return names(Verdict::failed, Verdict::passed); }
+Json effect() { return names(Effect::regression, Effect::listed); }
+
+/// The verdict of a run, with the number of cells of every verdict.
+Json verdict_of_run() {
+    Json counts = object({});
+    for (const Verdict each : all_verdicts) {
+        counts["properties"][std::string(name_of(each))] = count();
+        counts["required"].push_back(name_of(each));
+    }
+    return object({{"verdict", verdict()},
+                   {"tripped", described("A cell regressed or is missing.", flag())},
+                   {"counts", std::move(counts)}});
+}
+
+/// A cell with its verdict and the sentences that give reasons.
+Json judged_cell() { return joined(cell(), object({{"verdict", verdict()}, {"reasons", list_of(text())}})); }
+
+Json report_schema() {
+    const Json run = object({{"id", count()},
+                             {"started", text()},
+                             {"outcome", text()},
+                             {"version", text()},
+                             {"machine", text()},
+                             {"threads", count()},
+                             {"jobs", count()},
+                             {"seconds", seconds()}});
+    Json accepted = joined(run, object({{"folder", described("null: the run's own.", or_null(text()))},
+                                        {"who", or_null(text())},
+                                        {"why", or_null(text())},
+                                        {"at", described("null: it was not accepted.", or_null(text()))}}));
+    accepted["type"] = Json::array({"object", "null"});
+    const Json metric =
+        object({{"source", described("A step, or an output's file.", text())},
+                {"metric", text()},
+                {"unit", unit()},
+                {"length-unit", length_unit_or_null()},
+                {"accepted", number_or_null()},
+                {"found", number_or_null()},
+                {"share", described("The difference as a share of the accepted value.", number_or_null())},
+                {"rule", described("null: there is none.", or_null(text()))},
+                {"effect", effect()}});
+    const Json output = object({{"file", text()},
+                                {"accepted", described("SHA-256; null: not written.", or_null(text()))},
+                                {"found", described("SHA-256; null: not written.", or_null(text()))},
+                                {"effect", effect()}});
+    const Json cost = object({{"cost", {{"enum", {"seconds", "cpu-seconds", "memory"}}}},
+                              {"before", described("The median of the earlier passes.", number_or_null())},
+                              {"now", described("The median of this run's passes.", number_or_null())},
+                              {"share", number_or_null()},
+                              {"passes-before", count()},
+                              {"passes", count()},
+                              {"probability", described("Of the ranks, if nothing changed.", number_or_null())},
+                              {"rule", or_null(text())},
+                              {"effect", effect()}});
+    const Json of_cell =
+        joined(judged_cell(), object({{"causes", described("What differs in its files and steps.", list_of(text()))},
+                                      {"seconds", seconds()},
+                                      {"metrics", list_of(metric)},
+                                      {"outputs", list_of(output)},
+                                      {"costs", list_of(cost)},
+                                      {"moved", described("Earlier outputs that were moved aside.", list_of(text()))},
+                                      {"command", described("Reproduces the cell; null: it passed.", or_null(text()))},
+                                      {"values", metrics()}}));
+    const Json change = object({{"cell", count()}, {"metric?", count()}, {"output?", count()}, {"cost?", count()}});
+    const Json report =
+        joined(object({{"batch", text()},
+                       {"file", text()},
+                       {"run", run},
+                       {"accepted", described("null: no run was accepted.", accepted)},
+                       {"gate", object({{"rules", map_of(text())}, {"repeats", count()}})},
+                       {"filters", list_of(text())},
+                       {"notes", list_of(text())},
+                       {"cells", list_of(of_cell)},
+                       {"changes", described("Indices into the cells and their lists: the most important change first.",
+                                             list_of(change))}}),
+               verdict_of_run());
+    return document("scanmill report DIR --json", object({{"report", report}}));
+}
+
 Json batch_event_schema() {
     const Json about_step = object({{"node", described("The step's number, from 0.", count())},
                                     {"scan", text()},
@@ -327,6 +414,8 @@ Json batch_event_schema() {
                                                      {"seconds", seconds()},
                                                      {"doubts?", list_of(text())}})),
                               failure("exit-code?"))},
+        {"verdict", joined(object({{"run", count()}, {"accepted", count_or_null()}, {"cells", list_of(judged_cell())}}),
+                           verdict_of_run())},
         {"run-ended", object({{"interrupted", flag()},
                               {"ok", count()},
                               {"doubtful", count()},
@@ -408,7 +497,7 @@ Json runs_show_schema() {
                     object({{"run", run}, {"cells", list_of(of_cell)}, {"steps", list_of(step)}}));
 }
 
-constexpr std::array<std::pair<const char*, Json (*)()>, 14> outputs{{{"list", list_schema},
+constexpr std::array<std::pair<const char*, Json (*)()>, 15> outputs{{{"list", list_schema},
                                                                       {"show", show_schema},
                                                                       {"show-example", show_example_schema},
                                                                       {"check", check_schema},
@@ -417,6 +506,7 @@ constexpr std::array<std::pair<const char*, Json (*)()>, 14> outputs{{{"list", l
                                                                       {"dry-run", dry_run_schema},
                                                                       {"runs", runs_schema},
                                                                       {"runs-show", runs_show_schema},
+                                                                      {"report", report_schema},
                                                                       {"info", info_schema},
                                                                       {"measure", measure_schema},
                                                                       {"cache-info", cache_info_schema},
