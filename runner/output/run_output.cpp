@@ -222,6 +222,7 @@ Json report_json(const RunGraph& graph, const RunReport& report) {
                       {"outcome", name_of(output.outcome)},
                       {"kind", name_of(output.kind)},
                       {"properties", metrics_json(output.properties)}};
+            if (!output.sha256.empty()) file.update({{"sha256", output.sha256}, {"bytes", output.bytes}});
             if (!output.warnings.empty()) file["warnings"] = output.warnings;
             entry["outputs"].push_back(std::move(file));
         }
@@ -307,6 +308,7 @@ void EventStream::output_written(const RunCell& cell, const OutputReport& report
     json["scan"] = graph_.scan_names[cell.scan];
     json["file"] = report.file.string();
     json["outcome"] = name_of(report.outcome);
+    if (!report.sha256.empty()) json.update({{"sha256", report.sha256}, {"bytes", report.bytes}});
     json["properties"] = metrics_json(report.properties);
     if (!report.warnings.empty()) json["warnings"] = report.warnings;
     print(json);
@@ -320,6 +322,13 @@ void EventStream::cell_ended(const RunCell& cell, const CellReport& report) {
     json["seconds"] = report.seconds;
     if (!report.doubts.empty()) json["doubts"] = report.doubts;
     add_failure(json, report.failure);
+    print(json);
+}
+
+void EventStream::pass_started(unsigned pass, unsigned passes) {
+    Json json = event("pass-started");
+    json["pass"] = pass;
+    json["passes"] = passes;
     print(json);
 }
 

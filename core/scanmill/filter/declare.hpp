@@ -254,7 +254,7 @@ public:
     }
     template <std::same_as<MetricOption>... Options>
     Declare& metric(std::string name, Unit unit, std::string help, Options... options) {
-        const auto has = [&](MetricOption wanted) { return ((options == wanted) || ...); };
+        const auto has = [&]([[maybe_unused]] MetricOption wanted) { return ((options == wanted) || ...); };
         declaration_.spec.metrics.push_back({std::move(name), unit, std::move(help), has(headline), has(numbered),
                                              has(larger_is_better)    ? Better::larger
                                              : has(smaller_is_better) ? Better::smaller

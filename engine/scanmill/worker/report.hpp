@@ -86,6 +86,8 @@ struct OutputReport {
     Metrics properties;
     std::vector<std::string> warnings;
     std::vector<std::string> doubts;  ///< about the file: it holds less than the value
+    std::string sha256;               ///< of the file's bytes; empty: not written
+    u64 bytes = 0;                    ///< of the file
 };
 
 struct CellReport {
