@@ -266,8 +266,10 @@ void Progress::print_failure(const RunCell& cell, const CellReport& report) {
         cells = names_.cells(node, cell.scan);
     }
     if (is_new) {
-        const std::string some = is_reading ? "" : names_.in_words(cells);
-        print(error_text(with_option(report.failure.whole())) + (some.empty() ? "" : "\n  under " + some));
+        Error error = with_option(report.failure.whole());
+        if (const std::string some = is_reading ? "" : names_.in_words(cells); !some.empty())
+            error.add_frame("under " + some);
+        print(error_text(error));
     }
     for (const OutputReport& output : report.outputs) {
         if (!output.moved_to.empty())
