@@ -21,6 +21,7 @@ namespace {
 
 [[noreturn]] void become(const std::vector<std::string>& arguments, const ProgramOptions& options, const char* out,
                          const char* err) {
+    if (options.own_group) ::setpgid(0, 0);
     const int input = ::open("/dev/null", O_RDONLY);
     const int output = ::open(out, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int errors = ::open(err, O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -58,6 +59,7 @@ RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const 
     process_ = ::fork();
     if (process_ < 0) throw std::runtime_error("the program could not be started");
     if (process_ == 0) become(arguments, own, out.c_str(), err.c_str());
+    if (own.own_group) ::setpgid(process_, process_);  // whoever comes first
 }
 
 RunningProgram::~RunningProgram() {
@@ -67,6 +69,10 @@ RunningProgram::~RunningProgram() {
 
 void RunningProgram::signal(int number) const {
     if (!has_ended_) ::kill(process_, number);
+}
+
+void RunningProgram::signal_group(int number) const {
+    if (!has_ended_) ::kill(-process_, number);
 }
 
 bool RunningProgram::has_ended() {

@@ -191,18 +191,24 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
         written.doubts.push_back(std::move(sentence));
     };
     Sha256 hash;
-    options.on_bytes = [&](std::string_view bytes) { hash.add(bytes); };
+    options.on_bytes = [&](std::string_view bytes) {
+        hash.add(bytes);
+        written.bytes += bytes.size();
+    };
     write_file(work.file, value, options);
+    written.sha256 = hash.text();
     const auto found = properties_.find({work.value.node, work.value.from});
     written.properties = found != properties_.end() ? found->second : properties_of(value);
     if (!written.doubts.empty()) written.properties.set("closed", 0, Unit::boolean);
     constexpr std::size_t longest_name = NAME_MAX;
     if (description_of(work.file).filename().native().size() <= longest_name) try {
-            write_description(work.file, hash.text(), work.made_how, value, written.properties, shift);
+            write_description(work.file, written.sha256, work.made_how, value, written.properties, shift);
         } catch (const Error&) {
             // A description of an earlier run must not stay beside this file.
             fs::remove(work.file, trouble);
             fs::remove(description_of(work.file), trouble);
+            written.sha256.clear();
+            written.bytes = 0;
             throw;
         }
     else
