@@ -46,12 +46,12 @@ int schema(const SchemaOptions& options) {
     const FilterLibrary library = open_library();
     if (options.folder.empty()) {
         fmt::print("{}", options.kind == "workflow" ? workflow_schema(library)
-                         : options.kind == "batch"  ? batch_schema()
+                         : options.kind == "batch"  ? batch_schema(library)
                                                     : output_schema(options.kind));
         return done;
     }
     write_text(options.folder / "workflow.schema.json", workflow_schema(library));
-    write_text(options.folder / "batch.schema.json", batch_schema());
+    write_text(options.folder / "batch.schema.json", batch_schema(library));
     for (const std::string& name : output_names())
         write_text(options.folder / "output" / (name + ".schema.json"), output_schema(name));
     return done;
