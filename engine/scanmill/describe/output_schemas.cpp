@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "scanmill/compare/comparison.hpp"
 #include "scanmill/data/metrics.hpp"
 #include "scanmill/filter/parameter.hpp"
 #include "scanmill/worker/report.hpp"
@@ -147,7 +148,9 @@ Json plan() {
                               {"in", described("By port.", map_of(list_of(text())))},
                               {"streams", described("Ports whose scan is read as a stream.", list_of(text()))},
                               {"parameters", map_of(text())},
-                              {"expect?", list_of(text())}});
+                              {"expect?", list_of(text())},
+                              {"measures?", described("What it measures by the scan's truth.", text())},
+                              {"file?", described("The batch that line and column are in.", text())}});
     const Json variant = object({{"name", text()},
                                  {"steps", described("Numbers of steps, from 0.", list_of(count()))},
                                  {"outputs", described("By file name.", map_of(text()))}});
@@ -256,12 +259,11 @@ Json dry_run_schema() {
              {"cells", list_of(joined(cell(), object({{"nodes", list_of(count())}, {"outputs", list_of(text())}})))}}));
 }
 
-Json output_file() {
-    return object({{"file", text()},
-                   {"outcome", outcome()},
-                   {"kind", text()},
-                   {"properties", metrics()},
-                   {"warnings?", list_of(text())}});
+/// Bytes and hash of a written file, and what became of the one of an earlier run.
+Json file_members() {
+    return object({{"sha256?", described("Of a written file.", text())},
+                   {"bytes?", count()},
+                   {"moved-to?", described("Where the file of an earlier run is, whose cell failed now.", text())}});
 }
 
 Json run_schema() {
@@ -280,10 +282,18 @@ Json run_schema() {
                                      {"warnings?", list_of(text())},
                                      {"log?", list_of(text())}}),
                              failure("exit-code?"));
+    const Json file =
+        joined(object({{"file", text()},
+                       {"outcome", outcome()},
+                       {"kind", text()},
+                       {"properties", metrics()},
+                       {"warnings?", list_of(text())},
+                       {"not-moved?", described("Why the file of an earlier run is still there.", text())}}),
+               file_members());
     const Json of_cell = joined(joined(cell(), object({{"outcome", outcome()},
                                                        {"seconds", seconds()},
                                                        {"steps", list_of(count())},
-                                                       {"outputs", list_of(output_file())},
+                                                       {"outputs", list_of(file)},
                                                        {"doubts?", list_of(text())}})),
                                 failure("exit-code?"));
     return document(
@@ -293,10 +303,12 @@ Json run_schema() {
 
 /// One line of a batch: `event` decides on the members.
 Json batch_event_schema() {
-    const Json about_step = object({{"node", described("The step's number, from 0.", count())},
-                                    {"scan", text()},
-                                    {"workflow", text()},
-                                    {"step", text()}});
+    const Json about_step =
+        object({{"node", described("The step's number, from 0.", count())},
+                {"scan", text()},
+                {"workflow", text()},
+                {"variants?", described("That use it; absent if there is only one.", list_of(text()))},
+                {"step", text()}});
     const std::pair<const char*, Json> events[] = {
         {"run-started", object({{"scanmill", {{"const", 1}}},
                                 {"name", text()},
@@ -320,13 +332,21 @@ Json batch_event_schema() {
         {"output-written", object({{"scan", text()},
                                    {"file", text()},
                                    {"outcome", outcome()},
+                                   {"sha256?", text()},
+                                   {"bytes?", count()},
                                    {"properties", metrics()},
                                    {"warnings?", list_of(text())}})},
-        {"cell-ended", joined(joined(cell(), object({{"cell", described("Its number, from 0.", count())},
-                                                     {"outcome", outcome()},
-                                                     {"seconds", seconds()},
-                                                     {"doubts?", list_of(text())}})),
-                              failure("exit-code?"))},
+        {"cell-ended",
+         joined(joined(cell(), object({{"cell", described("Its number, from 0.", count())},
+                                       {"outcome", outcome()},
+                                       {"seconds", seconds()},
+                                       {"doubts?", list_of(text())},
+                                       {"moved?", described("Files of an earlier run.",
+                                                            list_of(object({{"file", text()}, {"to", text()}})))},
+                                       {"not-moved?", list_of(object({{"file", text()}, {"why", text()}}))}})),
+                failure("exit-code?"))},
+        {"pass-started",
+         described("Steps run again for their costs.", object({{"pass", count()}, {"passes", count()}}))},
         {"run-ended", object({{"interrupted", flag()},
                               {"ok", count()},
                               {"doubtful", count()},
@@ -347,12 +367,23 @@ Json batch_event_schema() {
     return schema;
 }
 
+Json gate() {
+    return object({{"rules", described("By metric.", map_of(text()))},
+                   {"repeats", described("How often a run measures its costs.", count())}});
+}
+
 Json run_summary() {
+    const Json acceptance = object({{"at", text()},
+                                    {"who", text()},
+                                    {"why", text()},
+                                    {"baseline", described("Later runs are compared with this one.", flag())},
+                                    {"revoked?", object({{"at", text()}, {"who", text()}, {"why", text()}})}});
     return object({{"id", count()},
                    {"started", text()},
                    {"workflow", text()},
-                   {"outcome", described("`unfinished`: the run goes on, or was killed.",
-                                         {{"enum", {"ok", "doubtful", "failed", "interrupted", "unfinished"}}})},
+                   {"outcome", {{"enum", {"ok", "doubtful", "failed", "interrupted", "running"}}}},
+                   {"killed?", described("It has no end.", flag())},
+                   {"accepted?", list_of(acceptance)},
                    {"cells", count()},
                    {"doubtful", count()},
                    {"failed", count()},
@@ -371,16 +402,23 @@ Json runs_show_schema() {
                                                    {"version", text()},
                                                    {"jobs", count()},
                                                    {"machine", text()},
-                                                   {"libraries", text()}}));
+                                                   {"libraries", text()},
+                                                   {"gate?", gate()}}));
     const Json failed = object(
         {{"error?", text()}, {"cause?", cause()}, {"number?", described("Of the signal, or the exit code.", count())}});
-    const Json file = object({{"file", text()}, {"kind", text()}, {"outcome", outcome()}, {"properties", metrics()}});
-    const Json of_cell = joined(joined(cell(), object({{"outcome", outcome()},
-                                                       {"seconds", seconds()},
-                                                       {"steps", list_of(count())},
-                                                       {"outputs", list_of(file)},
-                                                       {"doubts?", list_of(text())}})),
-                                failed);
+    const Json file =
+        joined(object({{"file", text()}, {"kind", text()}, {"outcome", outcome()}, {"properties", metrics()}}),
+               file_members());
+    const Json pass = object({{"seconds", seconds()}, {"cpu-seconds", seconds()}, {"peak-memory", bytes()}});
+    const Json of_cell = joined(
+        joined(cell(), object({{"outcome", outcome()},
+                               {"seconds", seconds()},
+                               {"steps", list_of(count())},
+                               {"outputs", list_of(file)},
+                               {"doubts?", list_of(text())},
+                               {"truth?", text()},
+                               {"costs?", described("One per pass in which all of its steps ran.", list_of(pass))}})),
+        failed);
     const Json step = joined(object({{"node", count()},
                                      {"workflow", text()},
                                      {"step", text()},
@@ -388,6 +426,8 @@ Json runs_show_schema() {
                                      {"version", count()},
                                      {"build", text()},
                                      {"scan", text()},
+                                     {"variants?", described("That use it.", list_of(text()))},
+                                     {"measures?", described("What it measures by the cell's truth.", text())},
                                      {"key", text()},
                                      {"origin", text()},
                                      {"why", text()},
@@ -408,7 +448,90 @@ Json runs_show_schema() {
                     object({{"run", run}, {"cells", list_of(of_cell)}, {"steps", list_of(step)}}));
 }
 
-constexpr std::array<std::pair<const char*, Json (*)()>, 14> outputs{{{"list", list_schema},
+Json verdict() { return names(Verdict::failed, Verdict::passed); }
+Json nullable(Json schema) {
+    schema["type"] = {schema["type"], "null"};
+    return schema;
+}
+
+Json report_schema() {
+    const Json effect = names(Effect::regression, Effect::listed);
+    const Json rule = described("Its text; null: there is none.", nullable(text()));
+    const Json share =
+        described("The difference as a share of the earlier value; null: that is 0 or absent.", nullable(number()));
+    const Json run = object({{"id", count()},
+                             {"started", text()},
+                             {"outcome", text()},
+                             {"version", text()},
+                             {"machine", text()},
+                             {"threads", count()},
+                             {"jobs", count()},
+                             {"seconds", seconds()}});
+    const Json accepted =
+        joined(run, object({{"folder", described("null: that of the run.", nullable(text()))},
+                            {"who", described("null: it was not accepted, but chosen.", nullable(text()))},
+                            {"why", nullable(text())},
+                            {"at", nullable(text())}}));
+    const Json metric = object({{"source", text()},
+                                {"metric", text()},
+                                {"unit", unit()},
+                                {"length-unit", length_unit_or_null()},
+                                {"accepted", nullable(number())},
+                                {"found", nullable(number())},
+                                {"share", share},
+                                {"rule", rule},
+                                {"effect", effect}});
+    const Json output = object({{"file", text()},
+                                {"accepted", described("SHA-256; null: not written.", nullable(text()))},
+                                {"found", nullable(text())},
+                                {"effect", effect}});
+    const Json cost = object(
+        {{"cost", {{"enum", {"seconds", "cpu-seconds", "memory"}}}},
+         {"before", described("The median of earlier passes.", nullable(number()))},
+         {"now", nullable(number())},
+         {"share", share},
+         {"passes-before", count()},
+         {"passes", count()},
+         {"probability", described("Of these ranks if nothing changed; null: not computed.", nullable(number()))},
+         {"rule", rule},
+         {"effect", effect}});
+    const Json of_cell =
+        joined(cell(), object({{"verdict", verdict()},
+                               {"reasons", list_of(text())},
+                               {"causes", described("What differs in its inputs and steps.", list_of(text()))},
+                               {"seconds", seconds()},
+                               {"metrics", list_of(metric)},
+                               {"outputs", list_of(output)},
+                               {"costs", list_of(cost)},
+                               {"moved", described("Outputs of an earlier run, moved aside.", list_of(text()))},
+                               {"command", described("Reproduces the cell; null: it passed.", nullable(text()))},
+                               {"values", metrics()}}));
+    Json counts = object({});
+    for (const Json& name : verdict()["enum"]) {
+        counts["properties"][name.get<std::string>()] = count();
+        counts["required"].push_back(name);
+    }
+    const Json change = object({{"cell", described("Its number, from 0; the others: in its lists.", count())},
+                                {"metric?", count()},
+                                {"output?", count()},
+                                {"cost?", count()}});
+    Json accepted_or_null = accepted;
+    accepted_or_null["type"] = {"object", "null"};
+    return document("scanmill report --json", object({{"report", object({{"batch", text()},
+                                                                         {"file", text()},
+                                                                         {"verdict", verdict()},
+                                                                         {"tripped", described("Exit code 4.", flag())},
+                                                                         {"run", run},
+                                                                         {"accepted", accepted_or_null},
+                                                                         {"gate", gate()},
+                                                                         {"counts", counts},
+                                                                         {"filters", list_of(text())},
+                                                                         {"notes", list_of(text())},
+                                                                         {"cells", list_of(of_cell)},
+                                                                         {"changes", list_of(change)}})}}));
+}
+
+constexpr std::array<std::pair<const char*, Json (*)()>, 15> outputs{{{"list", list_schema},
                                                                       {"show", show_schema},
                                                                       {"show-example", show_example_schema},
                                                                       {"check", check_schema},
@@ -421,6 +544,7 @@ constexpr std::array<std::pair<const char*, Json (*)()>, 14> outputs{{{"list", l
                                                                       {"measure", measure_schema},
                                                                       {"cache-info", cache_info_schema},
                                                                       {"cache-clear", cache_clear_schema},
+                                                                      {"report", report_schema},
                                                                       {"error", error_schema}}};
 
 }  // namespace
