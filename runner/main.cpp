@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
     add_measure(app, chosen);
     add_schema_and_docs(app, chosen);
     add_runs(app, chosen);
+    add_report(app, chosen);
     add_cache(app, chosen);
     add_completion(app, chosen);
     try {

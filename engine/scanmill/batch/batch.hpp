@@ -106,6 +106,7 @@ struct BatchPart {
     std::shared_ptr<const Plan> plan;
     std::size_t workflow = 0;  ///< index into Batch::workflows
     std::vector<std::size_t> scans;  ///< indices into Batch::scans, ascending; none for a workflow without inputs
+    std::vector<std::string> only{};  ///< names of the variants to run; empty: all
 };
 
 struct CheckedBatch {

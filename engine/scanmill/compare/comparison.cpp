@@ -532,7 +532,7 @@ std::vector<RankedChange> what_changed(const Comparison& comparison) {
         for (const MetricChange& change : cell.metrics) changes.push_back({&cell, &change, nullptr, nullptr});
         for (const OutputChange& change : cell.outputs) changes.push_back({&cell, nullptr, &change, nullptr});
         for (const CostChange& change : cell.costs)
-            if (!change.rule.empty()) changes.push_back({&cell, nullptr, nullptr, &change});
+            if (change.effect != Effect::listed) changes.push_back({&cell, nullptr, nullptr, &change});
     }
     std::ranges::stable_sort(changes, [](const RankedChange& a, const RankedChange& b) {
         if (a.effect() != b.effect()) return a.effect() < b.effect();

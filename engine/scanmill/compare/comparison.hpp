@@ -137,8 +137,8 @@ struct RankedChange {
     double confidence() const;  ///< 1 for metrics and outputs, which have no noise; 1 - probability for costs
 };
 
-/// Regressions first, then improvements, then the others; within these by size, then by confidence. Costs that no rule
-/// is for are left out.
+/// Regressions first, then improvements, then the others; within these by size, then by confidence. Costs within
+/// their rules, which always differ, are left out.
 std::vector<RankedChange> what_changed(const Comparison& comparison);
 
 /// The metrics that a cell of the comparison has, with costs; for the choice of one.

@@ -67,6 +67,17 @@ std::string effect_text(Effect effect) {
     return effect == Effect::regression ? "regressed" : effect == Effect::improvement ? "improved" : "";
 }
 
+bool has_regressed(const CellComparison& cell, const CellValue& value) {
+    return std::ranges::any_of(cell.metrics,
+                               [&](const MetricChange& change) {
+                                   return change.effect == Effect::regression && change.metric == value.metric.name &&
+                                          change.source == value.source;
+                               }) ||
+           std::ranges::any_of(cell.costs, [&](const CostChange& change) {
+               return change.effect == Effect::regression && change.cost == value.metric.name && value.source.empty();
+           });
+}
+
 bool is_trouble(Verdict verdict) {
     return verdict == Verdict::failed || verdict == Verdict::missing || verdict == Verdict::regressed ||
            verdict == Verdict::doubtful;
@@ -112,18 +123,27 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Comparison& comp
 ReportTable change_table(const Comparison& comparison, std::size_t most) {
     ReportTable table{{"scan", "variant", "what", "accepted", "now", "change", "rule", ""}, {}, {}};
     const bool with_workflow = has_several_workflows(comparison);
-    const std::vector<RankedChange> changes = what_changed(comparison);
-    for (const RankedChange& change : changes) {
-        if (table.rows.size() == most) break;
-        std::vector<std::string> row{change.cell->scan, variant_text(*change.cell, with_workflow)};
+    std::map<std::vector<std::string>, std::size_t> row_of_change;  // by all but the variant
+    std::size_t left_out = 0;
+    for (const RankedChange& change : what_changed(comparison)) {
+        std::vector<std::string> row{change.cell->scan, ""};
         const std::vector<std::string> what = change.metric   ? row_of(*change.metric)
                                               : change.output ? row_of(*change.output)
                                                               : row_of(*change.cost);
         row.insert(row.end(), what.begin(), what.end());
         row.push_back(effect_text(change.effect()));
-        table.rows.push_back(std::move(row));
+        const std::string variant = variant_text(*change.cell, with_workflow);
+        if (const auto known = row_of_change.find(row); known != row_of_change.end()) {
+            table.rows[known->second][1] += ", " + variant;
+        } else if (table.rows.size() == most) {
+            ++left_out;
+        } else {
+            row_of_change.emplace(row, table.rows.size());
+            row[1] = variant;
+            table.rows.push_back(std::move(row));
+        }
     }
-    if (changes.size() > table.rows.size()) table.rest = fmt::format("and {} more", changes.size() - table.rows.size());
+    if (left_out > 0) table.rest = fmt::format("and {} more", left_out);
     return table;
 }
 
@@ -136,9 +156,11 @@ ReportTable reason_table(const Comparison& comparison, std::size_t most) {
         if (!is_trouble(verdict)) continue;
         for (const CellComparison& cell : comparison.cells) {
             if (cell.verdict != verdict) continue;
-            std::vector<std::string> why = cell.reasons;
-            why.insert(why.end(), cell.causes.begin(), cell.causes.end());
-            for (const std::string& file : cell.moved) why.push_back(fmt::format("its earlier output is now {}", file));
+            // What changed in a regressed cell is in the other table.
+            std::vector<std::string> why = cell.causes;
+            if (verdict != Verdict::regressed || why.empty())
+                why.insert(why.begin(), cell.reasons.begin(), cell.reasons.end());
+            if (!cell.moved.empty()) why.emplace_back("its earlier outputs are now *.previous");
             const std::string text = fmt::format("{}", fmt::join(why, "; "));
             const std::string variant = variant_text(cell, with_workflow);
             const auto known = row_of_reason.find({std::string(name_of(verdict)), cell.scan, text});
@@ -189,7 +211,7 @@ ReportTable matrix(const Comparison& comparison, const std::string& metric, std:
                : one_unit      ? display(value->metric)
                                : display(value->metric, value->lengths);
         if (cell.verdict == Verdict::failed) text = "failed";
-        if (cell.verdict == Verdict::regressed) text += " !";
+        if (has_regressed(cell, *value)) text += " !";
         if (cell.verdict == Verdict::doubtful) text += " ?";
     }
     const std::string unit = one_unit && !is_cost(metric) ? *units.begin() : "";

@@ -27,13 +27,13 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Comparison& comp
 /// suffice.
 ReportTable change_table(const Comparison& comparison, std::size_t most);
 
-/// Cells that failed, are missing or doubtful, or regressed, with their reasons and what differs in their steps. A
-/// reason that several variants of a scan share is given once.
+/// Cells that failed, are missing or doubtful, or regressed, with what differs in their files and steps, else with
+/// their reasons. A reason that several variants of a scan share is given once.
 ReportTable reason_table(const Comparison& comparison, std::size_t most);
 
-/// Scans × variants for one metric; the unit is in the first header. A value is followed by `!` if its cell regressed
-/// and by `?` if it is doubtful; a cell without the value shows its verdict. With more than `most` scans, those whose
-/// cells did not pass come first.
+/// Scans × variants for one metric; the unit is in the first header. A value is followed by `!` if it regressed
+/// and by `?` if its cell is doubtful; a cell without the value shows its verdict. With more than `most` scans, those
+/// whose cells did not pass come first.
 ReportTable matrix(const Comparison& comparison, const std::string& metric, std::size_t most);
 
 /// The commands that reproduce failed and regressed cells, equal ones once.

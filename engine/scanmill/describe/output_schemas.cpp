@@ -301,6 +301,97 @@ Json run_schema() {
         object({{"workflow", text()}, {"interrupted", flag()}, {"steps", list_of(step)}, {"cells", list_of(of_cell)}}));
 }
 
+Json gate() {
+    return object({{"rules", described("By metric.", map_of(text()))},
+                   {"repeats", described("How often a run measures its costs.", count())}});
+}
+
+Json or_null(Json schema) {
+    schema["type"] = Json::array({schema["type"], "null"});
+    return schema;
+}
+Json count_or_null() { return or_null(count()); }
+Json number_or_null() { return described("null: there is none, or it is infinite.", or_null(number())); }
+Json verdict() { return names(Verdict::failed, Verdict::passed); }
+Json effect() { return names(Effect::regression, Effect::listed); }
+
+/// The verdict of a run, with the number of cells of every verdict.
+Json verdict_of_run() {
+    Json counts = object({});
+    for (const Verdict each : all_verdicts) {
+        counts["properties"][std::string(name_of(each))] = count();
+        counts["required"].push_back(name_of(each));
+    }
+    return object({{"verdict", verdict()},
+                   {"tripped", described("A cell regressed or is missing.", flag())},
+                   {"counts", std::move(counts)}});
+}
+
+/// A cell with its verdict and the sentences that give reasons.
+Json judged_cell() { return joined(cell(), object({{"verdict", verdict()}, {"reasons", list_of(text())}})); }
+
+Json report_schema() {
+    const Json run = object({{"id", count()},
+                             {"started", text()},
+                             {"outcome", text()},
+                             {"version", text()},
+                             {"machine", text()},
+                             {"threads", count()},
+                             {"jobs", count()},
+                             {"seconds", seconds()}});
+    Json accepted = joined(run, object({{"folder", described("null: the run's own.", or_null(text()))},
+                                        {"who", or_null(text())},
+                                        {"why", or_null(text())},
+                                        {"at", described("null: it was not accepted.", or_null(text()))}}));
+    accepted["type"] = Json::array({"object", "null"});
+    const Json metric =
+        object({{"source", described("A step, or an output's file.", text())},
+                {"metric", text()},
+                {"unit", unit()},
+                {"length-unit", length_unit_or_null()},
+                {"accepted", number_or_null()},
+                {"found", number_or_null()},
+                {"share", described("The difference as a share of the accepted value.", number_or_null())},
+                {"rule", described("null: there is none.", or_null(text()))},
+                {"effect", effect()}});
+    const Json output = object({{"file", text()},
+                                {"accepted", described("SHA-256; null: not written.", or_null(text()))},
+                                {"found", described("SHA-256; null: not written.", or_null(text()))},
+                                {"effect", effect()}});
+    const Json cost = object({{"cost", {{"enum", {"seconds", "cpu-seconds", "memory"}}}},
+                              {"before", described("The median of the earlier passes.", number_or_null())},
+                              {"now", described("The median of this run's passes.", number_or_null())},
+                              {"share", number_or_null()},
+                              {"passes-before", count()},
+                              {"passes", count()},
+                              {"probability", described("Of the ranks, if nothing changed.", number_or_null())},
+                              {"rule", or_null(text())},
+                              {"effect", effect()}});
+    const Json of_cell =
+        joined(judged_cell(), object({{"causes", described("What differs in its files and steps.", list_of(text()))},
+                                      {"seconds", seconds()},
+                                      {"metrics", list_of(metric)},
+                                      {"outputs", list_of(output)},
+                                      {"costs", list_of(cost)},
+                                      {"moved", described("Earlier outputs that were moved aside.", list_of(text()))},
+                                      {"command", described("Reproduces the cell; null: it passed.", or_null(text()))},
+                                      {"values", metrics()}}));
+    const Json change = object({{"cell", count()}, {"metric?", count()}, {"output?", count()}, {"cost?", count()}});
+    const Json report =
+        joined(object({{"batch", text()},
+                       {"file", text()},
+                       {"run", run},
+                       {"accepted", described("null: no run was accepted.", accepted)},
+                       {"gate", gate()},
+                       {"filters", list_of(text())},
+                       {"notes", list_of(text())},
+                       {"cells", list_of(of_cell)},
+                       {"changes", described("Indices into the cells and their lists: the most important change first.",
+                                             list_of(change))}}),
+               verdict_of_run());
+    return document("scanmill report DIR --json", object({{"report", report}}));
+}
+
 /// One line of a batch: `event` decides on the members.
 Json batch_event_schema() {
     const Json about_step =
@@ -347,6 +438,8 @@ Json batch_event_schema() {
                 failure("exit-code?"))},
         {"pass-started",
          described("Steps run again for their costs.", object({{"pass", count()}, {"passes", count()}}))},
+        {"verdict", joined(object({{"run", count()}, {"accepted", count_or_null()}, {"cells", list_of(judged_cell())}}),
+                           verdict_of_run())},
         {"run-ended", object({{"interrupted", flag()},
                               {"ok", count()},
                               {"doubtful", count()},
@@ -365,11 +458,6 @@ Json batch_event_schema() {
         schema["allOf"].push_back({{"if", {{"properties", {{"event", {{"const", name}}}}}}}, {"then", event}});
     }
     return schema;
-}
-
-Json gate() {
-    return object({{"rules", described("By metric.", map_of(text()))},
-                   {"repeats", described("How often a run measures its costs.", count())}});
 }
 
 Json run_summary() {
@@ -426,7 +514,7 @@ Json runs_show_schema() {
                                      {"version", count()},
                                      {"build", text()},
                                      {"scan", text()},
-                                     {"variants?", described("That use it.", list_of(text()))},
+                                     {"variants", described("That use it.", list_of(text()))},
                                      {"measures?", described("What it measures by the cell's truth.", text())},
                                      {"key", text()},
                                      {"origin", text()},
@@ -446,89 +534,6 @@ Json runs_show_schema() {
                              failed);
     return document("scanmill runs DIR show ID --json",
                     object({{"run", run}, {"cells", list_of(of_cell)}, {"steps", list_of(step)}}));
-}
-
-Json verdict() { return names(Verdict::failed, Verdict::passed); }
-Json nullable(Json schema) {
-    schema["type"] = {schema["type"], "null"};
-    return schema;
-}
-
-Json report_schema() {
-    const Json effect = names(Effect::regression, Effect::listed);
-    const Json rule = described("Its text; null: there is none.", nullable(text()));
-    const Json share =
-        described("The difference as a share of the earlier value; null: that is 0 or absent.", nullable(number()));
-    const Json run = object({{"id", count()},
-                             {"started", text()},
-                             {"outcome", text()},
-                             {"version", text()},
-                             {"machine", text()},
-                             {"threads", count()},
-                             {"jobs", count()},
-                             {"seconds", seconds()}});
-    const Json accepted =
-        joined(run, object({{"folder", described("null: that of the run.", nullable(text()))},
-                            {"who", described("null: it was not accepted, but chosen.", nullable(text()))},
-                            {"why", nullable(text())},
-                            {"at", nullable(text())}}));
-    const Json metric = object({{"source", text()},
-                                {"metric", text()},
-                                {"unit", unit()},
-                                {"length-unit", length_unit_or_null()},
-                                {"accepted", nullable(number())},
-                                {"found", nullable(number())},
-                                {"share", share},
-                                {"rule", rule},
-                                {"effect", effect}});
-    const Json output = object({{"file", text()},
-                                {"accepted", described("SHA-256; null: not written.", nullable(text()))},
-                                {"found", nullable(text())},
-                                {"effect", effect}});
-    const Json cost = object(
-        {{"cost", {{"enum", {"seconds", "cpu-seconds", "memory"}}}},
-         {"before", described("The median of earlier passes.", nullable(number()))},
-         {"now", nullable(number())},
-         {"share", share},
-         {"passes-before", count()},
-         {"passes", count()},
-         {"probability", described("Of these ranks if nothing changed; null: not computed.", nullable(number()))},
-         {"rule", rule},
-         {"effect", effect}});
-    const Json of_cell =
-        joined(cell(), object({{"verdict", verdict()},
-                               {"reasons", list_of(text())},
-                               {"causes", described("What differs in its inputs and steps.", list_of(text()))},
-                               {"seconds", seconds()},
-                               {"metrics", list_of(metric)},
-                               {"outputs", list_of(output)},
-                               {"costs", list_of(cost)},
-                               {"moved", described("Outputs of an earlier run, moved aside.", list_of(text()))},
-                               {"command", described("Reproduces the cell; null: it passed.", nullable(text()))},
-                               {"values", metrics()}}));
-    Json counts = object({});
-    for (const Json& name : verdict()["enum"]) {
-        counts["properties"][name.get<std::string>()] = count();
-        counts["required"].push_back(name);
-    }
-    const Json change = object({{"cell", described("Its number, from 0; the others: in its lists.", count())},
-                                {"metric?", count()},
-                                {"output?", count()},
-                                {"cost?", count()}});
-    Json accepted_or_null = accepted;
-    accepted_or_null["type"] = {"object", "null"};
-    return document("scanmill report --json", object({{"report", object({{"batch", text()},
-                                                                         {"file", text()},
-                                                                         {"verdict", verdict()},
-                                                                         {"tripped", described("Exit code 4.", flag())},
-                                                                         {"run", run},
-                                                                         {"accepted", accepted_or_null},
-                                                                         {"gate", gate()},
-                                                                         {"counts", counts},
-                                                                         {"filters", list_of(text())},
-                                                                         {"notes", list_of(text())},
-                                                                         {"cells", list_of(of_cell)},
-                                                                         {"changes", list_of(change)}})}}));
 }
 
 constexpr std::array<std::pair<const char*, Json (*)()>, 15> outputs{{{"list", list_schema},
