@@ -44,14 +44,6 @@ std::string truth_of(const Cell& cell) {
         return {};
 }
 
-template <class Report>
-std::string moved_to(const Report& output) {
-    if constexpr (requires { output.moved_to; })
-        return std::filesystem::path(output.moved_to).string();
-    else
-        return {};
-}
-
 /// Empty unless all nodes of the cell ran.
 std::vector<CostRecord> cost_of(const RunCell& cell, const std::vector<std::optional<CostRecord>>& nodes) {
     CostRecord sum;
@@ -127,11 +119,10 @@ void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
     record.seconds = report.seconds;
     record.nodes = cell.nodes;
     record.doubts = report.doubts;
-    for (const OutputReport& output : report.outputs) {
+    for (const OutputReport& output : report.outputs)
         record.outputs.push_back({output.file.string(), std::string(name_of(output.kind)),
                                   std::string(name_of(output.outcome)), output.properties, output.sha256,
-                                  static_cast<std::int64_t>(output.bytes), moved_to(output)});
-    }
+                                  static_cast<std::int64_t>(output.bytes), output.moved_to.string()});
     record.truth = truth_of(cell);
     if (measures_costs_) record.costs = cost_of(cell, node_costs_);
     cells_.push_back(std::move(record));

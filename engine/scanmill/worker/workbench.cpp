@@ -207,6 +207,8 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
             // A description of an earlier run must not stay beside this file.
             fs::remove(work.file, trouble);
             fs::remove(description_of(work.file), trouble);
+            written.sha256.clear();
+            written.bytes = 0;
             throw;
         }
     else
