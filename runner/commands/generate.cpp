@@ -44,11 +44,11 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
 int schema(const SchemaOptions& options) {
     const FilterLibrary library = open_library();
     if (options.folder.empty()) {
-        fmt::print("{}", options.kind == "batch" ? batch_schema() : workflow_schema(library));
+        fmt::print("{}", options.kind == "batch" ? batch_schema(library) : workflow_schema(library));
         return done;
     }
     write_text(options.folder / "workflow.schema.json", workflow_schema(library));
-    write_text(options.folder / "batch.schema.json", batch_schema());
+    write_text(options.folder / "batch.schema.json", batch_schema(library));
     return done;
 }
 

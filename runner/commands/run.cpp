@@ -183,7 +183,8 @@ int Execution::run(const SessionTask& task, bool streams_events) {
             print_json(graph_json(graph, predictions));
         else
             fmt::print("{}", printable(graph_text(graph, predictions)));
-        return done;
+        const auto is_readable = [](const RunNode& node) { return node.unreadable.empty(); };
+        return std::ranges::all_of(graph.nodes, is_readable) ? done : some_failed;
     }
 
     std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
@@ -257,18 +258,35 @@ int run_workflow(const RunOptions& options) {
     return execution.run({workflow_name(checked.plan), workflow, std::move(graph), {}}, false);
 }
 
+/// The scan with its own files for the further inputs of the plan.
+ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
+    ScanFile file(scan.file);
+    file.unit = scan.unit;
+    file.frame = scan.frame;
+    file.pose = scan.pose;
+    file.invalid = scan.invalid;
+    for (const WorkflowInput& input : plan.workflow.inputs) {
+        if (input.is_truth) {
+            ScanFile truth(scan.truth.file);
+            truth.unit = scan.truth.unit;
+            truth.frame = scan.truth.frame;
+            file.inputs[input.name].push_back(std::move(truth));
+        } else if (const auto own = scan.inputs.find(input.name); own != scan.inputs.end()) {
+            file.inputs[input.name].assign(own->second.files.begin(), own->second.files.end());
+        }
+    }
+    return file;
+}
+
 RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteOptions& options) {
     RunRequest request;
-    for (const std::size_t index : part.scans) {
-        const BatchScan& scan = batch.scans[index];
-        ScanFile file(scan.file);
-        file.unit = scan.unit;
-        file.frame = scan.frame;
-        file.pose = scan.pose;
-        file.invalid = scan.invalid;
-        request.scans.push_back(std::move(file));
-        for (const std::filesystem::path& other : {scan.truth, scan.pose_file})
+    for (const std::size_t index : part.scans) request.scans.push_back(scan_file(batch.scans[index], *part.plan));
+    for (const BatchScan& scan : batch.scans) {
+        request.protected_files.push_back(scan.file);
+        for (const std::filesystem::path& other : {scan.truth.file, scan.pose_file})
             if (!other.empty()) request.protected_files.push_back(other);
+        for (const auto& [name, input] : scan.inputs)
+            request.protected_files.insert(request.protected_files.end(), input.files.begin(), input.files.end());
     }
     request.protected_files.emplace_back(batch.file);
     request.output_folder = options.session.output_folder;

@@ -88,7 +88,7 @@ struct nlohmann::adl_serializer<std::shared_ptr<const scanmill::PlannedStep>> {
 namespace scanmill {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RigidTransform, rotation, translation, unit, from, to)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeafSource, file, content, kind, unit, frame, pose, invalid, is_streamed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeafSource, file, content, kind, unit, frame, pose, invalid, is_streamed, also)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ParameterFile, path, content)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobInput, port, node, from, content, leaf)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobCaching, is_used, plan_key, code, keep_always, inputs_cost, needed)
