@@ -49,7 +49,14 @@ volatile std::sig_atomic_t interrupt_requested = 0;
 
 void on_interrupt(int signal) {
     interrupt_requested = 1;
-    std::signal(signal, SIG_DFL);  // a second signal ends the program at once
+    // A second signal ends the program at once. A terminal that closes sends SIGHUP twice: itself and by its shell.
+    if (signal != SIGHUP) std::signal(signal, SIG_DFL);
+}
+
+/// The run stops in good order. A signal that is ignored, as SIGHUP is under nohup, stays ignored.
+void handle_interrupts() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
 }
 
 /// CLI11 itself reads -1 as the largest number and 010 as eight.
@@ -188,8 +195,7 @@ int Execution::run(const SessionTask& task, bool streams_events) {
     }
 
     std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
-    std::signal(SIGINT, on_interrupt);
-    std::signal(SIGTERM, on_interrupt);
+    handle_interrupts();
     const unsigned jobs = session_.jobs(graph);
     Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet);
     session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
@@ -212,7 +218,7 @@ int Execution::run(const SessionTask& task, bool streams_events) {
     } else if (options_.json) {
         print_json(report_json(graph, report));
     } else {
-        fmt::print("{}", report_text(graph, report));
+        fmt::print("{}", report_text(graph, report, stdout_width()));
     }
     if (report.interrupted) {
         print_stderr("interrupted; all files written so far are complete\n");
@@ -307,7 +313,12 @@ int run_batch(const BatchOptions& options) {
         parts.push_back({part.plan, request_for(checked.batch, part, options.execute)});
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);
-    return execution.run({checked.batch.name, options.file, std::move(graph), checked.batch.limits}, true);
+    SessionTask task{checked.batch.name, options.file, std::move(graph), checked.batch.limits};
+    if (const std::optional<Gate>& gate = checked.batch.gate) {
+        task.gate = to_json_text(*gate);
+        task.repeats = gate->repeats;
+    }
+    return execution.run(task, true);
 }
 
 }  // namespace

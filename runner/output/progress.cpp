@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
-#include <wchar.h>
 
 #include <algorithm>
-#include <clocale>
 #include <cmath>
-#include <cwchar>
+#include <filesystem>
 
 #include "output/error_output.hpp"
 #include "output/terminal.hpp"
@@ -18,42 +16,6 @@
 namespace scanmill::runner {
 
 namespace {
-
-struct Character {
-    std::size_t begin, columns;
-};
-
-/// The characters of UTF-8 text with their columns on a terminal; an invalid byte counts as one.
-std::vector<Character> characters_of(const std::string& text) {
-    static const ::locale_t utf8 = ::newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
-    const ::locale_t before = ::uselocale(utf8);
-    std::vector<Character> all;
-    std::mbstate_t state{};
-    for (std::size_t begin = 0; begin < text.size();) {
-        wchar_t character = 0;
-        const std::size_t bytes = std::mbrtowc(&character, &text[begin], text.size() - begin, &state);
-        const bool is_valid = bytes != 0 && bytes <= text.size();
-        all.push_back({begin, is_valid ? static_cast<std::size_t>(std::max(0, ::wcwidth(character))) : 1});
-        if (!is_valid) state = {};
-        begin += is_valid ? bytes : 1;
-    }
-    ::uselocale(before);
-    return all;
-}
-
-/// At most `width` columns of whole characters; the beginning is cut off, because names differ at their end.
-std::string fitted(const std::string& text, std::size_t width) {
-    const std::vector<Character> characters = characters_of(text);
-    std::size_t columns = 0;
-    for (const Character& each : characters) columns += each.columns;
-    if (columns <= width) return text;
-    if (width < 2) return "";
-    for (const Character& each : characters) {
-        if (columns + 1 <= width) return "…" + text.substr(each.begin);
-        columns -= each.columns;
-    }
-    return "…";
-}
 
 /// Columns and lines of the terminal.
 std::pair<std::size_t, std::size_t> terminal_size() {
@@ -64,10 +26,6 @@ std::pair<std::size_t, std::size_t> terminal_size() {
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-std::size_t count_to_run(const std::vector<NodePrediction>& predictions) {
-    return static_cast<std::size_t>(std::ranges::count(predictions, true, &NodePrediction::will_run));
 }
 
 }  // namespace
@@ -82,24 +40,18 @@ void ProgressBoard::ended(const void* id) {
         if (each.id == id) each = {};
 }
 
-std::optional<double> ProgressBoard::time_left(double now) const {
-    constexpr double least_time = 1;
-    if (ran_ == 0 || now < least_time || ended_ >= steps_) return std::nullopt;
-    const std::size_t to_come = to_run_ > ran_ ? to_run_ - ran_ : 0;
-    return now / static_cast<double>(ran_) * static_cast<double>(to_come);
-}
-
 std::string ProgressBoard::line_of(std::size_t worker, double now, std::size_t width) const {
     const Doing& doing = workers_[worker];
     const std::string head = workers_.size() > 1 ? fmt::format("{:>3} ", worker + 1) : "";
-    if (!doing.id) return fitted(head + "-", width);
+    if (!doing.id) return cut_begin(head + "-", width);
     const std::string percent = doing.fraction > 0 ? fmt::format(" {:.0f} %", 100 * doing.fraction) : "";
     const std::string tail = fmt::format("{} {}", percent, clock_text(now - doing.since));
     const std::size_t taken = head.size() + tail.size();
-    return fitted(head + fitted(doing.what, width > taken ? width - taken : 0) + tail, width);
+    return cut_begin(head + cut_begin(doing.what, width > taken ? width - taken : 0) + tail, width);
 }
 
-std::vector<std::string> ProgressBoard::lines(double now, std::size_t width, std::size_t height) const {
+std::vector<std::string> ProgressBoard::lines(double now, std::size_t width, std::size_t height,
+                                              std::optional<double> left) const {
     std::vector<std::string> all;
     const bool has_room = workers_.size() < height;
     for (std::size_t worker = 0; worker < workers_.size() && all.size() + 1 < height; ++worker)
@@ -110,7 +62,7 @@ std::vector<std::string> ProgressBoard::lines(double now, std::size_t width, std
                                     std::min(ended_, steps_), count_text(steps_, "step", "steps"));
     if (failed_ > 0) total += fmt::format(", {} failed", failed_);
     total += ", " + clock_text(now);
-    if (const std::optional<double> left = time_left(now)) total += fmt::format(", about {} left", clock_text(*left));
+    if (left) total += fmt::format(", about {} left", clock_text(std::ceil(*left)));  // never 0:00
     all.push_back(total.substr(0, width));
     return all;
 }
@@ -125,14 +77,66 @@ std::string clock_text(double seconds) {
 Progress::Progress(const RunGraph& graph, const std::vector<NodePrediction>& predictions, std::size_t workers,
                    bool quiet)
     : graph_(graph),
-      board_(workers, graph.nodes.size(), count_to_run(predictions)),
+      names_(graph),
+      board_(workers, graph.nodes.size()),
+      time_left_(workers),
+      is_settled_(graph.nodes.size()),
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) != 0),
-      begin_(std::chrono::steady_clock::now()) {}
+      begin_(std::chrono::steady_clock::now()) {
+    expect_tasks(predictions);
+}
 
-std::string Progress::label(const RunNode& node) const {
-    return printable_line(node.step ? fmt::format("{}: {}", graph_.scan_names[node.scan], graph_.label(node))
-                                    : fmt::format("{}: read", node.leaf.file.string()));
+/// Steps of one name in one workflow, with whatever parameters, are one kind of task, and so are their outputs. Their
+/// size is that of the file that they are made from.
+void Progress::expect_tasks(const std::vector<NodePrediction>& predictions) {
+    std::map<std::string, std::size_t> kinds;
+    const auto kind = [&](const RunNode& node, const std::string& output) {
+        const std::string& workflow = graph_.plans[node.plan]->workflow.file;
+        return kinds.emplace(workflow + '\n' + graph_.label(node) + '\n' + output, kinds.size()).first->second;
+    };
+    std::vector<double> sizes;
+    for (std::size_t index = 0; index < graph_.nodes.size(); ++index) {
+        const RunNode& node = graph_.nodes[index];
+        double size = 1;
+        for (const NodeInput& input : node.inputs) size = std::max(size, sizes[input.node]);
+        std::error_code gone;
+        if (!node.step)
+            if (const auto bytes = std::filesystem::file_size(node.leaf.file, gone); !gone)
+                size = std::max(size, static_cast<double>(bytes));
+        sizes.push_back(size);
+        time_left_.add(kind(node, ""), node.scan, size);
+        if (!predictions[index].will_run) time_left_.dropped(index);
+    }
+    cells_left_.resize(graph_.nodes.size());
+    for (const RunCell& cell : graph_.cells) {
+        for (const std::size_t node : cell.nodes) ++cells_left_[node];
+        for (const RunOutput& output : cell.outputs) {
+            const auto [found, is_new] = write_of_file_.emplace(output.file.string(), cells_left_.size());
+            if (is_new) {
+                const RunNode& made = graph_.nodes[output.node];
+                time_left_.add(kind(made, "output " + output.port), made.scan, sizes[output.node]);
+                cells_left_.push_back(0);
+            }
+            ++cells_left_[found->second];
+        }
+    }
+}
+
+void Progress::node_settled(std::size_t node) {
+    if (is_settled_[node]) return;  // lost values are computed again
+    is_settled_[node] = true;
+    ++ended_;
+    board_.step_ended();
+}
+
+std::optional<double> Progress::time_left(double now) {
+    constexpr double least_time = 1;
+    if (now - estimated_at_ >= least_time) {
+        estimate_ = time_left_.seconds(now);
+        estimated_at_ = now;
+    }
+    return estimate_;
 }
 
 void Progress::print(const std::string& text) {
@@ -149,8 +153,9 @@ void Progress::paint() {
     wipe();
     const auto [width, height] = terminal_size();
     // The last column and the last line stay free, so that no line wraps or scrolls.
-    for (const std::string& line : board_.lines(seconds_since(begin_), std::max<std::size_t>(width, 2) - 1,
-                                                std::max<std::size_t>(height, 2) - 1)) {
+    const double now = seconds_since(begin_);
+    for (const std::string& line :
+         board_.lines(now, std::max<std::size_t>(width, 2) - 1, std::max<std::size_t>(height, 2) - 1, time_left(now))) {
         print_stderr("{}\n", line);
         ++painted_;
     }
@@ -169,12 +174,15 @@ void Progress::time_passed() {
 
 void Progress::node_started(const RunNode& node, std::size_t worker) {
     const std::scoped_lock lock(mutex_);
-    board_.started(worker, &node, label(node), seconds_since(begin_));
+    const double now = seconds_since(begin_);
+    time_left_.started(graph_.index(node), now);
+    if (has_board()) board_.started(worker, &node, printable_line(names_.step(node)), now);
 }
 
 void Progress::node_progress(const RunNode& node, double fraction) {
     {
         const std::scoped_lock lock(mutex_);
+        time_left_.progressed(graph_.index(node), fraction);
         board_.progressed(&node, fraction);
     }
     time_passed();
@@ -184,27 +192,35 @@ void Progress::node_warning(const RunNode& node, std::string_view text) {
     const std::scoped_lock lock(mutex_);
     // Warnings of readers begin with the file's path; a file that is an input twice is read twice.
     if (!node.step && !read_.insert(std::string(text)).second) return;
-    print("warning: " + printable_line(node.step ? fmt::format("{}: {}", label(node), text) : std::string(text)));
+    print("warning: " + printable_line(node.step ? fmt::format("{}: {}", names_.step(node), text) : std::string(text)));
 }
 
 void Progress::node_ended(const RunNode& node, const NodeReport& report) {
     const std::scoped_lock lock(mutex_);
-    ++ended_;
+    const std::size_t index = graph_.index(node);
+    const bool is_again = is_settled_[index];
+    time_left_.ended(index, seconds_since(begin_), report.outcome == Outcome::ok && report.origin == Origin::ran);
     board_.ended(&node);
-    board_.step_ended(report.origin != Origin::cached);
+    node_settled(index);
+    for (const Doubt& doubt : report.doubts)
+        doubts_[index].push_back(fmt::format("{}: {}", graph_.label(node), doubt.text));
     if (quiet_ || terminal_ || report.outcome != Outcome::ok) return;
     const std::string took =
         report.origin == Origin::ran ? fmt::format("{:.2f} s", report.effort.seconds) : std::string("cached");
-    print_stderr("[{}/{}] {} {}\n", ended_, graph_.nodes.size(), label(node), took);
+    print_stderr("[{}/{}] {} {}{}\n", ended_, graph_.nodes.size(), printable_line(names_.step(node)), took,
+                 is_again ? ", again" : "");
 }
 
 void Progress::output_started(const RunCell&, const RunOutput& output, std::size_t worker) {
     const std::scoped_lock lock(mutex_);
-    board_.started(worker, &output, printable_line(output.file.string()), seconds_since(begin_));
+    const double now = seconds_since(begin_);
+    time_left_.started(write_of_file_.at(output.file.string()), now);
+    if (has_board()) board_.started(worker, &output, printable_line(output.file.string()), now);
 }
 
 void Progress::output_written(const RunCell& cell, const OutputReport& report) {
     const std::scoped_lock lock(mutex_);
+    time_left_.ended(write_of_file_.at(report.file.string()), seconds_since(begin_), report.outcome == Outcome::ok);
     for (const RunOutput& output : cell.outputs)
         if (output.file == report.file) board_.ended(&output);
     for (const std::string& warning : report.warnings) print("warning: " + printable_line(warning));
@@ -212,15 +228,57 @@ void Progress::output_written(const RunCell& cell, const OutputReport& report) {
 
 void Progress::cell_ended(const RunCell& cell, const CellReport& report) {
     const std::scoped_lock lock(mutex_);
+    // What the cell did not do will not be done, unless another cell needs it.
+    for (const std::size_t node : cell.nodes)
+        if (--cells_left_[node] == 0) {
+            if (!is_settled_[node]) time_left_.dropped(node);
+            node_settled(node);
+        }
+    for (const RunOutput& output : cell.outputs)
+        if (const std::size_t write = write_of_file_.at(output.file.string()); --cells_left_[write] == 0)
+            time_left_.dropped(write);
+    // Variants share steps, and so their doubts.
     for (const std::string& doubt : report.doubts) {
-        const std::string text = fmt::format("doubt: {}: {}", graph_.scan_names[cell.scan], doubt);
-        if (printed_doubts_.insert(text).second) print(printable_line(text));  // variants share steps
+        const auto has_doubt = [&](std::size_t node) {
+            const auto found = doubts_.find(node);
+            return found != doubts_.end() && std::ranges::find(found->second, doubt) != found->second.end();
+        };
+        const auto node = std::ranges::find_if(cell.nodes, has_doubt);
+        const bool is_of_scan = node != cell.nodes.end() && graph_.nodes[*node].scan == cell.scan;
+        const std::string where = is_of_scan ? names_.scan(graph_.nodes[*node]) : graph_.scan_names[cell.scan];
+        const std::string text = fmt::format("doubt: {}: {}", where, doubt);
+        if (printed_doubts_.insert(text).second) print(printable_line(text));
     }
-    if (!report.failure) return;
-    board_.cell_failed();
-    const bool several = graph_.plans[cell.plan]->variants.size() > 1;
-    print(error_text(with_option(report.failure.whole())) +
-          (several ? fmt::format("\n  under variant '{}'", graph_.variant(cell).name) : ""));
+    if (report.failure) {
+        board_.cell_failed();
+        print_failure(cell, report);
+    }
+}
+
+/// The failure of a node that several cells of a scan need is printed once, with these cells.
+void Progress::print_failure(const RunCell& cell, const CellReport& report) {
+    std::vector<std::size_t> cells{graph_.index(cell)};
+    bool is_new = true, is_reading = false;
+    if (report.failed_node) {
+        const std::size_t node = *report.failed_node;
+        is_new = printed_failures_.emplace(node, cell.scan).second;
+        is_reading = !graph_.nodes[node].step;
+        cells = names_.cells(node, cell.scan);
+    }
+    if (is_new) {
+        Error error = with_option(report.failure.whole());
+        if (const std::string some = is_reading ? "" : names_.in_words(cells); !some.empty())
+            error.add_frame("under " + some);
+        print(error_text(error));
+    }
+    for (const OutputReport& output : report.outputs) {
+        if (!output.moved_to.empty())
+            print(printable_line(
+                fmt::format("warning: the file of an earlier run was moved to '{}'", output.moved_to.string())));
+        if (!output.not_moved.empty())
+            print(
+                printable_line(fmt::format("warning: a file of an earlier run is still there: {}", output.not_moved)));
+    }
 }
 
 void Progress::pass_started(unsigned pass, unsigned passes) {

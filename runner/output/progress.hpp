@@ -5,12 +5,16 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
+#include "output/step_names.hpp"
+#include "output/time_left.hpp"
 #include "scanmill/run/run.hpp"
 
 namespace scanmill::runner {
@@ -18,28 +22,24 @@ namespace scanmill::runner {
 /// The lines on the terminal: one per worker, then one for the whole with an estimate of the time left.
 class ProgressBoard {
 public:
-    /// `steps`: all steps, run or taken from the cache; `to_run`: the steps that take time.
-    ProgressBoard(std::size_t workers, std::size_t steps, std::size_t to_run)
-        : workers_(workers),
-          steps_(steps),
-          to_run_(to_run) {}
+    /// `steps`: all steps, run or taken from the cache.
+    ProgressBoard(std::size_t workers, std::size_t steps) : workers_(workers), steps_(steps) {}
 
     /// `id` identifies the work for later calls. Times are seconds since the run began.
     void started(std::size_t worker, const void* id, std::string what, double at) {
+        ended(id);  // another worker may have tried before
         workers_[worker] = {id, std::move(what), at, 0};
     }
     void progressed(const void* id, double fraction);
     void ended(const void* id);
-    void step_ended(bool took_time) {
-        ++ended_;
-        ran_ += took_time;
-    }
+    /// Once per step.
+    void step_ended() { ++ended_; }
     void cell_failed() { ++failed_; }
 
-    /// At most `width` columns and `height` lines: idle workers are left out first.
-    std::vector<std::string> lines(double now, std::size_t width, std::size_t height = 1000) const;
-    /// Estimated seconds until the end, if the remaining steps take as long as the finished ones on average.
-    std::optional<double> time_left(double now) const;
+    /// At most `width` columns and `height` lines: idle workers are left out first. `left`: estimated seconds until the
+    /// end; nothing: unknown.
+    std::vector<std::string> lines(double now, std::size_t width, std::size_t height = 1000,
+                                   std::optional<double> left = {}) const;
 
 private:
     struct Doing {
@@ -49,7 +49,7 @@ private:
     };
     std::vector<Doing> workers_;
     std::string line_of(std::size_t worker, double now, std::size_t width) const;
-    std::size_t steps_, to_run_, ended_ = 0, ran_ = 0, failed_ = 0;
+    std::size_t steps_, ended_ = 0, failed_ = 0;
 };
 
 /// "0:07", "12:30", "1:02:05".
@@ -74,20 +74,32 @@ public:
     void finish();
 
 private:
-    std::string label(const RunNode& node) const;
     bool has_board() const { return terminal_ && !quiet_; }
+    void expect_tasks(const std::vector<NodePrediction>& predictions);
+    void node_settled(std::size_t node);
+    void print_failure(const RunCell& cell, const CellReport& report);
+    std::optional<double> time_left(double now);
     void print(const std::string& text);
     void paint();
     void wipe();
 
     const RunGraph& graph_;
+    StepNames names_;
     ProgressBoard board_;
+    TimeLeft time_left_;  ///< its tasks: the nodes, then the outputs
+    std::unordered_map<std::string, std::size_t> write_of_file_;  ///< the output's task
+    std::vector<std::size_t> cells_left_;  ///< of each task
+    std::vector<bool> is_settled_;  ///< node: it has ended, or will not run
     bool quiet_;
     bool terminal_;
     std::size_t ended_ = 0;
     std::size_t painted_ = 0;  // lines on the terminal
     std::chrono::steady_clock::time_point begin_, last_;
+    std::optional<double> estimate_;  ///< of the time left
+    double estimated_at_ = 0;
+    std::map<std::size_t, std::vector<std::string>> doubts_;  ///< of nodes, as their cells repeat them
     std::set<std::string> printed_doubts_;
+    std::set<std::pair<std::size_t, std::size_t>> printed_failures_;  ///< node and scan
     std::mutex mutex_;
     std::set<std::string> read_;  ///< warnings of readers that were printed
 };

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <set>
 
 #include "output/error_output.hpp"
 #include "output/terminal.hpp"
@@ -51,15 +53,6 @@ Metrics headline(const RunGraph& graph, const RunReport& report, std::size_t cel
     return shown;
 }
 
-bool has_several_workflows(const RunGraph& graph) {
-    return std::ranges::any_of(
-        graph.plans, [&](const auto& plan) { return plan->workflow.file != graph.plans.front()->workflow.file; });
-}
-
-bool has_several_variants(const RunGraph& graph) {
-    return std::ranges::any_of(graph.plans, [](const auto& plan) { return plan->variants.size() > 1; });
-}
-
 /// The scan, workflow and variant of a cell.
 Json cell_json(const RunGraph& graph, const RunCell& cell) {
     return {{"scan", graph.scan_names[cell.scan]},
@@ -74,6 +67,25 @@ void add_failure(Json& entry, const Failure& failure) {
     entry["cause"] = name_of(failure.cause);
     if (failure.cause == Cause::signal) entry["signal"] = failure.number;
     if (failure.cause == Cause::exit) entry["exit-code"] = failure.number;
+}
+
+/// The file that could not be read, if that is why the cell failed: all cells of its scan that need it fail alike.
+std::optional<std::size_t> unreadable_file(const RunGraph& graph, const CellReport& report) {
+    const bool is_file = report.failed_node && !graph.nodes[*report.failed_node].step;
+    return is_file ? report.failed_node : std::nullopt;
+}
+
+/// The first cell of every row, and how many cells share it: those of one scan that failed because of one file.
+std::map<std::size_t, std::size_t> cells_by_row(const RunGraph& graph, const RunReport& report) {
+    std::map<std::size_t, std::size_t> rows;
+    std::map<std::pair<std::size_t, std::size_t>, std::size_t> row_of;  // by file and scan
+    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
+        const std::optional<std::size_t> file = unreadable_file(graph, report.cells[cell]);
+        const std::size_t row =
+            file ? row_of.emplace(std::pair(*file, graph.cells[cell].scan), cell).first->second : cell;
+        ++rows[row];
+    }
+    return rows;
 }
 
 Json to_json(const ParameterSet& parameters) {
@@ -137,7 +149,7 @@ Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predic
     return json;
 }
 
-std::string report_text(const RunGraph& graph, const RunReport& report) {
+std::string report_text(const RunGraph& graph, const RunReport& report, std::optional<std::size_t> width) {
     std::vector<Metrics> numbers;
     std::vector<std::string> columns;
     for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
@@ -152,15 +164,25 @@ std::string report_text(const RunGraph& graph, const RunReport& report) {
     headers.insert(headers.end(), columns.begin(), columns.end());
     headers.insert(headers.end(), {"seconds", "outcome", "files"});
     Table table(std::move(headers));
+    table.may_cut("scan");
+    table.may_cut("files");
     std::size_t doubtful = 0, failed = 0;
-    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
+    std::set<std::size_t> unreadable;          // nodes
+    std::set<std::filesystem::path> moved_to;  // variants may share a file
+    for (const CellReport& done : report.cells) {
+        doubtful += done.outcome == Outcome::doubtful;
+        failed += done.outcome == Outcome::failed;
+        if (const std::optional<std::size_t> file = unreadable_file(graph, done)) unreadable.insert(*file);
+        for (const OutputReport& output : done.outputs)
+            if (!output.moved_to.empty()) moved_to.insert(output.moved_to);
+    }
+    const std::map<std::size_t, std::size_t> rows = cells_by_row(graph, report);
+    for (const auto& [cell, count] : rows) {
         const CellReport& done = report.cells[cell];
-        if (done.outcome == Outcome::doubtful) ++doubtful;
-        if (done.outcome == Outcome::failed) ++failed;
         std::vector<std::string> row{
             std::filesystem::path(graph.scan_names[graph.cells[cell].scan]).filename().string()};
-        if (several_workflows) row.push_back(graph.workflow(graph.cells[cell]));
-        if (several_variants) row.push_back(graph.variant(graph.cells[cell]).name);
+        if (several_workflows) row.push_back(count > 1 ? "-" : graph.workflow(graph.cells[cell]));
+        if (several_variants) row.push_back(count > 1 ? "-" : graph.variant(graph.cells[cell]).name);
         for (const std::string& column : columns) {
             const Metric* metric = numbers[cell].find(column);
             row.push_back(metric ? display(*metric) : "-");
@@ -173,10 +195,18 @@ std::string report_text(const RunGraph& graph, const RunReport& report) {
         row.push_back(files.empty() ? "-" : files);
         table.add(std::move(row));
     }
-    std::string text = table.text();
+    std::string text = table.text(width);
     if (doubtful > 0)
         text += fmt::format("{} of {} doubtful; the reasons are on stderr\n", doubtful, graph.cells.size());
-    if (failed > 0) text += fmt::format("{} of {} failed; the reasons are on stderr\n", failed, graph.cells.size());
+    const std::string broken =
+        rows.size() < graph.cells.size()
+            ? fmt::format(" ({} could not be read)", count_text(unreadable.size(), "file", "files"))
+            : "";
+    if (failed > 0)
+        text += fmt::format("{} of {} failed{}; the reasons are on stderr\n", failed, graph.cells.size(), broken);
+    if (!moved_to.empty())
+        text += fmt::format("{} of an earlier run, whose cells failed now, moved to *.previous\n",
+                            count_text(moved_to.size(), "file", "files"));
     return text;
 }
 
@@ -224,6 +254,8 @@ Json report_json(const RunGraph& graph, const RunReport& report) {
                       {"properties", metrics_json(output.properties)}};
             if (!output.sha256.empty()) file.update({{"sha256", output.sha256}, {"bytes", output.bytes}});
             if (!output.warnings.empty()) file["warnings"] = output.warnings;
+            if (!output.moved_to.empty()) file["moved-to"] = output.moved_to.string();
+            if (!output.not_moved.empty()) file["not-moved"] = output.not_moved;
             entry["outputs"].push_back(std::move(file));
         }
         json["cells"].push_back(std::move(entry));
@@ -241,6 +273,9 @@ Json EventStream::step_event(const char* name, const RunNode& node) const {
     json["node"] = graph_.index(node);
     json["scan"] = graph_.scan_names[node.scan];
     json["workflow"] = workflow_name(*graph_.plans[node.plan]);
+    if (has_several_variants_)
+        for (const std::size_t cell : names_.cells(graph_.index(node), node.scan))
+            json["variants"].push_back(graph_.variant(graph_.cells[cell]).name);
     json["step"] = graph_.label(node);
     return json;
 }
@@ -322,6 +357,12 @@ void EventStream::cell_ended(const RunCell& cell, const CellReport& report) {
     json["seconds"] = report.seconds;
     if (!report.doubts.empty()) json["doubts"] = report.doubts;
     add_failure(json, report.failure);
+    for (const OutputReport& output : report.outputs) {
+        if (!output.moved_to.empty())
+            json["moved"].push_back({{"file", output.file.string()}, {"to", output.moved_to.string()}});
+        if (!output.not_moved.empty())
+            json["not-moved"].push_back({{"file", output.file.string()}, {"why", output.not_moved}});
+    }
     print(json);
 }
 

@@ -6,8 +6,10 @@
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "output/step_names.hpp"
 #include "scanmill/cache/prediction.hpp"
 #include "scanmill/run/run.hpp"
 
@@ -18,8 +20,9 @@ using Json = nlohmann::ordered_json;
 std::string graph_text(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
 Json graph_json(const RunGraph& graph, const std::vector<NodePrediction>& predictions);
 
-/// A row per cell: points read, the filters' headline metrics, the written mesh's properties, seconds, files.
-std::string report_text(const RunGraph& graph, const RunReport& report);
+/// A row per cell: points read, the filters' headline metrics, the written mesh's properties, seconds, files. Cells of
+/// one scan whose file could not be read share a row. `width`: of the terminal; nothing: any.
+std::string report_text(const RunGraph& graph, const RunReport& report, std::optional<std::size_t> width = {});
 Json report_json(const RunGraph& graph, const RunReport& report);
 
 /// Events as JSON on stdout during the run, one object per line.
@@ -29,7 +32,10 @@ Json report_json(const RunGraph& graph, const RunReport& report);
 /// its time in seconds since the start.
 class EventStream : public RunObserver {
 public:
-    explicit EventStream(const RunGraph& graph) : graph_(graph) {}
+    explicit EventStream(const RunGraph& graph)
+        : graph_(graph),
+          names_(graph),
+          has_several_variants_(has_several_variants(graph)) {}
 
     /// `run`: its number in the records; 0: not recorded.
     void begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run);
@@ -51,6 +57,8 @@ private:
     void print(const Json& event);
 
     const RunGraph& graph_;
+    StepNames names_;
+    bool has_several_variants_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::map<std::size_t, int> percents_;  // by node
     bool has_failed_ = false;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,17 @@ namespace scanmill::runner {
 std::string printable(std::string_view text);
 /// The text on one line: line ends are escaped too, as "\n".
 std::string printable_line(std::string_view text);
+
+/// The columns that the text takes on a terminal. Wide characters of UTF-8 take two; an invalid byte takes one.
+std::size_t columns_of(const std::string& text);
+/// At most `width` columns of whole characters, "…" instead of what was cut off. The beginning is cut off, because
+/// names differ at their end.
+std::string cut_begin(const std::string& text, std::size_t width);
+/// The same, cut in the middle.
+std::string cut_middle(const std::string& text, std::size_t width);
+
+/// The width of the terminal that stdout is; nothing: it is not a terminal.
+std::optional<std::size_t> stdout_width();
 
 /// Write errors on stderr, such as a full disk, are ignored.
 template <class... Arguments>
@@ -35,11 +47,15 @@ class Table {
 public:
     explicit Table(std::vector<std::string> headers) : rows_{std::move(headers)} {}
     void add(std::vector<std::string> row);
-    /// With a trailing newline; no blanks at line ends.
-    std::string text() const;
+    /// The cells of this column are cut in the middle if the table is wider than the terminal. With several such
+    /// columns, the first named is cut first.
+    void may_cut(const std::string& header);
+    /// With a trailing newline; no blanks at line ends. `width`: of the terminal; nothing: any.
+    std::string text(std::optional<std::size_t> width = {}) const;
 
 private:
     std::vector<std::vector<std::string>> rows_;
+    std::vector<std::size_t> to_cut_;  // columns
 };
 
 }  // namespace scanmill::runner

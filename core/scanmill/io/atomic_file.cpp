@@ -3,14 +3,17 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "scanmill/base/error.hpp"
 
@@ -38,6 +41,27 @@ void sync_folder(const fs::path& folder) {
     ::close(descriptor);
 }
 
+/// Whether `target` is a regular file with the bytes of the open file.
+bool holds_bytes_of(const fs::path& target, int descriptor) {
+    const int existing = ::open(target.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (existing < 0) return false;
+    struct stat old_status, new_status;
+    bool is_equal = ::fstat(existing, &old_status) == 0 && ::fstat(descriptor, &new_status) == 0 &&
+                    S_ISREG(old_status.st_mode) && old_status.st_size == new_status.st_size;
+    std::vector<char> old_bytes(std::size_t(1) << 16), new_bytes(old_bytes.size());
+    const auto read = [](int from, std::vector<char>& to, off_t at, std::size_t length) {
+        return ::pread(from, to.data(), length, at) == static_cast<ssize_t>(length);
+    };
+    for (off_t at = 0; is_equal && at < new_status.st_size; at += static_cast<off_t>(old_bytes.size())) {
+        const std::size_t length = std::min(old_bytes.size(), static_cast<std::size_t>(new_status.st_size - at));
+        is_equal =
+            read(existing, old_bytes, at, length) && read(descriptor, new_bytes, at, length) &&
+            std::equal(old_bytes.begin(), old_bytes.begin() + static_cast<std::ptrdiff_t>(length), new_bytes.begin());
+    }
+    ::close(existing);
+    return is_equal;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
@@ -51,7 +75,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
 
     // Without /proc the file could not be named later.
     if (::access("/proc/self/fd", X_OK) == 0)
-        descriptor_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+        descriptor_ = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666);
     if (descriptor_ < 0) open_named(folder);
 }
 
@@ -59,7 +83,7 @@ void AtomicFile::open_named(const fs::path& folder) {
     // O_EXCL instead of mkstemp(): the file gets the permissions that the user's umask gives any new file.
     for (unsigned attempt = 0;; ++attempt) {
         temporary_ = temporary_name(folder, attempt);
-        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor_ >= 0) return;
         if (errno != EEXIST) {
             temporary_.clear();
@@ -83,6 +107,11 @@ void AtomicFile::write(std::string_view bytes) {
 }
 
 void AtomicFile::commit(Sync sync) {
+    if (holds_bytes_of(target_, descriptor_)) {
+        ::close(std::exchange(descriptor_, -1));
+        if (!temporary_.empty()) ::unlink(std::exchange(temporary_, {}).c_str());
+        return;
+    }
     if (sync == Sync::yes && ::fsync(descriptor_) != 0) throw_failed();
     // linkat() replaces no file, rename() does: a file without a name gets a temporary one first.
     const std::string opened = fmt::format("/proc/self/fd/{}", descriptor_);

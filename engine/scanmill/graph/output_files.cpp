@@ -57,11 +57,13 @@ fs::path OutputFiles::add(const std::string& name, const OutputContent& content,
     if (!lies_below(folder, folder_))
         throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), folder.string())
             .hint("a symbolic link below the output folder leads out of it; remove it");
-    const Identity existing = identity(file);
-    if (existing != Identity() ? inputs_.contains(existing) : absent_inputs_.contains(folder / file.filename()))
-        throw Error("'{}' is an input; an output must not replace it", file.string())
-            .hint("choose another output folder")
-            .remedy(Remedy::choose_output_folder);
+    for (const fs::path& replaced : {file, previous_of(file)}) {
+        const Identity existing = identity(replaced);
+        if (existing != Identity() ? inputs_.contains(existing) : absent_inputs_.contains(folder / replaced.filename()))
+            throw Error("'{}' is an input; an output must not replace it", replaced.string())
+                .hint("choose another output folder")
+                .remedy(Remedy::choose_output_folder);
+    }
     return file;
 }
 
@@ -70,6 +72,22 @@ OutputFiles::Identity OutputFiles::identity(const fs::path& file) {
     struct stat status;
     if (::stat(file.c_str(), &status) != 0) return {0, 0};
     return {status.st_dev, status.st_ino};
+}
+
+fs::path previous_of(const fs::path& file) { return file.string() + ".previous"; }
+
+bool move_aside(const fs::path& file) {
+    const auto move = [](const fs::path& from, const fs::path& to) {
+        std::error_code trouble;
+        const fs::file_status status = fs::symlink_status(from, trouble);
+        if (!fs::is_regular_file(status) && !fs::is_symlink(status)) return false;
+        fs::rename(from, to, trouble);
+        if (trouble) throw Error("'{}' cannot be moved to '{}': {}", from.string(), to.string(), trouble.message());
+        return true;
+    };
+    const fs::path previous = previous_of(file);
+    const bool was_there = move(file, previous);
+    return move(description_of(file), description_of(previous)) || was_there;
 }
 
 }  // namespace scanmill

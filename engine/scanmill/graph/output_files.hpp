@@ -19,7 +19,7 @@ public:
 
     /// The absolute path of `name` (relative to the output folder, in normal form). `writer` names the cell in
     /// messages. Throws Error when another content has the same path, when one output's path is another's folder, when
-    /// the file is an input, and when a link leads it out of the output folder.
+    /// the file, or previous_of() it, is an input, and when a link leads it out of the output folder.
     std::filesystem::path add(const std::string& name, const OutputContent& content, const std::string& writer);
 
 private:
@@ -32,5 +32,12 @@ private:
     std::set<Identity> inputs_;
     std::set<std::filesystem::path> absent_inputs_;  // absolute, without links
 };
+
+/// Where an output of an earlier run is moved when its cell fails: `<output>.previous`.
+std::filesystem::path previous_of(const std::filesystem::path& file);
+
+/// Moves an output and its description to previous_of() and its description, and replaces what is there. Returns
+/// whether there was such a file. Throws Error if it cannot be moved.
+bool move_aside(const std::filesystem::path& file);
 
 }  // namespace scanmill

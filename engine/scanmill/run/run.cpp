@@ -9,6 +9,7 @@
 
 #include "scanmill/base/disjoint_sets.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/graph/output_files.hpp"
 #include "scanmill/worker/file_description.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
@@ -481,8 +482,10 @@ private:
         if (was_ended) {
             ++failures;
             if (failures <= settings_.limits.retries) {
+                const std::string writing =
+                    task.write > 0 ? fmt::format("writing '{}': ", writes_[task.write - 1].file.string()) : "";
                 notify(&RunObserver::node_warning, graph_.nodes[task.node],
-                       fmt::format("attempt {} of {} failed: {}", failures, settings_.limits.retries + 1,
+                       fmt::format("{}attempt {} of {} failed: {}", writing, failures, settings_.limits.retries + 1,
                                    report.node.failure.error.sentence()));
                 for (const std::size_t cell : cells_of(task)) charge(cell, report.node.effort.seconds);
                 to_consider_.push_back(task);
@@ -714,6 +717,7 @@ private:
             is_done = is_done && report_.nodes[node].outcome == Outcome::ok;
             if (!report.failure && report_.nodes[node].failure) {
                 report.failure = report_.nodes[node].failure;
+                report.failed_node = node;
                 const std::string &own = graph_.scan_names[cell.scan],
                                   &used = graph_.scan_names[graph_.nodes[node].scan];
                 if (own != used) {
@@ -726,10 +730,14 @@ private:
             const Write& write = writes_[index_of_write];
             is_done = is_done && write.report.outcome == Outcome::ok;
             if (!report.failure) report.failure = write.failure;
-            report.outputs.push_back(write.report);
-            report.outputs.back().file = write.file;
         }
         if (!report.failure && cells_[index].is_out_of_time && !is_done) report.failure = out_of_time(index);
+        for (const std::size_t index_of_write : writes_of_cell_[index]) {
+            Write& write = writes_[index_of_write];
+            write.report.file = write.file;
+            if (report.failure && write.report.outcome != Outcome::ok) set_aside(write.report);
+            report.outputs.push_back(write.report);
+        }
         report.doubts = doubts_about(cell.outputs, cell.nodes, graph_, report_.nodes);
         for (const OutputReport& output : report.outputs)
             for (const std::string& doubt : output.doubts)
@@ -739,6 +747,15 @@ private:
                          : report.doubts.empty() ? Outcome::ok
                                                  : Outcome::doubtful;
         notify(&RunObserver::cell_ended, cell, report);
+    }
+
+    /// A file of an earlier run must not look like this run's result, which failed.
+    static void set_aside(OutputReport& output) {
+        try {
+            if (move_aside(output.file)) output.moved_to = previous_of(output.file);
+        } catch (const Error& error) {
+            output.not_moved = error.sentence();
+        }
     }
 
     /// The failure of a cell that is out of time. Its frame names the first node or output that is not done.
@@ -751,9 +768,9 @@ private:
         if (left != cell.nodes.end())
             error.add_frame(frame_of(*left));
         else
-            for (const OutputReport& output : report_.cells[index].outputs)
-                if (output.outcome != Outcome::ok) {
-                    error.add_frame(fmt::format("while writing '{}'", output.file.string()));
+            for (const std::size_t write : writes_of_cell_[index])
+                if (writes_[write].report.outcome != Outcome::ok) {
+                    error.add_frame(fmt::format("while writing '{}'", writes_[write].file.string()));
                     break;
                 }
         error.set_hint("raise the limit, or thin the scan first");

@@ -3,6 +3,7 @@
 /// The outcome of a run: of every node, every cell and every output file.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -88,11 +89,14 @@ struct OutputReport {
     std::vector<std::string> doubts;  ///< about the file: it holds less than the value
     std::string sha256;               ///< of the file's bytes; empty: not written
     u64 bytes = 0;                    ///< of the file
+    std::filesystem::path moved_to;   ///< where the file of an earlier run was moved; empty: nowhere
+    std::string not_moved;            ///< why the file of an earlier run could not be moved; empty: it need not be
 };
 
 struct CellReport {
     Outcome outcome = Outcome::skipped;
     Failure failure;     ///< of the first node that failed, else of the first output
+    std::optional<std::size_t> failed_node;  ///< whose failure it is, by index into RunGraph::nodes
     double seconds = 0;  ///< of its nodes and outputs; nodes that cells share count for each
     std::vector<OutputReport> outputs;
     std::vector<std::string> doubts;  ///< from doubts_about(), and of its outputs

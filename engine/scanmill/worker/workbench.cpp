@@ -95,7 +95,11 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     report.node.effort = use.until_now();
     report.node.effort.threads = job.threads;
     report.node.outcome = report.outcome;
-    if (is_write && report.outcome == Outcome::failed) report.output.outcome = Outcome::failed;
+    if (is_write && report.outcome == Outcome::failed) {
+        report.output.outcome = Outcome::failed;
+        report.output.sha256.clear();
+        report.output.bytes = 0;
+    }
     return report;
 }
 
@@ -201,8 +205,14 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
     written.properties = found != properties_.end() ? found->second : properties_of(value);
     if (!written.doubts.empty()) written.properties.set("closed", 0, Unit::boolean);
     constexpr std::size_t longest_name = NAME_MAX;
-    if (description_of(work.file).filename().native().size() <= longest_name)
-        write_description(work.file, written.sha256, work.made_how, value, written.properties, shift);
+    if (description_of(work.file).filename().native().size() <= longest_name) try {
+            write_description(work.file, written.sha256, work.made_how, value, written.properties, shift);
+        } catch (const Error&) {
+            // A description of an earlier run must not stay beside this file.
+            fs::remove(work.file, trouble);
+            fs::remove(description_of(work.file), trouble);
+            throw;
+        }
     else
         options.on_warning(fmt::format("'{}' has no description: its name would be too long", work.file.string()));
     written.warnings = warnings.sentences();

@@ -42,7 +42,8 @@ void WorkerProcesses::ensure(std::size_t worker) {
     Slot& slot = slots_[worker];
     if (slot.process) return;
     start_.scratch = scratch_.folder(std::to_string(worker)).string();
-    slot.is_ready = slot.has_closed_channel = false;
+    slot.is_ready = false;
+    slot.channel_closed.reset();
     slot.forgotten.clear();
     slot.process = std::make_unique<WorkerProcess>(settings_.command);
     slot.process->send(to_message(start_));
@@ -99,7 +100,8 @@ void WorkerProcesses::wait(const WorkerListener& listener, std::chrono::millisec
     std::vector<pollfd> watched;
     for (const Slot& slot : slots_) {
         const WorkerProcess* process = slot.process.get();
-        for (const int descriptor : {process ? process->channel() : -1, process ? process->log_pipe() : -1,
+        const bool has_channel = process && !slot.channel_closed;  // a closed one would end every poll() at once
+        for (const int descriptor : {has_channel ? process->channel() : -1, process ? process->log_pipe() : -1,
                                      process ? process->descriptor() : -1})
             watched.push_back({descriptor, POLLIN, 0});
     }
@@ -133,10 +135,14 @@ void WorkerProcesses::check(std::size_t worker, const WorkerListener& listener) 
     const bool has_ended = ::poll(&ended, 1, 0) > 0;  // checked first, so that its last messages are read
     take_messages(worker, listener);
     if (!slot.process) return;
-    if (has_ended)
-        end_of_process(worker, listener);
-    else if (slot.job)
-        enforce_limits(worker, listener);
+    if (has_ended) return end_of_process(worker, listener);
+    // The system closes the channel of a process shortly before it reports its end. A process that still runs after
+    // this time has closed the channel itself, and is useless.
+    constexpr std::chrono::seconds time_to_end(1);
+    if (slot.channel_closed && Clock::now() - *slot.channel_closed > time_to_end)
+        return kill(worker, listener, Cause::exit,
+                    Error("the filter closed the channel from the worker process to its runner"), 0);
+    if (slot.job) enforce_limits(worker, listener);
 }
 
 void WorkerProcesses::take_messages(std::size_t worker, const WorkerListener& listener) {
@@ -162,11 +168,7 @@ void WorkerProcesses::take_messages(std::size_t worker, const WorkerListener& li
                 if (message.report && slot.job) return take_report(worker, listener, std::move(*message.report));
             }
             if (arrival == MessageReader::Arrival::something) continue;
-            // A filter may have closed the channel; the process is useless then.
-            if (arrival == MessageReader::Arrival::end) {
-                slot.has_closed_channel = true;
-                slot.process->signal(SIGKILL);
-            }
+            if (arrival == MessageReader::Arrival::end && !slot.channel_closed) slot.channel_closed = Clock::now();
             return;
         }
     } catch (const Error& error) {
@@ -228,7 +230,8 @@ Error error_of(const ProcessEnd& end, u64 peak_memory, const std::vector<std::st
                 byte_size_text(peak_memory), last_line(log));
     if (end.signal == SIGKILL)
         error.set_hint(
-            "the system does this when the machine runs out of memory; a limit, `limits: {memory: …}`, avoids it");
+            "the system may have run out of memory: it ends the process that uses most; a limit, `limits: {memory: "
+            "…}`, ends a step before that");
     return error;
 }
 
@@ -258,9 +261,7 @@ void WorkerProcesses::end_of_process(std::size_t worker, const WorkerListener& l
     JobReport report;
     report.node.effort.peak_memory = peak_of(slot, end);
     if (!cancelled_) {
-        Error error = slot.has_closed_channel && end.signal == SIGKILL
-                          ? Error("the filter closed the channel from the worker process to its runner")
-                          : error_of(end, report.node.effort.peak_memory, slot.process->log());
+        Error error = error_of(end, report.node.effort.peak_memory, slot.process->log());
         report.outcome = Outcome::failed;
         if (!slot.loading.empty()) error.add_frame(fmt::format("while loading the module '{}'", slot.loading));
         report.node.failure = failure_of(*slot.job, end.signal ? Cause::signal : Cause::exit, error,

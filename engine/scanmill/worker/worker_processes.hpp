@@ -101,7 +101,7 @@ private:
         std::optional<Job> job;
         Clock::time_point begun, checked;
         bool is_ready = false;  ///< its process has started
-        bool has_closed_channel = false;  ///< its process was killed for that
+        std::optional<Clock::time_point> channel_closed;  ///< when its process closed the channel
         bool cannot_start = false;
         u64 peak_memory = 0;
         std::string loading;  ///< the module that its process is loading; empty: none

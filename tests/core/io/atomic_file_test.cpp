@@ -27,6 +27,41 @@ TEST(AtomicFile, Commit_MakesTheFile_AndReplacesOne) {
     }
 }
 
+TEST(AtomicFile, EqualBytes_LeaveTheFileAsItIs) {
+    const test::TemporaryFolder folder;
+    const std::string large(200'000, 'x');
+    const auto write = [&](const std::string& text) {
+        AtomicFile file(folder / "a");
+        file.write(text);
+        file.commit();
+        EXPECT_EQ(content_of(folder / "a"), text);
+        EXPECT_EQ(folder.files(), 1u);
+    };
+    const auto age = [&](const std::string& content) {  // after a second write of `content`
+        write(large);
+        const auto old = fs::file_time_type::clock::now() - std::chrono::hours(1);
+        fs::last_write_time(folder / "a", old);
+        write(content);
+        return fs::file_time_type::clock::now() - fs::last_write_time(folder / "a");
+    };
+    EXPECT_GT(age(large), std::chrono::minutes(59));
+    std::string other = large;
+    other.back() = 'y';
+    EXPECT_LT(age(other), std::chrono::minutes(1)) << "the last byte differs";
+    EXPECT_LT(age(large + "x"), std::chrono::minutes(1));
+    EXPECT_LT(age(""), std::chrono::minutes(1));
+}
+
+TEST(AtomicFile, LinkToEqualBytes_IsReplacedByAFile) {
+    const test::TemporaryFolder folder;
+    folder.write("b", "same");
+    fs::create_symlink(folder / "b", folder / "a");
+    AtomicFile file(folder / "a");
+    file.write("same");
+    file.commit();
+    EXPECT_FALSE(fs::is_symlink(folder / "a"));
+}
+
 TEST(AtomicFile, WithoutCommit_NothingIsLeft) {
     const test::TemporaryFolder folder;
     {

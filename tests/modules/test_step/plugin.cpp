@@ -27,6 +27,7 @@ SCANMILL_FILTER() {
                  {"doubt-mesh", P::Mode::doubt_mesh, "Doubts the output `mesh`."},
                  {"slow", P::Mode::slow, "Takes 30 ms."},
                  {"crash", P::Mode::crash, "Raises SIGSEGV."},
+                 {"kill", P::Mode::kill, "Takes 96 MiB and raises SIGKILL."},
                  {"abort", P::Mode::abort, "Aborts the process."},
                  {"throw-number", P::Mode::throw_number, "Throws an int."},
                  {"loop", P::Mode::loop, "Never returns, whoever asks."},
@@ -36,7 +37,8 @@ SCANMILL_FILTER() {
                  {"exit", P::Mode::exit, "Ends the process as if all were well."},
                  {"change-folder", P::Mode::change_folder, "Changes the process's working folder."},
                  {"babble", P::Mode::babble, "Warns 50,000 times."},
-                 {"close-streams", P::Mode::close_streams, "Closes standard output and error."}},
+                 {"close-streams", P::Mode::close_streams, "Closes standard output and error."},
+                 {"close-channel", P::Mode::close_channel, "Closes the channel to the runner, and never returns."}},
                 "What becomes of the run.")
         .param("log", &P::log, "A file that every run appends a line to: mode, number of points.")
         .param("length", &P::length, "Legs of the tetrahedron.", above(0))

@@ -36,6 +36,7 @@ std::string_view name_of(Mode mode) {
         case Mode::doubt_mesh: return "doubt-mesh";
         case Mode::slow: return "slow";
         case Mode::crash: return "crash";
+        case Mode::kill: return "kill";
         case Mode::abort: return "abort";
         case Mode::throw_number: return "throw-number";
         case Mode::loop: return "loop";
@@ -46,6 +47,7 @@ std::string_view name_of(Mode mode) {
         case Mode::change_folder: return "change-folder";
         case Mode::babble: return "babble";
         case Mode::close_streams: return "close-streams";
+        case Mode::close_channel: return "close-channel";
     }
     return "";
 }
@@ -85,8 +87,15 @@ void misbehave(Mode mode, std::size_t points, Context& context) {
             std::puts("about to crash");
             std::raise(SIGSEGV);  // as a wild pointer would; a sanitizer must not see one
             break;
+        case Mode::kill: {
+            const std::vector<char> held(std::size_t(96) << 20, 1);
+            std::this_thread::sleep_for(std::chrono::milliseconds(300));  // so that its memory is measured
+            std::raise(SIGKILL);
+            break;
+        }
         case Mode::abort: std::abort();
         case Mode::throw_number: throw 42;
+        case Mode::close_channel: ::close(3); [[fallthrough]];
         case Mode::loop:
             for (volatile std::uint64_t turns = 0;;) turns = turns + 1;
         case Mode::allocate: take_all_memory(); break;

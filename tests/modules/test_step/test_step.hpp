@@ -25,6 +25,7 @@ struct TestStepParams {
         doubt_mesh,
         slow,
         crash,
+        kill,
         abort,
         throw_number,
         loop,
@@ -34,7 +35,8 @@ struct TestStepParams {
         exit,
         change_folder,
         babble,
-        close_streams
+        close_streams,
+        close_channel
     };
     Mode mode = Mode::pass;
     std::optional<std::filesystem::path> log;
@@ -54,10 +56,11 @@ struct TestStepResult {
 /// fail throws Error with a hint, throw_standard a std::runtime_error, out_of_memory a std::bad_alloc; empty gives a
 /// mesh without vertices; wait returns only by throwing Cancelled; warn warns once; doubt doubts all outputs,
 /// doubt_mesh the mesh; slow takes 30 ms. What follows takes the process along or leaves something behind in it: crash
-/// raises SIGSEGV, abort and exit end the process, throw_number throws an int, loop never returns, allocate takes
-/// memory until there is none, write says 100 lines on standard output and one on standard error, leak leaves three
-/// files open, change_folder leaves the process in the root folder, babble warns 50,000 times, close_streams closes
-/// standard output and error. Metrics: `points`, the number of points that came out; `length`.
+/// raises SIGSEGV, kill SIGKILL, abort and exit end the process, throw_number throws an int, loop never returns,
+/// allocate takes memory until there is none, write says 100 lines on standard output and one on standard error, leak
+/// leaves three files open, change_folder leaves the process in the root folder, babble warns 50,000 times,
+/// close_streams closes standard output and error, close_channel the descriptor to the runner, and loops. Metrics:
+/// `points`, the number of points that came out; `length`.
 TestStepResult test_step(const PointCloud& cloud, const TestStepParams& params, Context& context);
 
 }  // namespace scanmill
