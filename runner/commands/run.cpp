@@ -313,7 +313,12 @@ int run_batch(const BatchOptions& options) {
         parts.push_back({part.plan, request_for(checked.batch, part, options.execute)});
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);
-    return execution.run({checked.batch.name, options.file, std::move(graph), checked.batch.limits}, true);
+    SessionTask task{checked.batch.name, options.file, std::move(graph), checked.batch.limits};
+    if (const std::optional<Gate>& gate = checked.batch.gate) {
+        task.gate = to_json_text(*gate);
+        task.repeats = gate->repeats;
+    }
+    return execution.run(task, true);
 }
 
 }  // namespace
