@@ -25,7 +25,8 @@ protected:
         write_workflow("{sweep: [1, 2]}");
         write_scans("a", 1);
         write_scans("b", 1);
-        write_batch("scans/a_*.xyz, {path: scans/b_01.xyz, set: {mode: doubt}}, " + more_scans());
+        write_batch("scans/a_*.xyz, {path: scans/b_01.xyz, set: {mode: doubt}}, " + more_scans(),
+                    "gate: {points: exact, seconds: +20 %, outputs: exact, repeats: 2}\n");
         folder_.write("bad.yaml", "scanmill: 1\ninputs: {scan: points}\nsteps:\n  - voxel-thinn:\n");
         folder_.write("points.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n");
         folder_.write("corner.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
@@ -68,7 +69,10 @@ protected:
             add({"run", "w.yaml", "scans/a_01.xyz", "-o", "out", "--set", fmt::format("mode={}", mode)});
         add({"run", "bad.yaml", "scans/a_01.xyz"});
         add({"batch", "b.yaml", "-o", "out"});
+        add({"report", "out"});
+        scanmill({"report", "out", "--accept", "--who", "ann", "--why", "it is good"});
         add({"batch", "b.yaml", "-o", "out", "--no-cache", "-j", "2"});
+        add({"report", "out"});
         add({"runs", "out"});
         for (int run = 1; run <= 10; ++run) add({"runs", "out", "show", std::to_string(run)});
         add({"info", "points.xyz", "corner.off", "stray.xyz", "absent.ply", "features.json"});
@@ -91,7 +95,7 @@ TEST_F(OutputSchemas, EveryDocument_IsAsItsSchemaSays) {
     EXPECT_EQ(seen, known) << "every schema has a document";
     std::set<std::string> events;
     for (const json& event : documents.at("batch-event")) events.insert(event["event"]);
-    EXPECT_EQ(events.size(), 8u);
+    EXPECT_EQ(events.size(), 10u);
 }
 
 /// Calls `changed` with every member of every object renamed in turn, to a name that no schema has.

@@ -148,7 +148,9 @@ Json plan() {
                               {"in", described("By port.", map_of(list_of(text())))},
                               {"streams", described("Ports whose scan is read as a stream.", list_of(text()))},
                               {"parameters", map_of(text())},
-                              {"expect?", list_of(text())}});
+                              {"expect?", list_of(text())},
+                              {"measures?", described("What it measures by the scan's truth.", text())},
+                              {"file?", described("The batch that line and column are in.", text())}});
     const Json variant = object({{"name", text()},
                                  {"steps", described("Numbers of steps, from 0.", list_of(count()))},
                                  {"outputs", described("By file name.", map_of(text()))}});
@@ -257,12 +259,11 @@ Json dry_run_schema() {
              {"cells", list_of(joined(cell(), object({{"nodes", list_of(count())}, {"outputs", list_of(text())}})))}}));
 }
 
-Json output_file() {
-    return object({{"file", text()},
-                   {"outcome", outcome()},
-                   {"kind", text()},
-                   {"properties", metrics()},
-                   {"warnings?", list_of(text())}});
+/// Bytes and hash of a written file, and what became of the one of an earlier run.
+Json file_members() {
+    return object({{"sha256?", described("Of a written file.", text())},
+                   {"bytes?", count()},
+                   {"moved-to?", described("Where the file of an earlier run is, whose cell failed now.", text())}});
 }
 
 Json run_schema() {
@@ -281,10 +282,18 @@ Json run_schema() {
                                      {"warnings?", list_of(text())},
                                      {"log?", list_of(text())}}),
                              failure("exit-code?"));
+    const Json file =
+        joined(object({{"file", text()},
+                       {"outcome", outcome()},
+                       {"kind", text()},
+                       {"properties", metrics()},
+                       {"warnings?", list_of(text())},
+                       {"not-moved?", described("Why the file of an earlier run is still there.", text())}}),
+               file_members());
     const Json of_cell = joined(joined(cell(), object({{"outcome", outcome()},
                                                        {"seconds", seconds()},
                                                        {"steps", list_of(count())},
-                                                       {"outputs", list_of(output_file())},
+                                                       {"outputs", list_of(file)},
                                                        {"doubts?", list_of(text())}})),
                                 failure("exit-code?"));
     return document(
@@ -292,7 +301,11 @@ Json run_schema() {
         object({{"workflow", text()}, {"interrupted", flag()}, {"steps", list_of(step)}, {"cells", list_of(of_cell)}}));
 }
 
-/// One line of a batch: `event` decides on the members.
+Json gate() {
+    return object({{"rules", described("By metric.", map_of(text()))},
+                   {"repeats", described("How often a run measures its costs.", count())}});
+}
+
 Json or_null(Json schema) {
     schema["type"] = Json::array({schema["type"], "null"});
     return schema;
@@ -369,7 +382,7 @@ Json report_schema() {
                        {"file", text()},
                        {"run", run},
                        {"accepted", described("null: no run was accepted.", accepted)},
-                       {"gate", object({{"rules", map_of(text())}, {"repeats", count()}})},
+                       {"gate", gate()},
                        {"filters", list_of(text())},
                        {"notes", list_of(text())},
                        {"cells", list_of(of_cell)},
@@ -379,11 +392,14 @@ Json report_schema() {
     return document("scanmill report DIR --json", object({{"report", report}}));
 }
 
+/// One line of a batch: `event` decides on the members.
 Json batch_event_schema() {
-    const Json about_step = object({{"node", described("The step's number, from 0.", count())},
-                                    {"scan", text()},
-                                    {"workflow", text()},
-                                    {"step", text()}});
+    const Json about_step =
+        object({{"node", described("The step's number, from 0.", count())},
+                {"scan", text()},
+                {"workflow", text()},
+                {"variants?", described("That use it; absent if there is only one.", list_of(text()))},
+                {"step", text()}});
     const std::pair<const char*, Json> events[] = {
         {"run-started", object({{"scanmill", {{"const", 1}}},
                                 {"name", text()},
@@ -407,13 +423,21 @@ Json batch_event_schema() {
         {"output-written", object({{"scan", text()},
                                    {"file", text()},
                                    {"outcome", outcome()},
+                                   {"sha256?", text()},
+                                   {"bytes?", count()},
                                    {"properties", metrics()},
                                    {"warnings?", list_of(text())}})},
-        {"cell-ended", joined(joined(cell(), object({{"cell", described("Its number, from 0.", count())},
-                                                     {"outcome", outcome()},
-                                                     {"seconds", seconds()},
-                                                     {"doubts?", list_of(text())}})),
-                              failure("exit-code?"))},
+        {"cell-ended",
+         joined(joined(cell(), object({{"cell", described("Its number, from 0.", count())},
+                                       {"outcome", outcome()},
+                                       {"seconds", seconds()},
+                                       {"doubts?", list_of(text())},
+                                       {"moved?", described("Files of an earlier run.",
+                                                            list_of(object({{"file", text()}, {"to", text()}})))},
+                                       {"not-moved?", list_of(object({{"file", text()}, {"why", text()}}))}})),
+                failure("exit-code?"))},
+        {"pass-started",
+         described("Steps run again for their costs.", object({{"pass", count()}, {"passes", count()}}))},
         {"verdict", joined(object({{"run", count()}, {"accepted", count_or_null()}, {"cells", list_of(judged_cell())}}),
                            verdict_of_run())},
         {"run-ended", object({{"interrupted", flag()},
@@ -437,11 +461,17 @@ Json batch_event_schema() {
 }
 
 Json run_summary() {
+    const Json acceptance = object({{"at", text()},
+                                    {"who", text()},
+                                    {"why", text()},
+                                    {"baseline", described("Later runs are compared with this one.", flag())},
+                                    {"revoked?", object({{"at", text()}, {"who", text()}, {"why", text()}})}});
     return object({{"id", count()},
                    {"started", text()},
                    {"workflow", text()},
-                   {"outcome", described("`unfinished`: the run goes on, or was killed.",
-                                         {{"enum", {"ok", "doubtful", "failed", "interrupted", "unfinished"}}})},
+                   {"outcome", {{"enum", {"ok", "doubtful", "failed", "interrupted", "running"}}}},
+                   {"killed?", described("It has no end.", flag())},
+                   {"accepted?", list_of(acceptance)},
                    {"cells", count()},
                    {"doubtful", count()},
                    {"failed", count()},
@@ -460,16 +490,23 @@ Json runs_show_schema() {
                                                    {"version", text()},
                                                    {"jobs", count()},
                                                    {"machine", text()},
-                                                   {"libraries", text()}}));
+                                                   {"libraries", text()},
+                                                   {"gate?", gate()}}));
     const Json failed = object(
         {{"error?", text()}, {"cause?", cause()}, {"number?", described("Of the signal, or the exit code.", count())}});
-    const Json file = object({{"file", text()}, {"kind", text()}, {"outcome", outcome()}, {"properties", metrics()}});
-    const Json of_cell = joined(joined(cell(), object({{"outcome", outcome()},
-                                                       {"seconds", seconds()},
-                                                       {"steps", list_of(count())},
-                                                       {"outputs", list_of(file)},
-                                                       {"doubts?", list_of(text())}})),
-                                failed);
+    const Json file =
+        joined(object({{"file", text()}, {"kind", text()}, {"outcome", outcome()}, {"properties", metrics()}}),
+               file_members());
+    const Json pass = object({{"seconds", seconds()}, {"cpu-seconds", seconds()}, {"peak-memory", bytes()}});
+    const Json of_cell = joined(
+        joined(cell(), object({{"outcome", outcome()},
+                               {"seconds", seconds()},
+                               {"steps", list_of(count())},
+                               {"outputs", list_of(file)},
+                               {"doubts?", list_of(text())},
+                               {"truth?", text()},
+                               {"costs?", described("One per pass in which all of its steps ran.", list_of(pass))}})),
+        failed);
     const Json step = joined(object({{"node", count()},
                                      {"workflow", text()},
                                      {"step", text()},
@@ -477,6 +514,8 @@ Json runs_show_schema() {
                                      {"version", count()},
                                      {"build", text()},
                                      {"scan", text()},
+                                     {"variants", described("That use it.", list_of(text()))},
+                                     {"measures?", described("What it measures by the cell's truth.", text())},
                                      {"key", text()},
                                      {"origin", text()},
                                      {"why", text()},
@@ -506,11 +545,11 @@ constexpr std::array<std::pair<const char*, Json (*)()>, 15> outputs{{{"list", l
                                                                       {"dry-run", dry_run_schema},
                                                                       {"runs", runs_schema},
                                                                       {"runs-show", runs_show_schema},
-                                                                      {"report", report_schema},
                                                                       {"info", info_schema},
                                                                       {"measure", measure_schema},
                                                                       {"cache-info", cache_info_schema},
                                                                       {"cache-clear", cache_clear_schema},
+                                                                      {"report", report_schema},
                                                                       {"error", error_schema}}};
 
 }  // namespace

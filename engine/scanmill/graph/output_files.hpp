@@ -19,7 +19,7 @@ public:
 
     /// The absolute path of `name` (relative to the output folder, in normal form). `writer` names the cell in
     /// messages. Throws Error when another content has the same path, when one output's path is another's folder, when
-    /// the file, or previous_of() it, would replace an input, and when a link leads it out of the output folder.
+    /// the file, or previous_of() it, is an input, and when a link leads it out of the output folder.
     std::filesystem::path add(const std::string& name, const OutputContent& content, const std::string& writer);
 
 private:

@@ -26,32 +26,6 @@ std::optional<CostRecord> cost_of(const NodeReport& report) {
                       static_cast<std::int64_t>(report.effort.peak_memory)};
 }
 
-// The fields below are read where the graph and the reports have them.
-
-template <class Planned>
-std::string measured_by(const Planned& step) {
-    if constexpr (requires { step.measures; })
-        return step.measures;
-    else
-        return {};
-}
-
-template <class Cell>
-std::string truth_of(const Cell& cell) {
-    if constexpr (requires { cell.truth; })
-        return cell.truth.string();
-    else
-        return {};
-}
-
-template <class Report>
-std::string moved_to(const Report& output) {
-    if constexpr (requires { output.moved_to; })
-        return std::filesystem::path(output.moved_to).string();
-    else
-        return {};
-}
-
 /// Empty unless all nodes of the cell ran.
 std::vector<CostRecord> cost_of(const RunCell& cell, const std::vector<std::optional<CostRecord>>& nodes) {
     CostRecord sum;
@@ -94,7 +68,7 @@ void Recorder::node_ended(const RunNode& node, const NodeReport& report) {
         step.filter_version = planned->spec.version;
         step.build = library_.build_id(planned->spec.name);
         step.authored = texts_of(planned->parameters);
-        step.measures = measured_by(*planned);
+        step.measures = planned->measures;
     } else {
         step.authored = declared_of(node.leaf);
     }
@@ -127,12 +101,11 @@ void Recorder::cell_ended(const RunCell& cell, const CellReport& report) {
     record.seconds = report.seconds;
     record.nodes = cell.nodes;
     record.doubts = report.doubts;
-    for (const OutputReport& output : report.outputs) {
+    for (const OutputReport& output : report.outputs)
         record.outputs.push_back({output.file.string(), std::string(name_of(output.kind)),
                                   std::string(name_of(output.outcome)), output.properties, output.sha256,
-                                  static_cast<std::int64_t>(output.bytes), moved_to(output)});
-    }
-    record.truth = truth_of(cell);
+                                  static_cast<std::int64_t>(output.bytes), output.moved_to.string()});
+    record.truth = cell.truth.string();
     if (measures_costs_) record.costs = cost_of(cell, node_costs_);
     cells_.push_back(std::move(record));
     flush_when_due();

@@ -95,7 +95,11 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     report.node.effort = use.until_now();
     report.node.effort.threads = job.threads;
     report.node.outcome = report.outcome;
-    if (is_write && report.outcome == Outcome::failed) report.output.outcome = Outcome::failed;
+    if (is_write && report.outcome == Outcome::failed) {
+        report.output.outcome = Outcome::failed;
+        report.output.sha256.clear();
+        report.output.bytes = 0;
+    }
     return report;
 }
 
@@ -207,6 +211,8 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
             // A description of an earlier run must not stay beside this file.
             fs::remove(work.file, trouble);
             fs::remove(description_of(work.file), trouble);
+            written.sha256.clear();
+            written.bytes = 0;
             throw;
         }
     else
