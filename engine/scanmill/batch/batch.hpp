@@ -24,6 +24,8 @@ namespace scanmill {
 
 /// Most attempts after the first, so that a step that always fails does not take all night.
 inline constexpr int most_retries = 10;
+/// The most `repeats` of a gate.
+inline constexpr unsigned most_repeats = 20;
 
 /// A cell is one scan under one variant of a workflow. 0: no limit.
 struct Limits {
