@@ -373,6 +373,12 @@ void EventStream::pass_started(unsigned pass, unsigned passes) {
     print(json);
 }
 
+void EventStream::judged(const Json& verdict) {
+    Json json = event("verdict");
+    json.update(verdict);
+    print(json);
+}
+
 void EventStream::end(const RunReport& report) {
     Json json = event("run-ended");
     json["interrupted"] = report.interrupted;

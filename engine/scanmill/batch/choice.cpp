@@ -57,9 +57,8 @@ void choose(CheckedBatch& checked, const BatchChoice& choice) {
         if (!choice.variants.empty() && part.only.empty()) continue;
         if (!choice.scans.empty()) {
             std::erase_if(part.scans, [&](std::size_t scan) {
-                return std::ranges::none_of(choice.scans, [&](const std::string& name) {
-                    return is_named(checked.batch.scans[scan], name);
-                });
+                return std::ranges::none_of(
+                    choice.scans, [&](const std::string& name) { return is_named(checked.batch.scans[scan], name); });
             });
             if (part.scans.empty()) continue;
         }

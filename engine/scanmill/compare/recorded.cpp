@@ -115,6 +115,12 @@ Comparison compare_recorded(const RecordedRun& which, const std::optional<Record
     return comparison;
 }
 
+std::optional<Comparison> verdict_of_batch(const fs::path& folder, std::int64_t run) {
+    Comparison comparison = compare_recorded({folder, run}, std::nullopt);
+    if (!comparison.accepted && comparison.gate.rules.empty()) return std::nullopt;
+    return comparison;
+}
+
 void write_csv(const RecordedRun& which, const std::function<void(const std::string&)>& write) {
     const RunRecords records = records_in(which.folder);
     const std::vector<RunSummary> runs = records.runs();

@@ -25,6 +25,9 @@ struct RecordedRun {
 /// there is one. Throws Error for a folder without records, without runs, an unknown run and one that has not ended.
 Comparison compare_recorded(const RecordedRun& which, const std::optional<RecordedRun>& against);
 
+/// The comparison at the end of a batch. Nothing: it has no gate, and no run was accepted.
+std::optional<Comparison> verdict_of_batch(const std::filesystem::path& folder, std::int64_t run);
+
 /// The records of the folder, for acceptances. Throws Error for a folder without records.
 RunRecords records_to_change(const std::filesystem::path& folder);
 

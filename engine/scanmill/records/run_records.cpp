@@ -87,6 +87,9 @@ UPDATE output SET outcome = 'ok' WHERE outcome = 'done';
                                                 R"(
 ALTER TABLE run ADD COLUMN gate TEXT NOT NULL DEFAULT '';
 ALTER TABLE step ADD COLUMN measures TEXT NOT NULL DEFAULT '';
+ALTER TABLE step ADD COLUMN metrics_unit TEXT NOT NULL DEFAULT 'u';
+ALTER TABLE step ADD COLUMN properties_unit TEXT NOT NULL DEFAULT 'u';
+ALTER TABLE output ADD COLUMN unit TEXT NOT NULL DEFAULT 'u';
 ALTER TABLE cell ADD COLUMN truth TEXT NOT NULL DEFAULT '';
 ALTER TABLE output ADD COLUMN sha256 TEXT NOT NULL DEFAULT '';
 ALTER TABLE output ADD COLUMN bytes INTEGER NOT NULL DEFAULT 0;
@@ -234,6 +237,10 @@ void bind_value(SQLite::Statement& statement, int index, double number) {
         statement.bind(index, number);
 }
 void bind_value(SQLite::Statement& statement, int index, const std::string& text) { statement.bind(index, text); }
+/// The unit of a list of metrics: of their lengths, as "mm"; "u" if it is unknown.
+void bind_value(SQLite::Statement& statement, int index, LengthUnit unit) {
+    statement.bind(index, std::string(symbol(unit)));
+}
 void bind_value(SQLite::Statement& statement, int index, const Words& words) { statement.bind(index, dumped(words)); }
 void bind_value(SQLite::Statement& statement, int index, const Texts& texts) {
     Json json = Json::object();
@@ -256,6 +263,9 @@ void read_value(const SQLite::Column& column, double& number) {
 void read_value(const SQLite::Column& column, std::string& text) { text = column.getString(); }
 void read_value(const SQLite::Column& column, std::optional<std::string>& text) {
     if (!column.isNull()) text = column.getString();
+}
+void read_value(const SQLite::Column& column, LengthUnit& unit) {
+    unit = length_unit(column.getString()).value_or(LengthUnit::unknown);
 }
 void read_value(const SQLite::Column& column, Words& words) {
     for (const Json& word : Json::parse(column.getString(), nullptr, false))
@@ -351,13 +361,15 @@ auto fields_of_run(Start& start) {
 
 const std::string step_columns =
     "node, label, filter, filter_version, build, scan, plan_key, origin, why, outcome, error, seconds, cpu_seconds, "
-    "authored, resolved, workflow, cause, cause_number, peak_memory, threads, attempts, measures";
+    "authored, resolved, workflow, cause, cause_number, peak_memory, threads, attempts, measures, metrics_unit, "
+    "properties_unit";
 template <class Step>
 auto fields_of_step(Step& step) {
     return std::tie(step.node, step.label, step.filter, step.filter_version, step.build, step.scan, step.plan_key,
                     step.origin, step.why, step.outcome, step.failure.error, step.seconds, step.cpu_seconds,
                     step.authored, step.resolved, step.workflow, step.failure.cause, step.failure.number,
-                    step.peak_memory, step.threads, step.attempts, step.measures);
+                    step.peak_memory, step.threads, step.attempts, step.measures, step.metrics.unit,
+                    step.properties.unit);
 }
 
 const std::string cell_columns = "scan, variant, outcome, error, seconds, workflow, cause, cause_number, truth";
@@ -367,10 +379,11 @@ auto fields_of_cell(Cell& cell) {
                     cell.failure.cause, cell.failure.number, cell.truth);
 }
 
-const std::string output_columns = "file, kind, outcome, sha256, bytes, moved_to";
+const std::string output_columns = "file, kind, outcome, sha256, bytes, moved_to, unit";
 template <class Output>
 auto fields_of_output(Output& output) {
-    return std::tie(output.file, output.kind, output.outcome, output.sha256, output.bytes, output.moved_to);
+    return std::tie(output.file, output.kind, output.outcome, output.sha256, output.bytes, output.moved_to,
+                    output.properties.unit);
 }
 
 const std::string cost_columns = "seconds, cpu_seconds, peak_memory";
