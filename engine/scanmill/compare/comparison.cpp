@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "scanmill/base/error.hpp"
@@ -66,6 +67,19 @@ private:
     std::map<CellKey, const CellRecord*> by_key_;
     std::map<std::tuple<std::string, std::string, std::string>, std::size_t> repeats_;
 };
+
+/// The cells are recorded as they end, but their nodes have the order of the plan: scan by scan, in each the variants.
+std::vector<std::size_t> in_plan_order(const std::vector<CellRecord>& cells) {
+    const auto place_of = [&](std::size_t cell) {
+        const std::vector<std::size_t>& nodes = cells[cell].nodes;
+        return std::pair(nodes.empty() ? std::numeric_limits<std::size_t>::max() : std::ranges::max(nodes),
+                         std::string_view(cells[cell].scan));
+    };
+    std::vector<std::size_t> order(cells.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::stable_sort(order, {}, place_of);
+    return order;
+}
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -165,6 +179,7 @@ public:
     CellJudge(const Gate& gate, const CellRecord& cell, const StepsByNode& steps) : gate_(gate), cell_(cell) {
         result_.workflow = cell.workflow;
         result_.variant = cell.variant;
+        result_.outcome = cell.outcome;
         result_.seconds = cell.seconds;
         result_.passes = cell.costs;
         result_.values = values_of(cell, steps);
@@ -496,7 +511,7 @@ Comparison compare(const RunDetails& run, const Baseline* baseline) {
     const StepsByNode steps = steps_by_node(run), accepted_steps = steps_by_node(accepted_run);
     const CellTable cells(run), accepted_cells(accepted_run);
     const Pools pools(baseline ? baseline->costs : std::vector<PastCosts>(), run.start.file);
-    for (std::size_t i = 0; i < run.cells.size(); ++i) {
+    for (const std::size_t i : in_plan_order(run.cells)) {
         const CellRecord& cell = run.cells[i];
         const CellRecord* accepted = accepted_cells.find(cells.key(i));
         CellComparison& judged = comparison.cells.emplace_back(
@@ -506,7 +521,7 @@ Comparison compare(const RunDetails& run, const Baseline* baseline) {
         if (accepted && !is_fine) judged.causes = causes_of(cell, steps, *accepted, accepted_steps);
         if (!is_fine) judged.command = reproducing_command(run, cell, judged.scan);
     }
-    for (std::size_t i = 0; i < accepted_run.cells.size(); ++i) {
+    for (const std::size_t i : in_plan_order(accepted_run.cells)) {
         if (cells.find(accepted_cells.key(i))) continue;
         CellComparison& missing = comparison.cells.emplace_back();
         missing.workflow = accepted_run.cells[i].workflow;

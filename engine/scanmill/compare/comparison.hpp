@@ -74,6 +74,7 @@ struct CostChange {
 
 struct CellComparison {
     std::string workflow, scan, variant;  ///< the scan from the batch's folder
+    std::string outcome;                  ///< of this run; empty: it does not have the cell
     Verdict verdict = Verdict::passed;
     std::vector<std::string> reasons;  ///< of the verdict, a sentence each
     std::vector<std::string> causes;   ///< what differs in its inputs and steps; only if the verdict is not passed
@@ -106,7 +107,7 @@ struct Comparison {
     std::array<std::size_t, all_verdicts.size()> counts{};  ///< of cells, by verdict
     std::vector<std::string> filters;                        ///< changed versions: "decimate 2 → 3"
     std::vector<std::string> notes;                          ///< a sentence each, as "the machine changed: …"
-    std::vector<CellComparison> cells;  ///< in the order of the run, then the missing ones
+    std::vector<CellComparison> cells;  ///< scan by scan, in each the variants, as planned; then the missing ones
 
     std::size_t count(Verdict of) const { return counts[static_cast<std::size_t>(of)]; }
     /// A cell regressed or is missing.

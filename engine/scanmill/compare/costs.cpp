@@ -101,7 +101,8 @@ CostJudgement judge_costs(std::span<const double> before, std::span<const double
     const bool is_ranked = before.size() >= least_ranked;
     CostJudgement judgement{median(before), median(now), false, false, {}};
     const double rise = rise_of_all(before, now), fall = judgement.before / *std::ranges::max_element(now) - 1;
-    const double limit = is_confirmed ? tolerance : unconfirmed_factor * tolerance;
+    const double limit =
+        is_confirmed ? tolerance : std::max(unconfirmed_factor * tolerance, unconfirmed_seconds / judgement.before);
     judgement.is_worse = is_borne_out(rise, now, before, is_ranked, tolerance, limit, judgement.probability);
     judgement.is_better =
         !judgement.is_worse && is_borne_out(fall, before, now, is_ranked, tolerance, tolerance, judgement.probability);

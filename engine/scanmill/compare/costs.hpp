@@ -38,10 +38,11 @@ inline constexpr std::size_t least_ranked = 8;
 /// `weak`, because a few slow passes among the earlier ones must not hide it.
 inline constexpr std::uint64_t strong = 1000, weak = 20;
 /// Other programs on the machine make a step wait, which takes time but no processor time. Time that rises without
-/// processor time must therefore rise by this multiple of the tolerance. Of 7,200 comparisons of unchanged cells in 80
-/// runs of three passes, on two cores with 15 other busy programs, 72 had a false alarm with 1, 66 with 2, 11 with 3,
-/// 4 with 4; `cpu-seconds` and `memory` had none.
-inline constexpr double unconfirmed_factor = 4;
+/// processor time must therefore rise by this multiple of the tolerance, and by this many seconds: a few time slices.
+/// Measured on two cores with 15 other busy programs: of 7,200 comparisons of unchanged cells in 80 runs of three
+/// passes, 72 had a false alarm with 1, 66 with 2, 11 with 3, and 4 with 4; `cpu-seconds` and `memory` had none. Of 480
+/// comparisons of cells that take 4 to 100 ms, 4 had a false alarm without the seconds, for rises up to 10 ms.
+inline constexpr double unconfirmed_factor = 4, unconfirmed_seconds = 0.02;
 
 struct CostJudgement {
     double before = 0, now = 0;  ///< medians

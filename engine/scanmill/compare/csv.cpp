@@ -45,14 +45,13 @@ std::string csv_header() {
 std::string csv_rows(const RunDetails& run) {
     std::string text;
     const Comparison alone = compare(run, nullptr);
-    for (std::size_t i = 0; i < alone.cells.size(); ++i) {
-        const CellComparison& cell = alone.cells[i];
+    for (const CellComparison& cell : alone.cells) {
         const std::size_t begin = text.size();
         const auto add = [&](const std::string& source, const std::string& metric, const std::string& value,
                              const std::string& unit) {
-            text += record(std::array<std::string, 10>{std::to_string(run.summary.id), run.summary.started,
-                                                       cell.workflow, cell.scan, cell.variant, run.cells[i].outcome,
-                                                       source, metric, value, unit});
+            text +=
+                record(std::array<std::string, 10>{std::to_string(run.summary.id), run.summary.started, cell.workflow,
+                                                   cell.scan, cell.variant, cell.outcome, source, metric, value, unit});
         };
         for (const CellValue& value : cell.values)
             add(value.source, value.metric.name, number_text(value.metric.value), unit_text(value));

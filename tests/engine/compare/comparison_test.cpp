@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -249,6 +250,16 @@ TEST(Comparison, TheWorkingFolder_DoesNotMatter) {
     RunDetails list = run("jobs/nightly.yaml", "compare");
     EXPECT_EQ(compared(list, run("nightly.yaml", "compare")).verdict, Verdict::passed)
         << "a workflow over a list of scans";
+}
+
+TEST(Comparison, Cells_AreInTheOrderOfThePlan) {
+    RunDetails run = made_run(1);
+    for (const char* scan : {"jobs/b.ply", "jobs/a.ply"})
+        for (const char* variant : {"fine", "coarse"}) add_cell(run, scan, variant);
+    std::ranges::reverse(run.cells);  // as they may end
+    std::vector<std::string> order;
+    for (const CellComparison& cell : compare(run, nullptr).cells) order.push_back(cell.scan + " " + cell.variant);
+    EXPECT_THAT(order, ElementsAre("b.ply fine", "b.ply coarse", "a.ply fine", "a.ply coarse"));
 }
 
 TEST(Comparison, EqualCells_AreMatchedInTheirOrder) {
