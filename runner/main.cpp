@@ -11,6 +11,7 @@
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/session/output_lock.hpp"
 #include "scanmill/worker/worker_processes.hpp"
 
 int main(int argc, char** argv) {
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
     add_measure(app, chosen);
     add_schema_and_docs(app, chosen);
     add_runs(app, chosen);
+    add_report(app, chosen);
     add_cache(app, chosen);
     add_completion(app, chosen);
     try {
@@ -54,6 +56,9 @@ int main(int argc, char** argv) {
         }
         print(described, json);
         return bad_request;
+    } catch (const scanmill::FolderInUse& error) {
+        print(error, json);
+        return some_failed;
     } catch (const scanmill::Error& error) {
         print(error, json);
         return bad_request;

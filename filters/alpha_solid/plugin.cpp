@@ -36,9 +36,9 @@ SCANMILL_FILTER() {
         .metric("spectrum", Unit::count,
                 "Number of different alpha-solids from alpha-cover (or a smaller given alpha) up to the hull.")
         .metric("cells", Unit::count, "Cells inside.")
-        .metric("interior-points", Unit::count, "Points inside the solid but not on its boundary.")
-        .metric("uncovered-points", Unit::count, "Points in no cell of the solid.", headline)
-        .metric("hidden-points", Unit::count, "Points in no cell at all, because weights hide them.")
+        .metric("interior-points", Unit::count, "Points inside the solid but not on its boundary.", smaller_is_better)
+        .metric("uncovered-points", Unit::count, "Points in no cell of the solid.", headline, smaller_is_better)
+        .metric("hidden-points", Unit::count, "Points in no cell at all, because weights hide them.", smaller_is_better)
         .metric("triangles", Unit::count, "Triangles of the boundary.", headline)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             AlphaSolidResult result = alpha_solid(inputs.get<TetMesh>("tets"), params, context);

@@ -3,10 +3,10 @@
 /// Triangulates points one after the other: each new point joins the clusters near it and continues their mesh.
 ///
 /// Points come slice after slice (insertion_order.hpp) and form clusters on two levels (clusters.hpp). A new point
-/// continues the mesh of its cluster at the nearest boundary edge, splits the triangle that it lies over, or waits
-/// (triangulation.hpp). Then the result is completed: points that wait and boundaries that face each other are tried
-/// again under relaxed limits, vertices keep one fan of triangles, small and narrow loops are closed, and edges are
-/// flipped where that makes better triangles.
+/// continues the mesh of its cluster at the nearest boundary edge, with edges up to two thirds of max_edge, splits the
+/// triangle that it lies over, or waits (triangulation.hpp). Then the result is completed: points that wait and
+/// boundaries that face each other are tried again with edges up to max_edge and relaxed limits, vertices keep one fan
+/// of triangles, small and narrow loops are closed, and edges are flipped where that makes better triangles.
 ///
 /// Source: Sangveraphunsiri, Srirakulchai 2006, made robust.
 
@@ -27,12 +27,12 @@ struct ClusterMeshParams {
         paper,   ///< by distance to the slicing plane
         nearest  ///< next comes the point nearest to an inserted one
     };
-    /// Every edge of the mesh is shorter. Above 0; absent: 2.3 times the largest value of the column `bin-size`, or
-    /// without one 2.5 times the median distance of a point to the nearest other one.
+    /// Every edge of the mesh is shorter. Above 0; absent: 2.5 times the median distance of a point to the nearest
+    /// other one, and at least 2.3 times the largest value of the column `bin-size`.
     std::optional<Length> max_edge;
     /// Slicing planes are perpendicular to it.
     Axis axis = Axis::x;
-    /// Distance of the slicing planes; above 0. Absent: a quarter of max_edge.
+    /// Distance of the slicing planes; above 0. Absent: a quarter of max_edge, or as much as makes 1e9 slices.
     std::optional<Length> slice;
     InPlane in_plane = InPlane::nearest;
     /// Three numbers, not all 0. Components that are flat face to its side.
@@ -49,7 +49,8 @@ struct ClusterMeshParams {
 };
 
 struct ClusterMeshResult {
-    /// Over the used points, in input order with their columns, and the columns `cluster-1` and `cluster-2`.
+    /// Over the used points, in input order with their columns, and the columns `cluster-1` and `cluster-2`, which
+    /// replace older ones with a warning.
     TriangleMesh mesh;
     /// Per vertex its row in the cloud, ascending.
     Array<u32> rows;
@@ -75,14 +76,15 @@ struct ClusterMeshResult {
 ///
 /// Throws Error with numbers and a way out: fewer than three distinct points, all on one line, a NaN or infinite
 /// coordinate, a parameter out of range, a max_edge below the distance to the nearest point for most points, more than
-/// 1,000 points within max_edge of a point, more than 1e9 slices, and no triangle at all.
+/// 1,000 points within max_edge of a point, a slice that makes more than 1e9, and no triangle at all.
 ///
 /// Post: an oriented manifold: every edge is in one triangle, or in two with opposite half-edges; the triangles of
 /// every vertex form one fan. Every edge is shorter than max_edge. No two triangles intersect other than in common
 /// corners and edges. Equal values of `cluster-1` are the connected components of the graph of points at a distance
-/// below max_edge. Closed components face outwards, as do open ones that bulge; flat ones face to the side of `up`. The
-/// sharp edges of the mesh are empty. Ties: by position along a space-filling curve, so the mesh depends neither on the
-/// order of the rows, up to numbering, nor on the number of threads.
+/// below max_edge; the corners of a triangle have equal values of `cluster-2`. Closed components face outwards, as do
+/// open ones that bulge; flat ones face to the side of `up`. The sharp edges of the mesh are empty. Ties: by position
+/// along a space-filling curve, so the mesh depends neither on the order of the rows, up to numbering, nor on the
+/// number of threads.
 ///
 /// Cost: O(n log n) time for a max_edge of a few spacings, about 10 µs per point; about 650 bytes per point beside the
 /// result. The insertion uses one thread.

@@ -132,7 +132,8 @@ Triangulation::Verdict Triangulation::judge(u32 point, const Candidate& edge) co
 bool Triangulation::fits(const Triangle& triangle, std::span<const u32> near, const Limits& limits, bool at_winner) {
     const auto& [from, apex, to] = triangle;
     const Fans& fans = surface_.fans;
-    if (!is_short(from, apex) || !is_short(apex, to) || !has_angles_of(surface_, triangle, limits.least_sine))
+    if (!is_short(from, apex, limits.edge_share) || !is_short(apex, to, limits.edge_share) ||
+        !has_angles_of(surface_, triangle, limits.least_sine))
         return false;
     const Vec3 normal = surface_.facet_normal(from, apex, to);
     if (!agrees_with_points(surface_, triangle, normal, limits.point_cosine, limits.sharp_cosine)) return false;
@@ -263,10 +264,10 @@ bool Triangulation::start(u32 point, std::span<const u32> near, const Limits& li
     Triangle best{};
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < near.size(); ++i) {
-        if (!is_loose(near[i])) continue;
+        if (!is_loose(near[i]) || !is_short(point, near[i], limits.edge_share)) continue;
         for (std::size_t j = 0; j < i; ++j) {
             const Triangle triangle{point, near[j], near[i]};
-            if (!is_loose(near[j]) || !is_short(near[i], near[j]) ||
+            if (!is_loose(near[j]) || !is_short(near[i], near[j], limits.edge_share) ||
                 !has_angles_of(surface_, triangle, limits.least_sine))
                 continue;
             const Vec3 normal = surface_.facet_normal(point, near[j], near[i]);

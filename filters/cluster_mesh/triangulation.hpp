@@ -22,6 +22,7 @@ using growing::Surface;
 
 /// Limits of every triangle. Angles are stored as the sines and cosines that are compared.
 struct Limits {
+    double edge_share;  ///< of max_edge: edges are shorter
     double least_sine;  ///< of the triangle's smallest angle
     double joint_cosine;  ///< least, between the normals of triangles that share an edge other than a winner edge
     double point_cosine;  ///< least, between the normals of the triangle and of its points
@@ -113,7 +114,7 @@ private:
     void reverse_at(u32 point);
 
     double squared(u32 a, u32 b) const { return (surface_.positions[a] - surface_.positions[b]).squaredNorm(); }
-    bool is_short(u32 a, u32 b) const { return squared(a, b) < squared_edge_; }
+    bool is_short(u32 a, u32 b, double share = 1) const { return squared(a, b) < share * share * squared_edge_; }
 
     Surface& surface_;
     double squared_edge_;

@@ -57,13 +57,18 @@ SCANMILL_FILTER() {
         .metric("triangles", Unit::count, "Triangles of the result.", headline)
         .metric("removed", Unit::count, "Vertices removed.")
         .metric("flips", Unit::count, "Edges flipped.")
-        .metric("hausdorff-lower", Unit::length, "Lower bound of the distance between the input and the result.")
-        .metric("hausdorff-upper", Unit::length, "Upper bound; the filter fails if it exceeds max-error.", headline)
-        .metric("certified", Unit::boolean, "Whether the upper bound is proven to be within max-error: always 1.")
+        .metric("hausdorff-lower", Unit::length, "Lower bound of the distance between the input and the result.",
+                smaller_is_better)
+        .metric("hausdorff-upper", Unit::length, "Upper bound; the filter fails if it exceeds max-error.", headline,
+                smaller_is_better)
+        .metric("certified", Unit::boolean, "Whether the upper bound is proven to be within max-error: always 1.",
+                larger_is_better)
         .metric("creases", Unit::count, "Lines of sharp edges, from corner to corner or closed.")
         .metric("corners", Unit::count, "Vertices of class corner.")
-        .metric("points-max", Unit::length, "Largest distance from a point at `points` to the result.")
-        .metric("points-beyond", Unit::count, "Points at `points` that are farther than max-error from the result.")
+        .metric("points-max", Unit::length, "Largest distance from a point at `points` to the result.",
+                smaller_is_better)
+        .metric("points-beyond", Unit::count, "Points at `points` that are farther than max-error from the result.",
+                smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             const PointCloud* points = inputs.find<PointCloud>("points");
             return Outputs().set("mesh", decimate(inputs.get<TriangleMesh>("mesh"), points, params, context).mesh);

@@ -27,7 +27,8 @@ SCANMILL_FILTER() {
         .param("factor", &P::factor, "The weights are multiplied by this; with `spacing` at most 4.", at_least(0))
         .metric("cells", Unit::count, "Finite tetrahedra.")
         .metric("duplicates", Unit::count, "Points that lie exactly on an earlier one and were merged into it.")
-        .metric("hidden", Unit::count, "Distinct points in no cell, because weights hide them; they are kept.")
+        .metric("hidden", Unit::count, "Distinct points in no cell, because weights hide them; they are kept.",
+                smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("tets", delaunay(inputs.get<PointCloud>("points"), params, context).tets);
         });

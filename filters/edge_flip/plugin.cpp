@@ -36,7 +36,7 @@ SCANMILL_FILTER() {
         .param("max-edge", &P::max_edge, "New edges are shorter than this.", above(0))
         .metric("flips", Unit::count, "Flips made.", headline)
         .metric("min-angle-before", Unit::angle, "Least angle of all triangles before.")
-        .metric("min-angle-after", Unit::angle, "Least angle of all triangles after.", headline)
+        .metric("min-angle-after", Unit::angle, "Least angle of all triangles after.", headline, larger_is_better)
         .metric("left", Unit::count,
                 "Edges that fulfil the criterion and were not flipped, because they are sharp or another limit forbids "
                 "it; a warning gives the reasons.")

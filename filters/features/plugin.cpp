@@ -26,9 +26,11 @@ SCANMILL_FILTER() {
         .metric("holes", Unit::count, "Boundary loops around a hole in the mesh.", headline)
         .metric("boundaries", Unit::count, "Boundary loops around a component of the mesh.", headline)
         .metric("corners", Unit::count, "Points where lines meet, end or turn.", headline)
-        .metric("ambiguous", Unit::count, "Loops classified by their length because their area does not decide.")
+        .metric("ambiguous", Unit::count, "Loops classified by their length because their area does not decide.",
+                smaller_is_better)
         .metric("dropped", Unit::count, "Creases left out because they are shorter than min-length.")
-        .metric("without-area", Unit::count, "Triangles without area; they take the normal of a neighbour.")
+        .metric("without-area", Unit::count, "Triangles without area; they take the normal of a neighbour.",
+                smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("features", features(inputs.get<TriangleMesh>("mesh"), params, context).graph);
         });

@@ -11,6 +11,7 @@
 #include "scanmill/base/text.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/robust_box.hpp"
+#include "scanmill/geometry/distance/enclosed.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
 
 namespace scanmill {
@@ -42,6 +43,39 @@ Direction measured_direction(const TriangleMesh& mesh, const TriangleTree& other
     result.vertices = nearest_of_vertices(mesh.positions.span(), mesh.triangles.span(), other, rounding, context);
     result.numbers = numbers_of(result.nearest.distances, result.vertices.distances);
     return result;
+}
+
+/// The positions of some vertices.
+Array<Vec3> positions_at(const TriangleMesh& mesh, const Array<u32>& vertices) {
+    Array<Vec3> positions;
+    positions.reserve(vertices.size());
+    for (const u32 vertex : vertices) positions.push_back(mesh.positions[vertex]);
+    return positions;
+}
+
+/// Adds the distances of vertices that are in no triangle, which `found` does not contain.
+Array<double> distances_of_all(const TriangleMesh& mesh, const NearestDistances& found, const TriangleTree& truth,
+                               double rounding, Context& context) {
+    Array<double> distances = found.distances;
+    Array<u32> unused;
+    for (u32 vertex = 0; vertex < distances.size(); ++vertex)
+        if (found.triangles[vertex] == NearestTriangle::none) unused.push_back(vertex);
+    const Array<Vec3> positions = positions_at(mesh, unused);
+    const NearestDistances further = nearest_distances(positions, truth, rounding, context);
+    for (std::size_t i = 0; i < unused.size(); ++i) distances[unused[i]] = further.distances[i];
+    return distances;
+}
+
+/// Negates the distances of vertices that the truth encloses. Pre: it is closed.
+void sign_inside(Array<double>& distances, const TriangleMesh& mesh, const TriangleMesh& truth,
+                 const TriangleTree& tree, Context& context) {
+    Array<u32> apart;
+    for (u32 vertex = 0; vertex < distances.size(); ++vertex)
+        if (distances[vertex] > 0) apart.push_back(vertex);
+    const Array<u8> is_inside =
+        enclosed(positions_at(mesh, apart), truth.positions.span(), truth.triangles.span(), tree, context);
+    for (std::size_t i = 0; i < apart.size(); ++i)
+        if (is_inside[i]) distances[apart[i]] = -distances[apart[i]];
 }
 
 /// Cosines between the normals of samples and of the triangles nearest to them.
@@ -210,6 +244,8 @@ Measurement measure(const TriangleMesh& mesh, const TriangleMesh& given_truth, c
     for (const double threshold : thresholds) result.near.push_back(shares_at(threshold, to, from));
     compare_normals(result, mesh, to, truth, from);
     result.truth = mesh_numbers(truth, context.threads());
+    result.vertex_distances = distances_of_all(mesh, to.vertices, truth_tree, rounding, context);
+    if (result.truth->topology.closed) sign_inside(result.vertex_distances, mesh, truth, truth_tree, context);
     measure_mesh_alone(result, mesh, mesh_tree, params, context);
     const CertifiedSurface of_mesh{mesh.positions.span(), mesh.triangles.span(), mesh_tree,
                                    to.vertices,           to.samples.triangles,  to.nearest.distances};
@@ -248,18 +284,30 @@ Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const Mea
     if (params.borders == MeasureParams::Borders::exclude)
         result.beyond_borders = leave_out_borders(from, points.span(), mesh, rounding);
     context.progress(0.3);
-    const Direction to =
-        measured_direction(mesh, tree_of_points(points.span(), context.threads()), params, 0, rounding, context);
+    const TriangleTree truth_tree = tree_of_points(points.span(), context.threads());
+    const Direction to = measured_direction(mesh, truth_tree, params, 0, rounding, context);
     context.progress(0.5);
 
     result.to_points = to.numbers;
     result.from_truth = numbers_of(from.distances, {});
     result.from_truth.mean_spread.reset();
     result.both = result.from_truth;
+    result.vertex_distances = distances_of_all(mesh, to.vertices, truth_tree, rounding, context);
     for (const double threshold : thresholds)
         result.near.push_back({threshold, {}, share_within(from.distances, threshold), {}});
     measure_mesh_alone(result, mesh, mesh_tree, params, context);
     context.progress(1);
+    return result;
+}
+
+TriangleMesh deviation_of(const TriangleMesh& mesh, const Measurement& measured) {
+    const Buffer<double> values = measured.vertex_distances;
+    const Column distances = Column("distance-to-truth", 1, values).with_length_exponent(1);
+    TriangleMesh result = mesh;
+    result.vertex_columns = {};
+    for (const Column& column : mesh.vertex_columns)
+        if (column.name() != distances.name()) result.vertex_columns.add(column);
+    result.vertex_columns.add(distances);
     return result;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The distance between a mesh and its truth, and the quality of the mesh by itself.
+/// The distance between a mesh and its truth, in numbers and by vertex, and the quality of the mesh by itself.
 ///
 /// Distances are from points of one surface to the nearest point of the other's triangles, in both directions: *to the
 /// truth* shows surplus surface of the mesh, *from the truth* shows missing surface. They are computed at points spread
@@ -88,6 +88,10 @@ struct Measurement {
     /// Pairs of the mesh's triangles, see scanmill::self_intersections(); absent unless requested.
     std::optional<std::size_t> self_intersections;
     std::optional<CertifiedHausdorff> certified;
+    /// By vertex of the mesh, also of those in no triangle: the distance to the nearest triangle or point of the truth.
+    /// Negative where the truth encloses the vertex, if it is a closed mesh (truth->topology.closed): inside is inside
+    /// whichever way the truth faces. 0 within rounding, without sign.
+    Array<double> vertex_distances;
 };
 
 /// Measures `mesh` against `truth`.
@@ -105,6 +109,10 @@ struct Measurement {
 /// recall.
 Measurement measure(const TriangleMesh& mesh, const TriangleMesh& truth, const MeasureParams& params, Context& context);
 Measurement measure(const TriangleMesh& mesh, const PointCloud& truth, const MeasureParams& params, Context& context);
+
+/// The mesh with Measurement::vertex_distances as the vertex column `distance-to-truth`, of lengths, in place of one of
+/// that name. Shares the mesh's memory. Pre: measured from this mesh.
+TriangleMesh deviation_of(const TriangleMesh& mesh, const Measurement& measured);
 
 /// A measurement under the metric names of workflows, gates and reports. A number that is absent from the measurement
 /// has no metric.

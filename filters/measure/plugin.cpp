@@ -11,10 +11,11 @@ using Filter = Declare<MeasureParams>;
 /// The numbers of one direction. `suffix`: "-to-truth" …; `from_where`: its description.
 void declare_distances(Filter& filter, const std::string& suffix, const std::string& from_where) {
     const auto metric = [&](const char* name, const char* what) {
-        filter.metric(name + suffix, Unit::length, std::string(what) + " " + from_where + ".");
+        filter.metric(name + suffix, Unit::length, std::string(what) + " " + from_where + ".", smaller_is_better);
     };
     metric("mean", "Mean distance");
-    metric("mean-spread", "Standard error of the mean, of the distances");
+    filter.metric("mean-spread" + suffix, Unit::length,
+                  "Standard error of the mean, of the distances " + from_where + ".");
     metric("rms", "Root of the mean squared distance");
     metric("p50", "Median of the distances");
     metric("p90", "90 % quantile of the distances");
@@ -23,38 +24,40 @@ void declare_distances(Filter& filter, const std::string& suffix, const std::str
     metric("max", "Largest distance at a sample or a vertex,");
 }
 
-/// The numbers of one mesh by itself. `prefix`: "" or "truth-".
+/// The numbers of one mesh by itself. `prefix`: "" or "truth-". No value of the truth is better than another.
 void declare_mesh(Filter& filter, const std::string& prefix, const std::string& of) {
-    const auto metric = [&](const char* name, Unit unit, const std::string& what) {
-        filter.metric(prefix + name, unit, what + " " + of + ".");
+    const auto metric = [&](const char* name, Unit unit, const std::string& what,
+                            std::same_as<MetricOption> auto... better) {
+        prefix.empty() ? filter.metric(name, unit, what + " " + of + ".", better...)
+                       : filter.metric(prefix + name, unit, what + " " + of + ".");
     };
     metric("area", Unit::area, "Sum of the triangles' areas");
     metric("volume", Unit::volume, "Enclosed volume, negative if inside out, only for a closed mesh,");
     metric("vertices", Unit::count, "Vertices in a triangle");
-    metric("unused-vertices", Unit::count, "Vertices in no triangle");
+    metric("unused-vertices", Unit::count, "Vertices in no triangle", smaller_is_better);
     metric("triangles", Unit::count, "Number of triangles");
     metric("components", Unit::count, "Components connected through edges");
     metric("genus", Unit::count, "Handles, with holes filled, only for an oriented manifold,");
     metric("euler", Unit::count, "Vertices minus edges plus triangles");
-    metric("closed", Unit::boolean, "1 for a closed, oriented manifold,");
+    metric("closed", Unit::boolean, "1 for a closed, oriented manifold,", larger_is_better);
     metric("boundary-loops", Unit::count, "Connected components of the boundary");
-    metric("boundary-edges", Unit::count, "Edges in one triangle");
-    metric("nonmanifold-edges", Unit::count, "Edges in more than two triangles");
-    metric("nonmanifold-vertices", Unit::count, "Vertices whose triangles do not form one fan,");
-    metric("misoriented-edges", Unit::count, "Edges that two triangles name in the same direction,");
-    metric("collinear-triangles", Unit::count, "Triangles whose corners are on one line,");
-    metric("min-angle", Unit::angle, "Smallest angle of a triangle");
-    metric("min-angle-p5", Unit::angle, "5 % quantile of the triangles' smallest angles");
-    metric("min-angle-p50", Unit::angle, "Median of the triangles' smallest angles");
+    metric("boundary-edges", Unit::count, "Edges in one triangle", smaller_is_better);
+    metric("nonmanifold-edges", Unit::count, "Edges in more than two triangles", smaller_is_better);
+    metric("nonmanifold-vertices", Unit::count, "Vertices whose triangles do not form one fan,", smaller_is_better);
+    metric("misoriented-edges", Unit::count, "Edges that two triangles name in the same direction,", smaller_is_better);
+    metric("collinear-triangles", Unit::count, "Triangles whose corners are on one line,", smaller_is_better);
+    metric("min-angle", Unit::angle, "Smallest angle of a triangle", larger_is_better);
+    metric("min-angle-p5", Unit::angle, "5 % quantile of the triangles' smallest angles", larger_is_better);
+    metric("min-angle-p50", Unit::angle, "Median of the triangles' smallest angles", larger_is_better);
     metric("aspect-ratio-p50", Unit::number,
-           "Longest edge over 2 sqrt(3) inradii, 1 for equilateral triangles: the median");
-    metric("aspect-ratio-p95", Unit::number, "95 % quantile of the same ratios");
-    metric("aspect-ratio-max", Unit::number, "Largest of the same ratios");
+           "Longest edge over 2 sqrt(3) inradii, 1 for equilateral triangles: the median", smaller_is_better);
+    metric("aspect-ratio-p95", Unit::number, "95 % quantile of the same ratios", smaller_is_better);
+    metric("aspect-ratio-max", Unit::number, "Largest of the same ratios", smaller_is_better);
 }
 
 Filter declaration() {
     using P = MeasureParams;
-    Filter filter("measure", 2);
+    Filter filter("measure", 3);
     filter
         .summary("Measures the distance between a mesh and its truth, in both directions, and the quality of the mesh.")
         .source("Aspert, Santa-Cruz, Ebrahimi 2002; Knapitsch et al. 2017 for precision and recall")
@@ -63,6 +66,12 @@ Filter declaration() {
         .in<TriangleMesh>("mesh", "The mesh to measure.")
         .in<TriangleMesh, PointCloud>("truth", "What the mesh should be: a surface, or points on it.")
         .out<Metrics>("metrics", "All metrics, lengths in the unit of the mesh.")
+        .out<TriangleMesh>("deviation",
+                           "The mesh with the vertex column `distance-to-truth`, negative inside a truth that is a "
+                           "closed mesh.",
+                           by_name)
+        .measures("mesh", "truth")
+        .adds({"distance-to-truth"})
         .param("samples", &P::samples, "Points spread over the area of each mesh; of a cloud all points are used.",
                at_least(fewest_samples))
         .param("thresholds", &P::thresholds, "Distances that count as near for precision and recall.", above(0))
@@ -80,12 +89,15 @@ Filter declaration() {
         .param("most-cuts", &P::most_cuts,
                "Parts of triangles cut before certify ends with the bounds reached by then.", at_least(1))
         .metric("hausdorff", Unit::length,
-                "Largest distance in either direction: at samples, at vertices, and where a search finds it.", headline)
-        .metric("chamfer", Unit::length, "Half the sum of the two directions' mean distances.")
+                "Largest distance in either direction: at samples, at vertices, and where a search finds it.", headline,
+                smaller_is_better)
+        .metric("chamfer", Unit::length, "Half the sum of the two directions' mean distances.", smaller_is_better)
         .metric("f-score", Unit::ratio, "2 P R / (P + R) of precision P and recall R at the threshold.", headline,
-                numbered)
-        .metric("precision", Unit::ratio, "Share of the mesh's samples within the threshold of the truth.", numbered)
-        .metric("recall", Unit::ratio, "Share of the truth's samples within the threshold of the mesh.", numbered)
+                numbered, larger_is_better)
+        .metric("precision", Unit::ratio, "Share of the mesh's samples within the threshold of the truth.", numbered,
+                larger_is_better)
+        .metric("recall", Unit::ratio, "Share of the truth's samples within the threshold of the mesh.", numbered,
+                larger_is_better)
         .metric("threshold", Unit::length,
                 "The distance of f-score, precision and recall, in the order of `thresholds`.", numbered);
     declare_distances(filter, "", "over both directions with equal weight");
@@ -94,27 +106,30 @@ Filter declaration() {
     declare_distances(filter, "-to-points", "from the mesh to the nearest point of a truth of points");
     filter
         .metric("beyond-borders", Unit::count,
-                "Points left out because their nearest point on the mesh is on its boundary.")
+                "Points left out because their nearest point on the mesh is on its boundary.", smaller_is_better)
         .metric("normal-consistency", Unit::number,
-                "Mean cosine between the normals of samples and of their nearest triangles.")
-        .metric("normal-consistency-unsigned", Unit::number, "Mean of the same cosines without their signs.")
+                "Mean cosine between the normals of samples and of their nearest triangles.", larger_is_better)
+        .metric("normal-consistency-unsigned", Unit::number, "Mean of the same cosines without their signs.",
+                larger_is_better)
         .metric("without-normal", Unit::count,
-                "Samples left out of these means because their nearest triangle has no normal.")
-        .metric("hausdorff-lower", Unit::length, "Certified lower bound of the Hausdorff distance.")
-        .metric("hausdorff-upper", Unit::length, "Certified upper bound of the Hausdorff distance.")
-        .metric("certified", Unit::boolean, "1 if the bounds are as close as `gap` requires.")
+                "Samples left out of these means because their nearest triangle has no normal.", smaller_is_better)
+        .metric("hausdorff-lower", Unit::length, "Certified lower bound of the Hausdorff distance.", smaller_is_better)
+        .metric("hausdorff-upper", Unit::length, "Certified upper bound of the Hausdorff distance.", smaller_is_better)
+        .metric("certified", Unit::boolean, "1 if the bounds are as close as `gap` requires.", larger_is_better)
         .metric("cuts", Unit::count, "Parts of triangles that were cut for the bounds.")
         .metric("diagonal", Unit::length, "Diagonal of the bounding box of the mesh.")
-        .metric("self-intersections", Unit::count, "Pairs of triangles of the mesh that intersect, touching included.");
+        .metric("self-intersections", Unit::count, "Pairs of triangles of the mesh that intersect, touching included.",
+                smaller_is_better);
     declare_mesh(filter, "", "of the mesh");
     declare_mesh(filter, "truth-", "of the truth");
     filter.run([](const Inputs& inputs, const P& params, Context& context) {
         const auto& mesh = inputs.get<TriangleMesh>("mesh");
         const auto* surface = inputs.find<TriangleMesh>("truth");
-        const Metrics metrics = metrics_of(surface ? measure(mesh, *surface, params, context)
-                                                   : measure(mesh, inputs.get<PointCloud>("truth"), params, context));
+        const Measurement measured = surface ? measure(mesh, *surface, params, context)
+                                             : measure(mesh, inputs.get<PointCloud>("truth"), params, context);
+        const Metrics metrics = metrics_of(measured);
         for (const Metric& metric : metrics.values) context.metric(metric.name, metric.value, metric.unit);
-        return Outputs().set("metrics", metrics);
+        return Outputs().set("metrics", metrics).set("deviation", deviation_of(mesh, measured));
     });
     return filter;
 }

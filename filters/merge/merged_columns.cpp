@@ -123,47 +123,46 @@ private:
     /// One column per cloud, suitable for joined(). Empty, with a warning, when they cannot be joined.
     std::vector<Column> parts_of(const std::string& name) {
         std::vector<Column> parts;
-        for (const ColumnTable& table : tables_)
-            if (const Column* column = table.find(name)) parts.push_back(*column);
-        const bool is_kept =
-            std::ranges::all_of(parts, is_floating) && std::ranges::all_of(parts, [&](const Column& part) {
-                return part.components() == parts.front().components();
-            });
-        if (const std::size_t without = tables_.size() - parts.size(); without > 0) {
-            const std::string lack =
-                fmt::format("{} of {} inputs {} it", without, tables_.size(), by_count(without, "lacks", "lack"));
-            if (!is_kept) {
-                context_.warn(fmt::format("the column '{}' is left out: {}", name, lack));
-                return {};
+        std::vector<std::size_t> inputs;  // that have it
+        for (std::size_t input = 0; input < tables_.size(); ++input)
+            if (const Column* column = tables_[input].find(name)) {
+                parts.push_back(*column);
+                inputs.push_back(input);
             }
-            context_.warn(fmt::format("the column '{}' has NaN for some points: {}", name, lack));
-            const Column like = parts.front();
-            parts.clear();
-            for (std::size_t table = 0; table < tables_.size(); ++table) {
-                const Column* column = tables_[table].find(name);
-                parts.push_back(column ? *column
-                                       : constant(like, rows_[table], std::numeric_limits<double>::quiet_NaN()));
-            }
+        const Column first = parts.front();
+        const bool is_even =
+            std::ranges::all_of(parts, [&](const Column& part) { return part.components() == first.components(); });
+        const std::size_t without = tables_.size() - parts.size();
+        const std::string lack =
+            fmt::format("{} of {} inputs {} it", without, tables_.size(), by_count(without, "lacks", "lack"));
+        if (without > 0 && !(is_even && std::ranges::all_of(parts, is_floating))) {
+            context_.warn(fmt::format("the column '{}' is left out: {}", name, lack));
+            return {};
         }
-        const Column& first = parts.front();
         const auto other = std::ranges::find_if(parts, [&](const Column& part) {
             return part.components() != first.components() || part.type() != first.type();
         });
-        if (other == parts.end()) return parts;
-        const bool joinable = !first.is_list() && std::ranges::all_of(parts, [&](const Column& part) {
-            return part.components() == first.components();
-        });
-        const std::string found = fmt::format("{} in input 0, {} in input {}", shape(first), shape(*other),
-                                              std::distance(parts.begin(), other));
-        if (!joinable) {
-            context_.warn(fmt::format("the column '{}' is left out: it is {}", name, found));
-            return {};
+        if (other != parts.end()) {
+            const std::string found =
+                fmt::format("{} in input {}, {} in input {}", shape(first), inputs.front(), shape(*other),
+                            inputs[static_cast<std::size_t>(other - parts.begin())]);
+            if (first.is_list() || !is_even) {
+                context_.warn(fmt::format("the column '{}' is left out: it is {}", name, found));
+                return {};
+            }
+            const bool rounds = std::ranges::any_of(parts, [](const Column& part) {
+                return part.type() == ScalarType::int64 || part.type() == ScalarType::uint64;
+            });
+            context_.warn(fmt::format("the column '{}' is carried as float64: it is {}{}", name, found,
+                                      rounds ? "; whole numbers beyond 2^53 are rounded" : ""));
         }
-        const bool rounds = std::ranges::any_of(parts, [](const Column& part) {
-            return part.type() == ScalarType::int64 || part.type() == ScalarType::uint64;
-        });
-        context_.warn(fmt::format("the column '{}' is carried as float64: it is {}{}", name, found,
-                                  rounds ? "; whole numbers beyond 2^53 are rounded" : ""));
+        if (without > 0) {
+            context_.warn(fmt::format("the column '{}' has NaN for some points: {}", name, lack));
+            for (std::size_t input = 0; input < tables_.size(); ++input)
+                if (!tables_[input].find(name))
+                    parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(input),
+                                 constant(first, rows_[input], std::numeric_limits<double>::quiet_NaN()));
+        }
         return parts;
     }
 

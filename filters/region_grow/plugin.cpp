@@ -49,18 +49,23 @@ SCANMILL_FILTER() {
         .metric("holes", Unit::count, "Boundary loops around holes.")
         .metric("thin-loops", Unit::count,
                 "Loops where two sides are less than three voxels apart, so that the surface may continue there; not "
-                "counted with a `search-radius`, nor where given normals distinguish the sides.")
-        .metric("unused-points", Unit::count, "Distinct points in no triangle: noise, or layers.", headline)
+                "counted with a `search-radius`, nor where given normals distinguish the sides.",
+                smaller_is_better)
+        .metric("unused-points", Unit::count, "Distinct points in no triangle: noise, or layers.", headline,
+                smaller_is_better)
         .metric("duplicates", Unit::count, "Points at the position of an earlier one.")
         .metric("known-bins", Unit::count, "Distinct points whose search radius follows from the column `bin-size`.")
-        .metric("patch-edges", Unit::count, "Boundary edges beyond which the surface continues at too large an angle.")
+        .metric("patch-edges", Unit::count, "Boundary edges beyond which the surface continues at too large an angle.",
+                smaller_is_better)
         .metric("creases", Unit::count, "Chains of sharp edges.")
         .metric("corners", Unit::count, "Vertices where feature lines meet or turn.")
         .metric("closed-holes", Unit::count, "Small and narrow loops that were closed.")
         .metric("removed-triangles", Unit::count,
                 "Triangles removed again, where a vertex had several fans or to close a hole.")
-        .metric("ambiguous", Unit::count, "Loops classified by their length, as their area does not decide.")
-        .metric("without-area", Unit::count, "Triangles without area, assigned to a neighbour's plane.")
+        .metric("ambiguous", Unit::count, "Loops classified by their length, as their area does not decide.",
+                smaller_is_better)
+        .metric("without-area", Unit::count, "Triangles without area, assigned to a neighbour's plane.",
+                smaller_is_better)
         .metric("relaxed-triangles", Unit::count, "Triangles formed under relaxed limits.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             RegionGrowResult result = region_grow(inputs.get<PointCloud>("points"), params, context);

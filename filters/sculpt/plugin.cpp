@@ -35,13 +35,15 @@ SCANMILL_FILTER() {
         .metric("removed-share", Unit::ratio, "Removed cells divided by the cells inside before.")
         .metric("volume-removed", Unit::volume, "Volume of the removed cells.")
         .metric("bending-before", Unit::angle, "Sum over the boundary's edges of the angle between normals, before.")
-        .metric("bending-after", Unit::angle, "The same sum afterwards.")
-        .metric("interior-points", Unit::count, "Points left inside the solid.", headline)
+        .metric("bending-after", Unit::angle, "The same sum afterwards.", smaller_is_better)
+        .metric("interior-points", Unit::count, "Points left inside the solid.", headline, smaller_is_better)
         .metric(
             "interior-blocked", Unit::count,
-            "Of these, points that no removal can reach without the boundary touching itself or a point left outside.")
-        .metric("interior-deep", Unit::count, "Of these, points more than two cells below the boundary.")
-        .metric("outside-points", Unit::count, "Points in no cell of the solid, as in the input.")
+            "Of these, points that no removal can reach without the boundary touching itself or a point left outside.",
+            smaller_is_better)
+        .metric("interior-deep", Unit::count, "Of these, points more than two cells below the boundary.",
+                smaller_is_better)
+        .metric("outside-points", Unit::count, "Points in no cell of the solid, as in the input.", smaller_is_better)
         .metric("triangles", Unit::count, "Triangles of the boundary.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             SculptResult result = sculpt(inputs.get<TetMesh>("tets"), params, context);

@@ -37,12 +37,19 @@ std::string source_node(const ValueSource& source) {
     return source.step ? fmt::format("step{}", *source.step) : fmt::format("input{}", source.input);
 }
 
+/// "points", "mesh or points".
+std::string kinds_text(const WorkflowInput& input) {
+    std::string text(name_of(input.kind));
+    for (const Kind kind : input.also) text += " or " + std::string(name_of(kind));
+    return text;
+}
+
 std::string plan_text(const Plan& plan) {
     std::string text = fmt::format("{}: {}, {}\n", plan.workflow.name.empty() ? plan.workflow.file : plan.workflow.name,
                                    count_text(plan.steps.size(), "step", "steps"),
                                    count_text(plan.variants.size(), "variant", "variants"));
     for (const WorkflowInput& input : plan.workflow.inputs)
-        text += fmt::format("input {}: {}{}\n", input.name, name_of(input.kind), input.list ? " (a list)" : "");
+        text += fmt::format("input {}: {}{}\n", input.name, kinds_text(input), input.list ? " (a list)" : "");
     for (const PlannedVariant& variant : plan.variants) {
         text += fmt::format("variant {}\n", variant.name);
         for (const std::size_t index : variant.steps) {
@@ -55,6 +62,7 @@ std::string plan_text(const Plan& plan) {
             for (const auto& [name, value] : step.parameters.values)
                 if (const std::string shown = scanmill::text(value); !shown.empty())
                     text += fmt::format("        {}: {}\n", name, shown);
+            if (!step.measures.empty()) text += fmt::format("        measures {}\n", step.measures);
             for (const PlannedExpectation& expectation : step.expectations)
                 text += fmt::format("        expect {}\n", expectation.text);
         }
@@ -89,7 +97,7 @@ Json plan_json(const Plan& plan) {
     Json json{
         {"name", plan.workflow.name}, {"inputs", Json::array()}, {"steps", Json::array()}, {"variants", Json::array()}};
     for (const WorkflowInput& input : plan.workflow.inputs)
-        json["inputs"].push_back({{"name", input.name}, {"kind", name_of(input.kind)}, {"list", input.list}});
+        json["inputs"].push_back({{"name", input.name}, {"kind", kinds_text(input)}, {"list", input.list}});
     for (const PlannedStep& step : plan.steps) {
         Json entry{{"label", step.label},       {"filter", step.spec.name},   {"version", step.spec.version},
                    {"key", step.structure_key}, {"line", step.position.line}, {"column", step.position.column},
@@ -97,6 +105,10 @@ Json plan_json(const Plan& plan) {
         for (const PlannedInput& input : step.inputs) {
             for (const ValueSource& source : input.sources) entry["in"][input.port].push_back(describe(plan, source));
             if (streams(plan, input)) entry["streams"].push_back(input.port);
+        }
+        if (!step.measures.empty()) {  // line and column are in the batch
+            entry["measures"] = step.measures;
+            entry["file"] = step.file;
         }
         for (const auto& [name, value] : step.parameters.values)
             if (const std::string shown = text(value); !shown.empty()) entry["parameters"][name] = shown;

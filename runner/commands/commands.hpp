@@ -12,8 +12,9 @@
 
 namespace scanmill::runner {
 
-/// 0 done, 1 some scans failed or an expect was not met, 2 bad arguments or workflow, 3 our own fault, 130 interrupted.
-enum ExitCode { done = 0, some_failed = 1, bad_request = 2, our_fault = 3, interrupted = 130 };
+/// 0 done, 1 some scans failed or an expect was not met, 2 bad arguments or workflow, 3 our own fault, 4 the gate of a
+/// batch tripped (whether or not scans failed), 130 interrupted.
+enum ExitCode { done = 0, some_failed = 1, bad_request = 2, our_fault = 3, gate_tripped = 4, interrupted = 130 };
 
 /// The action of the command on the command line.
 using Action = std::function<int()>;
@@ -37,6 +38,7 @@ void add_convert(CLI::App& app, Action& chosen);
 void add_measure(CLI::App& app, Action& chosen);
 void add_schema_and_docs(CLI::App& app, Action& chosen);
 void add_runs(CLI::App& app, Action& chosen);
+void add_report(CLI::App& app, Action& chosen);
 void add_cache(CLI::App& app, Action& chosen);
 void add_completion(CLI::App& app, Action& chosen);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "commands/common.hpp"
 
+#include "commands/commands.hpp"
+
 #include <fmt/format.h>
 
 #include <set>
@@ -74,6 +76,12 @@ void add_unit_option(CLI::App& command, const char* name, LengthUnit& unit, cons
 void add_invalid_option(CLI::App& command, InvalidRows& rule, const char* help) {
     const auto read = [&rule](const std::string& name) { rule = *invalid_rows_named(name); };
     command.add_option_function<std::string>("--invalid", read, help)->check(CLI::IsMember({"drop", "refuse"}));
+}
+
+int exit_code_of(const Comparison& comparison, bool strict) {
+    if (comparison.tripped()) return gate_tripped;
+    const bool fails = comparison.count(Verdict::failed) > 0 || (strict && comparison.count(Verdict::doubtful) > 0);
+    return fails ? some_failed : done;
 }
 
 Warn warning_printer() {

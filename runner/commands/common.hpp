@@ -8,6 +8,7 @@
 #include <string>
 
 #include "scanmill/cache/cache.hpp"
+#include "scanmill/compare/comparison.hpp"
 #include "scanmill/plan/plan.hpp"
 
 namespace scanmill::runner {
@@ -38,6 +39,9 @@ void add_unit_option(CLI::App& command, const char* name, LengthUnit& unit, cons
 
 /// Adds `--invalid drop|refuse`; without it `rule` is by_format.
 void add_invalid_option(CLI::App& command, InvalidRows& rule, const char* help);
+
+/// 4 if the gate tripped, else 1 if a cell failed or, with `strict`, is doubtful.
+int exit_code_of(const Comparison& comparison, bool strict);
 
 using Warn = std::function<void(std::string)>;
 

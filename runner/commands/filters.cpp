@@ -62,8 +62,8 @@ void print_ports(std::string_view title, const std::vector<PortSpec>& ports) {
     if (ports.empty()) return;
     fmt::print("\n{}\n", title);
     for (const PortSpec& port : ports)
-        fmt::print("  {} ({}{}{})\n      {}\n", port.name, kinds_text(port), port.list ? ", any number" : "",
-                   port.optional ? ", optional" : "", port.help);
+        fmt::print("  {} ({}{}{}{})\n      {}\n", port.name, kinds_text(port), port.list ? ", any number" : "",
+                   port.optional ? ", optional" : "", port.by_name ? ", by name alone" : "", port.help);
 }
 
 void print_parameter(const ParameterSpec& parameter) {
@@ -81,6 +81,7 @@ void print_filter(const FilterSpec& spec) {
     if (!spec.ties.empty()) fmt::print("  Ties: {}\n", spec.ties);
     if (!spec.not_finite.empty()) fmt::print("  NaN and infinity: {}\n", spec.not_finite);
     if (spec.streams) fmt::print("  Large scans: {}\n", stream_text(spec));
+    if (spec.measures) fmt::print("  Measures: {}\n", measures_text(*spec.measures));
     if (!spec.adds.empty()) fmt::print("  Columns that it may add: {}\n", fmt::join(spec.adds, ", "));
     print_ports("Takes", spec.inputs);
     print_ports("Gives (the step's name alone refers to the first)", spec.outputs);
@@ -88,7 +89,10 @@ void print_filter(const FilterSpec& spec) {
     for (const ParameterSpec& parameter : spec.parameters) print_parameter(parameter);
     if (!spec.metrics.empty()) fmt::print("\nMetrics\n");
     for (const MetricSpec& metric : spec.metrics)
-        fmt::print("  {} ({})\n      {}\n", metric.name, name_of(metric.unit), metric.help);
+        fmt::print("  {} ({})\n      {}{}\n", metric.name, name_of(metric.unit), metric.help,
+                   metric.better == Better::neither  ? ""
+                   : metric.better == Better::larger ? " Larger is better."
+                                                     : " Smaller is better.");
 }
 
 struct ShowOptions {

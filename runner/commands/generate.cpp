@@ -11,6 +11,7 @@
 #include "commands/common.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/describe/filter_page.hpp"
+#include "scanmill/describe/output_schemas.hpp"
 #include "scanmill/describe/schemas.hpp"
 #include "scanmill/io/atomic_file.hpp"
 
@@ -44,11 +45,15 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
 int schema(const SchemaOptions& options) {
     const FilterLibrary library = open_library();
     if (options.folder.empty()) {
-        fmt::print("{}", options.kind == "batch" ? batch_schema() : workflow_schema(library));
+        fmt::print("{}", options.kind == "workflow" ? workflow_schema(library)
+                         : options.kind == "batch"  ? batch_schema(library)
+                                                    : output_schema(options.kind));
         return done;
     }
     write_text(options.folder / "workflow.schema.json", workflow_schema(library));
-    write_text(options.folder / "batch.schema.json", batch_schema());
+    write_text(options.folder / "batch.schema.json", batch_schema(library));
+    for (const std::string& name : output_names())
+        write_text(options.folder / "output" / (name + ".schema.json"), output_schema(name));
     return done;
 }
 
@@ -86,14 +91,18 @@ int docs(const DocsOptions& options) {
 void add_schema_and_docs(CLI::App& app, Action& chosen) {
     auto [schema_command, schema_options] = add_command<SchemaOptions>(
         app, chosen, "schema",
-        "Prints the JSON Schema of workflow or batch files, for editors: every installed filter with its parameters",
+        "Prints a JSON Schema: of workflow or batch files, for editors, or of what a command prints with --json",
         schema);
-    CLI::Option* kind =
-        schema_command.add_option("KIND", schema_options.kind, "Which to print: workflow (the default) or batch")
-            ->check(CLI::IsMember({"workflow", "batch"}));
+    std::vector<std::string> kinds{"workflow", "batch"};
+    kinds.insert(kinds.end(), output_names().begin(), output_names().end());
+    CLI::Option* kind = schema_command
+                            .add_option("KIND", schema_options.kind,
+                                        "Which to print: workflow (the default), batch, or of the output of a command")
+                            ->check(CLI::IsMember(kinds));
     schema_command
         .add_option("-o,--output", schema_options.folder,
-                    "Write both, workflow.schema.json and batch.schema.json, into this folder instead")
+                    "Write all into this folder instead: workflow.schema.json, batch.schema.json and "
+                    "output/NAME.schema.json")
         ->excludes(kind);
 
     auto [docs_command, docs_options] =

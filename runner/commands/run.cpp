@@ -11,12 +11,16 @@
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
+#include "output/comparison_text.hpp"
 #include "output/error_output.hpp"
 #include "output/progress.hpp"
 #include "output/run_output.hpp"
 #include "output/terminal.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/batch/batch.hpp"
+#include "scanmill/batch/choice.hpp"
+#include "scanmill/compare/formats.hpp"
+#include "scanmill/compare/recorded.hpp"
 #include "scanmill/session/session.hpp"
 
 namespace scanmill::runner {
@@ -39,6 +43,7 @@ struct RunOptions {
 
 struct BatchOptions {
     std::string file;
+    BatchChoice choice;
     ExecuteOptions execute;
 };
 
@@ -169,11 +174,15 @@ public:
     std::string hash(const std::filesystem::path& file) const {
         return cache_ ? cache_->file_hash(file) : content_hash(file);
     }
-    /// Prints the prediction, with --dry-run, or runs the graph and prints the report. With `streams_events`, --json
-    /// prints one event per line during the run. Returns the exit code.
-    int run(const SessionTask& task, bool streams_events);
+    /// Prints the prediction, with --dry-run, or runs the graph and prints the report. Of a batch, --json prints one
+    /// event per line during the run, and the verdict of its gate follows. Returns the exit code.
+    int run(const SessionTask& task, bool is_batch);
 
 private:
+    /// The comparison of the recorded run with the accepted one. Nothing: there is neither a gate nor an accepted run,
+    /// or no comparison, which is an error on stderr and in `code`.
+    std::optional<Comparison> judge(const SessionTask& task, std::int64_t run, int& code) const;
+
     const ExecuteOptions& options_;
     Warn warn_ = warning_printer();
     std::unique_ptr<Cache> cache_;
@@ -181,7 +190,21 @@ private:
     FilterLibrary library_ = open_library();
 };
 
-int Execution::run(const SessionTask& task, bool streams_events) {
+std::optional<Comparison> Execution::judge(const SessionTask& task, std::int64_t run, int& code) const {
+    try {
+        if (run == 0 && task.gate.empty()) return std::nullopt;
+        if (run == 0) throw Error("the gate was not judged, because the run is not recorded");
+        std::optional<Comparison> comparison = verdict_of_batch(options_.session.output_folder, run);
+        if (comparison) code = std::max(code, exit_code_of(*comparison, options_.strict));
+        return comparison;
+    } catch (const Error& error) {
+        print(error, false);
+        code = std::max<int>(code, some_failed);
+        return std::nullopt;
+    }
+}
+
+int Execution::run(const SessionTask& task, bool is_batch) {
     const RunGraph& graph = task.graph;
     session_.on_warning(warn_);
     std::vector<NodePrediction> predictions = session_.predict(graph, library_);
@@ -190,7 +213,8 @@ int Execution::run(const SessionTask& task, bool streams_events) {
             print_json(graph_json(graph, predictions));
         else
             fmt::print("{}", printable(graph_text(graph, predictions)));
-        return done;
+        const auto is_readable = [](const RunNode& node) { return node.unreadable.empty(); };
+        return std::ranges::all_of(graph.nodes, is_readable) ? done : some_failed;
     }
 
     std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
@@ -200,15 +224,21 @@ int Execution::run(const SessionTask& task, bool streams_events) {
     session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
     std::optional<EventStream> events;
     std::vector<RunObserver*> observers{&progress};
-    if (options_.json && streams_events) observers.push_back(&events.emplace(graph));
+    if (options_.json && is_batch) observers.push_back(&events.emplace(graph));
+    std::int64_t number = 0;
     const RunReport report =
         session_.run(task, jobs, library_, std::move(predictions), observers, [&](const RunStarted& run) {
+            number = run.run;
             if (events) events->begin(task.name, run.jobs, run.threads, run.run);
         });
     progress.finish();
     session_.on_warning(warn_);
+    int code = report.outcome() < (options_.strict ? Outcome::doubtful : Outcome::failed) ? done : some_failed;
+    std::optional<Comparison> comparison;
+    if (is_batch && !report.interrupted) comparison = judge(task, number, code);
 
     if (events) {
+        if (comparison) events->judged(verdict_json(*comparison));
         events->end(report);
         if (events->has_failed()) {
             print_stderr("error: not all events could be written\n");
@@ -218,12 +248,13 @@ int Execution::run(const SessionTask& task, bool streams_events) {
         print_json(report_json(graph, report));
     } else {
         fmt::print("{}", report_text(graph, report, stdout_width()));
+        if (comparison) fmt::print("{}", verdict_text(*comparison, options_.session.output_folder));
     }
     if (report.interrupted) {
         print_stderr("interrupted; all files written so far are complete\n");
         return interrupted;
     }
-    return report.outcome() < (options_.strict ? Outcome::doubtful : Outcome::failed) ? done : some_failed;
+    return code;
 }
 
 std::map<std::string, std::vector<std::filesystem::path>> parse_inputs(const std::vector<std::string>& pairs) {
@@ -263,20 +294,38 @@ int run_workflow(const RunOptions& options) {
     return execution.run({workflow_name(checked.plan), workflow, std::move(graph), {}}, false);
 }
 
+/// The scan with its own files for the further inputs of the plan.
+ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
+    ScanFile file(scan.file);
+    file.unit = scan.unit;
+    file.frame = scan.frame;
+    file.pose = scan.pose;
+    file.invalid = scan.invalid;
+    for (const WorkflowInput& input : plan.workflow.inputs) {
+        if (input.is_truth) {
+            ScanFile truth(scan.truth.file);
+            truth.unit = scan.truth.unit;
+            truth.frame = scan.truth.frame;
+            file.inputs[input.name].push_back(std::move(truth));
+        } else if (const auto own = scan.inputs.find(input.name); own != scan.inputs.end()) {
+            file.inputs[input.name].assign(own->second.files.begin(), own->second.files.end());
+        }
+    }
+    return file;
+}
+
 RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteOptions& options) {
     RunRequest request;
-    for (const std::size_t index : part.scans) {
-        const BatchScan& scan = batch.scans[index];
-        ScanFile file(scan.file);
-        file.unit = scan.unit;
-        file.frame = scan.frame;
-        file.pose = scan.pose;
-        file.invalid = scan.invalid;
-        request.scans.push_back(std::move(file));
-        for (const std::filesystem::path& other : {scan.truth, scan.pose_file})
+    for (const std::size_t index : part.scans) request.scans.push_back(scan_file(batch.scans[index], *part.plan));
+    for (const BatchScan& scan : batch.scans) {
+        request.protected_files.push_back(scan.file);
+        for (const std::filesystem::path& other : {scan.truth.file, scan.pose_file})
             if (!other.empty()) request.protected_files.push_back(other);
+        for (const auto& [name, input] : scan.inputs)
+            request.protected_files.insert(request.protected_files.end(), input.files.begin(), input.files.end());
     }
     request.protected_files.emplace_back(batch.file);
+    request.only = part.only;
     request.output_folder = options.session.output_folder;
     request.seed = options.seed;
     return request;
@@ -290,12 +339,20 @@ int run_batch(const BatchOptions& options) {
     Execution execution(options.execute);
     CheckedBatch checked = check_batch(text, options.file, execution.library());
     if (!report(checked.diagnostics, options.execute.json)) return bad_request;
+    choose(checked, options.choice);
     std::vector<GraphPart> parts;
     for (const BatchPart& part : checked.parts)
         parts.push_back({part.plan, request_for(checked.batch, part, options.execute)});
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);
-    return execution.run({checked.batch.name, options.file, std::move(graph), checked.batch.limits}, true);
+    SessionTask task{checked.batch.name, options.file, std::move(graph), checked.batch.limits};
+    // A part of the batch is no night of it: its other cells are not missing.
+    if (!options.choice.is_all()) task.name += ", in part";
+    if (const std::optional<Gate>& gate = checked.batch.gate) {
+        task.gate = to_json_text(*gate);
+        task.repeats = gate->repeats;
+    }
+    return execution.run(task, true);
 }
 
 }  // namespace
@@ -327,6 +384,13 @@ void add_run_and_batch(CLI::App& app, Action& chosen, const std::vector<std::str
     auto [batch, batch_options] = add_command<BatchOptions>(
         app, chosen, "batch", "Runs workflows over a library of scans, as a batch file describes", run_batch);
     batch.add_option("FILE", batch_options.file, "The batch file")->required();
+    const auto add_choice = [&batch = batch](const char* name, std::vector<std::string>& values, const char* help) {
+        batch.add_option(name, values, help)->take_all()->allow_extra_args(false);
+    };
+    add_choice("--scan", batch_options.choice.scans,
+               "Run only this scan, a path from the batch's folder (may be repeated)");
+    add_choice("--workflow", batch_options.choice.workflows, "Run only the workflow of this name (may be repeated)");
+    add_choice("--only", batch_options.choice.variants, "Run only this variant (may be repeated)");
     add_execute_options(batch, batch_options.execute);
     batch.add_flag("--json", batch_options.execute.json, "Print events as JSON, one per line");
     options.execute.session.command_line = batch_options.execute.session.command_line = command_line;

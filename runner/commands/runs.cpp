@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "commands/commands.hpp"
@@ -10,6 +12,7 @@
 #include "scanmill/kinds/document.hpp"
 #include "scanmill/kinds/value.hpp"
 #include "scanmill/records/run_records.hpp"
+#include "scanmill/session/output_lock.hpp"
 
 namespace scanmill::runner {
 
@@ -17,13 +20,90 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-std::string outcome_of(const RunSummary& run) { return run.outcome.value_or("unfinished"); }
+/// The records of a folder, and what is known of its runs beside them.
+struct Folder {
+    explicit Folder(const std::filesystem::path& folder)
+        : records(RunRecords::read(folder / records_file)),
+          acceptances(records.acceptances()),
+          is_in_use(OutputLock::is_held(folder)) {}
 
-Json to_json(const RunSummary& run) {
-    return {
-        {"id", run.id},         {"started", run.started},   {"workflow", run.workflow}, {"outcome", outcome_of(run)},
-        {"cells", run.cells},   {"doubtful", run.doubtful}, {"failed", run.failed},     {"ran", run.ran},
-        {"cached", run.cached}, {"seconds", run.seconds}};
+    RunRecords records;
+    std::vector<Acceptance> acceptances;
+    bool is_in_use;
+    std::optional<std::int64_t> running{};  ///< the run that goes on
+};
+
+/// A run without an end is the one that goes on, or was killed.
+bool was_killed(const Folder& folder, const RunSummary& run) { return !run.outcome && folder.running != run.id; }
+
+std::string outcome_of(const Folder& folder, const RunSummary& run) {
+    return run.outcome ? *run.outcome : was_killed(folder, run) ? "interrupted" : "running";
+}
+
+bool is_baseline(const Folder& folder, const Acceptance& acceptance, const std::string& batch) {
+    const std::optional<Acceptance> held = folder.records.baseline(batch);
+    return held && held->id == acceptance.id;
+}
+
+Json to_json(const Folder& folder, const RunSummary& run) {
+    Json json{{"id", run.id},
+              {"started", run.started},
+              {"workflow", run.workflow},
+              {"outcome", outcome_of(folder, run)},
+              {"cells", run.cells},
+              {"doubtful", run.doubtful},
+              {"failed", run.failed},
+              {"ran", run.ran},
+              {"cached", run.cached},
+              {"seconds", run.seconds}};
+    if (was_killed(folder, run)) json["killed"] = true;
+    for (const Acceptance& acceptance : folder.acceptances) {
+        if (acceptance.run != run.id) continue;
+        Json entry{{"at", acceptance.at},
+                   {"who", acceptance.who},
+                   {"why", acceptance.why},
+                   {"baseline", is_baseline(folder, acceptance, run.workflow)}};
+        if (acceptance.revoked_at)
+            entry["revoked"] = {
+                {"at", *acceptance.revoked_at}, {"who", acceptance.revoked_by}, {"why", acceptance.revoked_why}};
+        json["accepted"].push_back(std::move(entry));
+    }
+    return json;
+}
+
+/// "baseline, by ann: the new mesher", for each acceptance of the run; empty if there is none.
+std::string accepted_text(const Folder& folder, const RunSummary& run) {
+    std::string text;
+    for (const Acceptance& acceptance : folder.acceptances) {
+        if (acceptance.run != run.id) continue;
+        text += fmt::format("{}{}by {}: {}", text.empty() ? "" : "; ",
+                            is_baseline(folder, acceptance, run.workflow) ? "baseline, " : "", acceptance.who,
+                            acceptance.why);
+        if (acceptance.revoked_at)
+            text += fmt::format(" (revoked by {}: {})", acceptance.revoked_by, acceptance.revoked_why);
+    }
+    return text;
+}
+
+using Variants = std::map<std::size_t, std::vector<std::string>>;
+
+/// The variants that use each step, by its node. Cells are recorded when they end, so a killed run may lack some.
+Variants variants_of(const RunDetails& run) {
+    Variants variants;
+    for (const CellRecord& cell : run.cells)
+        for (const std::size_t node : cell.nodes) {
+            std::vector<std::string>& names = variants[node];
+            if (std::ranges::find(names, cell.variant) == names.end()) names.push_back(cell.variant);
+        }
+    return variants;
+}
+
+/// At most three names.
+std::string names_text(const std::vector<std::string>& names) {
+    constexpr std::size_t most = 3;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i == 0 ? "" : ", ") + names[i];
+    return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
 }
 
 Json to_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
@@ -39,8 +119,9 @@ void add_failure(Json& entry, const FailureRecord& failure) {
     if (failure.number != 0) entry["number"] = failure.number;
 }
 
-Json to_json(const RunDetails& run) {
-    Json json{{"scanmill", 1}, {"run", to_json(run.summary)}, {"cells", Json::array()}, {"steps", Json::array()}};
+Json to_json(const Folder& folder, const RunDetails& run) {
+    Json json{
+        {"scanmill", 1}, {"run", to_json(folder, run.summary)}, {"cells", Json::array()}, {"steps", Json::array()}};
     json["run"].update({{"file", run.start.file},
                         {"arguments", run.start.arguments},
                         {"seed", run.start.seed},
@@ -49,17 +130,25 @@ Json to_json(const RunDetails& run) {
                         {"jobs", run.start.jobs},
                         {"machine", run.start.machine},
                         {"libraries", run.start.libraries}});
+    if (!run.start.gate.empty()) json["run"]["gate"] = Json::parse(run.start.gate, nullptr, false);
+    const Variants variants = variants_of(run);
     for (const CellRecord& cell : run.cells) {
         Json entry{{"scan", cell.scan},       {"workflow", cell.workflow}, {"variant", cell.variant},
                    {"outcome", cell.outcome}, {"seconds", cell.seconds},   {"steps", cell.nodes},
                    {"outputs", Json::array()}};
         if (!cell.doubts.empty()) entry["doubts"] = cell.doubts;
         add_failure(entry, cell.failure);
-        for (const OutputRecord& output : cell.outputs)
-            entry["outputs"].push_back({{"file", output.file},
-                                        {"kind", output.kind},
-                                        {"outcome", output.outcome},
-                                        {"properties", metrics_json(output.properties)}});
+        if (!cell.truth.empty()) entry["truth"] = cell.truth;
+        for (const CostRecord& cost : cell.costs)
+            entry["costs"].push_back(
+                {{"seconds", cost.seconds}, {"cpu-seconds", cost.cpu_seconds}, {"peak-memory", cost.peak_memory}});
+        for (const OutputRecord& output : cell.outputs) {
+            Json file{{"file", output.file}, {"kind", output.kind}, {"outcome", output.outcome}};
+            if (!output.sha256.empty()) file.update({{"sha256", output.sha256}, {"bytes", output.bytes}});
+            if (!output.moved_to.empty()) file["moved-to"] = output.moved_to;
+            file["properties"] = metrics_json(output.properties);
+            entry["outputs"].push_back(std::move(file));
+        }
         json["cells"].push_back(std::move(entry));
     }
     for (const StepRecord& step : run.steps) {
@@ -70,6 +159,7 @@ Json to_json(const RunDetails& run) {
                    {"version", step.filter_version},
                    {"build", step.build},
                    {"scan", step.scan},
+                   {"variants", Json::array()},
                    {"key", step.plan_key},
                    {"origin", step.origin},
                    {"why", step.why},
@@ -83,6 +173,8 @@ Json to_json(const RunDetails& run) {
                    {"parameters", to_json(step.resolved)},
                    {"metrics", metrics_json(step.metrics)},
                    {"properties", metrics_json(step.properties)}};
+        if (const auto used = variants.find(step.node); used != variants.end()) entry["variants"] = used->second;
+        if (!step.measures.empty()) entry["measures"] = step.measures;
         add_failure(entry, step.failure);
         if (!step.log.empty()) entry["log"] = step.log;
         if (!step.warnings.empty()) entry["warnings"] = step.warnings;
@@ -91,46 +183,83 @@ Json to_json(const RunDetails& run) {
     return json;
 }
 
-int list_runs(const RunRecords& records, bool json) {
-    const std::vector<RunSummary> runs = records.runs();
+int list_runs(Folder& folder, bool json) {
+    const std::vector<RunSummary> runs = folder.records.runs();
+    if (folder.is_in_use && !runs.empty()) folder.running = runs.back().id;
     if (json) {
         Json all{{"scanmill", 1}, {"runs", Json::array()}};
-        for (const RunSummary& run : runs) all["runs"].push_back(to_json(run));
+        for (const RunSummary& run : runs) all["runs"].push_back(to_json(folder, run));
         print_json(all);
         return done;
     }
-    Table table(
-        {"run", "started", "workflow", "cells", "doubtful", "failed", "computed", "cached", "seconds", "outcome"});
-    for (const RunSummary& run : runs)
-        table.add({std::to_string(run.id), run.started, run.workflow, std::to_string(run.cells),
-                   std::to_string(run.doubtful), std::to_string(run.failed), std::to_string(run.ran),
-                   std::to_string(run.cached), fmt::format("{:.2f}", run.seconds), outcome_of(run)});
+    std::vector<std::string> headers{"run",    "started",  "workflow", "cells",   "doubtful",
+                                     "failed", "computed", "cached",   "seconds", "outcome"};
+    if (!folder.acceptances.empty()) headers.push_back("accepted");
+    Table table(headers);
+    for (const RunSummary& run : runs) {
+        std::vector<std::string> row{std::to_string(run.id),
+                                     run.started,
+                                     run.workflow,
+                                     std::to_string(run.cells),
+                                     std::to_string(run.doubtful),
+                                     std::to_string(run.failed),
+                                     std::to_string(run.ran),
+                                     std::to_string(run.cached),
+                                     fmt::format("{:.2f}", run.seconds),
+                                     outcome_of(folder, run)};
+        if (!folder.acceptances.empty()) row.push_back(accepted_text(folder, run));
+        table.add(std::move(row));
+    }
     fmt::print("{}", table.text());
     return done;
 }
 
-int show_run(const RunRecords& records, std::int64_t id, bool json) {
-    const RunDetails run = records.run(id);
+int show_run(Folder& folder, std::int64_t id, bool json) {
+    const RunDetails run = folder.records.run(id);
+    if (folder.is_in_use && folder.records.runs().back().id == id) folder.running = id;
     if (json) {
-        print_json(to_json(run));
+        print_json(to_json(folder, run));
         return done;
     }
-    fmt::print("run       {} of {}, {}\nworkflow  {}\nversion   {}\nmachine   {}\nthreads   {}, seed {}\n\n", id,
-               run.summary.started, outcome_of(run.summary), printable_line(run.start.file), run.start.version,
+    fmt::print("run       {} of {}, {}\nworkflow  {}\nversion   {}\nmachine   {}\nthreads   {}, seed {}\n", id,
+               run.summary.started, outcome_of(folder, run.summary), printable_line(run.start.file), run.start.version,
                printable_line(run.start.machine), run.start.threads, run.start.seed);
+    if (const std::string accepted = accepted_text(folder, run.summary); !accepted.empty())
+        fmt::print("accepted  {}\n", printable_line(accepted));
+    fmt::print("\n");
+    const Variants variants = variants_of(run);
+    const auto variants_text = [&](const StepRecord& step) {
+        const auto used = variants.find(step.node);
+        return used == variants.end() ? "-" : names_text(used->second);
+    };
     Table cells({"scan", "variant", "outcome", "seconds"});
     for (const CellRecord& cell : run.cells)
         cells.add({cell.scan, cell.variant, cell.outcome, fmt::format("{:.2f}", cell.seconds)});
     fmt::print("{}\n", cells.text());
-    Table steps({"scan", "step", "outcome", "seconds", "from", "why"});
+    Table steps({"scan", "step", "variants", "outcome", "seconds", "from", "why"});
     for (const StepRecord& step : run.steps)
-        steps.add({step.scan, step.label, step.outcome, fmt::format("{:.2f}", step.seconds), step.origin, step.why});
+        steps.add({step.scan, step.label, variants_text(step), step.outcome, fmt::format("{:.2f}", step.seconds),
+                   step.origin, step.why});
     fmt::print("{}", steps.text());
+    std::map<std::pair<std::string, std::string>, std::vector<std::string>> failed;  // scan and error → variants
     for (const CellRecord& cell : run.cells)
-        if (!cell.failure.error.empty()) fmt::print("\n{}\n", printable(cell.failure.error));
+        if (!cell.failure.error.empty()) failed[{cell.scan, cell.failure.error}].push_back(cell.variant);
+    for (const auto& [failure, names] : failed)
+        fmt::print("\n{} [{}]: {}\n", printable_line(failure.first), printable_line(names_text(names)),
+                   printable(failure.second));
+    for (const CellRecord& cell : run.cells)
+        for (const OutputRecord& output : cell.outputs)
+            if (!output.moved_to.empty())
+                fmt::print("\n{} [{}]: the output of an earlier run was moved to '{}'\n", printable_line(cell.scan),
+                           printable_line(cell.variant), printable_line(output.moved_to));
     for (const CellRecord& cell : run.cells)
         for (const std::string& doubt : cell.doubts)
-            fmt::print("\ndoubt: {}: {}\n", printable_line(cell.scan), printable_line(doubt));
+            fmt::print("\ndoubt: {} [{}]: {}\n", printable_line(cell.scan), printable_line(cell.variant),
+                       printable_line(doubt));
+    for (const StepRecord& step : run.steps)
+        for (const std::string& warning : step.warnings)
+            fmt::print("\nwarning: {} [{}]: {}: {}\n", printable_line(step.scan), printable_line(variants_text(step)),
+                       printable_line(step.label), printable_line(warning));
     return done;
 }
 
@@ -148,10 +277,10 @@ struct Options {
 };
 
 int runs(const Options& options) {
-    const RunRecords records = RunRecords::read(options.folder / records_file);
-    if (options.show.empty()) return list_runs(records, options.json);
+    Folder folder(options.folder);
+    if (options.show.empty()) return list_runs(folder, options.json);
     if (options.id.empty()) throw Error("which run?").hint("scanmill runs DIR show 3; scanmill runs DIR lists them");
-    return show_run(records, parse_id(options.id), options.json);
+    return show_run(folder, parse_id(options.id), options.json);
 }
 
 }  // namespace

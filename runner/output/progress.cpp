@@ -281,6 +281,11 @@ void Progress::print_failure(const RunCell& cell, const CellReport& report) {
     }
 }
 
+void Progress::pass_started(unsigned pass, unsigned passes) {
+    const std::scoped_lock lock(mutex_);
+    if (!quiet_) print(fmt::format("pass {} of {}: the steps run again, to measure their costs", pass, passes));
+}
+
 void Progress::print_beside(const std::function<void()>& print) {
     const std::scoped_lock lock(mutex_);
     wipe();

@@ -66,6 +66,7 @@ public:
     void output_started(const RunCell& cell, const RunOutput& output, std::size_t worker) override;
     void output_written(const RunCell& cell, const OutputReport& report) override;
     void cell_ended(const RunCell& cell, const CellReport& report) override;
+    void pass_started(unsigned pass, unsigned passes) override;
     void time_passed() override;
     /// Calls `print`, which writes other lines to stderr.
     void print_beside(const std::function<void()>& print);

@@ -257,6 +257,7 @@ Json report_json(const RunGraph& graph, const RunReport& report) {
                       {"outcome", name_of(output.outcome)},
                       {"kind", name_of(output.kind)},
                       {"properties", metrics_json(output.properties)}};
+            if (!output.sha256.empty()) file.update({{"sha256", output.sha256}, {"bytes", output.bytes}});
             if (!output.warnings.empty()) file["warnings"] = output.warnings;
             if (!output.moved_to.empty()) file["moved-to"] = output.moved_to.string();
             if (!output.not_moved.empty()) file["not-moved"] = output.not_moved;
@@ -347,6 +348,7 @@ void EventStream::output_written(const RunCell& cell, const OutputReport& report
     json["scan"] = graph_.scan_names[cell.scan];
     json["file"] = report.file.string();
     json["outcome"] = name_of(report.outcome);
+    if (!report.sha256.empty()) json.update({{"sha256", report.sha256}, {"bytes", report.bytes}});
     json["properties"] = metrics_json(report.properties);
     if (!report.warnings.empty()) json["warnings"] = report.warnings;
     print(json);
@@ -366,6 +368,19 @@ void EventStream::cell_ended(const RunCell& cell, const CellReport& report) {
         if (!output.not_moved.empty())
             json["not-moved"].push_back({{"file", output.file.string()}, {"why", output.not_moved}});
     }
+    print(json);
+}
+
+void EventStream::pass_started(unsigned pass, unsigned passes) {
+    Json json = event("pass-started");
+    json["pass"] = pass;
+    json["passes"] = passes;
+    print(json);
+}
+
+void EventStream::judged(const Json& verdict) {
+    Json json = event("verdict");
+    json.update(verdict);
     print(json);
 }
 

@@ -28,7 +28,8 @@ Json report_json(const RunGraph& graph, const RunReport& report);
 /// Events as JSON on stdout during the run, one object per line.
 ///
 /// The first is `run-started`, the last `run-ended`; between them `step-started`, `step-progress` (full percents),
-/// `warning`, `step-ended`, `output-written` and `cell-ended`. Each has its time in seconds since the start.
+/// `warning`, `step-ended`, `output-written`, `cell-ended`, `pass-started` when costs are measured again, and before
+/// the last, if there is a gate or an accepted run, `verdict`. Each has its time in seconds since the start.
 class EventStream : public RunObserver {
 public:
     explicit EventStream(const RunGraph& graph)
@@ -38,6 +39,8 @@ public:
 
     /// `run`: its number in the records; 0: not recorded.
     void begin(const std::string& name, unsigned jobs, unsigned threads, std::int64_t run);
+    /// `verdict`: the members of the event, from verdict_json().
+    void judged(const Json& verdict);
     void end(const RunReport& report);
     /// Some events could not be written.
     bool has_failed() const { return has_failed_; }
@@ -48,6 +51,7 @@ public:
     void node_ended(const RunNode& node, const NodeReport& report) override;
     void output_written(const RunCell& cell, const OutputReport& report) override;
     void cell_ended(const RunCell& cell, const CellReport& report) override;
+    void pass_started(unsigned pass, unsigned passes) override;
 
 private:
     Json event(const char* name) const;

@@ -46,7 +46,7 @@ inline double volume_of(const TriangleMesh& mesh) {
 }
 
 /// What holds for every result: an oriented manifold without self-intersections, edges shorter than max_edge, every
-/// point inserted by one case, F = 2 V - 2 chi - b.
+/// point inserted by one case, the corners of a triangle in one cluster, F = 2 V - 2 chi - b.
 inline void expect_laws(const PointCloud& cloud, const ClusterMeshResult& result) {
     const TriangleMesh& mesh = result.mesh;
     expect_manifold(mesh);
@@ -67,6 +67,8 @@ inline void expect_laws(const PointCloud& cloud, const ClusterMeshResult& result
         ASSERT_TRUE(column);
         EXPECT_EQ(column->type(), ScalarType::uint32);
         EXPECT_EQ(column->rows(), mesh.positions.size());
+        const auto cluster = column->values<u32>();
+        for (const auto& [a, b, c] : mesh.triangles) ASSERT_TRUE(cluster[a] == cluster[b] && cluster[b] == cluster[c]);
     }
 }
 

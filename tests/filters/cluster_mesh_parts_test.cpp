@@ -134,7 +134,8 @@ struct ByHand {
         return {-1e-9, 1e-9, std::cos(std::numbers::pi / 18), std::tan(std::numbers::pi / 18)};
     }
     static Limits lenient() {
-        return {.least_sine = 0.01,
+        return {.edge_share = 1,
+                .least_sine = 0.01,
                 .joint_cosine = -0.5,
                 .point_cosine = -1,
                 .sharp_cosine = -1,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "filters/cluster_mesh_cases.hpp"
@@ -11,6 +13,7 @@ namespace {
 using namespace test;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 Error refusal(const PointCloud& cloud, const ClusterMeshParams& params = {}) {
     try {
@@ -58,8 +61,30 @@ TEST(ClusterMeshRefuses, AMaxEdgeThatJoinsPairsOnly) {
                 HasSubstr("no triangle with edges below max-edge 0.2 u"));
 }
 
+TEST(ClusterMeshRefuses, NearDuplicatesEverywhere_WithAMaxEdgeThatWorks) {
+    for (const double distance : {1e-3, 1e-11}) {
+        std::vector<Vec3> pairs;
+        for (const Vec3& p : grid(20, 20).positions) {
+            pairs.push_back(p);
+            pairs.push_back(p + Vec3(distance, 0, 0));
+        }
+        const PointCloud cloud = cloud_from(pairs);
+        for (const ClusterMeshParams& params : {ClusterMeshParams(), with_max_edge(distance / 2)}) {
+            const std::string hint = refusal(cloud, params).hint();
+            double suggested = 0;
+            ASSERT_EQ(std::sscanf(hint.c_str() + hint.find_first_of("0123456789"), "%lf", &suggested), 1) << hint;
+            EXPECT_GT(suggested, std::sqrt(2.0)) << hint;
+            EXPECT_LT(suggested, 4) << hint;
+        }
+    }
+}
+
 TEST(ClusterMeshRefuses, AMaxEdgeFarAboveTheSpacing) {
-    expect_refusal(grid(40, 40), with_max_edge(30), "max-edge 30 u is too large: ", "use about");
+    expect_refusal(grid(40, 40), with_max_edge(30), "max-edge 30 u is too large: ", "leave max-edge at `auto`, or use");
+    PointCloud cloud = grid(40, 40);
+    cloud.columns.add(Column("bin-size", 1, Buffer<double>(Array<double>(1600, 13))));
+    expect_refusal(cloud, {}, "max-edge 29.9 u is too large: ", "use about");
+    EXPECT_THAT(refusal(cloud).hint(), Not(HasSubstr("auto")));
 }
 
 TEST(ClusterMeshRefuses, ParametersOutOfRange) {

@@ -107,11 +107,22 @@ TEST(ClusterMesh_Levels, TheFirst_IsThePartitionIntoConnectedComponents_ForEvery
     }
 }
 
-PointCloud two_sheets(double distance) {
+TEST(ClusterMesh_Levels, TheSecond_ContainsPointsThatWaited) {
+    const PointCloud cloud = fibonacci_sphere(500);
+    ClusterMeshParams params = with_max_edge(0.3);
+    params.max_normal_angle = params.neighbour_angle = Angle::degrees(5);
+    const ClusterMeshResult result = clustered(cloud, params);
+    expect_laws(cloud, result);
+    EXPECT_GT(result.extra, 0u);
+    EXPECT_EQ(result.components, 1u);
+    EXPECT_THAT(result.mesh.vertex_columns.find("cluster-2")->values<u32>(), testing::Each(0u));
+}
+
+PointCloud two_sheets(double distance, double shift = 0.3) {
     std::vector<Vec3> points;
     for (const Vec3& p : grid(25, 25).positions) {
         points.push_back(p);
-        points.push_back(p + Vec3(0.3, 0.4, distance));
+        points.push_back(p + Vec3(shift, 0.4, distance));
     }
     return cloud_from(points);
 }
@@ -136,15 +147,16 @@ TEST(ClusterMesh, TwoSheetsFartherApartThanMaxEdge_AreTwoMeshes) {
     EXPECT_EQ(bridges(result.mesh, 0), 0u);
 }
 
-TEST(ClusterMesh, TwoSheetsNearerThanMaxEdge_AreNotBridged) {
-    // Except along their borders, which the points' own normals do not tell from the rim of a thin plate.
-    for (const auto& [distance, max_edge] : {std::pair(1.4, 1.6), {1.5, 1.6}, {1.4, 2.5}, {2.0, 2.5}}) {
-        const PointCloud cloud = two_sheets(distance);
-        const ClusterMeshResult result = clustered(cloud, with_max_edge(max_edge));
-        expect_laws(cloud, result);
-        EXPECT_EQ(result.clusters, 1u);
-        EXPECT_EQ(bridges(result.mesh, 3), 0u) << distance;
-    }
+TEST(ClusterMesh, TwoSheetsNearerThanMaxEdge_AreJoinedAtMostAtTheirBorders) {
+    // The points' own normals do not tell borders from the rim of a thin plate.
+    for (const auto& [distance, max_edge] : {std::pair(1.4, 1.6), {1.5, 2.5}, {2.0, 2.5}})
+        for (const double shift : {0.1, 0.25, 0.3, 0.4, 0.55, 0.7, 0.85}) {
+            const PointCloud cloud = two_sheets(distance, shift);
+            const ClusterMeshResult result = clustered(cloud, with_max_edge(max_edge));
+            expect_laws(cloud, result);
+            EXPECT_EQ(result.clusters, 1u);
+            EXPECT_EQ(bridges(result.mesh, 3), 0u) << distance << " " << max_edge << " " << shift;
+        }
 }
 
 TEST(ClusterMesh, TheSidesOfABox_AreJoinedAtRightAngles) {
@@ -193,6 +205,16 @@ TEST(ClusterMesh, ColumnsAndFrame_AreKept) {
     const ClusterMeshResult result = clustered(cloud);
     EXPECT_EQ(result.mesh.frame, cloud.frame);
     EXPECT_EQ(*result.mesh.vertex_columns.find("heat"), *cloud.columns.find("heat"));
+}
+
+TEST(ClusterMesh, ClustersOfAnEarlierRun_AreReplacedWithAWarning) {
+    PointCloud cloud = grid(4, 4);
+    cloud.columns.add(Column("cluster-1", 1, Buffer<float>(Array<float>(16, 7))));
+    Heard heard;
+    const ClusterMeshResult result = clustered(cloud, {}, 1, &heard);
+    expect_laws(cloud, result);
+    EXPECT_THAT(result.mesh.vertex_columns.find("cluster-1")->values<u32>(), testing::Each(0u));
+    EXPECT_THAT(heard.warnings, testing::ElementsAre("the scan's column `cluster-1` is replaced"));
 }
 
 TEST(ClusterMesh_MaxEdge, FollowsTheColumnBinSize_UnlessThePointsAreSparser) {

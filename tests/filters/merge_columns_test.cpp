@@ -73,6 +73,18 @@ TEST(MergeColumns, OfFloatsThatSomeInputLacks_HasNaNThereWithAWarning) {
     EXPECT_THAT(result.warnings, ElementsAre("the column 'normal' has NaN for some points: 1 of 2 inputs lacks it"));
 }
 
+TEST(MergeColumns, OfDifferentFloatsThatTheFirstInputLacks_NamesTheInputsThatHaveIt) {
+    const PointCloud single = two_points(Column("a", 1, Buffer<float>{1, 2}));
+    const PointCloud precise = two_points(Column("a", 1, Buffer<double>{3, 4}));
+    const Merged result = merged({two_points(), single, two_points(), precise});
+    const auto values = result.points.columns.find("a")->values<double>();
+    EXPECT_THAT(values,
+                ElementsAre(testing::IsNan(), testing::IsNan(), 1, 2, testing::IsNan(), testing::IsNan(), 3, 4));
+    EXPECT_THAT(result.warnings,
+                ElementsAre("the column 'a' is carried as float64: it is float32 in input 1, float64 in input 3",
+                            "the column 'a' has NaN for some points: 2 of 4 inputs lack it"));
+}
+
 TEST(MergeColumns, OfFloatsOfDifferentShapesThatSomeInputLacks_IsLeftOut) {
     const PointCloud one = two_points(Column("a", 1, Buffer<float>{1, 2}));
     const PointCloud two = two_points(Column("a", 2, Buffer<float>{1, 2, 3, 4}));

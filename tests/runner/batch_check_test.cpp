@@ -42,8 +42,21 @@ protected:
 TEST_F(CheckOfABatch, SaysHowManyOfWhat) {
     const ProgramResult found = check(with_size("{sweep: [1 u, 2 u, 3 u]}"));
     EXPECT_EQ(found.exit_code, 0);
-    EXPECT_EQ(found.out, "nightly.yaml: ok, 3 scans, 2 workflows, 4 variants, 12 cells\n");
+    EXPECT_EQ(found.out, "nightly.yaml: ok, 3 scans, 2 workflows, 4 variants, 10 cells\n");
     EXPECT_THAT(found.err, IsEmpty());
+}
+
+TEST_F(CheckOfABatch, TwoScansThatWriteOneFile_AreFoundWithoutReadingThem) {
+    folder_.write("ok.yaml",
+                  "scanmill: 1\ninputs: {scan: points}\nsteps: [{voxel-thin: {bin-size: 1 u}}]\noutputs: "
+                  "{'{scan}.ply': voxel-thin}\n");
+    folder_.write("scans/ok.ply", "no PLY file");
+    folder_.write("scans/ok.pcd", "no PCD file");
+    const ProgramResult found = check("scanmill: 1\nbatch: nightly\nscans: [scans/ok.*]\nworkflows: ok.yaml\n");
+    EXPECT_EQ(found.exit_code, 2);
+    EXPECT_THAT(found.err, AllOf(HasSubstr("nightly.yaml:3:9: scan 'scans/ok.pcd' under variant 'default' and scan "
+                                           "'scans/ok.ply' under variant 'default' would both write 'ok.ply'"),
+                                 HasSubstr("put {variant}, {workflow} or {folder}")));
 }
 
 TEST_F(CheckOfABatch, PlanOfEveryPart_IsPrinted) {

@@ -64,12 +64,12 @@ protected:
             if (step["step"] == label) found.push_back(step);
         return found;
     }
-    /// Everything in the output folder but the records, descriptions and what a killed process left under a temporary
-    /// name, which later runs remove: name → bytes.
+    /// Everything in the output folder but the records, their lock, descriptions and what a killed process left under a
+    /// temporary name, which later runs remove: name → bytes.
     std::map<std::string, std::string> outputs(const std::string& folder = "out", bool descriptions = false) const {
         std::map<std::string, std::string> all;
         for (const auto& entry : std::filesystem::directory_iterator(folder_ / folder))
-            if (const std::string name = entry.path().filename().string(); !name.starts_with("scanmill.sqlite") &&
+            if (const std::string name = entry.path().filename().string(); !name.starts_with("scanmill.") &&
                                                                            !name.starts_with(".scanmill-") &&
                                                                            (descriptions || !name.ends_with(".json")))
                 all[entry.path().filename().string()] = content_of(entry.path());

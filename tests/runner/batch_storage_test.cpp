@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Disks that fill up, caches that are shared or may not be written, files and clocks that change.
 
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <array>
 #include <chrono>
 #include <thread>
 
@@ -96,6 +99,68 @@ TEST_F(Storage, RecordsThatCannotGrow_AreToldAndTheRunGoesOn) {
     EXPECT_EQ(result.exit_code, 0);
     EXPECT_THAT(result.err, HasSubstr("recorded"));
     EXPECT_EQ(outputs().size(), 3u + std::filesystem::exists(folder_ / "out/scanmill.sqlite-journal"));
+}
+
+/// A batch runs whatever became of the records of earlier nights, and leaves them as they are.
+TEST_F(Storage, RecordsThatCannotBeUsed_AreReportedAndLeftAlone) {
+    write_workflow("1");
+    write_scans("scan", 2);
+    write_batch("scans/*.xyz");
+    ASSERT_EQ(run_batch().exit_code, 0);
+    const std::string good = content_of(folder_ / "out/scanmill.sqlite");
+    std::string newer = good;
+    newer[63] = 99;  // the last byte of the header's user version
+    const std::vector<std::array<std::string, 3>> all{
+        {"newer", newer, "written by a newer Scanmill: their tables are of version 99"},
+        {"truncated", good.substr(0, good.size() / 2), "malformed"},
+        {"text", "another program's file, long enough to be taken for a database of its own kind", "not a database"}};
+    for (const auto& [what, bytes, sentence] : all) {
+        SCOPED_TRACE(what);
+        folder_.write("out/scanmill.sqlite", bytes);
+        const ProgramResult batch = run_batch();
+        EXPECT_EQ(batch.exit_code, 0);
+        EXPECT_THAT(batch.err, AllOf(HasSubstr("this run is not recorded: the records 'out/scanmill.sqlite'"),
+                                     HasSubstr(sentence)));
+        EXPECT_EQ(outputs().size(), 2u);
+        EXPECT_EQ(content_of(folder_ / "out/scanmill.sqlite"), bytes);
+        const ProgramResult runs = scanmill({"runs", "out"});
+        EXPECT_EQ(runs.exit_code, 2);
+        EXPECT_THAT(runs.err, HasSubstr(sentence));
+    }
+}
+
+TEST_F(Storage, RecordsOnAReadOnlyDisk_AreRead_AlsoOfAnOlderVersion) {
+    write_workflow("1");
+    write_scans("scan", 1);
+    write_batch("scans/*.xyz");
+    ASSERT_EQ(run_batch().exit_code, 0);
+    using std::filesystem::perms;
+    const perms read_only = perms::owner_read | perms::owner_exec | perms::group_read | perms::group_exec |
+                            perms::others_read | perms::others_exec;
+    std::filesystem::create_directories(folder_ / "home");
+    ProgramOptions unprivileged = options();
+    unprivileged.without_rights = true;
+    for (const bool old : {false, true}) {
+        if (old) {
+            std::filesystem::remove(folder_ / "out/scanmill.sqlite");
+            SQLite::Database((folder_ / "out/scanmill.sqlite").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+                .exec(content_of(SCANMILL_SOURCE_DIR "/tests/data/records_of_version_3.sql"));
+        }
+        std::filesystem::permissions(folder_.path(), perms::all);
+        std::filesystem::permissions(folder_ / "out/scanmill.sqlite",
+                                     perms::owner_read | perms::group_read | perms::others_read);
+        std::filesystem::permissions(folder_ / "out", read_only);
+        const std::string before = content_of(folder_ / "out/scanmill.sqlite");
+        const ProgramResult runs = scanmill_program({"runs", "out", "--json"}, unprivileged);
+        const ProgramResult batch = scanmill_program({"batch", "b.yaml", "-o", "out"}, unprivileged);
+        std::filesystem::permissions(folder_ / "out", perms::all);
+        if (runs.exit_code > 100) GTEST_SKIP() << "skipped: the program may not be run without root's rights here";
+        EXPECT_EQ(runs.exit_code, 0) << runs.err;
+        EXPECT_EQ(Json::parse(runs.out)["runs"].size(), old ? 3u : 1u);
+        EXPECT_EQ(content_of(folder_ / "out/scanmill.sqlite"), before);
+        EXPECT_EQ(batch.exit_code, 2);
+        EXPECT_THAT(batch.err, HasSubstr("results cannot be written to 'out'"));
+    }
 }
 
 TEST_F(Storage, ClockThatMoved_IsNoReasonToTrustOrRunAnything) {

@@ -28,7 +28,7 @@ TEST(SchemaCommand, PrintsAndWritesTheSame) {
     const ProgramResult of_batches = scanmill_program({"schema", "batch"});
     EXPECT_TRUE(json::parse(of_batches.out)["properties"].contains("limits"));
     EXPECT_EQ(content_of(folder / "new/batch.schema.json"), of_batches.out);
-    EXPECT_EQ(scanmill_program({"schema", "report"}).exit_code, 2);
+    EXPECT_EQ(scanmill_program({"schema", "nothing"}).exit_code, 2);
 }
 
 TEST(SchemaCommand, FolderThatCannotBeMade_IsOneSentence) {
@@ -83,7 +83,7 @@ TEST(Completion, Bash_ProposesCommandsOptionsAndFilters) {
     EXPECT_EQ(completed(folder, "run --un", 2), "--unit --until\n");
     EXPECT_EQ(completed(folder, "show vox", 2), "voxel-thin\n");
     EXPECT_EQ(completed(folder, "completion f", 2), "fish\n");
-    EXPECT_EQ(completed(folder, "schema b", 2), "batch\n");
+    EXPECT_EQ(completed(folder, "schema w", 2), "workflow\n");
 }
 
 TEST(Completion, Bash_ProposesTheValuesOfOptions) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -195,6 +196,55 @@ TEST_F(MeasureCommand, Expectations_AreComparedAfreshWhenTheNumbersAreCached) {
     EXPECT_THAT(scanmill({"runs", "out", "show", "2"}).out, HasSubstr("cached"));
     folder_.write("w.yaml", workflow("mean: < 1 spacing"));
     EXPECT_THAT(run().err, HasSubstr("spacing is not defined for metrics"));
+}
+
+TEST_F(MeasureCommand, Deviation_IsWiredByItsNameAlone) {
+    const auto with = [&](const std::string& more) {
+        folder_.write("w.yaml",
+                      "scanmill: 1\nname: w\ninputs:\n  mesh: mesh\n  truth: mesh\nsteps:\n"
+                      "  - edge-flip:\n    in: {mesh: mesh}\n"
+                      "  - measure: {samples: 1000}\n    in: {mesh: edge-flip, truth: truth}\n" +
+                          more);
+    };
+    with("  - features:\noutputs:\n  \"{scan}-deviation.ply\": measure.deviation\n  \"{scan}.json\": measure\n");
+    const std::string plan = scanmill({"check", "w.yaml", "--plan"}).out;
+    EXPECT_THAT(plan, HasSubstr("features\n        mesh <- edge-flip\n"));
+    ASSERT_EQ(run().exit_code, 0);
+    EXPECT_TRUE(json::parse(content_of(folder_ / "out/sphere.json")).contains("metrics")) << "the primary output";
+    const json info = json::parse(scanmill({"info", "out/sphere-deviation.ply", "--json"}).out)["files"][0];
+    ASSERT_EQ(info["columns"].size(), 1u);
+    EXPECT_EQ(info["columns"][0]["name"], "distance-to-truth");
+    // A length: written in thousandths, it is a thousand times as large.
+    scanmill({"convert", "out/sphere-deviation.ply", "small.ply", "--unit", "m", "--to-unit", "mm"});
+    const auto values = [&](const char* file) {
+        const auto mesh = read_mesh(folder_ / file);
+        const auto column = mesh->vertex_columns.find("distance-to-truth")->values<double>();
+        return std::vector<double>(column.begin(), column.end());
+    };
+    const std::vector<double> one = values("out/sphere-deviation.ply"), thousand = values("small.ply");
+    const auto [least, most] = std::ranges::minmax(one);
+    EXPECT_NEAR(least, -0.1, 2e-3);
+    EXPECT_NEAR(most, 0.1, 2e-3);
+    ASSERT_EQ(one.size(), thousand.size());
+    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_DOUBLE_EQ(thousand[i], 1000 * one[i]);
+
+    with("  - features:\n    in: {mesh: measure.deviation}\n");
+    EXPECT_THAT(scanmill({"check", "w.yaml", "--plan"}).out, HasSubstr("mesh <- measure.deviation\n"));
+}
+
+TEST_F(MeasureCommand, DeviationThatNothingUses_IsNotCached) {
+    const auto values = [&] {
+        return json::parse(scanmill({"cache", "info", "--cache", "cache", "--json"}).out)["values"].get<int>();
+    };
+    ASSERT_EQ(run({"--keep", "always"}).exit_code, 0);
+    const int before = values();
+    folder_.write("w.yaml", workflow("mean: < 5 %diag") + "  \"{scan}-deviation.ply\": measure.deviation\n");
+    for (int i = 0; i < 2; ++i) {
+        ASSERT_EQ(run({"--keep", "always"}).exit_code, 0);
+        EXPECT_EQ(values(), before + 1);
+    }
+    const json steps = json::parse(scanmill({"runs", "out", "show", "3", "--json"}).out)["steps"];
+    EXPECT_EQ(steps.back()["origin"], "cached");
 }
 
 TEST_F(MeasureCommand, TruthIsNeverGuessed) {

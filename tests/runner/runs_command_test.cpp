@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "scanmill/records/run_records.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -59,6 +61,54 @@ TEST_F(RunsCommand, Show_SaysEverythingOfOne) {
     EXPECT_EQ(thin["origin"], "ran");
     EXPECT_THAT(scanmill({"runs", "out", "show", "1"}).out,
                 AllOf(HasSubstr("voxel-thin"), HasSubstr("missing.xyz"), HasSubstr("seed 7")));
+}
+
+TEST_F(RunsCommand, Outputs_HaveTheHashThatSha256sumGives) {
+    scanmill({"run", "w.yaml", "a.xyz", "-o", "out"});
+    const json output = json::parse(scanmill({"runs", "out", "show", "1", "--json"}).out)["cells"][0]["outputs"][0];
+    const std::string file = (folder_ / "out/a.ply").string();
+    ASSERT_EQ(std::system(("sha256sum '" + file + "' > '" + (folder_ / "sum").string() + "'").c_str()), 0);
+    const std::string sum = content_of(folder_ / "sum").substr(0, 64);
+    EXPECT_EQ(output["sha256"], sum);
+    EXPECT_EQ(output["bytes"], std::filesystem::file_size(file));
+    EXPECT_EQ(json::parse(content_of(file + ".json"))["file"]["sha256"], sum) << "the description agrees";
+}
+
+TEST_F(RunsCommand, StepsAndCells_NameTheirVariants) {
+    folder_.write("v.yaml",
+                  "scanmill: 1\nname: v\ninputs: {scan: points}\nsteps:\n  - voxel-thin: {bin-size: 0.1 u}\n"
+                  "  - id: last\n    voxel-thin: {bin-size: {sweep: [0.2 u, 0.3 u, 0.4 u, 0.5 u]}}\n");
+    scanmill({"run", "v.yaml", "a.xyz", "missing.xyz", "-o", "out"});
+    const json run = json::parse(scanmill({"runs", "out", "show", "1", "--json"}).out);
+    for (const json& step : run["steps"])
+        if (step["scan"] == "a.xyz") {
+            const std::size_t used = step["step"] == "last" ? 1 : 4;
+            EXPECT_EQ(step["variants"].size(), used) << step;
+        }
+    const std::string text = scanmill({"runs", "out", "show", "1"}).out;
+    EXPECT_THAT(text, AllOf(HasSubstr("bin-size=0.2u, bin-size=0.3u, bin-size=0.4u and 1 more"),
+                            HasSubstr("missing.xyz [bin-size=0.2u, bin-size=0.3u, bin-size=0.4u and 1 more]: ")));
+}
+
+TEST_F(RunsCommand, AcceptedRuns_AreMarkedWithWhoAndWhy) {
+    scanmill({"run", "w.yaml", "a.xyz", "-o", "out"});
+    scanmill({"run", "w.yaml", "a.xyz", "-o", "out"});
+    EXPECT_THAT(scanmill({"runs", "out"}).out, testing::Not(HasSubstr("accepted")));
+    {
+        RunRecords records = RunRecords::append_to(folder_ / "out/scanmill.sqlite");
+        records.accept(1, "ann", "as ordered");
+        records.accept(2, "ben", "by\nmistake");
+        records.revoke("w", "cleo", "it was wrong");
+    }
+    const json runs = json::parse(scanmill({"runs", "out", "--json"}).out)["runs"];
+    EXPECT_EQ(runs[0]["accepted"][0]["who"], "ann");
+    EXPECT_EQ(runs[0]["accepted"][0]["baseline"], true);
+    EXPECT_EQ(runs[1]["accepted"][0]["revoked"]["who"], "cleo");
+    EXPECT_EQ(runs[1]["accepted"][0]["baseline"], false);
+    EXPECT_THAT(scanmill({"runs", "out"}).out,
+                AllOf(HasSubstr("baseline, by ann: as ordered"),
+                      HasSubstr("by ben: by\\nmistake (revoked by cleo: it was wrong)")));
+    EXPECT_THAT(scanmill({"runs", "out", "show", "1"}).out, HasSubstr("accepted  baseline, by ann: as ordered"));
 }
 
 TEST_F(RunsCommand, DryRun_NamesWhatChangedSinceTheLastRun) {

@@ -2,13 +2,18 @@
 #include "support/program.hpp"
 
 #include <fcntl.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
+
+#include "support/output_schemas.hpp"
 
 namespace scanmill::test {
 
@@ -16,6 +21,7 @@ namespace {
 
 [[noreturn]] void become(const std::vector<std::string>& arguments, const ProgramOptions& options, const char* out,
                          const char* err) {
+    if (options.own_group) ::setpgid(0, 0);
     const int input = ::open("/dev/null", O_RDONLY);
     const int output = ::open(out, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int errors = ::open(err, O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -53,6 +59,7 @@ RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const 
     process_ = ::fork();
     if (process_ < 0) throw std::runtime_error("the program could not be started");
     if (process_ == 0) become(arguments, own, out.c_str(), err.c_str());
+    if (own.own_group) ::setpgid(process_, process_);  // whoever comes first
 }
 
 RunningProgram::~RunningProgram() {
@@ -62,6 +69,10 @@ RunningProgram::~RunningProgram() {
 
 void RunningProgram::signal(int number) const {
     if (!has_ended_) ::kill(process_, number);
+}
+
+void RunningProgram::signal_group(int number) const {
+    if (!has_ended_) ::kill(-process_, number);
 }
 
 bool RunningProgram::has_ended() {
@@ -79,7 +90,12 @@ std::string RunningProgram::out() const { return content_of(folder_ / "out"); }
 std::string RunningProgram::err() const { return content_of(folder_ / "err"); }
 
 ProgramResult scanmill_program(const std::vector<std::string>& arguments, const ProgramOptions& options) {
-    return RunningProgram(arguments, options).wait();
+    ProgramResult result = RunningProgram(arguments, options).wait();
+    const bool is_json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
+    for (const auto& [schema, document] :
+         is_json ? output_documents(arguments, result.out) : std::vector<OutputDocument>())
+        EXPECT_EQ(schema_errors(schema, document), "") << fmt::format("scanmill {}", fmt::join(arguments, " "));
+    return result;
 }
 
 }  // namespace scanmill::test

@@ -23,6 +23,7 @@ struct ProgramOptions {
     std::size_t seconds_limit = 0;                ///< of processor time, then it is killed; 0: none
     std::filesystem::path cache{};                ///< XDG_CACHE_HOME; empty: a new one, removed afterwards
     bool without_rights = false;                  ///< as the user `nobody`, when we are root
+    bool own_group = false;                       ///< in a process group of its own, for signal_group()
 };
 
 /// SCANMILL_PROGRAM with these arguments and no standard input, while it runs.
@@ -35,6 +36,8 @@ public:
     RunningProgram& operator=(const RunningProgram&) = delete;
 
     void signal(int number) const;
+    /// To it and all processes that it started.
+    void signal_group(int number) const;
     /// Whether it has ended.
     bool has_ended();
     /// Waits for its end.
@@ -51,7 +54,7 @@ private:
     int status_ = 0;
 };
 
-/// Runs it to its end.
+/// Runs it to its end. What it prints with --json must be as the schemas say.
 ProgramResult scanmill_program(const std::vector<std::string>& arguments, const ProgramOptions& options = {});
 
 }  // namespace scanmill::test

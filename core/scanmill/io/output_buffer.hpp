@@ -68,7 +68,7 @@ public:
 private:
     void make_room(std::size_t size) {
         flush();
-        if (space_.size() < size) space_.resize(size);
+        if (space_.size() < size) space_ = std::vector<char>(size);
     }
 
     static constexpr std::size_t capacity = std::size_t(1) << 18;

@@ -9,9 +9,13 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/hash.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/batch/check_gate.hpp"
 #include "scanmill/batch/scans.hpp"
 #include "scanmill/filter/parameter.hpp"
+#include "scanmill/formats/common/format.hpp"
 #include "scanmill/io/mapped_file.hpp"
+#include "scanmill/plan/output_names.hpp"
+#include "scanmill/plan/step_parameters.hpp"
 #include "scanmill/workflow/grammar.hpp"
 #include "scanmill/workflow/sizes.hpp"
 
@@ -51,13 +55,8 @@ public:
         const auto workflows = [&](const YamlEntry& entry) { add_workflows(entry.value, batch); };
         const auto set = [&](const YamlEntry& entry) { batch.settings = parse_settings(entry.value, diagnostics_); };
         const auto limits = [&](const YamlEntry& entry) { batch.limits = parse_limits(entry.value); };
-        const auto reserved = [&](const YamlEntry& entry) {
-            diagnostics_.error(entry.position,
-                               "`{}` has no effect in this version: batches neither measure results nor "
-                               "compare them with earlier runs; remove it, or use the filter measure in the "
-                               "workflow",
-                               entry.key);
-        };
+        const auto measure = [&](const YamlEntry& entry) { batch.measure = parse_measure(entry); };
+        const auto gate = [&](const YamlEntry& entry) { batch.gate = parse_gate(entry); };
         read_mapping(root, "a batch",
                      {grammar_version_key(diagnostics_),
                       {"batch", name_into(batch.name, "a batch", diagnostics_), "has no name; expected `batch: NAME`"},
@@ -66,8 +65,8 @@ public:
                       {"workflows", workflows, "has no workflows; expected `workflows:` with a list of files"},
                       {"set", set},
                       {"limits", limits},
-                      {"measure", reserved},
-                      {"gate", reserved}},
+                      {"measure", measure},
+                      {"gate", gate}},
                      diagnostics_);
         return batch;
     }
@@ -85,14 +84,7 @@ private:
                              diagnostics_);
         };
         const auto retries = [&](const YamlEntry& entry) {
-            ParameterSpec spec;
-            spec.type = ParameterType::integer;
-            spec.low = Bound{0, true};
-            spec.high = Bound{most_retries, true};
-            read_value(entry, expectation(spec), [&](const std::string& text) {
-                const auto value = std::get<ParameterScalar>(parse(spec, {{text}, false}));
-                limits.retries = static_cast<unsigned>(std::get<std::int64_t>(value));
-            });
+            limits.retries = static_cast<unsigned>(whole_number(entry, 0, most_retries).value_or(0));
         };
         read_mapping(node, "limits",
                      {{"memory", cap_into(limits.cell_memory, size_cap)},
@@ -101,6 +93,79 @@ private:
                       {"retries", retries}},
                      diagnostics_);
         return limits;
+    }
+
+    BatchMeasure parse_measure(const YamlEntry& entry) {
+        BatchMeasure measure;
+        measure.position = entry.position;
+        const YamlNode& node = entry.value;
+        if (node.is_null() || !require_map(node, "a map, as {of: [surface], samples: 50000}, or nothing", diagnostics_))
+            return measure;
+        for (const YamlEntry& each : node.entries) {
+            if (each.key == "of") {
+                parse_measured(each.value, measure);
+            } else if (each.key == "filter") {
+                name_into(measure.filter, "a filter", diagnostics_)(each);
+                measure.filter_position = each.value.position;
+            } else {
+                measure.parameters.push_back({each.key, each.position, measuring_value(each.value)});
+            }
+        }
+        return measure;
+    }
+
+    void parse_measured(const YamlNode& node, BatchMeasure& measure) {
+        if (node.is_sequence() && node.items.empty())
+            diagnostics_.error(node.position, "the list of values to measure is empty");
+        for (const YamlNode& item : node.is_sequence() ? std::span(node.items) : std::span(&node, 1))
+            if (const auto text = require_text(item, "the name of a step, or a list of them", diagnostics_))
+                measure.of.push_back({*text, item.position});
+    }
+
+    /// One value: results that are measured in different ways cannot be compared.
+    ValueExpression measuring_value(const YamlNode& node) {
+        ValueExpression value = value_expression(node, diagnostics_);
+        refuse_uses(value, "a parameter of `measure`", diagnostics_);
+        if (value.sweep) {
+            diagnostics_.error(node.position, "a parameter of `measure` has one value; `sweep` is for workflows");
+            value.values.clear();
+        }
+        return value;
+    }
+
+    std::optional<Gate> parse_gate(const YamlEntry& entry) {
+        Gate gate;
+        const YamlNode& node = entry.value;
+        if (!require_map(node, "a map from metrics to tolerances, as {hausdorff: +1 %, genus: exact}", diagnostics_))
+            return std::nullopt;
+        for (const YamlEntry& rule : node.entries) {
+            if (rule.key == "repeats")
+                parse_repeats(rule, gate);
+            else if (const auto text =
+                         require_text(rule.value, "a tolerance, as +1 %, -0.01 mm or exact", diagnostics_))
+                gate.rules.push_back({rule.key, *text, rule.position});
+        }
+        if (gate.rules.empty() && !diagnostics_.has_errors())
+            diagnostics_.error(entry.position,
+                               "the gate has no rules; expected metrics and tolerances, as hausdorff: +1 %");
+        return gate;
+    }
+
+    void parse_repeats(const YamlEntry& entry, Gate& gate) {
+        gate.repeats = static_cast<unsigned>(whole_number(entry, 1, most_repeats).value_or(1));
+    }
+
+    /// Nothing after an error.
+    std::optional<std::int64_t> whole_number(const YamlEntry& entry, int low, int high) {
+        ParameterSpec spec;
+        spec.type = ParameterType::integer;
+        spec.low = Bound{static_cast<double>(low), true};
+        spec.high = Bound{static_cast<double>(high), true};
+        std::optional<std::int64_t> number;
+        read_value(entry, expectation(spec), [&](const std::string& text) {
+            number = std::get<std::int64_t>(std::get<ParameterScalar>(parse(spec, {{text}, false})));
+        });
+        return number;
     }
 
     /// Passes the text to `read`, whose Errors are reported at the value.
@@ -198,23 +263,78 @@ public:
     }
 
     CheckedBatch checked() {
-        for (std::size_t i = 0; i < checked_.batch.workflows.size(); ++i) plan_workflow(i);
+        const Batch& batch = checked_.batch;
+        if (batch.measure) measuring_ = measuring(*batch.measure);
+        for (std::size_t i = 0; i < batch.workflows.size(); ++i) plan_workflow(i);
         if (!unreadable_) {
-            report_undeclared(checked_.batch.settings);
-            for (const BatchScan& scan : checked_.batch.scans) report_undeclared(scan.settings);
+            report_undeclared(batch.settings);
+            for (const BatchScan& scan : batch.scans) report_undeclared(scan.settings);
+            report_unknown_inputs();
             report_idle_rules();
+            report_idle_scans();
         }
+        report_idle_truths();
+        const bool is_sound = !unreadable_ && std::ranges::none_of(checked_.diagnostics, &Diagnostics::has_errors);
+        if (is_sound && measuring_) report_unmeasured();
+        if (is_sound && batch.gate && batch.measure.has_value() == measuring_.has_value())
+            check_gate(batch, checked_.parts, library_, batch_diagnostics_);
         constexpr std::size_t most_cells = 100'000;
         if (const std::size_t cells = checked_.cells(); cells > most_cells)
             batch_diagnostics_.error({},
                                      "has {} cells (scans times variants); expected at most {}: make "
                                      "several batches of it",
                                      cells, most_cells);
+        else if (is_sound && !batch_diagnostics_.has_errors())
+            report_shared_files();
         checked_.diagnostics.insert(checked_.diagnostics.begin(), std::move(batch_diagnostics_));
         return std::move(checked_);
     }
 
 private:
+    static bool takes_list(const Workflow& workflow) {
+        return !workflow.inputs.empty() && workflow.inputs.front().list;
+    }
+    static std::span<const WorkflowInput> further_inputs(const Workflow& workflow) {
+        return std::span(workflow.inputs).subspan(std::min<std::size_t>(1, workflow.inputs.size()));
+    }
+
+    /// The measuring filter with its parameters; nothing after an error.
+    std::optional<Measuring> measuring(const BatchMeasure& written) {
+        const auto can_measure = [](const FilterSpec& spec) {
+            return spec.measures && std::ranges::all_of(spec.inputs, [&](const PortSpec& port) {
+                       return port.optional || port.name == spec.measures->value || port.name == spec.measures->truth;
+                   });
+        };
+        std::vector<std::string> names;
+        for (const std::string& name : library_.names())
+            if (can_measure(*library_.find(name))) names.push_back(name);
+        const auto error = [&](Position position, std::string message) {
+            batch_diagnostics_.error(position, std::move(message));
+            return std::nullopt;
+        };
+        if (names.empty()) return error(written.position, "no installed filter measures results");
+        if (written.filter.empty() && names.size() > 1)
+            return error(written.position, fmt::format("{} measure results; expected `filter: NAME` under `measure:`",
+                                                       enumerated(names)));
+        if (!written.filter.empty() && std::ranges::find(names, written.filter) == names.end())
+            return error(written.filter_position,
+                         fmt::format("'{}' is not a filter that measures results; expected {}{}", written.filter,
+                                     enumerated(names), did_you_mean(written.filter, names)));
+        const FilterSpec& spec = *library_.find(written.filter.empty() ? names.front() : written.filter);
+        StepSyntax syntax;
+        syntax.filter = spec.name;
+        syntax.position = written.position;
+        syntax.parameters = written.parameters;
+        ExpandedStep step{&syntax, {}, {}};
+        for (const NamedExpression& parameter : syntax.parameters)
+            if (!parameter.value.values.empty())  // empty after an error
+                step.arguments.push_back(
+                    {&parameter, &parameter.value.values.front(), parameter.value.values.front().literal, {}});
+        const std::string& file = checked_.batch.file;
+        ParameterSet parameters = step_parameters(step, spec, {file, Settings(), batch_diagnostics_, nullptr});
+        return Measuring{spec, std::move(parameters), file, written.position, written.of};
+    }
+
     void plan_workflow(std::size_t index) {
         const BatchWorkflow& listed = checked_.batch.workflows[index];
         std::string text;
@@ -233,43 +353,126 @@ private:
         Diagnostics diagnostics(listed.file.string());
         const Workflow workflow = parse_workflow(text, diagnostics);
         if (workflow.steps.empty()) unreadable_ = true;  // nor could its parameters
-        require_one_input(workflow, listed);
-        if (!workflow.inputs.empty()) takes_points_ |= workflow.inputs.front().kind == kind_of<PointCloud>();
+        report_unfed_inputs(workflow, listed);
+        if (!workflow.inputs.empty()) {
+            takes_scans_ = true;
+            takes_points_ |= workflow.inputs.front().kind == kind_of<PointCloud>();
+            first_inputs_.insert(workflow.inputs.front().name);
+        }
+        for (const WorkflowInput& input : further_inputs(workflow)) further_inputs_.insert(input.name);
         for (const WorkflowParameter& parameter : workflow.parameters) declared_.insert(parameter.name);
         add_parts(workflow, index, diagnostics);
         checked_.diagnostics.push_back(std::move(diagnostics));
     }
 
+    /// Scans of equal values, and one by one either all with a truth or none.
+    struct Group {
+        Settings settings;
+        std::vector<std::size_t> scans;
+    };
+
     void add_parts(const Workflow& workflow, std::size_t index, Diagnostics& diagnostics) {
         const Batch& batch = checked_.batch;
-        std::map<std::string, std::size_t> part_of_settings;
-        for (std::size_t scan = 0; scan < batch.scans.size(); ++scan) {
-            const Settings settings = settings_for(workflow, batch.settings, batch.scans[scan].settings);
-            const auto [part, is_new] = part_of_settings.emplace(key_of(settings), checked_.parts.size());
-            if (is_new) checked_.parts.push_back({plan(workflow, settings, diagnostics), index, {}});
-            checked_.parts[part->second].scans.push_back(scan);
+        if (batch.scans.empty() || workflow.inputs.empty()) {  // errors in the workflow are found without scans too
+            auto planned = plan(workflow, settings_for(workflow, batch.settings, {}), false, diagnostics);
+            if (workflow.inputs.empty()) checked_.parts.push_back({std::move(planned), index, {}});
+            return;
         }
-        if (batch.scans.empty())  // errors in the workflow are still found
-            plan(workflow, settings_for(workflow, batch.settings, {}), diagnostics);
+        std::vector<Group> groups;
+        std::map<std::string, std::size_t> group_of_key;
+        for (std::size_t scan = 0; scan < batch.scans.size(); ++scan) {
+            Settings settings = settings_for(workflow, batch.settings, batch.scans[scan].settings);
+            const bool is_measured = !takes_list(workflow) && has_truth(scan);
+            const auto [group, is_new] =
+                group_of_key.emplace(key_of(settings) + (is_measured ? " measured" : ""), groups.size());
+            if (is_new) groups.push_back({std::move(settings), {}});
+            groups[group->second].scans.push_back(scan);
+        }
+        for (Group& group : groups) {
+            if (takes_list(workflow)) require_agreement(workflow, batch.workflows[index], group.scans);
+            const bool is_measured = measuring_ && (takes_list(workflow) ? agree_on_truth(batch.workflows[index], group)
+                                                                         : has_truth(group.scans.front()));
+            checked_.parts.push_back(
+                {plan(workflow, group.settings, is_measured, diagnostics), index, std::move(group.scans)});
+        }
     }
 
-    std::shared_ptr<const Plan> plan(const Workflow& workflow, const Settings& settings, Diagnostics& diagnostics) {
-        return std::make_shared<const Plan>(make_plan(workflow, library_, settings, diagnostics, &batch_diagnostics_));
+    bool has_truth(std::size_t scan) const { return !checked_.batch.scans[scan].truth.file.empty(); }
+
+    std::shared_ptr<const Plan> plan(const Workflow& workflow, const Settings& settings, bool is_measured,
+                                     Diagnostics& diagnostics) {
+        return std::make_shared<const Plan>(make_plan(workflow, library_, settings, diagnostics, &batch_diagnostics_,
+                                                      is_measured ? &*measuring_ : nullptr));
     }
 
-    void require_one_input(const Workflow& workflow, const BatchWorkflow& listed) {
-        const std::string name = listed.file.string();
-        if (workflow.inputs.empty())
-            batch_diagnostics_.error(listed.position,
-                                     "'{}' has no inputs, so a batch cannot run it over scans; "
-                                     "run it by itself",
-                                     name);
-        if (workflow.inputs.size() <= 1) return;
-        batch_diagnostics_.error(
-            listed.position,
-            "'{}' has {} inputs, and a batch can only feed the first, '{}'; run it by itself over the "
-            "scans, with a file for '{}'",
-            name, workflow.inputs.size(), workflow.inputs[0].name, workflow.inputs[1].name);
+    /// One run of a list of scans takes the further files of all of them.
+    void require_agreement(const Workflow& workflow, const BatchWorkflow& listed, std::span<const std::size_t> scans) {
+        const std::vector<BatchScan>& all = checked_.batch.scans;
+        for (const WorkflowInput& input : further_inputs(workflow)) {
+            const auto first = all[scans.front()].inputs.find(input.name);
+            if (first == all[scans.front()].inputs.end()) continue;  // reported
+            for (const std::size_t scan : scans)
+                if (const auto other = all[scan].inputs.find(input.name);
+                    other != all[scan].inputs.end() && other->second.files != first->second.files) {
+                    batch_diagnostics_.error(
+                        other->second.position,
+                        "'{}' takes all scans in one run, which needs the same files for the input '{}'; '{}' and '{}' "
+                        "have different ones",
+                        listed.file.string(), input.name, all[scans.front()].file.string(), all[scan].file.string());
+                    break;
+                }
+        }
+    }
+
+    bool agree_on_truth(const BatchWorkflow& listed, const Group& group) {
+        const std::vector<BatchScan>& all = checked_.batch.scans;
+        const BatchTruth& first = all[group.scans.front()].truth;
+        for (const std::size_t scan : group.scans)
+            if (!all[scan].truth.same_file(first)) {
+                batch_diagnostics_.warning(
+                    listed.position, fmt::format("'{}' takes all scans in one run, and they have different truths: its "
+                                                 "results are not measured",
+                                                 listed.file.string()));
+                return false;
+            }
+        return !first.file.empty();
+    }
+
+    void report_unfed_inputs(const Workflow& workflow, const BatchWorkflow& listed) {
+        for (const WorkflowInput& input : further_inputs(workflow)) {
+            std::vector<std::string> unfed;
+            for (const BatchScan& scan : checked_.batch.scans) {
+                const auto given = scan.inputs.find(input.name);
+                if (given == scan.inputs.end())
+                    unfed.push_back(scan.file.string());
+                else if (!input.list && given->second.files.size() > 1)
+                    batch_diagnostics_.error(given->second.position, "the input '{}' of '{}' takes one file; found {}",
+                                             input.name, listed.file.string(), given->second.files.size());
+            }
+            if (!unfed.empty())
+                batch_diagnostics_.error(
+                    listed.position,
+                    "nothing feeds the input '{}' of '{}' for the scan '{}'{}; expected `in: {{{}: FILE}}` at the scan",
+                    input.name, listed.file.string(), unfed.front(),
+                    unfed.size() > 1 ? fmt::format(" and {} more", unfed.size() - 1) : "", input.name);
+        }
+    }
+
+    void report_unknown_inputs() {
+        const std::vector<std::string> names(further_inputs_.begin(), further_inputs_.end());
+        for (const BatchScan& scan : checked_.batch.scans)
+            for (const auto& [name, input] : scan.inputs) {
+                if (further_inputs_.contains(name)) continue;
+                if (first_inputs_.contains(name))
+                    batch_diagnostics_.error(input.position,
+                                             "the scan itself feeds '{}', a workflow's first input; name its file as "
+                                             "`path`",
+                                             name);
+                else
+                    batch_diagnostics_.error(input.position, "no workflow has an input '{}' beside its first; {}{}",
+                                             name, names.empty() ? "they have none" : "they have " + enumerated(names),
+                                             did_you_mean(name, names));
+            }
     }
 
     void report_undeclared(const Settings& settings) {
@@ -291,12 +494,113 @@ private:
                 batch_diagnostics_.error(at, "`invalid` is for points; no workflow of the batch takes points");
     }
 
+    void report_idle_scans() {
+        if (!takes_scans_ && !checked_.batch.scans.empty() && !checked_.batch.workflows.empty())
+            batch_diagnostics_.warning(checked_.batch.scans.front().position,
+                                       "no workflow takes scans, so none of them is read");
+    }
+
+    void report_idle_truths() {
+        const Batch& batch = checked_.batch;
+        bool has_any = false;
+        for (const BatchScan& scan : batch.scans) {
+            if (scan.truth.file.empty()) continue;
+            has_any = true;
+            if (!batch.measure)
+                batch_diagnostics_.warning(
+                    scan.truth.position, "`truth` has no effect without `measure:` in the batch: nothing is measured");
+        }
+        if (batch.measure && !has_any && !batch.scans.empty())
+            batch_diagnostics_.error(batch.measure->position,
+                                     "no scan has a truth, so nothing would be measured; expected `truth: FILE` at a "
+                                     "scan");
+    }
+
+    /// Names under `of` that no variant has, and a batch or a workflow of which nothing is measured.
+    void report_unmeasured() {
+        std::set<std::string> names;
+        std::set<std::size_t> measured, unmeasured;  // workflows
+        for (const BatchPart& part : checked_.parts) {
+            if (!truth_input_of(part.plan->workflow)) continue;
+            const auto is_measuring = [](const PlannedStep& step) { return !step.measures.empty(); };
+            (std::ranges::any_of(part.plan->steps, is_measuring) ? measured : unmeasured).insert(part.workflow);
+            for (const WorkflowInput& input : part.plan->workflow.inputs) names.insert(input.name);
+            for (const PlannedVariant& variant : part.plan->variants)
+                for (const auto& [name, step] : variant.steps_by_name)
+                    if (part.plan->steps[step].measures.empty()) names.insert(name);
+        }
+        if (measured.empty() && unmeasured.empty()) return;  // lists of scans that disagree on their truth
+        names.erase(truth_input);
+        const std::vector<std::string> known(names.begin(), names.end());
+        for (const Reference& reference : measuring_->of)
+            if (const std::string name = reference.text.substr(0, reference.text.find('.')); !names.contains(name))
+                batch_diagnostics_.error(reference.position, "no workflow has a step '{}' to measure; they have {}{}",
+                                         name, known.empty() ? "none" : enumerated(known), did_you_mean(name, known));
+        const PortSpec& port = *measuring_->spec.input(measuring_->spec.measures->value);
+        if (measured.empty() && !batch_diagnostics_.has_errors())
+            batch_diagnostics_.error(measuring_->position,
+                                     "no workflow has an output of kind {}, so nothing would be measured; expected "
+                                     "`of: [STEP]`",
+                                     kinds_text(port));
+        for (const std::size_t workflow : unmeasured)
+            if (!measured.contains(workflow) && !measured.empty())
+                batch_diagnostics_.warning(
+                    checked_.batch.workflows[workflow].position,
+                    fmt::format("nothing of '{}' is measured: {}", checked_.batch.workflows[workflow].file.string(),
+                                measuring_->of.empty() ? "it has no output of kind " + kinds_text(port)
+                                                       : "it has none of the steps under `of`"));
+    }
+
+    /// Two cells must not write one file. Of many such files the first ten are reported.
+    void report_shared_files() {
+        OutputNames files{fs::path()};
+        std::size_t shared = 0;
+        for (std::size_t part = 0; part < checked_.parts.size(); ++part) {
+            const Plan& plan = *checked_.parts[part].plan;
+            const Position of_workflow = checked_.batch.workflows[checked_.parts[part].workflow].position;
+            std::vector<const BatchScan*> scans;  // nullptr: one run for all scans, or without any
+            if (!plan.workflow.inputs.empty() && !takes_list(plan.workflow))
+                for (const std::size_t scan : checked_.parts[part].scans) scans.push_back(&checked_.batch.scans[scan]);
+            else
+                scans.push_back(nullptr);
+            for (const BatchScan* scan : scans)
+                for (const PlannedVariant& variant : plan.variants) try {
+                        add_outputs(files, plan, variant, scan ? scan->file : fs::path(), std::to_string(part));
+                    } catch (const Error& error) {
+                        constexpr std::size_t most = 10;
+                        if (++shared <= most)
+                            batch_diagnostics_.error(
+                                scan ? scan->position : of_workflow,
+                                error.sentence() + (error.hint().empty() ? "" : "; " + error.hint()));
+                    }
+        }
+    }
+
+    /// `scan`: empty if the cell has no scan of its own. Equal values of one cell may share a file.
+    void add_outputs(OutputNames& files, const Plan& plan, const PlannedVariant& variant, const fs::path& scan,
+                     const std::string& part) const {
+        const std::string workflow = workflow_name(plan), name = scan.empty() ? workflow : scan.string();
+        const TemplateValues values{scan.empty() ? workflow : stem_of(scan), variant.name, workflow,
+                                    scan.empty() ? workflow : folder_name(scan)};
+        const std::string writer = cell_text(name, variant.name, checked_.parts.size() > 1 ? workflow : "");
+        for (const PlannedOutput& output : variant.outputs) {
+            const std::string source = output.source.step ? plan.steps[*output.source.step].structure_key
+                                                          : std::to_string(output.source.input);
+            const std::string file = expand_template(output.file, values);
+            const std::string content = part + "\n" + name + "\n" + source;
+            files.add(file, {content, output.source.port}, writer);
+            files.add(description_of(file).string(), {content, output.source.port + " described"}, writer);
+        }
+    }
+
     const FilterLibrary& library_;
     Diagnostics batch_diagnostics_;
     CheckedBatch checked_;
+    std::optional<Measuring> measuring_;
     std::set<std::string> declared_;
-    bool takes_points_ = false;
-    bool unreadable_ = false;  // a workflow cannot be read, so its parameters are unknown
+    std::set<std::string> first_inputs_, further_inputs_;  // names
+    bool takes_scans_ = false, takes_points_ = false;
+    bool unreadable_ = false;  // a workflow cannot be read, so its parameters and inputs are unknown
 };
 
 }  // namespace
@@ -323,7 +627,10 @@ std::size_t CheckedBatch::variants() const {
 
 std::size_t CheckedBatch::cells() const {
     std::size_t count = 0;
-    for (const BatchPart& part : parts) count += part.plan->variants.size() * part.scans.size();
+    for (const BatchPart& part : parts) {
+        const std::vector<WorkflowInput>& inputs = part.plan->workflow.inputs;
+        count += part.plan->variants.size() * (inputs.empty() || inputs.front().list ? 1 : part.scans.size());
+    }
     return count;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
@@ -44,9 +45,12 @@ std::string shown(const fs::path& folder) {
 /// Matches the components of a pattern against the names in folders.
 class Search {
 public:
-    explicit Search(std::vector<std::string> components) : components_(std::move(components)) {}
+    Search(std::vector<std::string> components, const OnWarning& warn)
+        : components_(std::move(components)),
+          warn_(warn) {}
 
     std::vector<fs::path> from(const fs::path& folder) {
+        begin_ = folder;
         look(folder, 0);
         std::ranges::sort(found_, {}, [](const fs::path& path) -> const std::string& { return path.native(); });
         const auto repeated = std::ranges::unique(found_);  // `**/**` matches a file several times
@@ -61,47 +65,79 @@ private:
         if (component == "**") {
             if (last) throw Error("'**' matches folders; expected a name after it, as '**/*.ply'");
             look(folder, depth + 1);
-            for (const fs::directory_entry& entry : entries(folder))
-                if (!is_hidden(entry) && !entry.is_symlink() && is_folder(entry.path())) look(entry.path(), depth);
+            for (const fs::path& entry : entries(folder))
+                if (!is_hidden(entry) && own_type(entry) == fs::file_type::directory) look(entry, depth);
         } else if (!has_wildcards(component)) {
             take(folder / component, depth, last);
         } else {
-            for (const fs::directory_entry& entry : entries(folder))
-                if (::fnmatch(component.c_str(), entry.path().filename().c_str(), FNM_PERIOD | FNM_NOESCAPE) == 0)
-                    take(entry.path(), depth, last);
+            for (const fs::path& entry : entries(folder))
+                if (::fnmatch(component.c_str(), entry.filename().c_str(), FNM_PERIOD | FNM_NOESCAPE) == 0)
+                    take(entry, depth, last);
         }
     }
 
     void take(const fs::path& path, std::size_t depth, bool last) {
-        if (last && is_file(path)) found_.push_back(path);
-        if (!last && is_folder(path)) look(path, depth + 1);
+        std::error_code trouble;
+        const fs::file_type type = fs::status(path, trouble).type();
+        if (last && type == fs::file_type::regular) found_.push_back(path);
+        if (!last && type == fs::file_type::directory) look(path, depth + 1);
+        if (type == fs::file_type::none)
+            skip(path, trouble);
+        else if (last && type == fs::file_type::not_found && own_type(path) == fs::file_type::symlink)
+            warn("'{}' is a link that leads nowhere; it is left out", path.string());
     }
 
-    static bool is_hidden(const fs::directory_entry& entry) {
-        return entry.path().filename().native().starts_with('.');
+    static bool is_hidden(const fs::path& entry) { return entry.filename().native().starts_with('.'); }
+
+    /// Of the entry itself, not of what a link leads to.
+    fs::file_type own_type(const fs::path& path) {
+        std::error_code trouble;
+        const fs::file_type type = fs::symlink_status(path, trouble).type();
+        if (type == fs::file_type::none) skip(path, trouble);
+        return type;
     }
 
-    std::vector<fs::directory_entry> entries(const fs::path& folder) {
-        std::vector<fs::directory_entry> all;
+    /// In a folder that may be listed but not entered, this is the same for all its entries.
+    void skip(const fs::path& path, const std::error_code& why) {
+        if (why != std::errc::permission_denied)
+            warn("'{}' cannot be read: {}; it is left out", path.string(), why.message());
+        else if (closed_.insert(path.parent_path()).second)
+            warn("the files in the folder '{}' cannot be read: {}; they are left out", shown(path.parent_path()),
+                 why.message());
+    }
+
+    template <class... Arguments>
+    void warn(fmt::format_string<Arguments...> format, Arguments&&... arguments) const {
+        if (warn_) warn_(fmt::format(format, std::forward<Arguments>(arguments)...));
+    }
+
+    std::vector<fs::path> entries(const fs::path& folder) {
+        std::vector<fs::path> all;
         std::error_code trouble;
         for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, trouble), end;
              !trouble && entry != end; entry.increment(trouble)) {
             if (++names_ > most_names)
                 throw Error("more than {} names were visited; write the folders in more detail", most_names);
-            all.emplace_back(folder / entry->path().filename());
+            all.push_back(folder / entry->path().filename());
         }
-        if (trouble) throw Error("the folder '{}' cannot be read: {}", shown(folder), trouble.message());
+        if (trouble && folder == begin_)
+            throw Error("the folder '{}' cannot be read: {}", shown(folder), trouble.message());
+        if (trouble && closed_.insert(folder).second)
+            warn("the folder '{}' cannot be read: {}; its files are left out", shown(folder), trouble.message());
         return all;
     }
 
     std::vector<std::string> components_;
+    const OnWarning& warn_;
+    fs::path begin_;
+    std::set<fs::path> closed_;  // folders with a warning
     std::vector<fs::path> found_;
     std::size_t names_ = 0;
 };
 
 }  // namespace
 
-std::vector<fs::path> scan_files(const fs::path& folder, const std::string& pattern) {
+std::vector<fs::path> scan_files(const fs::path& folder, const std::string& pattern, const OnWarning& warn) {
     if (pattern.empty()) throw Error("the path is empty; expected a file, or several as 'scans/*.ply'");
     if (pattern.find('\0') != std::string::npos) throw Error("the path has a zero byte");
     const fs::path whole = folder / pattern;
@@ -125,7 +161,7 @@ std::vector<fs::path> scan_files(const fs::path& folder, const std::string& patt
     }
     if (pattern.ends_with('/')) throw Error("'{}' ends in a slash; expected files, as '{}*.ply'", pattern, pattern);
     if (!is_folder(begin)) throw Error("no file matches '{}'; there is no folder '{}'", pattern, shown(begin));
-    std::vector<fs::path> found = Search(std::move(components)).from(begin);
+    std::vector<fs::path> found = Search(std::move(components), warn).from(begin);
     if (found.empty()) throw Error("no file matches '{}'; looked in '{}'", pattern, shown(begin));
     return found;
 }
@@ -281,24 +317,22 @@ private:
             const Settings settings = parse_settings(found.value, diagnostics_);
             for (BatchScan& scan : scans()) scan.settings = settings;
         };
-        const auto truth = [&](const YamlEntry& found) {
-            each_file(found, "a file, as truth/{stem}.stl", scans(),
-                      [](BatchScan& scan, const fs::path& file) { scan.truth = file; });
-        };
         read_mapping(node, "a scan",
                      {{"path", path, fmt::format("the scan has no path; expected {}", expected)},
                       {"unit", unit},
                       {"frame", frame},
                       {"invalid", invalid},
                       {"pose", [&](const YamlEntry& found) { pose(found, scans()); }},
-                      {"truth", truth},
+                      {"truth", [&](const YamlEntry& found) { truth(found, scans()); }},
+                      {"in", [&](const YamlEntry& found) { inputs(found, scans()); }},
                       {"set", set}},
                      diagnostics_);
     }
 
     void find_files(const std::string& path, Position position) {
         try {
-            for (fs::path& file : scan_files(folder_, path)) {
+            const auto warn = [&](std::string sentence) { diagnostics_.warning(position, std::move(sentence)); };
+            for (fs::path& file : scan_files(folder_, path, warn)) {
                 const auto [earlier, is_new] = line_of_.emplace(fs::absolute(file).lexically_normal(), position.line);
                 if (is_new) {
                     scans_.emplace_back();
@@ -314,32 +348,102 @@ private:
         }
     }
 
-    /// Calls `use` with every scan and its file, a path that may contain {stem}. Missing files and Errors of `use` are
-    /// reported for the first ten scans.
-    template <class Use>
-    void each_file(const YamlEntry& entry, const char* forms, std::span<BatchScan> scans, const Use& use) {
-        const auto text = require_text(entry.value, forms, diagnostics_);
-        if (!text) return;
-        const Position position = entry.value.position;
-        const std::size_t before = diagnostics_.errors();
-        check_stem_template(*text, "the " + entry.key, position, diagnostics_);
-        if (text->empty()) diagnostics_.error(position, "the {} is empty; expected a path", entry.key);
-        if (diagnostics_.errors() > before) return;
-        constexpr std::size_t most = 10;
-        std::size_t wrong = 0;
-        for (BatchScan& scan : scans) {
-            const fs::path file = folder_ / with_stem(*text, scan.file);
-            try {
-                if (const std::optional<Error> other = why_no_file(file))
-                    throw Error("{}; expected the {} of '{}'", other->sentence(), entry.key, scan.file.string());
-                use(scan, file);
-            } catch (const Error& error) {
-                if (++wrong <= most) diagnostics_.error(position, error.sentence());
-            }
+    /// Sentences about many scans, of which the first ten are reported.
+    class Complaints {
+    public:
+        void add(std::string sentence) {
+            if (++count_ <= most) sentences_.push_back(std::move(sentence));
         }
-        if (wrong > most)
-            diagnostics_.error(position, "and {} more: the {} of that many scans is missing or wrong too", wrong - most,
-                               entry.key);
+        /// `what`: "the truth".
+        template <class Report>
+        void report(std::string_view what, const Report& report) {
+            for (std::string& sentence : sentences_) report(std::move(sentence));
+            if (count_ > most)
+                report(fmt::format("and {} more: {} of that many scans is missing or wrong too", count_ - most, what));
+        }
+
+    private:
+        static constexpr std::size_t most = 10;
+        std::vector<std::string> sentences_;
+        std::size_t count_ = 0;
+    };
+
+    /// A path that may contain {stem} and {folder}; nothing after an error.
+    std::optional<std::string> path_template(const YamlNode& node, const std::string& what, std::string_view forms) {
+        const auto text = require_text(node, forms, diagnostics_);
+        if (!text) return std::nullopt;
+        const std::size_t before = diagnostics_.errors();
+        check_path_template(*text, what, node.position, diagnostics_);
+        if (text->empty()) diagnostics_.error(node.position, "{} is empty; expected a path", what);
+        return diagnostics_.errors() > before ? std::nullopt : text;
+    }
+
+    fs::path file_for(const BatchScan& scan, const std::string& path_template) const {
+        return folder_ / with_stem_and_folder(path_template, scan.file);
+    }
+
+    /// Why there is no file, for the scan that needs it; nothing if there is one. `what`: "the truth".
+    static std::optional<std::string> missing(const fs::path& file, std::string_view what, const BatchScan& scan) {
+        if (const std::optional<Error> other = why_no_file(file))
+            return fmt::format("{}; expected {} of '{}'", other->sentence(), what, scan.file.string());
+        return std::nullopt;
+    }
+
+    /// Calls `take` with every scan and its file. Missing files are warnings: they fail the cells that read them.
+    template <class Take>
+    void take_files(const YamlNode& node, const std::string& what, std::string_view forms, std::span<BatchScan> scans,
+                    const Take& take) {
+        const auto text = path_template(node, what, forms);
+        if (!text) return;
+        Complaints complaints;
+        for (BatchScan& scan : scans) {
+            const fs::path file = file_for(scan, *text);
+            if (std::optional<std::string> complaint = missing(file, what, scan)) complaints.add(std::move(*complaint));
+            take(scan, file);
+        }
+        complaints.report(what, [&](std::string each) { diagnostics_.warning(node.position, std::move(each)); });
+    }
+
+    void truth(const YamlEntry& entry, std::span<BatchScan> scans) {
+        static const char* const expected = "a file, as truth/{stem}.stl, or {path: truth/{stem}.stl, unit: mm}";
+        const auto path = [&](const YamlNode& node) {
+            take_files(node, "the truth", expected, scans,
+                       [](BatchScan& scan, const fs::path& file) { scan.truth.file = file; });
+        };
+        for (BatchScan& scan : scans) scan.truth.position = entry.position;
+        if (!entry.value.is_map()) return path(entry.value);
+        const auto unit = [&](const YamlEntry& found) {
+            LengthUnit declared = LengthUnit::unknown;
+            unit_into(declared, diagnostics_)(found);
+            for (BatchScan& scan : scans) scan.truth.unit = declared;
+        };
+        const auto frame = [&](const YamlEntry& found) {
+            std::string text;
+            text_into(text, diagnostics_)(found);
+            check_stem_template(text, "the frame", found.value.position, diagnostics_);
+            for (BatchScan& scan : scans) scan.truth.frame = with_stem(text, scan.file);
+        };
+        read_mapping(entry.value, "a truth",
+                     {{"path", [&](const YamlEntry& found) { path(found.value); },
+                       fmt::format("the truth has no path; expected {}", expected)},
+                      {"unit", unit},
+                      {"frame", frame}},
+                     diagnostics_);
+    }
+
+    void inputs(const YamlEntry& entry, std::span<BatchScan> scans) {
+        if (!require_map(entry.value, "a map from inputs to files, as {target: target.ply}", diagnostics_)) return;
+        for (const YamlEntry& input : entry.value.entries) {
+            if (!require_name(input.key, input.position, "an input", diagnostics_)) continue;
+            for (BatchScan& scan : scans) scan.inputs[input.key].position = input.position;
+            const YamlNode& value = input.value;
+            if (value.is_sequence() && value.items.empty())
+                diagnostics_.error(value.position, "the list of files for the input '{}' is empty", input.key);
+            for (const YamlNode& node : value.is_sequence() ? std::span(value.items) : std::span(&value, 1))
+                take_files(
+                    node, fmt::format("the input '{}'", input.key), "a file, as targets/{stem}.ply, or a list", scans,
+                    [&](BatchScan& scan, const fs::path& file) { scan.inputs[input.key].files.push_back(file); });
+        }
     }
 
     void pose(const YamlEntry& entry, std::span<BatchScan> scans) {
@@ -351,15 +455,24 @@ private:
             }
             return;
         }
-        const auto read = [&](BatchScan& scan, const fs::path& file) {
-            const auto warn = [&](std::string text) { diagnostics_.warning(entry.value.position, std::move(text)); };
-            auto poses = poses_.find(file);
-            if (poses == poses_.end()) poses = poses_.emplace(file, read_poses(file, warn)).first;
-            scan.pose = pose_of(scan.file, poses->second, file.string());
-            scan.pose_file = file;
-        };
-        each_file(entry, "a file, as poses/{stem}.json, a matrix of 4 rows or {translation: …, rotation: …}", scans,
-                  read);
+        const auto path =
+            path_template(entry.value, "the pose",
+                          "a file, as poses/{stem}.json, a matrix of 4 rows or {translation: …, rotation: …}");
+        if (!path) return;
+        const Position position = entry.value.position;
+        const auto warn = [&](std::string text) { diagnostics_.warning(position, std::move(text)); };
+        Complaints complaints;
+        for (BatchScan& scan : scans) try {
+                scan.pose_file = file_for(scan, *path);
+                if (const auto complaint = missing(scan.pose_file, "the pose", scan)) throw Error(*complaint);
+                auto poses = poses_.find(scan.pose_file);
+                if (poses == poses_.end())
+                    poses = poses_.emplace(scan.pose_file, read_poses(scan.pose_file, warn)).first;
+                scan.pose = pose_of(scan.file, poses->second, scan.pose_file.string());
+            } catch (const Error& error) {
+                complaints.add(error.sentence());
+            }
+        complaints.report("the pose", [&](std::string text) { diagnostics_.error(position, std::move(text)); });
     }
 
     fs::path folder_;

@@ -49,8 +49,9 @@ std::string ports_table(std::string_view title, std::string_view column, const s
     if (ports.empty()) return {};
     std::string table = fmt::format("\n## {}\n\n| {} | kind | content |\n|---|---|---|\n", title, column);
     for (const PortSpec& port : ports)
-        table += fmt::format("| {} | {}{}{} | {} |\n", code(port.name), kinds_text(port),
-                             port.list ? ", any number" : "", port.optional ? ", optional" : "", cell(port.help));
+        table +=
+            fmt::format("| {} | {}{}{}{} | {} |\n", code(port.name), kinds_text(port), port.list ? ", any number" : "",
+                        port.optional ? ", optional" : "", port.by_name ? ", by name alone" : "", cell(port.help));
     return table;
 }
 
@@ -88,6 +89,7 @@ std::string remarks(const FilterSpec& spec) {
     if (!spec.ties.empty()) list += fmt::format("- Ties: {}\n", spec.ties);
     if (!spec.not_finite.empty()) list += fmt::format("- NaN and infinity: {}\n", spec.not_finite);
     if (spec.streams) list += fmt::format("- Large scans: {}\n", stream_text(spec));
+    if (spec.measures) list += fmt::format("- Measures: {}\n", measures_text(*spec.measures));
     if (!spec.adds.empty()) list += fmt::format("- Columns that it may add: `{}`\n", fmt::join(spec.adds, "`, `"));
     return list.empty() ? list : "\n" + list;
 }
@@ -183,6 +185,11 @@ std::string stream_text(const FilterSpec& spec) {
     return fmt::format("{}{}, a scan that no other step needs whole is read in chunks and never completely in memory.",
                        given.empty() ? "As the first step" : fmt::format("With {} given", fmt::join(given, " and ")),
                        unwired.empty() ? "" : fmt::format(", without {}", fmt::join(unwired, " and ")));
+}
+
+std::string measures_text(const MeasureSpec& measures) {
+    return fmt::format("The value at `{}` by the one at `{}`; a batch applies it to the results of scans with a truth.",
+                       measures.value, measures.truth);
 }
 
 bool is_filter_page(std::string_view text) { return text.find(generated) != std::string_view::npos; }

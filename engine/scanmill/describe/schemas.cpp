@@ -112,7 +112,20 @@ const char* const batch_grammar = R"json({
     "time": {"$ref": "#/definitions/time"},
     "step": {"type": "object", "description": "The same for one step.", "additionalProperties": false,
              "properties": {"memory": {"$ref": "#/definitions/memory"}, "time": {"$ref": "#/definitions/time"}}},
-    "retries": {"type": "integer", "minimum": 0, "description": "How often failed work is tried again."}}}
+    "retries": {"type": "integer", "minimum": 0, "description": "How often failed work is tried again."}}},
+  "measure": {"type": ["object", "null"], "additionalProperties": false,
+              "description": "Measures the results of every scan with a truth; parameters of the measuring filter.",
+              "properties": {
+    "of": {"description": "The steps to measure; without it, the outputs of the workflows.",
+           "if": {"type": "array"}, "then": {"minItems": 1, "items": {"type": "string"}}, "else": {"type": "string"}},
+    "filter": {"description": "The measuring filter, if several are installed."}}},
+  "gate": {"type": "object", "minProperties": 1,
+           "description": "By how much metrics, costs and outputs may differ from the accepted run.",
+           "propertyNames": {"pattern": "^[a-z][A-Za-z0-9_@.-]*$"},
+           "additionalProperties": {"$ref": "#/definitions/tolerance"},
+           "properties": {
+    "outputs": {"const": "exact", "description": "No output file may change a byte."},
+    "repeats": {"type": "integer", "minimum": 1, "description": "How often a run measures its costs."}}}
 },
 "definitions": {
   "scan": {"if": {"type": "object"}, "else": {"$ref": "#/definitions/scan-path"}, "then": {
@@ -123,8 +136,21 @@ const char* const batch_grammar = R"json({
       "frame": {"$ref": "#/definitions/frame"},
       "invalid": {"$ref": "#/definitions/invalid"},
       "pose": {"$ref": "#/definitions/pose"},
-      "truth": {"type": "string", "minLength": 1, "description": "The correct result: a file; may contain {stem}."},
+      "truth": {"$ref": "#/definitions/truth"},
+      "in": {"type": "object", "description": "The scan's files for the workflows' further inputs, by their names.",
+             "additionalProperties": false,
+             "patternProperties": {"^[A-Za-z][A-Za-z0-9_-]*$": {
+               "if": {"type": "array"}, "then": {"minItems": 1, "items": {"$ref": "#/definitions/scan-file"}},
+               "else": {"$ref": "#/definitions/scan-file"}}}},
       "set": {"$ref": "#/definitions/settings"}}}},
+  "scan-file": {"type": "string", "minLength": 1, "description": "A file; may contain {stem} and {folder}."},
+  "truth": {"description": "The correct result, a mesh or points: a file, or a file with its unit and frame.",
+            "if": {"type": "object"}, "else": {"$ref": "#/definitions/scan-file"}, "then": {
+    "required": ["path"], "additionalProperties": false,
+    "properties": {"path": {"$ref": "#/definitions/scan-file"}, "unit": {"$ref": "#/definitions/unit"},
+                   "frame": {"$ref": "#/definitions/frame"}}}},
+  "tolerance": {"type": ["string", "number"], "pattern": "^(exact|[-+]? *[0-9.].*)$", "examples": ["+1 %", "-0.01 mm", "exact"],
+                "patternErrorMessage": "Expected an amount with its sign and unit, as +1 %, or exact."},
   "scan-path": {"type": "string", "minLength": 1, "description": "A file, or several by *, ?, […] and **."},
   "workflow": {"type": "string", "minLength": 1, "description": "A workflow file."},
   "settings": {"type": ["object", "null"], "description": "Values of the workflows' parameters, by their names.",
@@ -245,6 +271,13 @@ Json filter_schema(const FilterSpec& spec) {
     return schema;
 }
 
+/// A parameter of a measuring step, which has one value.
+Json measuring_schema(const ParameterSpec& parameter) {
+    Json schema = value_schema(parameter, scalar_schema(parameter));
+    schema["description"] = parameter_schema(parameter)["description"];
+    return schema;
+}
+
 /// `in:` of a filter: a map from its ports, or a single name if there is one port.
 Json in_schema(const FilterSpec& spec) {
     const Json source{{"type", "string"}};
@@ -302,8 +335,26 @@ std::string workflow_schema(const FilterLibrary& library) {
     return with_common_definitions(std::move(schema));
 }
 
-std::string batch_schema() {
+std::string batch_schema(const FilterLibrary& library) {
     Json schema = Json::parse(batch_grammar);
+    Json& measure = schema["properties"]["measure"]["properties"];
+    Json& gate = schema["properties"]["gate"]["properties"];
+    Json measuring = Json::array();
+    for (const char* cost : {"seconds", "cpu-seconds", "memory"})
+        gate[cost] = {{"type", "string"}, {"pattern", "^\\+.*%$"}, {"description", "Costs of a cell, as +20 %."}};
+    gate["repeats"]["maximum"] = most_repeats;
+    for (const std::string& name : library.names()) {
+        const FilterSpec& spec = *library.find(name);
+        if (!spec.measures) continue;
+        measuring.push_back(name);
+        for (const ParameterSpec& parameter : spec.parameters)
+            if (!measure.contains(parameter.name)) measure[parameter.name] = measuring_schema(parameter);
+        for (const MetricSpec& metric : spec.metrics)
+            if (!gate.contains(metric.name))
+                gate[metric.name] = {{"description", metric.help},
+                                     {"allOf", Json::array({{{"$ref", "#/definitions/tolerance"}}})}};
+    }
+    measure["filter"]["enum"] = std::move(measuring);
     schema["properties"]["limits"]["properties"]["retries"]["maximum"] = most_retries;
     for (const char* cap : {"memory", "time"}) {
         Json& pattern = schema["definitions"][cap]["pattern"];

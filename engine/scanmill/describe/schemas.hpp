@@ -18,6 +18,7 @@ namespace scanmill {
 
 /// Indented JSON with a trailing newline; equal filters give equal bytes.
 std::string workflow_schema(const FilterLibrary& library);
-std::string batch_schema();
+/// Of a batch, whose `measure` takes the parameters of the filters that measure.
+std::string batch_schema(const FilterLibrary& library);
 
 }  // namespace scanmill

@@ -45,7 +45,18 @@ struct Tolerance {
 
 /// `lengths` is the unit of the metric's lengths, `diagonal` what `%diag` refers to (NaN: unknown). Throws Error with
 /// the forms that the unit accepts: no sign nor unit, another dimension, a length that cannot be converted.
+/// The amount of a relative rule is a share of the accepted value's magnitude. A ratio's absolute amount is a plain
+/// number: `-0.01` is one percentage point. Amounts are finite and not negative; `spacing` is refused.
 Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, double diagonal);
+
+/// For the check of a batch, before any value is known. Throws Error as parse_tolerance() does, and for a rule that
+/// limits improvements: without a sign, or with the wrong one, although one direction is the better one.
+void require_rule_fits(std::string_view text, Unit unit, Better better);
+
+/// `seconds`, `cpu-seconds` and `memory`.
+bool is_cost(std::string_view metric);
+/// Of a rule for a cost. Throws Error for everything but a positive share with a plus sign: `+20 %`.
+Tolerance parse_cost_tolerance(std::string_view text);
 
 /// For the records: {"rules": {"hausdorff": "+1 %"}, "repeats": 3}.
 std::string to_json_text(const Gate& gate);

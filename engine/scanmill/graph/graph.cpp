@@ -53,11 +53,12 @@ void require_fed(const RunRequest& request, const Plan& plan) {
         const auto& input = *std::ranges::find(inputs, name, &WorkflowInput::name);
         if (!input.list && files.size() > 1) throw Error("the input '{}' takes one file; found {}", name, files.size());
     }
-    for (const std::string& name : others)
-        if (!request.inputs.contains(name))
-            throw Error("the workflow's input '{}' has no file", name)
-                .hint("name one")
-                .remedy(Remedy::name_input_files);
+    for (const std::string& name : others) {
+        if (request.inputs.contains(name)) continue;
+        const auto has_own = [&](const ScanFile& scan) { return scan.inputs.contains(name); };
+        if (std::ranges::all_of(request.scans, has_own)) continue;
+        throw Error("the workflow's input '{}' has no file", name).hint("name one").remedy(Remedy::name_input_files);
+    }
 }
 
 /// `what`: "variant" or "step".

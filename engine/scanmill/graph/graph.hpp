@@ -31,12 +31,16 @@ struct ScanFile {
     std::string frame;                      ///< empty: from the workflow or the file
     std::optional<RigidTransform> pose;     ///< applied after reading; `to` names the new frame
     InvalidRows invalid = InvalidRows::by_format;  ///< by_format: from the request, the workflow or the format
+    /// Of a scan: its own files for the workflow's other inputs, the truth among them.
+    std::map<std::string, std::vector<ScanFile>> inputs{};
 };
 
 /// The files that a plan runs over, the part of the plan that runs, and the folder for its outputs.
 struct RunRequest {
     std::vector<ScanFile> scans;  ///< for the first input: one per run, or all in one run if the input is a list
-    std::map<std::string, std::vector<std::filesystem::path>> inputs;  ///< for the other inputs
+    /// For the other inputs, in every run; without it, the scan's own files, or those of the first scan if the first
+    /// input is a list.
+    std::map<std::string, std::vector<std::filesystem::path>> inputs;
     std::vector<std::filesystem::path> protected_files;  ///< more files that no output may replace
     std::filesystem::path output_folder;
     LengthUnit unit = LengthUnit::unknown;  ///< of every file; unknown: from the workflow or the file
@@ -74,6 +78,7 @@ struct LeafSource {
     std::optional<RigidTransform> pose;
     InvalidRows invalid = InvalidRows::by_format;  ///< of points
     bool is_streamed = false;  ///< read piece by piece, if the file allows it; in no key, as the values are equal
+    std::vector<Kind> also{};  ///< other kinds that the file may hold
 };
 
 /// Declared unit, frame, pose and rule for invalid rows as (name, text).
@@ -105,6 +110,7 @@ struct RunCell {
     std::size_t variant;  ///< index into Plan::variants
     std::vector<std::size_t> nodes;  ///< inputs before the steps that need them
     std::vector<RunOutput> outputs;
+    std::filesystem::path truth{};  ///< that its measuring steps compare with; empty: nothing is measured
 };
 
 struct RunGraph {
@@ -134,9 +140,10 @@ struct GraphPart {
 using HashOfFile = std::function<std::string(const std::filesystem::path&)>;
 
 /// `hash` returns the hash of a file's bytes: content_hash() or Cache::file_hash(). Every file is read once. A scan
-/// that cannot be read only marks its node; a parameter's file that cannot be read is reported by the filter. Throws
-/// Error for a request that does not fit its plan, for two cells that would write one file, and for outputs that would
-/// replace an input or leave the output folder. Pre: all parts have one seed and one output folder.
+/// or another input that cannot be read only marks its node; a parameter's file that cannot be read is reported by the
+/// filter. Throws Error for a request that does not fit its plan, for two cells that would write one file, and for
+/// outputs that are an input as well, existing or not, or leave the output folder. Pre: all parts have one seed and one
+/// output folder.
 RunGraph make_graph(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash = content_hash);
 RunGraph make_graph(const Plan& plan, FilterLibrary& library, const RunRequest& request,
                     const HashOfFile& hash = content_hash);

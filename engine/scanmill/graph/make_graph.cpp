@@ -63,6 +63,7 @@ std::string key_of_leaf(const LeafSource& leaf, const KeyBase& base) {
         .field("frame", leaf.frame)
         .field("pose", leaf.pose ? text_of(*leaf.pose) : "")
         .field("invalid", name_of(leaf.invalid));
+    for (const Kind kind : leaf.also) key.field("also", name_of(kind));
     return key.key();
 }
 
@@ -120,13 +121,6 @@ private:
     std::map<std::string, Content> contents_;  // by path
 };
 
-/// The name of the folder that contains the file.
-std::string folder_name(const fs::path& file) {
-    std::error_code gone;
-    const std::string name = fs::absolute(file, gone).lexically_normal().parent_path().filename().string();
-    return name.empty() ? "root" : name;
-}
-
 class GraphBuilder {
 public:
     GraphBuilder(const std::vector<GraphPart>& parts, FilterLibrary& library, const HashOfFile& hash)
@@ -151,7 +145,11 @@ public:
 private:
     void protect_inputs(const GraphPart& part) {
         output_files_.protect(part.plan->workflow.file);
-        for (const ScanFile& scan : part.request.scans) output_files_.protect(scan.path);
+        for (const ScanFile& scan : part.request.scans) {
+            output_files_.protect(scan.path);
+            for (const auto& [name, files] : scan.inputs)
+                for (const ScanFile& file : files) output_files_.protect(file.path);
+        }
         for (const auto& [name, files] : part.request.inputs)
             for (const fs::path& file : files) output_files_.protect(file);
         for (const fs::path& file : part.request.protected_files) output_files_.protect(file);
@@ -191,7 +189,7 @@ private:
             if (!request_->only.empty() && std::ranges::find(request_->only, planned.name) == request_->only.end())
                 continue;
             if (!request_->until.empty() && !planned.steps_by_name.contains(request_->until)) continue;
-            RunCell cell{graph_.plans.size() - 1, scan, variant, {}, {}};
+            RunCell cell{graph_.plans.size() - 1, scan, variant, {}, {}, truth_of(file)};
             std::map<std::size_t, std::size_t> node_of_step;
             for (const std::size_t step : steps_to_run(planned)) {
                 node_of_step[step] = add_step(step, node_of_step, scan, file, cell);
@@ -202,9 +200,7 @@ private:
             for (const auto& [name, source] : outputs(planned)) {
                 if (source.step && !node_of_step.contains(*source.step)) continue;  // after the last step to run
                 const std::size_t node = sources_of(source, node_of_step, scan, file, cell).front();
-                const std::string writer =
-                    fmt::format("scan '{}' under variant '{}'{}", scan_name, planned.name,
-                                parts_.size() > 1 ? " of workflow '" + values.workflow + "'" : "");
+                const std::string writer = cell_text(scan_name, planned.name, parts_.size() > 1 ? values.workflow : "");
                 const std::string content = fmt::format("{} {} {}", node, scan, plan_->workflow.file);
                 const fs::path target =
                     output_files_.add(expand_template(name, values), {content, source.port}, writer);
@@ -279,12 +275,21 @@ private:
         const WorkflowInput& input = plan_->workflow.inputs[source.input];
         if (source.input == 0 && !input.list) return {add_leaf(0, scan, *file, cell)};
         std::vector<std::size_t> leaves;
-        if (source.input == 0)
-            for (const ScanFile& each : request_->scans) leaves.push_back(add_leaf(0, scan, each, cell));
-        else
-            for (const fs::path& each : request_->inputs.at(input.name))
-                leaves.push_back(add_leaf(source.input, scan, each, cell));
+        for (const ScanFile& each : source.input == 0 ? request_->scans : files_of(input.name, file))
+            leaves.push_back(add_leaf(source.input, scan, each, cell));
         return leaves;
+    }
+
+    /// For an input beside the scans. Pre: require_fits().
+    std::vector<ScanFile> files_of(const std::string& input, const ScanFile* file) const {
+        if (const auto common = request_->inputs.find(input); common != request_->inputs.end())
+            return {common->second.begin(), common->second.end()};
+        return (file ? *file : request_->scans.front()).inputs.at(input);
+    }
+
+    fs::path truth_of(const ScanFile* file) const {
+        const std::optional<std::size_t> input = truth_input_of(plan_->workflow);
+        return input ? files_of(plan_->workflow.inputs[*input].name, file).front().path : fs::path();
     }
 
     std::size_t add_leaf(std::size_t input, std::size_t scan, const ScanFile& file, RunCell& cell) {
@@ -298,6 +303,7 @@ private:
         node.leaf.content = content.hash;
         node.unreadable = content.why_unreadable;
         node.leaf.kind = declared.kind;
+        node.leaf.also = declared.also;
         node.leaf.unit = file.unit != LengthUnit::unknown        ? file.unit
                          : request_->unit != LengthUnit::unknown ? request_->unit
                                                                  : declared.unit;

@@ -26,50 +26,45 @@ fs::path real_path(const fs::path& path) {
     return real;
 }
 
+fs::path real_folder(const fs::path& path) {
+    fs::path folder = real_path(path);
+    return folder.has_filename() || folder == folder.root_path() ? folder : folder.parent_path();  // "out/"
+}
+
 }  // namespace
 
-OutputFiles::OutputFiles(const fs::path& folder) : folder_(real_path(folder)) {
-    if (!folder_.has_filename() && folder_ != folder_.root_path()) folder_ = folder_.parent_path();  // "out/"
+OutputFiles::OutputFiles(const fs::path& folder) : folder_(real_folder(folder)), names_(folder_) {}
+
+void OutputFiles::protect(const fs::path& file) {
+    if (const Identity existing = identity(file); existing != Identity()) {
+        inputs_.insert(existing);
+        return;
+    }
+    std::error_code trouble;
+    if (fs::path real = fs::weakly_canonical(fs::absolute(file, trouble), trouble); !trouble)
+        absent_inputs_.insert(std::move(real));
 }
 
 fs::path OutputFiles::add(const std::string& name, const OutputContent& content, const std::string& writer) {
-    const fs::path file = folder_ / name;
-    const auto [found, is_new] = files_.emplace(file, Entry{content, writer});
-    if (!is_new) {
-        if (found->second.content != content)
-            throw Error("{} and {} would both write '{}'", found->second.writer, writer, file.string())
-                .hint(
-                    "put {variant}, {workflow} or {folder}, the name of the scan's folder, into the output's name, or "
-                    "rename a scan");
-        return file;
-    }
-    require_no_clash(file, writer);
-    for (fs::path part = file.parent_path(); part != folder_; part = part.parent_path()) folders_.emplace(part, writer);
-    if (const fs::path real = real_path(file.parent_path()); !lies_below(real, folder_))
-        throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), real.string())
-            .hint("a symbolic link below the output folder leads out of it; remove it");
-    for (const fs::path& replaced : {file, previous_of(file)})
-        if (const Identity existing = identity(replaced); existing != Identity() && inputs_.contains(existing))
-            throw Error("'{}' is an input; an output must not replace it", replaced.string())
-                .hint("choose another output folder")
-                .remedy(Remedy::choose_output_folder);
-    return file;
-}
-
-/// A path cannot be a file and a folder at once.
-void OutputFiles::require_no_clash(const fs::path& file, const std::string& writer) const {
-    if (const auto folder = folders_.find(file); folder != folders_.end())
-        throw Error("{} would write the file '{}', which is the folder that {} writes into", writer, file.string(),
-                    folder->second);
-    for (fs::path part = file.parent_path(); part != folder_; part = part.parent_path())
-        if (const auto other = files_.find(part); other != files_.end())
-            throw Error("{} would write '{}' into a folder that is a file of {}", writer, file.string(),
-                        other->second.writer);
+    const auto [file, is_new] = names_.add(name, content, writer);
+    if (!is_new) return file;
     std::error_code unknown;  // for a name that is too long, writing fails later
     if (fs::is_directory(file, unknown))
         throw Error("the output '{}' is an existing folder", file.string())
             .hint("remove it, or choose another output folder")
             .remedy(Remedy::choose_output_folder);
+    const fs::path folder = real_path(file.parent_path());
+    if (!lies_below(folder, folder_))
+        throw Error("'{}' would be written outside the output folder, to '{}'", file.string(), folder.string())
+            .hint("a symbolic link below the output folder leads out of it; remove it");
+    for (const fs::path& replaced : {file, previous_of(file)}) {
+        const Identity existing = identity(replaced);
+        if (existing != Identity() ? inputs_.contains(existing) : absent_inputs_.contains(folder / replaced.filename()))
+            throw Error("'{}' is an input; an output must not replace it", replaced.string())
+                .hint("choose another output folder")
+                .remedy(Remedy::choose_output_folder);
+    }
+    return file;
 }
 
 /// Zeros for what does not exist.
@@ -78,8 +73,6 @@ OutputFiles::Identity OutputFiles::identity(const fs::path& file) {
     if (::stat(file.c_str(), &status) != 0) return {0, 0};
     return {status.st_dev, status.st_ino};
 }
-
-fs::path description_of(const fs::path& file) { return file.string() + ".json"; }
 
 fs::path previous_of(const fs::path& file) { return file.string() + ".previous"; }
 

@@ -3,49 +3,35 @@
 /// The output files of a run, checked before it begins against each other, the inputs and the output folder.
 
 #include <filesystem>
-#include <map>
 #include <set>
 #include <string>
 
-namespace scanmill {
+#include "scanmill/plan/output_names.hpp"
 
-/// The content of an output file: one output port of one node, for one scan under one workflow.
-struct OutputContent {
-    std::string node;
-    std::string port;
-    bool operator==(const OutputContent&) const = default;
-};
+namespace scanmill {
 
 class OutputFiles {
 public:
     explicit OutputFiles(const std::filesystem::path& folder);
 
-    /// No output may replace this file. Pre: nothing was added yet.
-    void protect(const std::filesystem::path& file) { inputs_.insert(identity(file)); }
+    /// No output may replace this file, nor create it if it does not exist yet. Pre: nothing was added yet.
+    void protect(const std::filesystem::path& file);
 
     /// The absolute path of `name` (relative to the output folder, in normal form). `writer` names the cell in
     /// messages. Throws Error when another content has the same path, when one output's path is another's folder, when
-    /// the file, or previous_of() it, would replace an input, and when a link leads it out of the output folder.
+    /// the file, or previous_of() it, is an input, and when a link leads it out of the output folder.
     std::filesystem::path add(const std::string& name, const OutputContent& content, const std::string& writer);
 
 private:
-    struct Entry {
-        OutputContent content;
-        std::string writer;
-    };
     using Identity = std::pair<std::uintmax_t, std::uintmax_t>;  // device and inode
 
     static Identity identity(const std::filesystem::path& file);
-    void require_no_clash(const std::filesystem::path& file, const std::string& writer) const;
 
     std::filesystem::path folder_;
-    std::map<std::filesystem::path, Entry> files_;
-    std::map<std::filesystem::path, std::string> folders_;  // folders of files_ and the first writer of each
+    OutputNames names_;
     std::set<Identity> inputs_;
+    std::set<std::filesystem::path> absent_inputs_;  // absolute, without links
 };
-
-/// The JSON file beside an output that describes it: `<output>.json`.
-std::filesystem::path description_of(const std::filesystem::path& file);
 
 /// Where an output of an earlier run is moved when its cell fails: `<output>.previous`.
 std::filesystem::path previous_of(const std::filesystem::path& file);

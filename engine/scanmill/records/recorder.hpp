@@ -22,15 +22,18 @@ class Recorder : public RunObserver {
 public:
     using OnWarning = std::function<void(std::string)>;
 
-    /// Creates `file` if needed. Library and graph must outlive the recorder.
+    /// Creates `file` if needed. Library and graph must outlive the recorder. `measures_costs`: records what cells
+    /// cost; false if the run uses a cache, as its steps are skipped or do more.
     Recorder(std::filesystem::path file, RunStart start, FilterLibrary& library, const RunGraph& graph,
-             OnWarning on_warning);
+             OnWarning on_warning, bool measures_costs = false);
 
     ~Recorder() override;
 
     void node_ended(const RunNode& node, const NodeReport& report) override;
     void cell_ended(const RunCell& cell, const CellReport& report) override;
     void time_passed() override { flush_when_due(); }
+    /// Adds the costs of one more pass over cells of the graph, which ran as `graph`.
+    void add_pass(const RunGraph& graph, const RunReport& report);
     /// Writes the remaining rows and the outcome of the run.
     void finish(const RunReport& report);
 
@@ -56,6 +59,9 @@ private:
     std::string trouble_;
     std::vector<StepRecord> steps_;
     std::vector<CellRecord> cells_;
+    std::vector<PastCosts> costs_;  // of later passes
+    bool measures_costs_;
+    std::vector<std::optional<CostRecord>> node_costs_;  // by node; nothing: it did not run, or failed
     std::chrono::steady_clock::time_point begin_, flushed_;
     std::future<void> beginning_;  // opens the database beside the first steps
 };

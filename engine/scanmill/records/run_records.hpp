@@ -68,8 +68,8 @@ struct CellRecord {
     std::vector<std::size_t> nodes;  ///< of the run's graph; their steps were recorded before
     std::vector<OutputRecord> outputs;
     std::vector<std::string> doubts;
-    std::string truth;  ///< the file; empty: none
-    std::vector<CostRecord> costs;  ///< one per pass; empty if a step came from the cache or failed
+    std::string truth{};  ///< the file; empty: none
+    std::vector<CostRecord> costs{};  ///< one per pass; empty if a step came from the cache or failed
 };
 
 struct RunSummary {
@@ -119,7 +119,8 @@ public:
     /// Opens the records for appending, or creates them. Throws Error: not such a file, one of a newer Scanmill, or an
     /// unwritable folder.
     static RunRecords append_to(const std::filesystem::path& file);
-    /// Opens records for reading; tables of an older version are migrated first.
+    /// Opens records for reading; tables of an older version are migrated first, in memory if the file cannot be
+    /// written. Of the functions below, those that are not const need append_to().
     static RunRecords read(const std::filesystem::path& file);
     RunRecords(RunRecords&&) noexcept;
     ~RunRecords();
@@ -132,8 +133,10 @@ public:
     void end(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells,
              const std::string& outcome, double seconds);
     void end(std::int64_t run, const std::string& outcome, double seconds) { end(run, {}, {}, outcome, seconds); }
+    /// Appends the costs of one more pass over cells of the run. Pre: this object added the cells.
+    void add_costs(std::int64_t run, const std::vector<PastCosts>& cells);
 
-    /// Makes the run the baseline of its batch. Throws Error for an unknown run and one that has not ended.
+    /// Makes the run the baseline of its batch. Throws Error for an unknown run and one that was killed or interrupted.
     void accept(std::int64_t run, const std::string& who, const std::string& why);
     /// Revokes the newest valid acceptance of the batch, so that the one before it holds again. Throws Error if there
     /// is none.
@@ -142,12 +145,15 @@ public:
     std::vector<Acceptance> acceptances() const;
     /// The run that was accepted last for this batch, and not revoked.
     std::optional<Acceptance> baseline(const std::string& batch) const;
-    /// The costs of the batch's cells in the runs `first` <= run < `end` on this machine with so many threads and jobs.
+    /// The costs of the batch's cells in the runs `first` <= run < `end` on this machine with so many threads and jobs;
+    /// of the newest `most_past_runs` of those that measured any.
+    static constexpr int most_past_runs = 20;
     std::vector<PastCosts> past_costs(const RunStart& like, std::int64_t first, std::int64_t end) const;
 
     /// In the order of their numbers.
     std::vector<RunSummary> runs() const;
     /// Throws Error for an unknown run, naming the existing ones.
+    RunSummary summary(std::int64_t id) const;
     RunDetails run(std::int64_t id) const;
     /// The steps with this label on this scan in the newest run of the workflow that has any.
     std::vector<PastStep> last_steps(const std::string& workflow, const std::string& scan,
@@ -155,6 +161,10 @@ public:
 
 private:
     struct Database;
+    static std::unique_ptr<Database> open_to_read(const std::filesystem::path& file);
+    std::string now() const;
+    std::vector<RunSummary> summaries(std::optional<std::int64_t> id) const;
+    std::vector<Acceptance> acceptances(const std::string& condition, const std::string& key) const;
     void insert(std::int64_t run, const std::vector<StepRecord>& steps, const std::vector<CellRecord>& cells);
     explicit RunRecords(std::unique_ptr<Database> database);
     std::unique_ptr<Database> database_;

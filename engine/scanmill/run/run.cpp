@@ -406,9 +406,10 @@ private:
     std::string frame_of(std::size_t index) const {
         const RunNode& node = graph_.nodes[index];
         const PlannedStep* step = graph_.step(node);
-        return step ? fmt::format("in step '{}' ({}:{}:{})", step->label, graph_.plans[node.plan]->workflow.file,
-                                  step->position.line, step->position.column)
-                    : fmt::format("while reading '{}'", node.leaf.file.string());
+        if (!step) return fmt::format("while reading '{}'", node.leaf.file.string());
+        return fmt::format("in step '{}' ({}:{}:{})", step->label,
+                           step->file.empty() ? graph_.plans[node.plan]->workflow.file : step->file,
+                           step->position.line, step->position.column);
     }
 
     Job job(const Task& task, std::size_t worker) const {

@@ -41,6 +41,8 @@ public:
     virtual void output_started(const RunCell&, const RunOutput&, std::size_t /*worker*/) {}
     virtual void output_written(const RunCell&, const OutputReport&) {}
     virtual void cell_ended(const RunCell&, const CellReport&) {}
+    /// The steps run once more, to measure what they cost; without further events.
+    virtual void pass_started(unsigned /*pass*/, unsigned /*passes*/) {}
     /// Called several times a second.
     virtual void time_passed() {}
 };

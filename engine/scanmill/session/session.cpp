@@ -50,6 +50,27 @@ void remove_incomplete_outputs(const RunGraph& graph) {
     for (const fs::path& folder : folders) remove_abandoned_parts(folder);
 }
 
+/// The cells that are complete, without their outputs. Nodes that none of them needs do not run.
+RunGraph graph_of_costs(const RunGraph& graph, const RunReport& report) {
+    RunGraph again = graph;
+    again.cells.clear();
+    for (std::size_t cell = 0; cell < graph.cells.size(); ++cell) {
+        if (report.cells[cell].outcome > Outcome::doubtful) continue;
+        again.cells.push_back(graph.cells[cell]);
+        again.cells.back().outputs.clear();
+    }
+    return again;
+}
+
+/// Passes on no events but the time's.
+struct Clock : RunObserver {
+    explicit Clock(const std::vector<RunObserver*>& all) : observers(all) {}
+    void time_passed() override {
+        for (RunObserver* observer : observers) observer->time_passed();
+    }
+    const std::vector<RunObserver*>& observers;
+};
+
 std::string processor() {
     std::ifstream properties("/proc/cpuinfo");
     for (std::string line; std::getline(properties, line);)
@@ -101,12 +122,14 @@ RunReport Session::run(const SessionTask& task, unsigned jobs, FilterLibrary& li
                        std::vector<NodePrediction> predictions, const std::vector<RunObserver*>& observers,
                        const std::function<void(const RunStarted&)>& on_start) {
     require_writable(settings_.output_folder);
-    remove_incomplete_outputs(task.graph);
     const std::function<void(std::string)> warn = [warn = warn_](std::string text) {
         if (*warn) (*warn)(std::move(text));
     };
+    const OutputLock lock(settings_.output_folder, settings_.command_line, warn);
+    remove_incomplete_outputs(task.graph);
     if (jobs == 0 && (task.limits.cell_seconds > 0 || task.limits.step_seconds > 0))
         warn("limits of time are not enforced without worker processes");
+    if (cache_ && task.repeats > 1) warn("costs are not measured, because this run uses a cache");
     RunSettings run_settings;
     run_settings.threads =
         settings_.threads > 0 ? settings_.threads : std::max(1u, usable_cores() / std::max(1u, jobs));
@@ -123,17 +146,39 @@ RunReport Session::run(const SessionTask& task, unsigned jobs, FilterLibrary& li
         in_process = std::make_unique<InProcessWorker>(library, cache_, settings_.keep, settings_.is_cancelled);
     Workers& workers = processes_ ? static_cast<Workers&>(*processes_) : *in_process;
 
-    RunStart start{task.name, task.file,        settings_.command_line, task.graph.seed, run_settings.threads,
-                   jobs,      SCANMILL_VERSION, machine_text(),         libraries_text()};
-    Recorder recorder(settings_.output_folder / records_file, std::move(start), library, task.graph, warn);
+    RunStart start{task.name, task.file,        settings_.command_line, task.graph.seed,  run_settings.threads,
+                   jobs,      SCANMILL_VERSION, machine_text(),         libraries_text(), task.gate};
+    Recorder recorder(settings_.output_folder / records_file, std::move(start), library, task.graph, warn, !cache_);
     on_start({jobs, run_settings.threads, recorder.run()});
     std::vector<RunObserver*> all = observers;
     all.push_back(&recorder);
-    const RunReport report = scanmill::run(library, task.graph, workers, run_settings, all);
+    RunReport report = scanmill::run(library, task.graph, workers, run_settings, all);
+    if (!cache_ && !(run_settings.fail_fast && report.outcome() >= Outcome::failed))
+        measure_costs_again(task, library, workers, std::move(run_settings), report, recorder, all);
     if (processes_) processes_->dismiss();
     recorder.finish(report);
     if (cache_) cache_->evict();
     return report;
+}
+
+void Session::measure_costs_again(const SessionTask& task, FilterLibrary& library, Workers& workers,
+                                  RunSettings run_settings, RunReport& report, Recorder& recorder,
+                                  const std::vector<RunObserver*>& observers) {
+    const RunGraph graph = graph_of_costs(task.graph, report);
+    run_settings.prediction.clear();
+    Clock clock(observers);
+    for (unsigned pass = 2; pass <= task.repeats && !report.interrupted && !graph.cells.empty(); ++pass) {
+        for (RunObserver* observer : observers) observer->pass_started(pass, task.repeats);
+        const RunReport again = scanmill::run(library, graph, workers, run_settings, {&clock});
+        recorder.add_pass(graph, again);
+        report.interrupted = again.interrupted;
+        const auto has_failed = [](const CellReport& cell) { return cell.outcome == Outcome::failed; };
+        if (const auto failed = std::ranges::find_if(again.cells, has_failed); failed != again.cells.end() && *warn_)
+            (*warn_)(
+                fmt::format("when the costs were measured again, {} of {} failed, without effect on the results: {}",
+                            std::ranges::count_if(again.cells, has_failed),
+                            count_text(again.cells.size(), "cell", "cells"), failed->failure.error.sentence()));
+    }
 }
 
 u64 memory_need(const RunGraph& graph) {

@@ -13,9 +13,11 @@
 #include "scanmill/batch/batch.hpp"
 #include "scanmill/cache/cache.hpp"
 #include "scanmill/run/run.hpp"
+#include "scanmill/session/output_lock.hpp"
 
 namespace scanmill {
 
+class Recorder;
 class WorkerProcesses;
 
 struct SessionSettings {
@@ -35,6 +37,8 @@ struct SessionTask {
     std::string name, file;  ///< of the workflow or the batch
     RunGraph graph;
     Limits limits;
+    std::string gate{};    ///< to_json_text() of the batch's gate, for the records; empty: none
+    unsigned repeats = 1;  ///< how often costs are measured; without a cache
 };
 
 /// What is decided when a run starts.
@@ -59,13 +63,20 @@ public:
     unsigned jobs(const RunGraph& graph) const;
 
     /// Runs the graph, records the run, and evicts from the cache what exceeds its limit. Throws Error when results
-    /// cannot be written to the output folder. `on_start` is called once, before the first step. `jobs`: from jobs(),
+    /// cannot be written to the output folder, and FolderInUse when another run writes into it. Without a cache, the
+    /// complete cells run again, until their costs are measured as often as the task says; these passes write no
+    /// outputs. `on_start` is called once, before the first step. `jobs`: from jobs(),
     /// which depends on the free memory.
     RunReport run(const SessionTask& task, unsigned jobs, FilterLibrary& library,
                   std::vector<NodePrediction> predictions, const std::vector<RunObserver*>& observers,
                   const std::function<void(const RunStarted&)>& on_start);
 
 private:
+    /// Adds the costs of further passes to the records.
+    void measure_costs_again(const SessionTask& task, FilterLibrary& library, Workers& workers,
+                             RunSettings run_settings, RunReport& report, Recorder& recorder,
+                             const std::vector<RunObserver*>& observers);
+
     SessionSettings settings_;
     Cache* cache_;
     std::shared_ptr<std::function<void(std::string)>> warn_ = std::make_shared<std::function<void(std::string)>>();

@@ -88,7 +88,7 @@ struct nlohmann::adl_serializer<std::shared_ptr<const scanmill::PlannedStep>> {
 namespace scanmill {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RigidTransform, rotation, translation, unit, from, to)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeafSource, file, content, kind, unit, frame, pose, invalid, is_streamed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LeafSource, file, content, kind, unit, frame, pose, invalid, is_streamed, also)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ParameterFile, path, content)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobInput, port, node, from, content, leaf)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobCaching, is_used, plan_key, code, keep_always, inputs_cost, needed)
@@ -101,7 +101,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Failure, cause, number, error, scan, equal_sc
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Effort, seconds, cpu_seconds, peak_memory, threads, log)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NodeReport, outcome, origin, why, failure, effort, attempts, resolved, metrics,
                                    properties, warnings, doubts)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OutputReport, file, outcome, kind, properties, warnings, doubts)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OutputReport, file, outcome, kind, properties, warnings, doubts, sha256, bytes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobReport, outcome, lost, node, result, kept, output, was_read_whole, wear)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WorkerStart, cache_folder, keep_policy, parent, core_build, scratch)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(JobMessage, job, forgotten)

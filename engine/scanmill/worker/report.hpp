@@ -87,6 +87,8 @@ struct OutputReport {
     Metrics properties;
     std::vector<std::string> warnings;
     std::vector<std::string> doubts;  ///< about the file: it holds less than the value
+    std::string sha256;               ///< of the file's bytes; empty: not written
+    u64 bytes = 0;                    ///< of the file
     std::filesystem::path moved_to;   ///< where the file of an earlier run was moved; empty: nowhere
     std::string not_moved;            ///< why the file of an earlier run could not be moved; empty: it need not be
 };

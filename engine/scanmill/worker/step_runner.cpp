@@ -69,9 +69,33 @@ LengthUnit common_unit(const std::vector<StepInput>& inputs) {
     return first ? frame_of(first->value)->unit : LengthUnit::unknown;
 }
 
-/// All inputs in one unit and relative to one origin, that of the first.
-Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, Context& context) {
-    const LengthUnit unit = common_unit(inputs);
+/// The inputs of a measuring step with the truth in the unit of the value, so that equal lengths are equal numbers.
+/// Throws Error if only one of the two declares a unit: a wrong guess would be a wrong score.
+std::vector<StepInput> in_unit_of_value(std::vector<StepInput> inputs, const MeasureSpec& ports) {
+    const auto unit_at = [&](const std::string& port) -> std::optional<LengthUnit> {
+        const auto input = std::ranges::find(inputs, port, &StepInput::port);
+        const std::optional<Frame> frame = input == inputs.end() ? std::nullopt : frame_of(input->value);
+        return frame ? std::optional(frame->unit) : std::nullopt;
+    };
+    const std::optional<LengthUnit> unit = unit_at(ports.value), of_truth = unit_at(ports.truth);
+    if (!unit || !of_truth || *unit == *of_truth) return inputs;
+    const auto text = [](LengthUnit each) {
+        return each == LengthUnit::unknown ? "has no unit" : fmt::format("is in {}", symbol(each));
+    };
+    if (*unit == LengthUnit::unknown || *of_truth == LengthUnit::unknown)
+        throw Error("the {} {}, the {} {}; they cannot be compared", ports.value, text(*unit), ports.truth,
+                    text(*of_truth))
+            .hint(*unit == LengthUnit::unknown
+                      ? "declare the scan's unit: `unit:` at the scan or at the workflow's input"
+                      : "declare the truth's unit: `truth: {path: FILE, unit: mm}` in a batch, or `unit:` at the "
+                        "workflow's input");
+    for (StepInput& input : inputs)
+        if (input.port == ports.truth) input.value = in_unit(input.value, *unit);
+    return inputs;
+}
+
+/// All inputs in `unit`, which is that of all that declare one, and relative to one origin, that of the first.
+Inputs rebased(const std::vector<StepInput>& inputs, const Value* first, LengthUnit unit, Context& context) {
     Inputs result;
     std::map<std::string, std::size_t> without_unit;  // by port
     for (const StepInput& input : inputs) {
@@ -189,14 +213,18 @@ void require_expectations(const PlannedStep& step, const Value& primary, NodeRep
 Value read_leaf(const LeafSource& leaf, const OnWarning& on_warning, std::size_t* dropped) {
     const ReadOptions options = reading(leaf, on_warning);
     Value value;
-    if (leaf.kind == kind_of<PointCloud>()) {
-        Cleaned<PointCloud> scan = accepted_points(read_file(leaf.file, options), leaf.file, options, leaf.invalid);
+    LoadedFile loaded = leaf.also.empty() && leaf.kind == kind_of<TriangleMesh>()
+                            ? LoadedFile{Value(read_mesh(leaf.file, options)), {}, {}, {}}
+                            : read_file(leaf.file, options);
+    const bool is_other_kind = std::ranges::find(leaf.also, loaded.value.kind()) != leaf.also.end();
+    if ((is_other_kind ? loaded.value.kind() : leaf.kind) == kind_of<PointCloud>()) {
+        Cleaned<PointCloud> scan = accepted_points(loaded, leaf.file, options, leaf.invalid);
+        loaded = {};  // two copies of a large scan may not fit into memory
         if (dropped) *dropped = scan.points;
         value = std::make_shared<const PointCloud>(std::move(scan.result));
     } else {
-        value = leaf.kind == kind_of<TriangleMesh>() ? Value(read_mesh(leaf.file, options))
-                                                     : read_file(leaf.file, options).value;
-        if (value.kind() != leaf.kind)
+        value = std::move(loaded.value);
+        if (value.kind() != leaf.kind && !is_other_kind)
             throw Error("'{}': the workflow needs {}; the file contains {}", leaf.file.string(), leaf.kind.name(),
                         value.kind().name());
         naming_file(leaf.file, [&] { require_supported_range(bounding_box(positions_of(value).span())); });
@@ -221,12 +249,19 @@ Outputs run_step(const PlannedStep& step, const std::function<const FilterDeclar
                  const std::vector<StepInput>& inputs, ContextOptions options, const Recall& recall,
                  NodeReport& report) {
     return run_recorded(step, filter, std::move(options), recall, report, [&](Context& context) {
-        const Value* first = first_geometric(inputs);
-        Inputs ports = rebased(inputs, first, context);
+        const std::vector<StepInput> comparable =
+            step.spec.measures ? in_unit_of_value(inputs, *step.spec.measures) : inputs;
+        const Value* first = first_geometric(comparable);
+        const LengthUnit unit = common_unit(comparable);
+        Inputs ports = rebased(comparable, first, unit, context);
         // Without a geometric input, the filter resolves lengths against its own result.
         std::vector<std::string> warnings;
-        ResolvedParameters resolved = first ? resolved_parameters(step, length_scale(*first, adding_to(warnings)))
-                                            : ResolvedParameters{step.parameters, {}};
+        ResolvedParameters resolved{step.parameters, {}};
+        if (first) {
+            LengthScale scale = length_scale(*first, adding_to(warnings));
+            scale.unit = unit;
+            resolved = resolved_parameters(step, scale);
+        }
         return Prepared{
             std::move(resolved), std::move(warnings),
             [&context, ports = std::move(ports)](const FilterDeclaration& declared, const ParameterSet& parameters) {

@@ -95,7 +95,11 @@ JobReport Workbench::perform(const Job& job, const JobListener& listener) {
     report.node.effort = use.until_now();
     report.node.effort.threads = job.threads;
     report.node.outcome = report.outcome;
-    if (is_write && report.outcome == Outcome::failed) report.output.outcome = Outcome::failed;
+    if (is_write && report.outcome == Outcome::failed) {
+        report.output.outcome = Outcome::failed;
+        report.output.sha256.clear();
+        report.output.bytes = 0;
+    }
     return report;
 }
 
@@ -191,18 +195,24 @@ void Workbench::write(const WriteWork& work, JobReport& report) {
         written.doubts.push_back(std::move(sentence));
     };
     Sha256 hash;
-    options.on_bytes = [&](std::string_view bytes) { hash.add(bytes); };
+    options.on_bytes = [&](std::string_view bytes) {
+        hash.add(bytes);
+        written.bytes += bytes.size();
+    };
     write_file(work.file, value, options);
+    written.sha256 = hash.text();
     const auto found = properties_.find({work.value.node, work.value.from});
     written.properties = found != properties_.end() ? found->second : properties_of(value);
     if (!written.doubts.empty()) written.properties.set("closed", 0, Unit::boolean);
     constexpr std::size_t longest_name = NAME_MAX;
     if (description_of(work.file).filename().native().size() <= longest_name) try {
-            write_description(work.file, hash.text(), work.made_how, value, written.properties, shift);
+            write_description(work.file, written.sha256, work.made_how, value, written.properties, shift);
         } catch (const Error&) {
             // A description of an earlier run must not stay beside this file.
             fs::remove(work.file, trouble);
             fs::remove(description_of(work.file), trouble);
+            written.sha256.clear();
+            written.bytes = 0;
             throw;
         }
     else
@@ -371,15 +381,20 @@ void Workbench::store(const Job& job, const JobCaching& caching, const std::stri
         result.warnings.push_back(warning.starts_with(path_prefix) ? warning.substr(path_prefix.size()) : warning);
     result.doubts = report.node.doubts;
     result.seconds = seconds;
-    store_values(job.node, caching, caching.inputs_cost + seconds, report);
+    store_values(job, caching, caching.inputs_cost + seconds, report);
     if (cache_->keep_step(run_key, result)) cache_->keep_run_key(caching.plan_key, run_key);
 }
 
-void Workbench::store_values(std::size_t node, const JobCaching& caching, double cost, JobReport& report) {
-    for (const auto& [port, value] : values_[node]) {
+void Workbench::store_values(const Job& job, const JobCaching& caching, double cost, JobReport& report) {
+    const auto* work = std::get_if<StepWork>(&job.work);
+    for (const auto& [port, value] : values_[job.node]) {
+        // What steps take by name alone, most workflows do not use.
+        const PortSpec* output = work ? work->step->spec.output(port) : nullptr;
+        const bool is_used =
+            !output || !output->by_name || std::ranges::find(caching.needed, port) != caching.needed.end();
         const EncodedValue encoded(value);
         bool kept = cache_->has_value(encoded.content(), encoded.size());
-        if (!kept && (caching.keep_always || rule_.is_worth(cost, encoded.size()))) {
+        if (!kept && is_used && (caching.keep_always || rule_.is_worth(cost, encoded.size()))) {
             const auto start = std::chrono::steady_clock::now();
             kept = cache_->keep_value(encoded);
             if (kept) rule_.wrote(encoded.size(), seconds_since(start));

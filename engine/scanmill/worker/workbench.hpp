@@ -61,7 +61,7 @@ private:
     void add_kept(JobReport& report) const;
     void store(const Job& job, const JobCaching& caching, const std::string& run_key, const std::string& path_prefix,
                double seconds, JobReport& report);
-    void store_values(std::size_t node, const JobCaching& caching, double cost, JobReport& report);
+    void store_values(const Job& job, const JobCaching& caching, double cost, JobReport& report);
 
     FilterLibrary& library_;
     Cache* cache_;

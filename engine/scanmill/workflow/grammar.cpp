@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 
 #include "scanmill/base/text.hpp"
 
@@ -131,6 +132,23 @@ void check_stem_template(const std::string& text, std::string_view what, Positio
 
 std::string with_stem(const std::string& text, const std::filesystem::path& file) {
     return with_placeholders(text, [&](const std::string&) { return file.stem().string(); });
+}
+
+void check_path_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics) {
+    const std::array<std::string, 2> placeholders{"stem", "folder"};
+    check_placeholders(text, what, placeholders, position, diagnostics);
+}
+
+std::string with_stem_and_folder(const std::string& text, const std::filesystem::path& file) {
+    return with_placeholders(text, [&](const std::string& placeholder) {
+        return placeholder == "folder" ? folder_name(file) : file.stem().string();
+    });
+}
+
+std::string folder_name(const std::filesystem::path& file) {
+    std::error_code gone;
+    const std::string name = std::filesystem::absolute(file, gone).lexically_normal().parent_path().filename().string();
+    return name.empty() ? "root" : name;
 }
 
 }  // namespace scanmill

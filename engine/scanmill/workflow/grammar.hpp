@@ -56,8 +56,15 @@ void check_placeholders(const std::string& text, std::string_view what, std::spa
 /// The text with `value_of` every placeholder in its place.
 std::string with_placeholders(const std::string& text, const std::function<std::string(const std::string&)>& value_of);
 
-/// Frames, poses and truths of a list of scans may contain {stem}, the scan's file name without folder and extension.
+/// The frames of a list of scans may contain {stem}, the scan's file name without folder and extension.
 void check_stem_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics);
 std::string with_stem(const std::string& text, const std::filesystem::path& file);
+
+/// The paths of poses, truths and inputs of a list of scans may also contain {folder}, see folder_name().
+void check_path_template(const std::string& text, std::string_view what, Position position, Diagnostics& diagnostics);
+std::string with_stem_and_folder(const std::string& text, const std::filesystem::path& file);
+
+/// The name of the folder that contains the file; "root" for the root folder.
+std::string folder_name(const std::filesystem::path& file);
 
 }  // namespace scanmill

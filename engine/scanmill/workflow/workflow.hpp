@@ -102,6 +102,8 @@ struct WorkflowInput {
     std::string frame;  ///< may contain {stem}; empty: the file's own
     InvalidRows invalid = InvalidRows::by_format;  ///< of points
     std::string help;
+    std::vector<Kind> also{};  ///< other kinds that its file may hold; of a truth that a batch adds
+    bool is_truth = false;  ///< a batch added it
 };
 
 struct WorkflowParameter {

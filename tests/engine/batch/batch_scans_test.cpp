@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which files a batch means, and what each brings along.
 
+#include <unistd.h>
+
 #include "engine/batch/batch_support.hpp"
 #include "scanmill/batch/scans.hpp"
 #include "support/thrown.hpp"
@@ -65,6 +67,42 @@ TEST_F(ScanFiles, OnlyRegularFiles_AreFound) {
     std::filesystem::create_symlink("b.ply", folder_ / "link.ply");
     std::filesystem::create_symlink("nowhere", folder_ / "dangling.ply");
     EXPECT_THAT(found("*.ply"), ElementsAre("b.ply", "link.ply"));
+}
+
+TEST_F(ScanFiles, EntriesThatCannotBeRead_AreLeftOutWithAWarning) {
+    files({"s/a.ply", "s/deep/b.ply"});
+    std::filesystem::create_symlink("nowhere", folder_ / "s/deep/dangling.ply");
+    std::filesystem::create_symlink("loop.ply", folder_ / "s/loop.ply");
+    std::filesystem::create_symlink("nowhere", folder_ / "s/other.xyz");
+    std::vector<std::string> warnings;
+    const auto warn = [&](std::string sentence) { warnings.push_back(std::move(sentence)); };
+    EXPECT_THAT(scan_files(folder_.path(), "**/*.ply", warn), SizeIs(2));
+    EXPECT_THAT(warnings, testing::UnorderedElementsAre(
+                              AllOf(HasSubstr("s/deep/dangling.ply' is a link that leads nowhere; it is left out")),
+                              AllOf(HasSubstr("s/loop.ply' cannot be read"), HasSubstr("it is left out"))));
+}
+
+/// Permissions do not stop root, who becomes somebody else for the search.
+TEST_F(ScanFiles, UnreadableFolders_CostTheirFilesAndNoMore) {
+    files({"s/a.ply", "s/closed/b.ply", "s/listed/c.ply", "s/open/d.ply"});
+    const uid_t self = ::geteuid();
+    std::filesystem::permissions(folder_.path(), std::filesystem::perms(0755));
+    std::filesystem::permissions(folder_ / "s/closed", std::filesystem::perms::none);
+    std::filesystem::permissions(folder_ / "s/listed", std::filesystem::perms(0444));
+    ASSERT_TRUE(self != 0 || ::seteuid(65534) == 0);
+    std::vector<std::string> warnings;
+    const auto warn = [&](std::string sentence) { warnings.push_back(std::move(sentence)); };
+    std::vector<std::filesystem::path> found;
+    EXPECT_NO_THROW(found = scan_files(folder_.path(), "s/**/*.ply", warn));
+    const std::string closed = test::sentence_of([&] { scan_files(folder_.path(), "s/closed/*.ply", warn); });
+    ASSERT_TRUE(self != 0 || ::seteuid(0) == 0);
+    for (const char* name : {"s/closed", "s/listed"})
+        std::filesystem::permissions(folder_ / name, std::filesystem::perms(0755));
+    EXPECT_THAT(found, ElementsAre(folder_ / "s/a.ply", folder_ / "s/open/d.ply"));
+    EXPECT_THAT(warnings,
+                testing::UnorderedElementsAre(AllOf(HasSubstr("s/closed' cannot be read"), HasSubstr("are left out")),
+                                              AllOf(HasSubstr("s/listed' cannot be read"), HasSubstr("are left out"))));
+    EXPECT_THAT(closed, HasSubstr("s/closed' cannot be read")) << "the folder that was named itself";
 }
 
 TEST_F(ScanFiles, LinksToFolders_AreFollowedByNameButNotByTwoStars) {
@@ -139,16 +177,45 @@ TEST_F(BatchScans, EntriesThatAreNone_AreRefused) {
     EXPECT_THAT(scans("[{path: scans/*.ply, truth: '{name}.stl'}]"), ElementsAre(HasSubstr("unknown placeholder")));
     EXPECT_THAT(scans("[{path: scans/*.ply, truth: ''}]"), ElementsAre(HasSubstr("the truth is empty")));
     EXPECT_THAT(scans("[{path: scans/*.ply, truth: [a]}]"), ElementsAre(HasSubstr("expected a file, as truth/")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, truth: {unit: mm}}]"), ElementsAre(HasSubstr("the truth has no path")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, truth: {path: a.stl, unti: mm}}]"),
+                testing::Contains(AllOf(HasSubstr("a truth has no key 'unti'"), HasSubstr("'unit'?"))));
+    EXPECT_THAT(scans("[{path: scans/*.ply, in: target.ply}]"), ElementsAre(HasSubstr("as {target: target.ply}")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, in: {'a b': t.ply}}]"),
+                ElementsAre(HasSubstr("is not a name for an input")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, in: {t: []}}]"), ElementsAre(HasSubstr("the list of files")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, in: {t: ''}}]"), ElementsAre(HasSubstr("the input 't' is empty")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, in: {t: {}}}]"), ElementsAre(HasSubstr("expected a file, as targets/")));
+    EXPECT_THAT(scans("[{path: scans/*.ply, in: {t: '{scan}.ply'}}]"), ElementsAre(HasSubstr("unknown placeholder")));
     EXPECT_THAT(scans("[{path: scans/*.ply, pose: }]"), ElementsAre(HasSubstr("expected a file, as poses/")));
 }
 
-TEST_F(BatchScans, MissingTruth_IsReportedForEachScan) {
+/// It fails the cells of its scan, not the others.
+TEST_F(BatchScans, MissingTruthOrFurtherInput_IsAWarningForEachScan) {
     folder_.write("truth/b.stl", "x");
-    EXPECT_THAT(
-        scans("[{path: scans/*.ply, truth: 'truth/{stem}.stl'}]"),
-        ElementsAre(AllOf(StartsWith("b:3:36: "), HasSubstr("truth/a.stl': there is no such file; expected the truth"),
-                          HasSubstr("scans/a.ply"))));
-    EXPECT_EQ(batch_.scans[1].truth, folder_ / "truth/b.stl");
+    EXPECT_THAT(scans("[{path: scans/*.ply, truth: 'truth/{stem}.stl'}]"),
+                ElementsAre(AllOf(StartsWith("b:3:36: warning: "),
+                                  HasSubstr("truth/a.stl': there is no such file; expected the truth"),
+                                  HasSubstr("scans/a.ply"))));
+    EXPECT_EQ(batch_.scans[0].truth.file, folder_ / "truth/a.stl");
+    EXPECT_EQ(batch_.scans[1].truth.file, folder_ / "truth/b.stl");
+    EXPECT_THAT(scans("[{path: scans/a.ply, in: {to: [scans/b.ply, gone.ply]}}]"),
+                ElementsAre(AllOf(StartsWith("b:3:52: warning: "), HasSubstr("expected the input 'to' of"))));
+    EXPECT_THAT(batch_.scans[0].inputs.at("to").files, SizeIs(2));
+}
+
+TEST_F(BatchScans, FolderOfAScan_IsAPlaceholderOfItsFiles) {
+    folder_.write("parts/one/scan.ply", "x");
+    folder_.write("parts/two/scan.ply", "x");
+    folder_.write("truth/one.stl", "x");
+    folder_.write("truth/two.stl", "x");
+    folder_.write("poses/one.json", json(pose(1)));
+    folder_.write("poses/two.json", json(pose(2)));
+    EXPECT_THAT(scans("[{path: parts/*/scan.ply, truth: 'truth/{folder}.stl', pose: 'poses/{folder}.json'}]"),
+                IsEmpty());
+    EXPECT_EQ(batch_.scans[0].truth.file, folder_ / "truth/one.stl");
+    EXPECT_EQ(batch_.scans[1].truth.file, folder_ / "truth/two.stl");
+    EXPECT_EQ(batch_.scans[1].pose->translation.x(), 2);
 }
 
 TEST_F(BatchScans, ManyMissingFiles_AreTenAndANumber) {

@@ -28,12 +28,14 @@ batch: nightly
 summary: All of it.
 scans:
   - {path: scans/*.ply, unit: mm, frame: "f-{stem}", pose: poses.json, truth: "truth/{stem}.stl", set: {n: 2}}
-  - scans/c/d.xyz
+  - {path: scans/c/d.xyz, truth: {path: "truth/{folder}.ply", unit: cm, frame: "t-{stem}"}, in: {to: e.ply, more: [f.ply, "{stem}/{folder}.ply"]}}
 workflows: [w.yaml, other.yaml]
 set: {n: {sweep: [1, 3]}, s: 0.1 %diag}
 limits: {memory: 8 GiB, time: 10 min, step: {memory: 500 MB, time: 2.5 s}, retries: 1}
+measure: {of: [a, b.mesh], filter: measure, samples: 5}
+gate: {hausdorff: +1 %, repeats: 2}
 )"),
-                IsEmpty());
+                testing::Each(HasSubstr("warning: ")));
     EXPECT_EQ(batch_.file, file());
     EXPECT_EQ(batch_.name, "nightly");
     EXPECT_EQ(batch_.summary, "All of it.");
@@ -45,17 +47,30 @@ limits: {memory: 8 GiB, time: 10 min, step: {memory: 500 MB, time: 2.5 s}, retri
     EXPECT_EQ(b.pose->translation, Vec3(2, 0, 0));
     EXPECT_EQ(b.pose->unit, LengthUnit::metre);
     EXPECT_EQ(b.pose->to, "part");
-    EXPECT_EQ(b.truth, folder_ / "truth/b.stl");
+    EXPECT_EQ(b.truth.file, folder_ / "truth/b.stl");
+    EXPECT_EQ(b.truth.unit, LengthUnit::unknown) << "its own, not that of the scan";
+    EXPECT_EQ(b.truth.position, (Position{5, 72}));
     EXPECT_THAT(b.settings.at("n").values.at(0).literal.items, ElementsAre("2"));
     EXPECT_EQ(batch_.scans[2].unit, LengthUnit::unknown);
     EXPECT_FALSE(batch_.scans[2].pose);
-    EXPECT_TRUE(batch_.scans[2].truth.empty());
+    EXPECT_EQ(batch_.scans[2].truth.file, folder_ / "truth/c.ply");
+    EXPECT_EQ(batch_.scans[2].truth.unit, LengthUnit::centimetre);
+    EXPECT_EQ(batch_.scans[2].truth.frame, "t-d");
+    EXPECT_THAT(batch_.scans[2].inputs.at("to").files, ElementsAre(folder_ / "e.ply"));
+    EXPECT_THAT(batch_.scans[2].inputs.at("more").files, ElementsAre(folder_ / "f.ply", folder_ / "d/c.ply"));
     ASSERT_EQ(batch_.workflows.size(), 2u);
     EXPECT_EQ(batch_.workflows[1].file, folder_ / "other.yaml");
     EXPECT_EQ(batch_.workflows[1].position, (Position{7, 21}));
     EXPECT_EQ(batch_.settings.at("n").values.size(), 2u);
     EXPECT_EQ(batch_.settings.at("s").position, (Position{8, 27})) << "of the name";
     EXPECT_EQ(batch_.limits, (Limits{u64(8) << 30, 500'000'000, 600, 2.5, 1}));
+    ASSERT_TRUE(batch_.measure && batch_.gate);
+    ASSERT_EQ(batch_.measure->of.size(), 2u);
+    EXPECT_EQ(batch_.measure->of[1].text, "b.mesh");
+    EXPECT_EQ(batch_.measure->filter, "measure");
+    ASSERT_EQ(batch_.measure->parameters.size(), 1u);
+    EXPECT_EQ(batch_.measure->parameters[0].name, "samples");
+    EXPECT_EQ(*batch_.gate, (Gate{{{"hausdorff", "+1 %", {}}}, 2}));
 }
 
 TEST_F(BatchFile, MissingKeys_GiveNoLimitsAndNoValues) {
@@ -72,8 +87,8 @@ scans:
   - {path: scans/a.ply, unit: yard, set: {n: $m}}
 workflows: [missing.yaml]
 limits: {memory: 8, retries: 11}
-measure: {sample: 1}
-gate: {hausdorf: exact}
+measure: {samples: {sweep: [1]}}
+gate: {genus: exact, repeats: 0}
 sumary: It.
 )"),
         ElementsAre(AllOf(StartsWith("b:4:5: no file matches 'scans/*.plyy'; looked in '"), HasSubstr("/scans'")),
@@ -82,7 +97,8 @@ sumary: It.
                     AllOf(StartsWith("b:6:13: "), HasSubstr("missing.yaml': there is no such file")),
                     "b:7:18: memory: '8' has no unit; expected a size, as 8 GiB",
                     AllOf(StartsWith("b:7:30: retries: 11 is out of range"), HasSubstr("at most 10")),
-                    StartsWith("b:8:1: `measure` has no effect"), StartsWith("b:9:1: `gate` has no effect"),
+                    StartsWith("b:8:20: a parameter of `measure` has one value"),
+                    StartsWith("b:9:31: repeats: 0 is out of range"),
                     AllOf(StartsWith("b:10:1: a batch has no key 'sumary'"), HasSubstr("did you mean 'summary'?"))));
 }
 
@@ -125,12 +141,6 @@ TEST_F(BatchFile, LimitsThatAreNone_AreRefused) {
     EXPECT_THAT(limit("step: {retries: 1}"), ElementsAre(HasSubstr("the limits of a step has no key 'retries'")));
     EXPECT_THAT(limit("tme: 1 s"), ElementsAre(HasSubstr("did you mean 'time'?")));
     EXPECT_THAT(rest("limits: 8 GiB\n"), ElementsAre(HasSubstr("expected a map of limits")));
-}
-
-TEST_F(BatchFile, KeysWithoutEffect_AreRefused) {
-    for (const std::string key : {"measure", "gate"})
-        for (const std::string value : {"", " {}", " all"})
-            EXPECT_THAT(rest(key + ":" + value + "\n"), ElementsAre(HasSubstr("`" + key + "` has no effect")));
 }
 
 TEST_F(BatchFile, SettingsThatAreNone_AreRefused) {

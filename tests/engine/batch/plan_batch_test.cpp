@@ -77,20 +77,116 @@ TEST_F(PlanBatch, MistakesOfAWorkflow_AreToldInItOnce) {
         ElementsAre(StartsWith("w:4:10: there is no filter 'thinn'")));
 }
 
-TEST_F(PlanBatch, WorkflowWithoutOneInput_IsReportedAtItsPosition) {
-    folder_.write("none.yaml", "scanmill: 1\nsteps: [{make: }]\n");
-    folder_.write(
-        "two.yaml",
-        "scanmill: 1\ninputs: {scan: points, target: points}\nsteps: [{register: {}, in: {source: scan, target: "
-        "target}}]\n");
+TEST_F(PlanBatch, FilesThatAreNoWorkflows_AreReportedAtTheirPosition) {
     folder_.write("b2.yaml", "scanmill: 1\nbatch: b\n");
     folder_.write("big.yaml", std::string((16u << 20) + 1, '#'));
+    EXPECT_THAT(check("scanmill: 1\nbatch: b\nscans: [scans/a.ply]\nworkflows: [b2.yaml, big.yaml]\n"),
+                ElementsAre(AllOf(StartsWith("b:4:13: "), HasSubstr("b2.yaml' is a batch")),
+                            AllOf(StartsWith("b:4:22: "), HasSubstr("has more than 16777216 bytes"))));
+}
+
+TEST_F(PlanBatch, WorkflowWithoutInputs_RunsOnce) {
+    folder_.write("none.yaml", "scanmill: 1\nname: none\nsteps: [{make: }]\noutputs: {'{scan}.ply': make}\n");
+    EXPECT_THAT(check("scanmill: 1\nbatch: b\nscans: [scans/*.ply]\nworkflows: [none.yaml, w.yaml]\n"), IsEmpty());
+    ASSERT_THAT(checked_.parts, SizeIs(2));
+    EXPECT_THAT(checked_.parts[0].scans, IsEmpty());
+    EXPECT_THAT(checked_.parts[1].scans, SizeIs(4));
+    EXPECT_EQ(checked_.cells(), 5u);
+    EXPECT_THAT(check("scanmill: 1\nbatch: b\nscans: [scans/*.ply]\nworkflows: none.yaml\n"),
+                ElementsAre("b:3:9: warning: no workflow takes scans, so none of them is read"));
+    EXPECT_EQ(checked_.cells(), 1u);
+}
+
+class FurtherInputs : public PlanBatch {
+protected:
+    FurtherInputs() {
+        folder_.write("two.yaml",
+                      "scanmill: 1\ninputs: {scan: points, target: points}\nsteps: [{register: {}, in: {source: scan, "
+                      "target: target}}]\n");
+        folder_.write("t.ply", "x");
+    }
+    std::vector<std::string> check_two(const std::string& scans, const std::string& workflows = "two.yaml") {
+        return check("scanmill: 1\nbatch: b\nworkflows: [" + workflows + "]\nscans: " + scans + "\n");
+    }
+};
+
+TEST_F(FurtherInputs, AreFedByTheScans) {
+    EXPECT_THAT(check_two("[{path: scans/*.ply, in: {target: t.ply}}]", "two.yaml, w.yaml"), IsEmpty())
+        << "w.yaml has no such input";
+    ASSERT_THAT(checked_.parts, SizeIs(2));
+    EXPECT_THAT(checked_.parts[0].scans, SizeIs(4));
+}
+
+TEST_F(FurtherInputs, ThatNothingFeeds_AreReportedAtTheWorkflow) {
+    EXPECT_THAT(check_two("[{path: scans/a.ply, in: {target: t.ply}}, 'scans/[b-d].ply']"),
+                ElementsAre(AllOf(StartsWith("b:3:13: nothing feeds the input 'target' of '"),
+                                  HasSubstr("scans/b.ply' and 2 more; expected `in: {target: FILE}` at the scan"))));
+}
+
+TEST_F(FurtherInputs, ThatNoWorkflowHas_AreReportedWithTheClosest) {
+    EXPECT_THAT(check_two("[{path: scans/a.ply, in: {target: t.ply, taget: t.ply}}]"),
+                ElementsAre(AllOf(StartsWith("b:4:49: no workflow has an input 'taget'"), HasSubstr("they have target"),
+                                  HasSubstr("did you mean 'target'?"))));
+    EXPECT_THAT(check_two("[{path: scans/a.ply, in: {scan: t.ply, target: t.ply}}]"),
+                ElementsAre(AllOf(StartsWith("b:4:34: the scan itself feeds 'scan'"), HasSubstr("as `path`"))));
+    EXPECT_THAT(check_two("[{path: scans/a.ply, in: {x: t.ply}}]", "w.yaml"), ElementsAre(HasSubstr("they have none")));
+}
+
+TEST_F(FurtherInputs, OfOneFile_TakeNoList) {
     EXPECT_THAT(
-        check("scanmill: 1\nbatch: b\nscans: [scans/a.ply]\nworkflows: [none.yaml, two.yaml, b2.yaml, big.yaml]\n"),
-        ElementsAre(AllOf(StartsWith("b:4:13: "), HasSubstr("none.yaml' has no inputs")),
-                    AllOf(StartsWith("b:4:24: "), HasSubstr("has 2 inputs"), HasSubstr("with a file for 'target'")),
-                    AllOf(StartsWith("b:4:34: "), HasSubstr("b2.yaml' is a batch")),
-                    AllOf(StartsWith("b:4:43: "), HasSubstr("has more than 16777216 bytes"))));
+        check_two("[{path: scans/a.ply, in: {target: [t.ply, t.ply]}}]"),
+        ElementsAre(AllOf(StartsWith("b:4:34: the input 'target' of '"), HasSubstr("takes one file; found 2"))));
+    folder_.write("two.yaml",
+                  "scanmill: 1\ninputs: {scan: points, more: [points]}\nsteps: [{combine: {}, in: {points: more}}]\n");
+    EXPECT_THAT(check_two("[{path: scans/a.ply, in: {more: [t.ply, scans/b.ply]}}]"), IsEmpty());
+}
+
+TEST_F(FurtherInputs, OfAListOfScans_AreTheSameForAll) {
+    folder_.write("two.yaml",
+                  "scanmill: 1\ninputs: {views: [points], target: points}\nsteps: [{combine: {}, in: {points: views}}, "
+                  "{register: {}, in: "
+                  "{source: combine, target: target}}]\n");
+    EXPECT_THAT(check_two("[{path: scans/*.ply, in: {target: t.ply}}]"), IsEmpty());
+    EXPECT_EQ(checked_.cells(), 1u);
+    EXPECT_THAT(check_two("[{path: scans/a.ply, in: {target: t.ply}}, {path: scans/b.ply, in: {target: scans/c.ply}}]"),
+                ElementsAre(AllOf(StartsWith("b:4:76: '"), HasSubstr("needs the same files for the input 'target'"))));
+}
+
+class SharedFiles : public PlanBatch {
+protected:
+    std::vector<std::string> check_outputs(const std::string& outputs, const std::string& scans) {
+        folder_.write("w.yaml", "scanmill: 1\nname: w\ninputs: {scan: points}\nsteps: [thin: ]\noutputs: " + outputs);
+        return check("scanmill: 1\nbatch: b\nscans: [" + scans + "]\nworkflows: w.yaml\n");
+    }
+};
+
+TEST_F(SharedFiles, OfScansOfOneName_AreReported) {
+    folder_.write("scans/a.xyz", "x");
+    const auto both =
+        AllOf(HasSubstr("scans/a.ply' under variant 'default' and scan '"), HasSubstr("scans/a.xyz' under"),
+              HasSubstr("would both write 'a.ply'"), HasSubstr("put {variant}, {workflow} or {folder}"));
+    EXPECT_THAT(check_outputs("{'{scan}.ply': thin}\n", "scans/a.ply, scans/a.xyz"),
+                ElementsAre(AllOf(StartsWith("b:3:22: scan '"), both)));
+    folder_.write("other/a.ply", "x");
+    EXPECT_THAT(check_outputs("{'{scan}.ply': thin}\n", "scans/a.ply, other/a.ply"), testing::SizeIs(1));
+    EXPECT_THAT(check_outputs("{'{folder}/{scan}.ply': thin}\n", "scans/a.ply, other/a.ply"), IsEmpty());
+}
+
+TEST_F(SharedFiles, OfAnOutputAndADescription_AreReported) {
+    folder_.write("scans/a.ply.xyz", "x");
+    EXPECT_THAT(check_outputs("{'{scan}': scan, '{scan}.json.ply': thin}\n", "scans/a.ply"), testing::Not(IsEmpty()));
+    EXPECT_THAT(check_outputs("{'{scan}/x.ply': thin, '{scan}.ply': thin}\n", "scans/a.ply, scans/a.ply.xyz"),
+                ElementsAre(HasSubstr("a.ply")));
+}
+
+TEST_F(SharedFiles, OfManyCells_AreTenAtMost) {
+    for (int i = 0; i < 30; ++i) folder_.write("many/" + std::to_string(i) + ".ply", "x");
+    EXPECT_THAT(check_outputs("{'all.ply': thin}\n", "many/*.ply"), SizeIs(testing::Le(10u)));
+    EXPECT_TRUE(checked_.has_errors());
+}
+
+TEST_F(SharedFiles, OfTwoOutputsOfOneValue_AreAllowed) {
+    EXPECT_THAT(check_outputs("{'{scan}.ply': thin, '{scan}.xyz': thin}\n", "scans/*.ply"), IsEmpty());
 }
 
 TEST_F(PlanBatch, FirstInputThatIsAList_TakesAllScansOfAPart) {

@@ -3,7 +3,7 @@
 
 #include "scanmill/describe/schemas.hpp"
 
-#include "engine/batch/batch_support.hpp"
+#include "engine/batch/measuring_batches.hpp"
 #include "engine/describe/schema_support.hpp"
 
 namespace scanmill {
@@ -12,9 +12,9 @@ namespace {
 using test::known_only;
 using testing::HasSubstr;
 
-class BatchSchema : public test::Batches {
+class BatchSchema : public test::MeasuringBatches {
 protected:
-    test::Schema schema_{batch_schema()};
+    test::Schema schema_{batch_schema(library_)};
 };
 
 TEST_F(BatchSchema, WhatTheParserAccepts_IsAccepted) {
@@ -28,6 +28,12 @@ TEST_F(BatchSchema, WhatTheParserAccepts_IsAccepted) {
           scan + "[{path: scans/*.ply, set: , pose: [[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]\n",
           scan + "[scans/a.ply, {path: scans/b.ply, pose: {translation: [1, 2, 3], rotation: [0, 0, 0, 1]}}]\n",
           head + "set: {n: {sweep: [1, 2]}, s: 0.1 %diag, t: [1, 2], u: true, v: $$x}\n",
+          scan + "[{path: scans/a.ply, truth: {path: '{folder}/{stem}.ply', unit: cm, frame: x}, in: {to: scans/a.ply, "
+                 "more: [scans/a.ply, scans/b.ply]}}]\n",
+          head + "measure:\n", head + "measure: {}\n",
+          head + "measure: {of: surface, samples: 5}\ngate: {hausdorff: +1 %, surface.genus: exact, kept: -2, "
+                 "closed: exact, outputs: exact, seconds: +20 %, memory: +50 %, repeats: 3}\n",
+          head + "measure: {of: [a, b.mesh], filter: compare, near: 2 %diag}\n",
           head + "limits: {memory: 8 GiB, time: 10 min, step: {memory: 1.5GB, time: 250 ms}, retries: 0}\n"}) {
         EXPECT_THAT(findings(batch), testing::IsEmpty()) << batch;
         EXPECT_EQ(schema_.complaints(batch), "") << batch;
@@ -103,10 +109,23 @@ std::vector<Mistake> mistakes(const std::string& head) {
         {head + "limits: {retries: 11}\n", "limits retries: Expected number less than or equal to 10",
          "11 is out of range"},
         {head + "limits: {retries: 1.5}\n", "limits retries: Value type not permitted", "'1.5' is not a whole number"},
-        {head + "measure: {samples: 1}\n", ": Object contains a property" + known_only + "'measure'",
-         "`measure` has no effect"},
-        {head + "gate: {genus: exact}\n", ": Object contains a property" + known_only + "'gate'",
-         "`gate` has no effect"},
+        {head + "measure: {of: []}\n", "measure of: Array should contain no fewer than 1",
+         "the list of values to measure is empty"},
+        {head + "measure: {of: {}}\n", "measure of: Value type not permitted", "the name of a step"},
+        {head + "measure: all\n", "measure: Value type not permitted", "expected a map, as {of: [surface]"},
+        {head + "gate: {}\n", "gate: Object should have no fewer than 1", "the gate has no rules"},
+        {head + "gate: strict\n", "gate: Value type not permitted", "expected a map from metrics"},
+        {head + "gate: {distance: [1]}\n", "gate distance: Value type not permitted", "expected a tolerance"},
+        {head + "gate: {kept: exact, repeats: 0}\n", "gate repeats: Expected number greater than or equal to 1",
+         "0 is out of range"},
+        {head + "gate: {kept: exact, repeats: 21}\n", "gate repeats: Expected number less than or equal to 20",
+         "21 is out of range"},
+        {scan + "[{path: scans/a.ply, truth: {unit: mm}}]\n", "scans 0 truth: Missing required property 'path'",
+         "the truth has no path"},
+        {scan + "[{path: scans/a.ply, in: {to: []}}]\n", "scans 0 in to: Array should contain no fewer than 1",
+         "the list of files"},
+        {scan + "[{path: scans/a.ply, in: to.ply}]\n", "scans 0 in: Value type not permitted",
+         "as {target: target.ply}"},
     };
 }
 

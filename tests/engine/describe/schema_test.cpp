@@ -207,7 +207,7 @@ TEST_F(WorkflowSchema, EqualFilters_GiveEqualBytes) { EXPECT_EQ(workflow_schema(
 
 TEST(ShippedWorkflows, AreAcceptedByTheSchemaAndByCheck) {
     const FilterLibrary library({SCANMILL_PLUGIN_DIR});
-    Schema schema(workflow_schema(library)), schema_of_batches(batch_schema());
+    Schema schema(workflow_schema(library)), schema_of_batches(batch_schema(library));
     std::size_t found = 0;
     for (const auto& file : std::filesystem::directory_iterator(SCANMILL_SOURCE_DIR "/workflows")) {
         if (file.path().extension() != ".yaml") continue;

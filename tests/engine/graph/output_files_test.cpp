@@ -71,8 +71,15 @@ TEST_F(OutputFilesTest, ProtectedFile_IsNotReplaced) {
     OutputFiles outputs = files();
     outputs.protect(folder_.write("out/poses.txt", "x"));
     outputs.protect(folder_ / "out/not-there");
+    outputs.protect(folder_.path() / "out/../out/x/not-there");
     EXPECT_THAT(sentence_of([&] { outputs.add("poses.txt", {"k", ""}, "A"); }), HasSubstr("is an input"));
-    EXPECT_NO_THROW(outputs.add("not-there", {"k", ""}, "A"));
+    for (const char* absent : {"not-there", "x/not-there"})
+        EXPECT_THAT(sentence_of([&] {
+                        outputs.add(absent, {"k", ""}, "A");
+                    }),
+                    HasSubstr("is an input"))
+            << "a truth that a step of the same run would make";
+    EXPECT_NO_THROW(outputs.add("other", {"k", ""}, "A"));
 }
 
 TEST_F(OutputFilesTest, LinkOutOfTheFolder_IsRefused) {

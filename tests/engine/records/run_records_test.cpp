@@ -8,12 +8,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "engine/run/run_fixture.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/records/recorder.hpp"
+#include "scanmill/worker/file_description.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown.hpp"
 
@@ -25,7 +28,8 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 RunStart some_start() {
-    return {"thin", "thin.yaml", {"scanmill", "run", "a b"}, ~std::uint64_t(0), 4, 2, "0.1.0", "a box", "Eigen 3.4"};
+    return {"thin",  "thin.yaml", {"scanmill", "run", "a b"},        ~std::uint64_t(0), 4, 2, "0.1.0",
+            "a box", "Eigen 3.4", R"({"rules": {"genus": "exact"}})"};
 }
 
 StepRecord some_step(std::size_t node) {
@@ -53,6 +57,7 @@ StepRecord some_step(std::size_t node) {
     step.threads = 4;
     step.attempts = 2;
     step.log = {"first line", "last line"};
+    step.measures = "surface";
     return step;
 }
 
@@ -69,7 +74,10 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
         records.add(run, {some_step(0), some_step(2)}, {});
         CellRecord cell{"thinning", "a.ply", "alpha=1", "failed", {"time", 0, "what went wrong"},
                         1.5,        {0, 2},  {},        {"a: b"}};
-        cell.outputs = {{"out/a.ply", "mesh", "ok", {{{"triangles", 12, Unit::count}}}}};
+        cell.outputs = {{"out/a.ply", "mesh", "ok", {{{"triangles", 12, Unit::count}}}, "c0ffee", 3'000'000'000},
+                        {"out/b.ply", "mesh", "failed", {}, "", 0, "out/b.ply.previous"}};
+        cell.truth = "truth/a.stl";
+        cell.costs = {{1.5, 2.5, 3'000'000'000}, {0.5, 0.25, 7}};
         records.add(run, {}, {cell});
         records.end(run, "failed", 2.5);
     }
@@ -115,9 +123,143 @@ TEST_F(Records, WhatWasAppended_IsReadBack) {
     EXPECT_EQ(run.cells[0].failure.error, "what went wrong");
     EXPECT_THAT(run.cells[0].nodes, ElementsAre(0, 2));
     EXPECT_EQ(run.cells[0].outputs[0].properties.find("triangles")->value, 12);
+    EXPECT_EQ(run.cells[0].outputs[0].sha256, "c0ffee");
+    EXPECT_EQ(run.cells[0].outputs[0].bytes, 3'000'000'000);
+    EXPECT_EQ(run.cells[0].outputs[1].moved_to, "out/b.ply.previous");
+    EXPECT_EQ(run.cells[0].truth, "truth/a.stl");
+    ASSERT_EQ(run.cells[0].costs.size(), 2u);
+    EXPECT_EQ(run.cells[0].costs[0].peak_memory, 3'000'000'000);
+    EXPECT_EQ(run.cells[0].costs[1].cpu_seconds, 0.25);
+    EXPECT_EQ(run.start.gate, R"({"rules": {"genus": "exact"}})");
+    EXPECT_EQ(run.steps[0].measures, "surface");
 }
 
-/// The file was written by the program that first had such tables, over one good scan and one bad.
+/// Rows of cells and steps of two runs may alternate where folders cannot be locked.
+TEST_F(Records, RunsThatWroteInTurns_AreToldApart) {
+    RunRecords one = RunRecords::append_to(file()), other = RunRecords::append_to(file());
+    const std::int64_t first = one.begin(some_start()), second = other.begin(some_start());
+    for (std::size_t node = 0; node < 4; ++node)
+        for (auto [records, run] : {std::pair(&one, first), std::pair(&other, second)}) {
+            StepRecord step = some_step(node);
+            step.warnings = {fmt::format("{}.{}", run, node)};
+            CellRecord cell{"thinning", fmt::format("{}.{}", run, node), "default", "ok", {}, 1, {node}, {}, {}};
+            cell.outputs = {{step.warnings[0], "mesh", "ok", {{{"run", static_cast<double>(run), Unit::count}}}}};
+            cell.costs = {{static_cast<double>(run), 1, 1}};
+            records->add(run, {step}, {cell});
+        }
+    for (const std::int64_t run : {first, second}) {
+        const RunDetails details = one.run(run);
+        ASSERT_EQ(details.steps.size(), 4u);
+        ASSERT_EQ(details.cells.size(), 4u);
+        for (std::size_t node = 0; node < 4; ++node) {
+            const std::string name = fmt::format("{}.{}", run, node);
+            EXPECT_THAT(details.steps[node].warnings, ElementsAre(name));
+            EXPECT_EQ(details.steps[node].metrics.values.size(), 2u);
+            EXPECT_EQ(details.cells[node].scan, name);
+            EXPECT_THAT(details.cells[node].nodes, ElementsAre(node));
+            ASSERT_EQ(details.cells[node].outputs.size(), 1u);
+            EXPECT_EQ(details.cells[node].outputs[0].file, name);
+            EXPECT_EQ(details.cells[node].outputs[0].properties.find("run")->value, run);
+            ASSERT_EQ(details.cells[node].costs.size(), 1u);
+            EXPECT_EQ(details.cells[node].costs[0].seconds, run);
+        }
+    }
+}
+
+/// Table → rows. Outcomes that were renamed have their new name.
+using Content = std::map<std::string, std::vector<std::string>>;
+
+std::vector<std::string> texts(SQLite::Database& database, const std::string& sql) {
+    std::vector<std::string> all;
+    SQLite::Statement rows(database, sql);
+    while (rows.executeStep()) {
+        std::string row;
+        for (int i = 0; i < rows.getColumnCount(); ++i) {
+            const std::string text = rows.getColumn(i).getString();
+            row += (i > 0 ? "|" : "") + (text == "done" ? "ok" : text);
+        }
+        all.push_back(row);
+    }
+    return all;
+}
+
+std::map<std::string, std::string> columns_of(SQLite::Database& database) {
+    std::map<std::string, std::string> columns;
+    for (const std::string& table : texts(database, "SELECT name FROM sqlite_master WHERE type = 'table'"))
+        for (const std::string& column : texts(database, "SELECT name FROM pragma_table_info('" + table + "')"))
+            columns[table] += (columns[table].empty() ? "" : ", ") + column;
+    return columns;
+}
+
+Content rows_of(SQLite::Database& database, const std::map<std::string, std::string>& columns) {
+    Content content;
+    for (const auto& [table, names] : columns)
+        content[table] = texts(database, "SELECT " + names + " FROM " + table + " ORDER BY rowid");
+    return content;
+}
+
+/// The files were written by the programs that had such tables. Those of versions 2 and 3 hold a batch with a broken
+/// scan, a warning, a crash and (3) a doubt, the same batch from the cache, and a run that was killed; that of version
+/// 4 also a truth, repeats, acceptances and a failed cell whose earlier output was moved.
+class RecordsOfVersion : public Records, public testing::WithParamInterface<int> {
+protected:
+    RecordsOfVersion() {
+        SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+        old.exec(content_of(fmt::format(SCANMILL_SOURCE_DIR "/tests/data/records_of_version_{}.sql", GetParam())));
+    }
+};
+
+TEST_P(RecordsOfVersion, AreBroughtUpToDate_WithoutLoss) {
+    std::map<std::string, std::string> columns;
+    Content before;
+    {
+        SQLite::Database old(file().string());
+        EXPECT_EQ(old.execAndGet("PRAGMA user_version").getInt(), GetParam());
+        columns = columns_of(old);
+        before = rows_of(old, columns);
+    }
+    std::vector<RunSummary> runs;
+    for (const char* how : {"the first time", "once it is up to date"}) {
+        SCOPED_TRACE(how);
+        const RunRecords records = RunRecords::read(file());
+        runs = records.runs();
+        ASSERT_FALSE(runs.empty());
+        for (const RunSummary& run : runs) {
+            const RunDetails details = records.run(run.id);
+            EXPECT_EQ(details.cells.size(), run.cells);
+            EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(details.cells, "failed", &CellRecord::outcome)),
+                      run.failed);
+        }
+    }
+    SQLite::Database now(file().string());
+    EXPECT_EQ(now.execAndGet("PRAGMA user_version").getInt(), 4);
+    EXPECT_EQ(texts(now, "PRAGMA integrity_check"), std::vector<std::string>{"ok"});
+    EXPECT_EQ(rows_of(now, columns), before);
+    EXPECT_EQ(now.execAndGet("SELECT COUNT(*) FROM run_end WHERE cells IS NULL OR ran IS NULL").getInt(), 0)
+        << "counted once";
+    RunRecords records = RunRecords::append_to(file());
+    EXPECT_EQ(records.begin(some_start()), runs.back().id + 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, RecordsOfVersion, testing::Values(1, 2, 3, 4));
+
+TEST_F(Records, TablesOfVersion3_KeepTheirCountsAndTheKilledRun) {
+    {
+        SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+        old.exec(content_of(SCANMILL_SOURCE_DIR "/tests/data/records_of_version_3.sql"));
+    }
+    const std::vector<RunSummary> runs = RunRecords::read(file()).runs();
+    ASSERT_EQ(runs.size(), 3u);
+    const auto counts = [](const RunSummary& run) {
+        return std::vector<std::size_t>{run.cells, run.doubtful, run.failed, run.ran, run.cached};
+    };
+    EXPECT_THAT(counts(runs[0]), ElementsAre(10, 2, 4, 21, 0)) << "as the program that wrote it listed them";
+    EXPECT_THAT(counts(runs[1]), ElementsAre(10, 2, 4, 3, 18));
+    EXPECT_THAT(counts(runs[2]), ElementsAre(6, 0, 2, 13, 0));
+    EXPECT_EQ(runs[1].outcome, "failed");
+    EXPECT_FALSE(runs[2].outcome);
+}
+
 TEST_F(Records, TablesOfTheFirstVersion_AreBroughtUpToDate) {
     {
         SQLite::Database old(file().string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
@@ -184,7 +326,177 @@ TEST_F(Records, OfANewerScanmill_AreLeftAlone) {
     SQLite::Database(file().string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
     for (const bool append : {false, true})
         EXPECT_THAT(sentence_of([&] { append ? RunRecords::append_to(file()) : RunRecords::read(file()); }),
-                    HasSubstr("tables are of version 99, this one reads up to 3"));
+                    HasSubstr("tables are of version 99, this one reads up to 4"));
+}
+
+TEST_F(Records, ARunAfterAnotherOfEqualNodes_CountsEachNodeOnce) {
+    RunRecords records = RunRecords::append_to(file());
+    const std::int64_t run = records.begin(some_start());
+    StepRecord cached = some_step(0), again = some_step(0), other = some_step(1);
+    cached.origin = other.origin = "cached";
+    records.add(run, {cached, again, other}, {});
+    EXPECT_EQ(records.summary(run).ran, 1u) << "its cached value was lost";
+    EXPECT_EQ(records.summary(run).cached, 1u);
+    records.end(run, "ok", 1);
+    EXPECT_EQ(records.summary(run).ran, 1u);
+    EXPECT_EQ(records.summary(run).cached, 1u);
+}
+
+// Acceptances.
+
+TEST_F(Records, Baseline_IsTheLastAcceptanceThatHolds) {
+    RunRecords records = RunRecords::append_to(file());
+    std::vector<std::int64_t> runs;
+    for (const char* batch : {"nightly", "nightly", "weekly", "nightly"}) {
+        RunStart start = some_start();
+        start.workflow = batch;
+        runs.push_back(records.begin(start));
+        records.end(runs.back(), "failed", 1);
+    }
+    EXPECT_FALSE(records.baseline("nightly"));
+    records.accept(runs[1], "ann", "the first");
+    records.accept(runs[2], "ben", "of another batch");
+    records.accept(runs[0], "ann", "an earlier one after all");
+    EXPECT_EQ(records.baseline("nightly")->run, runs[0]);
+    EXPECT_EQ(records.baseline("weekly")->run, runs[2]);
+    records.revoke("nightly", "cleo", "a mistake");
+    EXPECT_EQ(records.baseline("nightly")->run, runs[1]) << "the one before holds again";
+    EXPECT_EQ(records.baseline("nightly")->who, "ann");
+    records.revoke("nightly", "cleo", "all of it");
+    EXPECT_FALSE(records.baseline("nightly"));
+    EXPECT_EQ(sentence_of([&] { records.revoke("nightly", "cleo", "again"); }),
+              fmt::format("no run of 'nightly' is accepted in '{}'", file().string()));
+    records.accept(runs[1], "ann", "once more");
+    EXPECT_EQ(records.baseline("nightly")->run, runs[1]);
+    const std::vector<Acceptance> all = RunRecords::read(file()).acceptances();
+    ASSERT_EQ(all.size(), 4u) << "none is ever removed";
+    EXPECT_EQ(all[2].run, runs[0]);
+    EXPECT_EQ(all[2].revoked_by, "cleo");
+    EXPECT_EQ(all[2].revoked_why, "a mistake");
+    EXPECT_TRUE(all[2].revoked_at);
+    EXPECT_FALSE(all[1].revoked_at);
+    EXPECT_THAT(all[3].at, testing::MatchesRegex("....-..-..T..:..:..Z"));
+}
+
+TEST_F(Records, ARunThatDidNotEnd_IsNotAccepted) {
+    RunRecords records = RunRecords::append_to(file());
+    EXPECT_THAT(sentence_of([&] { records.accept(1, "ann", "x"); }), HasSubstr("there is no run 1 in"));
+    const std::int64_t killed = records.begin(some_start()), interrupted = records.begin(some_start());
+    records.end(interrupted, "interrupted", 1);
+    for (const std::int64_t run : {killed, interrupted}) {
+        const Error error = error_of([&] { records.accept(run, "ann", "x"); });
+        EXPECT_EQ(error.sentence(), fmt::format("run {} was interrupted; only a whole run can be accepted", run));
+        EXPECT_FALSE(error.hint().empty());
+    }
+    EXPECT_TRUE(records.acceptances().empty());
+}
+
+// Costs.
+
+class Costs : public Records {
+protected:
+    /// A run of one cell per scan, with these seconds.
+    std::int64_t run(const std::vector<std::pair<std::string, std::vector<double>>>& cells,
+                     const RunStart& start = some_start()) {
+        const std::int64_t id = records_.begin(start);
+        for (const auto& [scan, seconds] : cells) {
+            CellRecord cell{"thinning", scan, "default", "ok", {}, 1, {}, {}, {}};
+            if (!seconds.empty()) cell.costs = {{seconds[0], 1, 1}};
+            records_.add(id, {}, {cell});
+            PastCosts more{"thinning", scan, "default", {}};
+            for (std::size_t i = 1; i < seconds.size(); ++i) more.costs.push_back({seconds[i], 1, 1});
+            records_.add_costs(id, {more});
+        }
+        records_.end(id, "ok", 1);
+        return id;
+    }
+    std::vector<double> seconds_of(const std::string& scan, std::int64_t first, std::int64_t end) const {
+        std::vector<double> seconds;
+        for (const PastCosts& cell : records_.past_costs(some_start(), first, end))
+            if (cell.scan == scan)
+                for (const CostRecord& cost : cell.costs) seconds.push_back(cost.seconds);
+        return seconds;
+    }
+    RunRecords records_ = RunRecords::append_to(file());
+};
+
+TEST_F(Costs, OfPastRuns_ComeInTheirOrder_FromTheFirstUpToTheEnd) {
+    run({{"a", {1}}, {"b", {2}}});
+    const std::int64_t first = run({{"a", {3, 4, 5}}, {"b", {}}});
+    run({{"b", {6, 7}}, {"a", {8}}});
+    const std::int64_t last = run({{"a", {9}}});
+    EXPECT_THAT(seconds_of("a", first, last), ElementsAre(3, 4, 5, 8));
+    EXPECT_THAT(seconds_of("b", first, last), ElementsAre(6, 7));
+    EXPECT_THAT(seconds_of("a", first, first), IsEmpty());
+}
+
+TEST_F(Costs, OfAnotherMachineBatchOrNumberOfThreads_AreLeftOut) {
+    run({{"a", {1}}});
+    for (int what = 0; what < 4; ++what) {
+        RunStart other = some_start();
+        if (what == 0) other.machine = "another box";
+        if (what == 1) other.threads += 1;
+        if (what == 2) other.jobs += 1;
+        if (what == 3) other.workflow = "another batch";
+        run({{"a", {100}}}, other);
+    }
+    RunStart newer = some_start();
+    newer.version = "0.2.0";
+    newer.seed = 5;
+    run({{"a", {2}}}, newer);
+    EXPECT_THAT(seconds_of("a", 1, 1000), ElementsAre(1, 2));
+}
+
+TEST_F(Costs, OfVeryManyRuns_AreThoseOfTheNewest) {
+    for (int i = 0; i < RunRecords::most_past_runs + 2; ++i) run({{"a", {static_cast<double>(i)}}});
+    run({{"a", {}}});
+    const std::vector<double> seconds = seconds_of("a", 1, 1000);
+    ASSERT_EQ(seconds.size(), static_cast<std::size_t>(RunRecords::most_past_runs));
+    EXPECT_EQ(seconds.front(), 2);
+    EXPECT_EQ(seconds.back(), RunRecords::most_past_runs + 1);
+}
+
+// Files.
+
+/// A copy of the file and its journal in the middle of a transaction is what a killed run leaves.
+TEST_F(Records, JournalOfAKilledRun_IsRolledBackByTheReader) {
+    {
+        RunRecords records = RunRecords::append_to(file());
+        records.end(records.begin(some_start()), "ok", 1);
+    }
+    std::filesystem::create_directory(folder_ / "killed");
+    {
+        SQLite::Database writing(file().string(), SQLite::OPEN_READWRITE);
+        writing.exec("PRAGMA cache_size = 1; BEGIN; UPDATE run SET version = 'half'");
+        for (int i = 0; i < 1000; ++i) writing.exec("INSERT INTO log VALUES (1, hex(randomblob(2000)))");
+        std::filesystem::copy(file(), folder_ / "killed/records.sqlite");
+        std::filesystem::copy(file().string() + "-journal", folder_ / "killed/records.sqlite-journal");
+    }
+    const RunRecords records = RunRecords::read(folder_ / "killed/records.sqlite");
+    ASSERT_EQ(records.runs().size(), 1u);
+    EXPECT_EQ(records.run(1).start.version, "0.1.0");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "killed/records.sqlite-journal"));
+}
+
+TEST_F(Records, TruncatedFile_IsRefused) {
+    {
+        RunRecords records = RunRecords::append_to(file());
+        std::vector<StepRecord> steps;
+        for (std::size_t node = 0; node < 200; ++node) steps.push_back(some_step(node));
+        records.add(records.begin(some_start()), steps, {});
+    }
+    const std::string whole = content_of(file());
+    for (const std::size_t kept : {whole.size() / 2, whole.size() / 3, std::size_t(5000), std::size_t(100)}) {
+        folder_.write("records.sqlite", whole.substr(0, kept));
+        for (const bool append : {false, true})
+            EXPECT_THAT(sentence_of([&] {
+                            RunRecords records = append ? RunRecords::append_to(file()) : RunRecords::read(file());
+                            append ? records.begin(some_start()) : records.run(1).summary.id;
+                        }),
+                        testing::AllOf(HasSubstr("records.sqlite'"),
+                                       testing::AnyOf(HasSubstr("malformed"), HasSubstr("not a database"))))
+                << kept;
+    }
 }
 
 TEST_F(Records, LinkOutOfTheFolder_IsRefusedAndNotFollowed) {
@@ -210,6 +522,9 @@ TEST_F(Records, WhatIsNone_IsRefused) {
 TEST_F(Run, Recorder_WritesWhatTheRunReports) {
     prepare("  - test-step: {factor: 2, mode: warn}\n    expect: {points: 4}\n", {scan("a.xyz")},
             "outputs: {'{scan}.ply': test-step}\n");
+    plan_.steps[0].measures = "surface";
+    graph_ = make_graph(plan_, library_, request_);
+    graph_.cells[0].truth = "truth.stl";
     const std::filesystem::path file = folder_ / "records.sqlite";
     std::vector<std::string> told;
     Recorder recorder(file, some_start(), library_, graph_, [&](std::string text) { told.push_back(text); });
@@ -223,7 +538,15 @@ TEST_F(Run, Recorder_WritesWhatTheRunReports) {
     EXPECT_EQ(run.steps[1].metrics.find("points")->value, 4);
     EXPECT_THAT(run.steps[1].warnings, ElementsAre(HasSubstr("asked to warn")));
     ASSERT_EQ(run.cells.size(), 1u);
+    EXPECT_EQ(run.steps[0].measures, "");
+    EXPECT_EQ(run.steps[1].measures, "surface");
+    EXPECT_EQ(run.cells[0].truth, "truth.stl");
     EXPECT_EQ(run.cells[0].outputs[0].kind, "points");
+    EXPECT_EQ(run.cells[0].outputs[0].bytes,
+              static_cast<std::int64_t>(std::filesystem::file_size(run.cells[0].outputs[0].file)));
+    Sha256 hash;
+    hash.add(content_of(run.cells[0].outputs[0].file));
+    EXPECT_EQ(run.cells[0].outputs[0].sha256, hash.text());
     EXPECT_THAT(told, IsEmpty());
 }
 

@@ -26,6 +26,7 @@ FilterDeclaration reader() {
     using P = ReaderParams;
     return Declare<P>("reader", 1)
         .in<PointCloud>("points", "A cloud.")
+        .in<PointCloud>("near", "Another.", optional)
         .out<PointCloud>("points", "The same.")
         .param("reads", &P::reads, "The lengths that are read.")
         .param("size", &P::size, "A length.")
@@ -62,9 +63,12 @@ protected:
         PointCloud cloud;
         cloud.positions = Array<Vec3>(positions.begin(), positions.end());
         const Value value = std::make_shared<const PointCloud>(std::move(cloud));
+        return sum_of({{"points", value}});
+    }
+    double sum_of(const std::vector<StepInput>& inputs) {
         report_ = {};
         run_step(
-            step_, [&]() -> const FilterDeclaration& { return filter_; }, {{"points", value}}, {},
+            step_, [&]() -> const FilterDeclaration& { return filter_; }, inputs, {},
             [](const ParameterSet&, NodeReport&) { return std::nullopt; }, report_);
         return report_.metrics.find("sum")->value;
     }
@@ -135,6 +139,17 @@ TEST_F(ReaderStep, ChosenLengthWithoutAMeasure_IsRefusedThoughItIsNotRead) {
     EXPECT_THAT(refusal(one_place_).frames(), ElementsAre("in the parameter 'tolerance'"));
     set("tolerance", Length(1, Length::In::millimetre));
     EXPECT_THAT(refusal(one_place_).sentence(), HasSubstr("needs a scan of known unit"));
+}
+
+TEST_F(ReaderStep, Lengths_HaveTheUnitOfTheOnlyInputThatDeclaresOne) {
+    PointCloud cloud;
+    cloud.positions = Array<Vec3>(one_place_.begin(), one_place_.end());
+    const Value without_unit = std::make_shared<const PointCloud>(cloud);
+    cloud.frame.unit = LengthUnit::millimetre;
+    const Value with_unit = std::make_shared<const PointCloud>(cloud);
+    set("size", Length(3, Length::In::centimetre));
+    EXPECT_EQ(sum_of({{"points", with_unit}, {"near", without_unit}}), 30);
+    EXPECT_EQ(sum_of({{"points", without_unit}, {"near", with_unit}}), 30);
 }
 
 }  // namespace

@@ -18,6 +18,14 @@ Kernel::Triangle_3 triangle(const Corners& t) { return {point(t[0]), point(t[1])
 /// Opposite the first corner.
 Kernel::Segment_3 edge(const Corners& t) { return {point(t[1]), point(t[2])}; }
 
+/// The side of the line from `a` to `b` that `p` is on, moved by ε along x and by ε² along y; 0 only if a = b.
+int side(const Kernel::Point_2& a, const Kernel::Point_2& b, const Kernel::Point_2& p) {
+    const auto orientation = static_cast<int>(CGAL::orientation(a, b, p));
+    if (orientation != 0) return orientation;
+    const auto by_x = static_cast<int>(CGAL::compare_y(a, b));
+    return by_x != 0 ? by_x : static_cast<int>(CGAL::compare_x(b, a));
+}
+
 }  // namespace
 
 bool collinear(const Corners& triangle) {
@@ -37,6 +45,17 @@ bool triangles_intersect(const Corners& one, const Corners& other, std::size_t c
         }
         default: return true;  // the same triangle twice
     }
+}
+
+int crossing(const Vec3& p, int axis, bool is_upward, const Corners& triangle) {
+    // Seen against the axis: counter-clockwise triangles face its positive direction.
+    const auto seen = [&](const Vec3& v) { return Kernel::Point_2(v[(axis + 1) % 3], v[(axis + 2) % 3]); };
+    const Kernel::Point_2 a = seen(*triangle[0]), b = seen(*triangle[1]), c = seen(*triangle[2]), q = seen(p);
+    const int facing = side(a, b, q);
+    if (facing == 0 || side(b, c, q) != facing || side(c, a, q) != facing) return 0;
+    const auto above =
+        static_cast<int>(CGAL::orientation(point(triangle[0]), point(triangle[1]), point(triangle[2]), point(&p)));
+    return above == (is_upward ? -facing : facing) ? facing : 0;
 }
 
 }  // namespace scanmill::exact

@@ -1,0 +1,580 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/compare/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/compare/costs.hpp"
+#include "scanmill/compare/reproduce.hpp"
+
+namespace scanmill {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// The scan's name from the folder of the batch file.
+std::string scan_in_batch(const std::string& scan, const std::string& file) {
+    const fs::path folder = fs::path(file).lexically_normal().parent_path(), path = fs::path(scan).lexically_normal();
+    if (scan.empty() || folder.empty() || folder == ".") return scan;
+    if (path.is_absolute() != folder.is_absolute()) return scan;
+    const fs::path inside = path.lexically_relative(folder);
+    const bool leaves = inside.empty() || *inside.begin() == "..";
+    return path.is_absolute() && leaves ? scan : inside.empty() ? scan : inside.string();
+}
+
+RunFacts facts_of(const RunDetails& run) {
+    return {run.summary.id,    run.summary.started, run.summary.outcome.value_or("unfinished"),
+            run.start.version, run.start.machine,   run.start.threads,
+            run.start.jobs,    run.summary.seconds};
+}
+
+/// Identifies a cell in all runs of its batch; the last number tells apart cells that are equal otherwise.
+using CellKey = std::tuple<std::string, std::string, std::string, std::size_t>;
+
+/// The cells of a run by their key.
+class CellTable {
+public:
+    explicit CellTable(const RunDetails& run) {
+        for (const CellRecord& cell : run.cells) {
+            // The cell of a list of scans, or of none, has the name of its workflow.
+            const std::string scan = cell.scan == cell.workflow ? cell.scan : scan_in_batch(cell.scan, run.start.file);
+            const std::size_t again = repeats_[{cell.workflow, scan, cell.variant}]++;
+            keys_.emplace_back(cell.workflow, scan, cell.variant, again);
+            by_key_.emplace(keys_.back(), &cell);
+        }
+    }
+    /// Of the cell with this index in the run.
+    const CellKey& key(std::size_t cell) const { return keys_[cell]; }
+    const CellRecord* find(const CellKey& key) const {
+        const auto found = by_key_.find(key);
+        return found == by_key_.end() ? nullptr : found->second;
+    }
+
+private:
+    std::vector<CellKey> keys_;
+    std::map<CellKey, const CellRecord*> by_key_;
+    std::map<std::tuple<std::string, std::string, std::string>, std::size_t> repeats_;
+};
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+std::string shown(double value, Unit unit, LengthUnit lengths) { return display(Metric{"", value, unit}, lengths); }
+
+/// What the rule makes of a change. Pre: the values differ.
+Effect effect_of(const Tolerance& tolerance, double accepted, double found) {
+    const double rise = found - accepted;
+    double limit = tolerance.is_relative ? tolerance.amount * std::abs(accepted) : tolerance.amount;
+    if (!std::isfinite(limit)) limit = 0;
+    // A value on the limit keeps its rule; only a limit needs arithmetic that rounds.
+    if (limit > 0 && std::isfinite(rise)) limit += 1e-12 * std::max(std::abs(accepted), std::abs(found));
+    if (std::abs(rise) <= limit) return Effect::listed;
+    return (rise > 0 ? tolerance.may_rise : tolerance.may_fall) ? Effect::improvement : Effect::regression;
+}
+
+double cost_of(const CostRecord& pass, std::string_view cost) {
+    return cost == "seconds"       ? pass.seconds
+           : cost == "cpu-seconds" ? pass.cpu_seconds
+                                   : static_cast<double>(pass.peak_memory);
+}
+constexpr std::array<std::string_view, 3> all_costs{"seconds", "cpu-seconds", "memory"};
+
+/// Of every pass, without unknown ones.
+std::vector<double> costs_of(const std::vector<CostRecord>& passes, std::string_view cost) {
+    std::vector<double> costs;
+    for (const CostRecord& pass : passes)
+        if (const double one = cost_of(pass, cost); one > 0) costs.push_back(one);
+    if (costs.size() > most_ranked) costs.erase(costs.begin(), costs.end() - most_ranked);
+    return costs;
+}
+
+/// What differs between two runs of a cell before its results: files, filters, parameters.
+std::vector<std::string> causes_of(const CellRecord& cell, const StepsByNode& steps, const CellRecord& before,
+                                   const StepsByNode& steps_before) {
+    using Occurrence = std::pair<std::string, std::size_t>;  // of a label in the cell
+    const auto by_label = [](const CellRecord& record, const StepsByNode& all) {
+        std::vector<std::pair<Occurrence, const StepRecord*>> found;
+        std::map<std::string, std::size_t> seen;
+        for (const std::size_t node : record.nodes)
+            if (const auto step = all.find(node); step != all.end())
+                found.emplace_back(Occurrence{step->second->label, seen[step->second->label]++}, step->second);
+        return found;
+    };
+    const auto now = by_label(cell, steps), then = by_label(before, steps_before);
+    const std::map<Occurrence, const StepRecord*> old(then.begin(), then.end()), current(now.begin(), now.end());
+    std::vector<std::string> causes;
+    for (const auto& [label, step] : now) {
+        const auto found = old.find(label);
+        if (found == old.end()) {
+            causes.push_back(fmt::format("the step {} is new", step->label));
+            continue;
+        }
+        const StepRecord& was = *found->second;
+        if (step->filter != was.filter)
+            causes.push_back(fmt::format("{} is {}; it was {}", step->label, step->filter, was.filter));
+        else if (step->filter_version != was.filter_version)
+            causes.push_back(fmt::format("{} {} → {}", step->filter, was.filter_version, step->filter_version));
+        std::map<std::string, std::string> values(was.authored.begin(), was.authored.end());
+        for (const auto& [name, value] : step->authored) {
+            const std::string old_value = std::exchange(values[name], value);
+            if (old_value != value)
+                causes.push_back(
+                    fmt::format("{}: {} {} → {}", step->label, name, old_value.empty() ? "auto" : old_value, value));
+        }
+        if (step->filter.empty() && step->plan_key != was.plan_key && step->authored == was.authored)
+            causes.push_back(fmt::format("{}: the file changed", step->label));
+    }
+    for (const auto& [label, step] : then)
+        if (!current.contains(label)) causes.push_back(fmt::format("the step {} is gone", step->label));
+    return causes;
+}
+
+/// "decimate 2 → 3" for filters whose version differs, "decimate 2: another build" where only the build does.
+std::vector<std::string> changed_filters(const RunDetails& run, const RunDetails& before) {
+    const auto versions = [](const RunDetails& details) {
+        std::map<std::string, std::pair<int, std::string>> found;
+        for (const StepRecord& step : details.steps)
+            if (!step.filter.empty()) found[step.filter] = {step.filter_version, step.build};
+        return found;
+    };
+    const auto then = versions(before);
+    std::vector<std::string> changed;
+    for (const auto& [filter, version] : versions(run)) {
+        const auto was = then.find(filter);
+        if (was == then.end() || was->second == version) continue;
+        changed.push_back(was->second.first != version.first
+                              ? fmt::format("{} {} → {}", filter, was->second.first, version.first)
+                              : fmt::format("{} {}: another build", filter, version.first));
+    }
+    return changed;
+}
+
+/// Judges one cell.
+class CellJudge {
+public:
+    CellJudge(const Gate& gate, const CellRecord& cell, const StepsByNode& steps) : gate_(gate), cell_(cell) {
+        result_.workflow = cell.workflow;
+        result_.variant = cell.variant;
+        result_.seconds = cell.seconds;
+        result_.passes = cell.costs;
+        result_.values = values_of(cell, steps);
+        for (const OutputRecord& output : cell.outputs)
+            if (!output.moved_to.empty()) result_.moved.push_back(fs::path(output.moved_to).filename().string());
+    }
+
+    /// `accepted`: null if the accepted run does not have the cell.
+    CellComparison judged(const CellRecord* accepted, const StepsByNode& accepted_steps,
+                          const std::vector<CostRecord>& past) {
+        if (cell_.outcome == "failed") {
+            result_.reasons.push_back(failure_text(cell_.failure));
+            if (accepted && accepted->outcome == "failed")
+                result_.reasons.emplace_back("it failed in the accepted run, too");
+            result_.verdict = Verdict::failed;
+            return std::move(result_);
+        }
+        if (cell_.outcome == "skipped") {
+            result_.reasons.emplace_back("it did not run");
+            result_.verdict = Verdict::missing;
+            return std::move(result_);
+        }
+        const bool is_comparable = accepted && (accepted->outcome == "ok" || accepted->outcome == "doubtful");
+        const std::vector<CellValue> before =
+            is_comparable ? values_of(*accepted, accepted_steps) : std::vector<CellValue>();
+        for (const GateRule& rule : gate_.rules)
+            if (!is_cost(rule.metric) && rule.metric != "outputs") apply(rule, is_comparable, before);
+        if (is_comparable) {
+            list_ungated(before);
+            compare_outputs(*accepted);
+        }
+        compare_costs(past);
+        std::ranges::stable_sort(result_.metrics, [](const MetricChange& a, const MetricChange& b) {
+            if (a.effect != b.effect) return a.effect < b.effect;
+            if (a.rule.empty() != b.rule.empty()) return b.rule.empty();
+            return std::abs(a.share()) > std::abs(b.share());
+        });
+        decide(accepted, is_comparable);
+        return std::move(result_);
+    }
+
+private:
+    static std::string failure_text(const FailureRecord& failure) {
+        std::string text = first_line(failure.error);
+        if (text.empty()) text = "it failed";
+        return text;
+    }
+
+    /// The rule with amounts in the unit of this value; nothing if it cannot be applied, which is a reason to fail.
+    std::optional<Tolerance> tolerance_for(const GateRule& rule, const CellValue& value) {
+        try {
+            return parse_tolerance(rule.text, value.metric.unit, value.lengths, value.diagonal);
+        } catch (const Error& error) {
+            inapplicable_.push_back(
+                fmt::format("the rule {}: {} cannot be applied: {}", rule.metric, rule.text, error.sentence()));
+            return std::nullopt;
+        }
+    }
+
+    void apply(const GateRule& rule, bool is_comparable, const std::vector<CellValue>& before) {
+        std::vector<const CellValue*> now = named(result_.values, rule.metric);
+        for (const CellValue* was : named(before, rule.metric)) {
+            const CellValue* is = same_value(result_.values, *was);
+            std::erase(now, is);
+            judged_.insert(was->full_name());
+            const std::optional<Tolerance> tolerance = tolerance_for(rule, is ? *is : *was);
+            if (!tolerance) continue;
+            MetricChange change = change_of(was, is);
+            change.rule = rule.text;
+            if (!is)
+                change.effect = Effect::regression;
+            else if (!are_comparable(*was, *is)) {
+                inapplicable_.push_back(
+                    fmt::format("the rule {}: {} cannot be applied: the unit of lengths is {}, and "
+                                "was {}",
+                                rule.metric, rule.text, symbol(is->lengths), symbol(was->lengths)));
+                continue;
+            } else if (*change.accepted == *change.found)
+                continue;
+            else
+                change.effect = effect_of(*tolerance, *change.accepted, *change.found);
+            result_.metrics.push_back(std::move(change));
+        }
+        for (const CellValue* is : now) {
+            judged_.insert(is->full_name());
+            tolerance_for(rule, *is);
+            if (!is_comparable) continue;
+            MetricChange change = change_of(nullptr, is);
+            change.rule = rule.text;
+            result_.metrics.push_back(std::move(change));
+        }
+    }
+
+    static bool are_comparable(const CellValue& a, const CellValue& b) {
+        const bool has_lengths =
+            a.metric.unit == Unit::length || a.metric.unit == Unit::area || a.metric.unit == Unit::volume;
+        return !has_lengths || a.lengths == b.lengths ||
+               (a.lengths != LengthUnit::unknown && b.lengths != LengthUnit::unknown);
+    }
+
+    static double power_of(Unit unit) {
+        return unit == Unit::length ? 1 : unit == Unit::area ? 2 : unit == Unit::volume ? 3 : 0;
+    }
+
+    /// In the unit of the new value.
+    static MetricChange change_of(const CellValue* was, const CellValue* is) {
+        const CellValue& either = is ? *is : *was;
+        MetricChange change{either.source, either.metric.name, either.metric.unit, either.lengths, {}, {}, {}};
+        if (is) change.found = is->metric.value;
+        if (was) change.accepted = was->metric.value;
+        if (is && was && is->lengths != was->lengths && are_comparable(*was, *is))
+            for (int power = 0; power < power_of(either.metric.unit); ++power)
+                change.accepted = in_unit(*change.accepted, was->lengths, is->lengths);
+        return change;
+    }
+
+    /// Differences that no rule is for. A value that several sources repeat, as the properties of a step's result and
+    /// of its output, is listed once.
+    void list_ungated(const std::vector<CellValue>& before) {
+        const auto list = [&](const CellValue* was, const CellValue* is) {
+            if (judged_.contains((is ? is : was)->full_name())) return;
+            MetricChange change = change_of(was, is);
+            if (change.accepted == change.found) return;
+            const bool is_repeated = std::ranges::any_of(result_.metrics, [&](const MetricChange& other) {
+                return other.metric == change.metric && other.accepted == change.accepted &&
+                       other.found == change.found;
+            });
+            if (!is_repeated) result_.metrics.push_back(std::move(change));
+        };
+        for (std::size_t i = 0; i < result_.values.size(); ++i)
+            list(same_value(before, result_.values[i], i), &result_.values[i]);
+        for (std::size_t i = 0; i < before.size(); ++i)
+            if (!same_value(result_.values, before[i], i)) list(&before[i], nullptr);
+    }
+
+    void compare_outputs(const CellRecord& accepted) {
+        const auto rule = std::ranges::find(gate_.rules, "outputs", &GateRule::metric);
+        const bool is_gated = rule != gate_.rules.end();
+        const auto name = [](const OutputRecord& output) { return fs::path(output.file).filename().string(); };
+        const auto find = [&](const CellRecord& cell, const std::string& file) {
+            const auto found = std::ranges::find_if(cell.outputs, [&](const auto& each) { return name(each) == file; });
+            return found == cell.outputs.end() ? nullptr : &*found;
+        };
+        const auto is_written = [](const OutputRecord& output) { return output.outcome == "ok"; };
+        bool lacks_hash = false;
+        for (const OutputRecord& is : cell_.outputs) {
+            const OutputRecord* was = find(accepted, name(is));
+            const bool was_written = was && is_written(*was);
+            lacks_hash = lacks_hash || (is_written(is) && is.sha256.empty()) || (was_written && was->sha256.empty());
+            const std::string before = was_written ? was->sha256 : "", now = is_written(is) ? is.sha256 : "";
+            if (was_written == is_written(is) && (before == now || before.empty() || now.empty())) continue;
+            // A file that only this run has is listed and does not trip, as a metric is.
+            const Effect effect = is_gated && was_written ? Effect::regression : Effect::listed;
+            result_.outputs.push_back({name(is), before, now, effect});
+        }
+        for (const OutputRecord& was : accepted.outputs)
+            if (is_written(was) && !find(cell_, name(was)))
+                result_.outputs.push_back({name(was), was.sha256, "", is_gated ? Effect::regression : Effect::listed});
+        if (is_gated && lacks_hash)
+            inapplicable_.emplace_back("the rule outputs: exact cannot be applied: a run has no hashes of its files");
+    }
+
+    void compare_costs(const std::vector<CostRecord>& past) {
+        for (const std::string_view cost : all_costs) {
+            const std::vector<double> before = costs_of(past, cost), now = costs_of(cell_.costs, cost);
+            if (before.empty() || now.empty()) continue;
+            const auto rule = std::ranges::find(gate_.rules, cost, &GateRule::metric);
+            CostChange change{std::string(cost), 0, 0, before.size(), now.size(), {}, {}, Effect::listed};
+            const bool is_gated = rule != gate_.rules.end();
+            const double tolerance = is_gated ? parse_cost_tolerance(rule->text).amount : infinite;
+            const CostJudgement judgement =
+                judge_costs(before, now, tolerance, cost != "seconds" || used_more_processor(past, tolerance));
+            change.before = judgement.before;
+            change.now = judgement.now;
+            change.probability = judgement.probability;
+            if (is_gated) change.rule = rule->text;
+            if (judgement.is_worse) change.effect = Effect::regression;
+            if (judgement.is_better) change.effect = Effect::improvement;
+            result_.costs.push_back(std::move(change));
+        }
+    }
+
+    /// True also if the processor time is not known.
+    bool used_more_processor(const std::vector<CostRecord>& past, double tolerance) const {
+        const std::vector<double> before = costs_of(past, "cpu-seconds"), now = costs_of(cell_.costs, "cpu-seconds");
+        return before.empty() || now.empty() || all_rise(before, now, tolerance);
+    }
+
+    void decide(const CellRecord* accepted, bool is_comparable) {
+        for (const MetricChange& change : result_.metrics)
+            if (change.effect != Effect::listed) add_reason(change.effect, reason(change));
+        for (const OutputChange& change : result_.outputs)
+            if (change.effect != Effect::listed)
+                add_reason(change.effect,
+                           fmt::format("the output {} {}", change.file, change.found.empty() ? "is gone" : "changed"));
+        for (const CostChange& change : result_.costs)
+            if (change.effect != Effect::listed) add_reason(change.effect, reason(change));
+        if (!regressions_.empty()) {
+            result_.verdict = Verdict::regressed;
+            result_.reasons = std::move(regressions_);
+            std::ranges::move(inapplicable_, std::back_inserter(result_.reasons));
+        } else if (!inapplicable_.empty()) {
+            result_.verdict = Verdict::failed;
+            result_.reasons = std::move(inapplicable_);
+        } else if (cell_.outcome == "doubtful") {
+            result_.verdict = Verdict::doubtful;
+            result_.reasons = cell_.doubts;
+        } else if (!improvements_.empty()) {
+            result_.verdict = Verdict::improved;
+            result_.reasons = std::move(improvements_);
+        } else if (accepted && !is_comparable) {
+            result_.verdict = Verdict::improved;
+            result_.reasons.push_back(
+                fmt::format("it {} in the accepted run", accepted->outcome == "failed" ? "failed" : "did not run"));
+        } else {
+            result_.verdict = accepted ? Verdict::passed : Verdict::is_new;
+        }
+    }
+
+    void add_reason(Effect effect, std::string text) {
+        (effect == Effect::regression ? regressions_ : improvements_).push_back(std::move(text));
+    }
+
+    static std::string reason(const MetricChange& change) {
+        if (!change.found)
+            return fmt::format("{} is gone; it was {}", change.metric,
+                               shown(*change.accepted, change.unit, change.lengths));
+        return fmt::format("{} {} → {} ({})", change.metric, shown(*change.accepted, change.unit, change.lengths),
+                           shown(*change.found, change.unit, change.lengths), change.rule);
+    }
+
+    static std::string reason(const CostChange& change) {
+        const std::string chance = change.probability ? fmt::format(", p = {:.2g}", *change.probability) : "";
+        return fmt::format("{} is {:.2f} times that of {} earlier passes ({}{})", change.cost,
+                           change.now / change.before, change.passes_before, change.rule, chance);
+    }
+
+    const Gate& gate_;
+    const CellRecord& cell_;
+    CellComparison result_;
+    std::set<std::string> judged_;  // full names of values with a rule
+    std::vector<std::string> inapplicable_, regressions_, improvements_;
+};
+
+Verdict verdict_of(const Comparison& comparison) {
+    for (const Verdict verdict : {Verdict::regressed, Verdict::missing, Verdict::failed, Verdict::doubtful})
+        if (comparison.count(verdict) > 0) return verdict;
+    if (!comparison.accepted) return Verdict::is_new;
+    return comparison.count(Verdict::improved) > 0 ? Verdict::improved : Verdict::passed;
+}
+
+/// The pools by cell; scans by their names from the batch's folder.
+class Pools {
+public:
+    Pools(const std::vector<PastCosts>& all, const std::string& file) {
+        for (const PastCosts& past : all) {
+            const std::string scan = past.scan == past.workflow ? past.scan : scan_in_batch(past.scan, file);
+            auto& pool = pools_[{past.workflow, scan, past.variant}];
+            pool.insert(pool.end(), past.costs.begin(), past.costs.end());
+        }
+    }
+    const std::vector<CostRecord>& of(const CellKey& key) const {
+        static const std::vector<CostRecord> none;
+        const auto found = pools_.find({std::get<0>(key), std::get<1>(key), std::get<2>(key)});
+        return found == pools_.end() ? none : found->second;
+    }
+
+private:
+    std::map<std::tuple<std::string, std::string, std::string>, std::vector<CostRecord>> pools_;
+};
+
+void add_notes(Comparison& comparison, const RunDetails& run, const Baseline* baseline) {
+    const bool gates_costs = std::ranges::any_of(comparison.gate.rules, is_cost, &GateRule::metric);
+    if (run.summary.outcome == "interrupted") comparison.notes.emplace_back("the run was interrupted");
+    const bool has_costs = std::ranges::any_of(run.cells, [](const CellRecord& cell) { return !cell.costs.empty(); });
+    if (gates_costs && !has_costs)
+        comparison.notes.emplace_back(
+            "no costs were judged: no cell ran all of its steps; run with --no-cache to judge them");
+    if (!baseline) return;
+    const RunStart &now = run.start, &then = baseline->run.start;
+    if (now.machine != then.machine)
+        comparison.notes.push_back(
+            fmt::format("the machine changed: costs have a new baseline; it was {}", then.machine));
+    else if (now.threads != then.threads || now.jobs != then.jobs)
+        comparison.notes.push_back(fmt::format("costs have a new baseline: threads {} → {}, jobs {} → {}", then.threads,
+                                               now.threads, then.jobs, now.jobs));
+    if (now.version != then.version)
+        comparison.notes.push_back(fmt::format("Scanmill {} → {}", then.version, now.version));
+    if (now.seed != then.seed) comparison.notes.push_back(fmt::format("the seed changed {} → {}", then.seed, now.seed));
+    if (then.gate.empty() ? !comparison.gate.rules.empty() : then.gate != now.gate)
+        comparison.notes.emplace_back("the gate is not that of the accepted run");
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+    constexpr std::array<std::string_view, 7> names{"failed",   "missing", "regressed", "doubtful",
+                                                    "improved", "new",     "passed"};
+    return names[static_cast<std::size_t>(verdict)];
+}
+
+std::string_view name_of(Effect effect) {
+    constexpr std::array<std::string_view, 3> names{"regression", "improvement", "listed"};
+    return names[static_cast<std::size_t>(effect)];
+}
+
+double MetricChange::share() const {
+    if (!accepted || !found) return infinite;
+    if (*accepted == *found) return 0;
+    const double share = (*found - *accepted) / std::abs(*accepted);
+    return std::isnan(share) ? infinite : share;
+}
+
+Comparison compare(const RunDetails& run, const Baseline* baseline) {
+    Comparison comparison;
+    comparison.batch = run.start.workflow;
+    comparison.file = run.start.file;
+    comparison.run = facts_of(run);
+    if (!run.start.gate.empty()) comparison.gate = parse_gate_json(run.start.gate);
+    if (baseline) {
+        comparison.accepted = facts_of(baseline->run);
+        comparison.acceptance = baseline->acceptance;
+        comparison.accepted_folder = baseline->folder;
+        comparison.filters = changed_filters(run, baseline->run);
+    }
+    add_notes(comparison, run, baseline);
+    const RunDetails none;
+    const RunDetails& accepted_run = baseline ? baseline->run : none;
+    const StepsByNode steps = steps_by_node(run), accepted_steps = steps_by_node(accepted_run);
+    const CellTable cells(run), accepted_cells(accepted_run);
+    const Pools pools(baseline ? baseline->costs : std::vector<PastCosts>(), run.start.file);
+    for (std::size_t i = 0; i < run.cells.size(); ++i) {
+        const CellRecord& cell = run.cells[i];
+        const CellRecord* accepted = accepted_cells.find(cells.key(i));
+        CellComparison& judged = comparison.cells.emplace_back(
+            CellJudge(comparison.gate, cell, steps).judged(accepted, accepted_steps, pools.of(cells.key(i))));
+        judged.scan = std::get<1>(cells.key(i));
+        const bool is_fine = judged.verdict == Verdict::passed || judged.verdict == Verdict::is_new;
+        if (accepted && !is_fine) judged.causes = causes_of(cell, steps, *accepted, accepted_steps);
+        if (!is_fine) judged.command = reproducing_command(run, cell, judged.scan);
+    }
+    for (std::size_t i = 0; i < accepted_run.cells.size(); ++i) {
+        if (cells.find(accepted_cells.key(i))) continue;
+        CellComparison& missing = comparison.cells.emplace_back();
+        missing.workflow = accepted_run.cells[i].workflow;
+        missing.variant = accepted_run.cells[i].variant;
+        missing.scan = std::get<1>(accepted_cells.key(i));
+        missing.verdict = Verdict::missing;
+        missing.reasons.emplace_back("the run does not have it; the accepted run has");
+    }
+    for (const CellComparison& cell : comparison.cells) ++comparison.counts[static_cast<std::size_t>(cell.verdict)];
+    comparison.verdict = verdict_of(comparison);
+    return comparison;
+}
+
+Effect RankedChange::effect() const { return metric ? metric->effect : output ? output->effect : cost->effect; }
+
+double RankedChange::share() const { return metric ? metric->share() : output ? infinite : cost->share(); }
+
+double RankedChange::confidence() const { return cost ? 1 - cost->probability.value_or(0.5) : 1; }
+
+std::vector<RankedChange> what_changed(const Comparison& comparison) {
+    std::vector<RankedChange> changes;
+    for (const CellComparison& cell : comparison.cells) {
+        for (const MetricChange& change : cell.metrics) changes.push_back({&cell, &change, nullptr, nullptr});
+        for (const OutputChange& change : cell.outputs) changes.push_back({&cell, nullptr, &change, nullptr});
+        for (const CostChange& change : cell.costs)
+            if (change.effect != Effect::listed) changes.push_back({&cell, nullptr, nullptr, &change});
+    }
+    std::ranges::stable_sort(changes, [](const RankedChange& a, const RankedChange& b) {
+        if (a.effect() != b.effect()) return a.effect() < b.effect();
+        if (const double size = std::abs(a.share()), other = std::abs(b.share()); size != other) return size > other;
+        return a.confidence() > b.confidence();
+    });
+    return changes;
+}
+
+std::vector<std::string> metric_names(const Comparison& comparison) {
+    std::vector<std::string> names(all_costs.begin(), all_costs.end());
+    std::set<std::string> seen(names.begin(), names.end());
+    for (const CellComparison& cell : comparison.cells)
+        for (const CellValue& value : cell.values) {
+            if (seen.insert(value.metric.name).second) names.push_back(value.metric.name);
+            if (value.of != CellValue::Of::output && seen.insert(value.full_name()).second)
+                names.push_back(value.full_name());
+        }
+    return names;
+}
+
+std::string default_metric(const Comparison& comparison) {
+    for (const GateRule& rule : comparison.gate.rules)
+        if (!is_cost(rule.metric) && rule.metric != "outputs") return rule.metric;
+    for (const CellComparison& cell : comparison.cells)
+        if (!cell.values.empty() && cell.values.front().of == CellValue::Of::measurement)
+            return cell.values.front().metric.name;
+    return "seconds";
+}
+
+std::optional<CellValue> number_of(const CellComparison& cell, std::string_view metric) {
+    if (is_cost(metric)) {
+        const std::vector<double> costs = costs_of(cell.passes, metric);
+        CellValue value{CellValue::Of::step, "", {std::string(metric), cell.seconds, Unit::seconds}, {}, 0};
+        if (!costs.empty()) value.metric.value = median(costs);
+        if (costs.empty() && (metric != "seconds" || cell.seconds == 0)) return std::nullopt;
+        if (metric == "memory") value.metric.unit = Unit::count;
+        return value;
+    }
+    const std::vector<const CellValue*> found = named(cell.values, metric);
+    if (found.empty()) return std::nullopt;
+    return *found.front();
+}
+
+}  // namespace scanmill

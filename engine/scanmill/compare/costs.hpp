@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Whether a cell costs more than it did: the passes of a run against those of earlier runs.
+///
+/// Time and memory vary from pass to pass, so two numbers decide: by how much the medians differ, and how improbable
+/// the ranks of the new passes are if nothing changed (Mann and Whitney 1947, one-sided, exact, ties by mid-ranks).
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace scanmill {
+
+/// A share of equally probable arrangements, as whole numbers: decisions do not depend on rounding.
+struct ExactProbability {
+    std::uint64_t favourable = 0, total = 1;
+
+    double value() const { return static_cast<double>(favourable) / static_cast<double>(total); }
+    /// Below 1 / `parts`.
+    bool is_below_one_in(std::uint64_t parts) const { return favourable * parts < total; }
+    bool operator==(const ExactProbability&) const = default;
+};
+
+/// Most values on either side of the rank test: with more, the counts would exceed 64 bits.
+inline constexpr std::size_t most_ranked = 20;
+
+/// The probability that `larger` has at least its rank sum if the values of both sides are exchangeable.
+/// Pre: both sides have 1 to most_ranked values, none of them NaN. Cost: with n the smaller side of N values in all,
+/// N n² N additions.
+ExactProbability rank_test(std::span<const double> larger, std::span<const double> smaller);
+
+/// The mean of the two middle values of an even number. Pre: not empty.
+double median(std::span<const double> values);
+
+/// Fewer earlier passes than this say too little for ranks: only the sizes decide, at twice the tolerance.
+inline constexpr std::size_t least_ranked = 8;
+/// A difference counts if its probability is below 1 in `strong`; one of twice the tolerance if it is below 1 in
+/// `weak`, because a few slow passes among the earlier ones must not hide it.
+inline constexpr std::uint64_t strong = 1000, weak = 20;
+/// Other programs on the machine make a step wait, which takes time but no processor time. Time that rises without
+/// processor time must therefore rise by this multiple of the tolerance. Of 7,200 comparisons of unchanged cells in 80
+/// runs of three passes, on two cores with 15 other busy programs, 72 had a false alarm with 1, 66 with 2, 11 with 3,
+/// 4 with 4; `cpu-seconds` and `memory` had none.
+inline constexpr double unconfirmed_factor = 4;
+
+struct CostJudgement {
+    double before = 0, now = 0;  ///< medians
+    bool is_worse = false, is_better = false;
+    /// Of the ranks, for the direction of the difference; nothing where the sizes alone decided.
+    std::optional<double> probability;
+};
+
+/// Judges the passes `now` by the earlier ones, of which the last most_ranked count. Worse: every pass is above the
+/// earlier median by more than the tolerance, a share, and the ranks are improbable enough. Where the numbers of passes
+/// allow no improbable ranks, the rise of twice the tolerance alone decides. Better is the reverse. That every pass
+/// counts makes a blip in some of them harmless; it costs little, because the noise of times only adds.
+/// `is_confirmed`: false if this is a time and the processor time did not rise. Pre: `before` and `now` are not empty,
+/// values positive, `now` has at most most_ranked.
+CostJudgement judge_costs(std::span<const double> before, std::span<const double> now, double tolerance,
+                          bool is_confirmed = true);
+
+/// Whether every pass is above the earlier median by more than the tolerance. Pre: neither is empty.
+bool all_rise(std::span<const double> before, std::span<const double> now, double tolerance);
+
+}  // namespace scanmill

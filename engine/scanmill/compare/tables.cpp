@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/compare/tables.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "scanmill/base/text.hpp"
+
+namespace scanmill {
+
+namespace {
+
+bool has_several_workflows(const Comparison& comparison) {
+    return std::ranges::any_of(comparison.cells, [&](const CellComparison& cell) {
+        return cell.workflow != comparison.cells.front().workflow;
+    });
+}
+
+/// With the workflow's name if there are several.
+std::string variant_text(const CellComparison& cell, bool with_workflow) {
+    return with_workflow ? cell.workflow + ": " + cell.variant : cell.variant;
+}
+
+std::string cost_text(const std::string& cost, double amount) {
+    return cost == "memory" ? byte_size_text(static_cast<std::uint64_t>(amount)) : fmt::format("{:.3g} s", amount);
+}
+
+std::string share_text(double share) { return fmt::format("{:+.3g} %", 100 * share); }
+
+std::vector<std::string> row_of(const MetricChange& change) {
+    const auto shown = [&](const std::optional<double>& value) {
+        return value ? display(Metric{"", *value, change.unit}, change.lengths) : "-";
+    };
+    std::string difference;
+    if (!change.accepted)
+        difference = "new";
+    else if (!change.found)
+        difference = "gone";
+    else if (std::isfinite(change.share()) && change.unit != Unit::boolean)
+        difference = share_text(change.share());
+    else
+        difference = "changed";
+    return {change.metric, shown(change.accepted), shown(change.found), difference, change.rule};
+}
+
+std::vector<std::string> row_of(const OutputChange& change) {
+    const auto shown = [](const std::string& hash) { return hash.empty() ? "-" : hash.substr(0, 8); };
+    return {change.file, shown(change.accepted), shown(change.found),
+            change.accepted.empty() ? "new"
+            : change.found.empty()  ? "gone"
+                                    : "changed",
+            change.effect == Effect::listed ? "" : "exact"};
+}
+
+std::vector<std::string> row_of(const CostChange& change) {
+    const std::string chance = change.probability ? fmt::format(", p {:.2g}", *change.probability) : "";
+    return {change.cost, cost_text(change.cost, change.before), cost_text(change.cost, change.now),
+            share_text(change.share()) + chance, change.rule};
+}
+
+std::string effect_text(Effect effect) {
+    return effect == Effect::regression ? "regressed" : effect == Effect::improvement ? "improved" : "";
+}
+
+bool has_regressed(const CellComparison& cell, const CellValue& value) {
+    return std::ranges::any_of(cell.metrics,
+                               [&](const MetricChange& change) {
+                                   return change.effect == Effect::regression && change.metric == value.metric.name &&
+                                          change.source == value.source;
+                               }) ||
+           std::ranges::any_of(cell.costs, [&](const CostChange& change) {
+               return change.effect == Effect::regression && change.cost == value.metric.name && value.source.empty();
+           });
+}
+
+bool is_trouble(Verdict verdict) {
+    return verdict == Verdict::failed || verdict == Verdict::missing || verdict == Verdict::regressed ||
+           verdict == Verdict::doubtful;
+}
+
+}  // namespace
+
+std::string counts_text(const Comparison& comparison) {
+    std::vector<std::string> counts;
+    for (const Verdict verdict : all_verdicts)
+        if (comparison.count(verdict) > 0)
+            counts.push_back(fmt::format("{} {}", comparison.count(verdict), name_of(verdict)));
+    return fmt::format("{}: {}", count_text(comparison.cells.size(), "cell", "cells"), fmt::join(counts, ", "));
+}
+
+std::string runs_text(const Comparison& comparison) {
+    std::string text = fmt::format("run {} of {}", comparison.run.id, comparison.run.started);
+    if (!comparison.accepted) return text + "; no run was accepted yet";
+    const RunFacts& accepted = *comparison.accepted;
+    if (accepted.id == comparison.run.id && comparison.accepted_folder.empty())
+        text += ", which is the accepted run";
+    else
+        text += fmt::format(" against run {} of {}", accepted.id, accepted.started);
+    if (!comparison.accepted_folder.empty()) text += fmt::format(" in {}", comparison.accepted_folder);
+    if (comparison.acceptance)
+        text += fmt::format(", accepted by {}: {}", comparison.acceptance->who, comparison.acceptance->why);
+    return text;
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const Comparison& comparison) {
+    std::vector<std::pair<std::string, std::string>> facts;
+    facts.emplace_back("version", "Scanmill " + comparison.run.version);
+    facts.emplace_back("machine", comparison.run.machine);
+    std::vector<std::string> rules;
+    for (const GateRule& rule : comparison.gate.rules) rules.push_back(rule.metric + " " + rule.text);
+    if (!rules.empty()) facts.emplace_back("gate", fmt::format("{}", fmt::join(rules, ", ")));
+    if (!comparison.filters.empty())
+        facts.emplace_back("filters", fmt::format("{}", fmt::join(comparison.filters, ", ")));
+    for (const std::string& note : comparison.notes) facts.emplace_back("note", note);
+    return facts;
+}
+
+ReportTable change_table(const Comparison& comparison, std::size_t most) {
+    ReportTable table{{"scan", "variant", "what", "accepted", "now", "change", "rule", ""}, {}, {}};
+    const bool with_workflow = has_several_workflows(comparison);
+    std::map<std::vector<std::string>, std::size_t> row_of_change;  // by all but the variant
+    std::size_t left_out = 0;
+    for (const RankedChange& change : what_changed(comparison)) {
+        std::vector<std::string> row{change.cell->scan, ""};
+        const std::vector<std::string> what = change.metric   ? row_of(*change.metric)
+                                              : change.output ? row_of(*change.output)
+                                                              : row_of(*change.cost);
+        row.insert(row.end(), what.begin(), what.end());
+        row.push_back(effect_text(change.effect()));
+        const std::string variant = variant_text(*change.cell, with_workflow);
+        if (const auto known = row_of_change.find(row); known != row_of_change.end()) {
+            table.rows[known->second][1] += ", " + variant;
+        } else if (table.rows.size() == most) {
+            ++left_out;
+        } else {
+            row_of_change.emplace(row, table.rows.size());
+            row[1] = variant;
+            table.rows.push_back(std::move(row));
+        }
+    }
+    if (left_out > 0) table.rest = fmt::format("and {} more", left_out);
+    return table;
+}
+
+ReportTable reason_table(const Comparison& comparison, std::size_t most) {
+    ReportTable table{{"verdict", "scan", "variant", "why"}, {}, {}};
+    const bool with_workflow = has_several_workflows(comparison);
+    std::map<std::tuple<std::string, std::string, std::string>, std::size_t> row_of_reason;
+    std::size_t left_out = 0;
+    for (const Verdict verdict : all_verdicts) {
+        if (!is_trouble(verdict)) continue;
+        for (const CellComparison& cell : comparison.cells) {
+            if (cell.verdict != verdict) continue;
+            // What changed in a regressed cell is in the other table.
+            std::vector<std::string> why = cell.causes;
+            if (verdict != Verdict::regressed || why.empty())
+                why.insert(why.begin(), cell.reasons.begin(), cell.reasons.end());
+            if (!cell.moved.empty()) why.emplace_back("its earlier outputs are now *.previous");
+            const std::string text = fmt::format("{}", fmt::join(why, "; "));
+            const std::string variant = variant_text(cell, with_workflow);
+            const auto known = row_of_reason.find({std::string(name_of(verdict)), cell.scan, text});
+            if (known != row_of_reason.end()) {
+                table.rows[known->second][2] += ", " + variant;
+            } else if (table.rows.size() == most) {
+                ++left_out;
+            } else {
+                row_of_reason[{std::string(name_of(verdict)), cell.scan, text}] = table.rows.size();
+                table.rows.push_back({std::string(name_of(verdict)), cell.scan, variant, text});
+            }
+        }
+    }
+    if (left_out > 0) table.rest = fmt::format("and {}", count_text(left_out, "more cell", "more cells"));
+    return table;
+}
+
+ReportTable matrix(const Comparison& comparison, const std::string& metric, std::size_t most) {
+    const bool with_workflow = has_several_workflows(comparison);
+    std::vector<std::string> scans, variants;
+    std::map<std::string, std::size_t> row_of_scan, column_of_variant;
+    std::vector<bool> has_trouble;
+    std::set<std::string> units;
+    for (const CellComparison& cell : comparison.cells) {
+        if (row_of_scan.emplace(cell.scan, scans.size()).second) {
+            scans.push_back(cell.scan);
+            has_trouble.push_back(false);
+        }
+        const std::string variant = variant_text(cell, with_workflow);
+        if (column_of_variant.emplace(variant, variants.size()).second) variants.push_back(variant);
+        if (is_trouble(cell.verdict)) has_trouble[row_of_scan[cell.scan]] = true;
+        if (const auto value = number_of(cell, metric)) {
+            const std::string with_unit = display(value->metric, value->lengths), bare = display(value->metric);
+            units.insert(with_unit.size() > bare.size() ? with_unit.substr(bare.size() + 1) : "");
+        }
+    }
+    const bool one_unit = units.size() == 1;
+    std::vector<std::vector<std::string>> rows(scans.size(), std::vector<std::string>(variants.size() + 1, "-"));
+    for (std::size_t scan = 0; scan < scans.size(); ++scan) rows[scan][0] = scans[scan];
+    for (const CellComparison& cell : comparison.cells) {
+        std::string& text = rows[row_of_scan[cell.scan]][1 + column_of_variant[variant_text(cell, with_workflow)]];
+        const auto value = number_of(cell, metric);
+        if (!value) {
+            text = is_trouble(cell.verdict) ? name_of(cell.verdict) : "-";
+            continue;
+        }
+        text = is_cost(metric) ? cost_text(metric, value->metric.value)
+               : one_unit      ? display(value->metric)
+                               : display(value->metric, value->lengths);
+        if (cell.verdict == Verdict::failed) text = "failed";
+        if (has_regressed(cell, *value)) text += " !";
+        if (cell.verdict == Verdict::doubtful) text += " ?";
+    }
+    const std::string unit = one_unit && !is_cost(metric) ? *units.begin() : "";
+    ReportTable table{{unit.empty() ? metric : fmt::format("{} ({})", metric, unit)}, {}, {}};
+    table.headers.insert(table.headers.end(), variants.begin(), variants.end());
+    if (rows.size() <= most) {
+        table.rows = std::move(rows);
+        return table;
+    }
+    for (const bool trouble : {true, false})
+        for (std::size_t scan = 0; scan < rows.size() && table.rows.size() < most; ++scan)
+            if (has_trouble[scan] == trouble) table.rows.push_back(rows[scan]);
+    table.rest = fmt::format("and {} more scans", rows.size() - table.rows.size());
+    return table;
+}
+
+std::vector<std::string> commands_of(const Comparison& comparison) {
+    std::vector<std::string> commands;
+    std::set<std::string> seen;
+    for (const Verdict verdict : {Verdict::regressed, Verdict::failed})
+        for (const CellComparison& cell : comparison.cells)
+            if (cell.verdict == verdict && !cell.command.empty() && seen.insert(cell.command).second)
+                commands.push_back(cell.command);
+    return commands;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/gate/gate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/kinds/document.hpp"
+#include "scanmill/workflow/sizes.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// "+1 %, 1 %, +0.01 mm or exact", for messages.
+std::string_view forms_of(Unit unit) {
+    switch (unit) {
+        case Unit::length: return "+1 %, +0.01 mm, +0.1 %diag or exact";
+        case Unit::area: return "+1 %, +12 mm2, +0.5 u2 or exact";
+        case Unit::volume: return "+1 %, +12 mm3, +0.5 u3 or exact";
+        case Unit::angle: return "+1 %, +3 deg or exact";
+        case Unit::seconds: return "+20 %, +5 s or exact";
+        case Unit::boolean: return "exact";
+        case Unit::ratio: return "+1 % (of the accepted value), +0.01 or exact";
+        case Unit::count: return "+1 %, +2 or exact";
+        case Unit::number: return "+1 %, +0.5 or exact";
+    }
+    return "exact";
+}
+
+double length_amount(std::string_view text, int power, const LengthScale& scale) {
+    const Length written = power > 1 ? parse_length_power(text, power) : Length::parse(text);
+    if (written.in() == Length::In::spacing)
+        throw Error("'{}' is not fixed: the spacing of the accepted run's points is not recorded", text);
+    if (power > 1) return resolved_length_power(written, power, scale);
+    return written.amount() == 0 ? 0 : written.resolved(scale).value();
+}
+
+double number_amount(std::string_view text) {
+    double amount = 0;
+    if (!parse_number(text, amount) || !std::isfinite(amount)) throw Error("'{}' is not a number", text);
+    return amount;
+}
+
+/// Of a text without a sign, in the metric's unit.
+double absolute_amount(std::string_view text, Unit unit, const LengthScale& scale) {
+    if (const int power = power_of_length(unit); power > 0) return length_amount(text, power, scale);
+    if (unit == Unit::angle) return Angle::parse(text).in_radians();
+    if (unit == Unit::seconds) return parse_duration(text);
+    if (unit == Unit::boolean) throw Error("'{}' is not for yes or no", text);
+    return number_amount(text);
+}
+
+/// The sentence up to what it expects, which is not what a rule expects.
+std::string finding_of(const Error& error) { return error.sentence().substr(0, error.sentence().find("; expected")); }
+
+}  // namespace
+
+Tolerance parse_tolerance(std::string_view text, Unit unit, LengthUnit lengths, double diagonal) {
+    if (text == "exact") return {};
+    Tolerance tolerance;
+    std::string_view amount = text;
+    const bool has_sign = amount.starts_with('+') || amount.starts_with('-');
+    if (has_sign) {
+        tolerance.may_fall = amount.front() == '+';
+        tolerance.may_rise = amount.front() == '-';
+        amount.remove_prefix(1);
+        amount.remove_prefix(std::min(amount.find_first_not_of(' '), amount.size()));
+    }
+    try {
+        if (amount.empty()) throw Error("{} has no amount", has_sign ? quote(text) : "the rule");
+        if (amount.front() == '+' || amount.front() == '-') throw Error("{} has two signs", quote(text));
+        tolerance.is_relative = amount.ends_with('%') && unit != Unit::boolean;
+        const LengthScale scale{lengths, [&] { return diagonal; }, {}};
+        tolerance.amount = tolerance.is_relative ? Ratio::parse(amount).value() : absolute_amount(amount, unit, scale);
+        if (!std::isfinite(tolerance.amount)) throw Error("{} is too large", quote(amount));
+    } catch (const UnresolvedLength&) {
+        throw;  // the rule is right, but not for this scan
+    } catch (const Error& error) {
+        if (error.remedy() == Remedy::declare_unit) throw;
+        throw Error("{}; expected {}", finding_of(error), forms_of(unit));
+    }
+    return tolerance;
+}
+
+void require_rule_fits(std::string_view text, Unit unit, Better better) {
+    // Any unit and diagonal will do: every length can be converted from millimetres.
+    const Tolerance tolerance = parse_tolerance(text, unit, LengthUnit::millimetre, 1);
+    if (better == Better::neither || text == "exact") return;
+    const bool is_right = better == Better::smaller ? tolerance.may_fall : tolerance.may_rise;
+    if (is_right) return;
+    const bool has_sign = tolerance.may_fall || tolerance.may_rise;
+    const std::string amount(text.substr(has_sign ? text.find_first_not_of("+- ") : 0));
+    throw Error("'{}' {}: {} is better; expected {}{} or exact", text,
+                has_sign ? "limits the wrong direction" : "also limits improvements",
+                better == Better::smaller ? "smaller" : "larger", better == Better::smaller ? "+" : "-", amount);
+}
+
+bool is_cost(std::string_view metric) { return metric == "seconds" || metric == "cpu-seconds" || metric == "memory"; }
+
+Tolerance parse_cost_tolerance(std::string_view text) {
+    constexpr std::string_view expected = "expected a share of the accepted costs, as +20 %";
+    if (!text.ends_with('%') || !text.starts_with('+'))
+        throw Error("{} is not a limit of a cost; {}", quote(text), expected);
+    const Tolerance tolerance = parse_tolerance(text, Unit::number, LengthUnit::unknown, std::nan(""));
+    if (tolerance.amount <= 0) throw Error("{} leaves no room for noise; {}", quote(text), expected);
+    return tolerance;
+}
+
+std::string to_json_text(const Gate& gate) {
+    Json rules = Json::object();
+    for (const GateRule& rule : gate.rules) rules[rule.metric] = rule.text;
+    return Json{{"rules", std::move(rules)}, {"repeats", gate.repeats}}.dump(-1, ' ', false,
+                                                                             Json::error_handler_t::replace);
+}
+
+Gate parse_gate_json(std::string_view text) {
+    const Json document = parse_document(text);
+    if (!document.is_object()) throw Error("the recorded gate is not an object");
+    require_keys(document, "the recorded gate", {"rules", "repeats"});
+    Gate gate;
+    const Json& rules = member(document, "rules");
+    if (!rules.is_object()) throw Error("the recorded gate: 'rules' is not an object");
+    for (const auto& [metric, rule] : rules.items()) {
+        if (!rule.is_string()) throw Error("the recorded gate: the rule '{}' is not a text", metric);
+        gate.rules.push_back({metric, rule.get<std::string>(), {}});
+    }
+    const Json& repeats = member(document, "repeats");
+    const std::uint64_t count = repeats.is_number_unsigned() ? repeats.get<std::uint64_t>() : 0;
+    if (count < 1 || count > std::numeric_limits<unsigned>::max())
+        throw Error("the recorded gate: 'repeats' is not a number of passes");
+    gate.repeats = static_cast<unsigned>(count);
+    return gate;
+}
+
+}  // namespace scanmill

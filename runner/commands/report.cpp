@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "commands/commands.hpp"
+#include "commands/common.hpp"
+#include "output/comparison_text.hpp"
+#include "output/terminal.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/compare/formats.hpp"
+#include "scanmill/compare/recorded.hpp"
+
+namespace scanmill::runner {
+
+namespace {
+
+struct Options {
+    std::filesystem::path folder;
+    std::string against, who, why, metric, format = "text", table;
+    std::optional<std::int64_t> run;
+    bool accept = false, revoke = false, strict = false, json = false;
+};
+
+bool is_blank(const std::string& text) { return text.find_first_not_of(" \t\n") == std::string::npos; }
+
+/// Throws Error unless both are given.
+void require_reason(const Options& options) {
+    const std::string action = options.accept ? "--accept" : "--revoke";
+    if (!is_blank(options.who) && !is_blank(options.why)) return;
+    throw Error("{} needs a name and a reason, which are recorded", action)
+        .hint(fmt::format("scanmill report {} {} --who NAME --why TEXT", shell_word(options.folder), action));
+}
+
+int accept(const Options& options) {
+    const RecordedRun which{options.folder, options.run};
+    RunRecords records = records_to_change(options.folder);
+    const std::int64_t id = ended_run(records, which);
+    const RunSummary run = records.summary(id);
+    records.accept(id, options.who, options.why);
+    if (run.failed > 0)
+        print_warning(fmt::format("{} of run {} failed; the gate does not compare them",
+                                  count_text(run.failed, "cell", "cells"), id));
+    fmt::print("run {} is the accepted run of {}\n", id, printable_line(run.workflow));
+    return done;
+}
+
+int revoke(const Options& options) {
+    const RecordedRun which{options.folder, options.run};
+    RunRecords records = records_to_change(options.folder);
+    const std::string batch = records.summary(ended_run(records, which)).workflow;
+    records.revoke(batch, options.who, options.why);
+    if (const auto before = records.baseline(batch))
+        fmt::print("run {} is the accepted run of {} again\n", before->run, printable_line(batch));
+    else
+        fmt::print("no run of {} is accepted now\n", printable_line(batch));
+    return done;
+}
+
+std::string metric_for(const Options& options, const Comparison& comparison) {
+    if (options.metric.empty()) return default_metric(comparison);
+    const std::vector<std::string> names = metric_names(comparison);
+    if (std::ranges::find(names, options.metric) == names.end())
+        throw Error("no cell has the metric '{}'{}", options.metric, did_you_mean(options.metric, names))
+            .hint("there are " + enumerated(names));
+    return options.metric;
+}
+
+int report(const Options& options) {
+    if (options.accept || options.revoke) {
+        require_reason(options);
+        return options.accept ? accept(options) : revoke(options);
+    }
+    if (!options.who.empty() || !options.why.empty())
+        throw Error("--who and --why are for --accept and --revoke").hint("scanmill report --help");
+    const RecordedRun which{options.folder, options.run};
+    if (!options.table.empty()) {
+        write_csv(which, [](const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); });
+        return done;
+    }
+    const auto against = options.against.empty() ? std::nullopt : std::optional(RecordedRun::parse(options.against));
+    const Comparison comparison = compare_recorded(which, against);
+    const std::string metric = metric_for(options, comparison);
+    const std::string format = options.json ? "json" : options.format;
+    if (format == "json")
+        print_json(report_json(comparison));
+    else
+        fmt::print("{}", format == "junit"      ? junit_xml(comparison, options.strict)
+                         : format == "markdown" ? markdown(comparison, metric)
+                                                : comparison_text(comparison, metric, stdout_width()));
+    return exit_code_of(comparison, options.strict);
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Action& chosen) {
+    auto [command, options] =
+        add_command<Options>(app, chosen, "report",
+                             "Compares a recorded run with the accepted one; exits with 4 if the gate tripped", report);
+    command.add_option("DIR", options.folder, "The output folder of the runs")->required();
+    CLI::Option* against = command.add_option("--against", options.against,
+                                              "Compare with this folder's accepted run, or else its last one, DIR, or "
+                                              "with one of its runs, DIR:RUN. Default: "
+                                              "the accepted run in the same folder");
+    command.add_option("--run", options.run, "The run's number in `scanmill runs DIR`. Default: the last that ended");
+    CLI::Option* accept = command.add_flag(
+        "--accept", options.accept, "Make the run the one that later runs are compared with; needs --who, --why");
+    CLI::Option* revoke =
+        command.add_flag("--revoke", options.revoke, "Take back the last acceptance; needs --who, --why");
+    command.add_option("--who", options.who, "Who accepts or revokes, for the records");
+    command.add_option("--why", options.why, "Why, for the records");
+    CLI::Option* metric =
+        command.add_option("--metric", options.metric,
+                           "The metric of the table of scans and variants: NAME, STEP.NAME, seconds, cpu-seconds or "
+                           "memory. Default: the first that the gate has a rule for");
+    CLI::Option* format = command.add_option("--format", options.format, "Print text, json, junit (XML) or markdown")
+                              ->check(CLI::IsMember({"text", "json", "junit", "markdown"}));
+    CLI::Option* table =
+        command
+            .add_option("--table", options.table,
+                        "Print every number of every cell of all ended runs, or of --run, as csv, and do not judge")
+            ->check(CLI::IsMember({"csv"}));
+    command.add_flag("--strict", options.strict, "Exit with 1 if a result is doubtful");
+    CLI::Option* json = command.add_flag("--json", options.json, "The same as --format json");
+    format->excludes(json);
+    for (CLI::Option* other : {against, metric, format, json}) table->excludes(other);
+    accept->excludes(revoke);
+    for (CLI::Option* action : {accept, revoke})
+        for (CLI::Option* other : {against, metric, format, table, json}) action->excludes(other);
+}
+
+}  // namespace scanmill::runner

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The comparison of a run with the accepted one, for people.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "scanmill/compare/comparison.hpp"
+
+namespace scanmill::runner {
+
+/// A screen: the verdict, counts, runs, version, machine, what changed, what failed and why, the matrix of one metric,
+/// and the commands that reproduce the failed and regressed cells. Long lists are cut. `width`: of the terminal;
+/// nothing: any.
+std::string comparison_text(const Comparison& comparison, const std::string& metric, std::optional<std::size_t> width);
+
+/// The verdict, the counts and the first cells that did not pass, for the end of a batch into this folder.
+std::string verdict_text(const Comparison& comparison, const std::filesystem::path& folder);
+
+}  // namespace scanmill::runner
