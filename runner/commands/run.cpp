@@ -220,7 +220,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
     handle_interrupts();
     const unsigned jobs = session_.jobs(graph);
-    Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet);
+    Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet, cache_ ? 1 : task.repeats);
     session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
     std::optional<EventStream> events;
     std::vector<RunObserver*> observers{&progress};
