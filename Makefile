@@ -2,10 +2,11 @@
 # Entry points. Every target does the setup that it needs; a fresh Debian 12 with git and make is sufficient.
 jobs ?= $(shell nproc)
 demo_scans := points_3/kitten.xyz points_3/ball.ply meshes/bunny00.off meshes/fandisk_large.off
+nightly_models := meshes/hand.off meshes/anchor_dense.off meshes/fandisk_large.off meshes/camel.off
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo test deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
+.PHONY: help demo nightly test deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
 .DEFAULT_GOAL := help
 
 help: ## list these targets
@@ -13,6 +14,11 @@ help: ## list these targets
 
 demo: release data ## turn real scans into closed meshes and print a table
 	build/release/bin/scanmill run workflows/quickstart.yaml $(addprefix build/data/,$(demo_scans)) -o build/demo
+
+nightly: release data ## compare three surfaces of virtual and real scans with the accepted run, and print the report
+	build/release/bin/scanmill run workflows/virtual-scans.yaml $(addprefix build/data/,$(nightly_models)) -o build/virtual-scans -q
+	-build/release/bin/scanmill batch workflows/nightly.yaml -o build/nightly --no-cache
+	build/release/bin/scanmill report build/nightly
 
 test: dev data ## build with assertions on and run every test
 	ctest --preset dev -j $(jobs)

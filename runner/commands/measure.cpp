@@ -52,7 +52,8 @@ ParameterSet parameters_of(const FilterSpec& spec, const std::vector<std::string
     return set;
 }
 
-/// The truth in the mesh's unit, where both are known.
+/// The truth in the mesh's unit. Throws Error if only one of the two declares a unit: a wrong guess would be a wrong
+/// score.
 std::vector<StepInput> read_inputs(const Options& options, const Warn& warn) {
     ReadOptions reading;
     reading.on_warning = warn;
@@ -73,7 +74,16 @@ std::vector<StepInput> read_inputs(const Options& options, const Warn& warn) {
     for (const Value* value : std::initializer_list<const Value*>{&mesh, &truth})
         require_supported_range(bounding_box(positions_of(*value).span()));
     const LengthUnit here = frame_of(mesh)->unit, there = frame_of(truth)->unit;
-    if (here != there && here != LengthUnit::unknown && there != LengthUnit::unknown) truth = in_unit(truth, here);
+    if (here == there) return {{"mesh", mesh}, {"truth", truth}};
+    if (here == LengthUnit::unknown)
+        throw Error("'{}' declares no unit, '{}' is in {}; they cannot be compared", options.mesh, options.truth,
+                    symbol(there))
+            .hint("name its unit: --unit mm");
+    if (there == LengthUnit::unknown)
+        throw Error("'{}' is in {}, '{}' declares no unit; they cannot be compared", options.mesh, symbol(here),
+                    options.truth)
+            .hint("name its unit: --truth-unit mm");
+    truth = in_unit(truth, here);
     return {{"mesh", mesh}, {"truth", truth}};
 }
 

@@ -220,7 +220,7 @@ int Execution::run(const SessionTask& task, bool is_batch) {
     std::signal(SIGPIPE, SIG_IGN);  // a closed output does not end the run
     handle_interrupts();
     const unsigned jobs = session_.jobs(graph);
-    Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet);
+    Progress progress(graph, predictions, std::max(1u, jobs), options_.quiet, cache_ ? 1 : task.repeats);
     session_.on_warning([&](std::string text) { progress.print_beside([&] { warn_(std::move(text)); }); });
     std::optional<EventStream> events;
     std::vector<RunObserver*> observers{&progress};
@@ -317,18 +317,22 @@ ScanFile scan_file(const BatchScan& scan, const Plan& plan) {
 RunRequest request_for(const Batch& batch, const BatchPart& part, const ExecuteOptions& options) {
     RunRequest request;
     for (const std::size_t index : part.scans) request.scans.push_back(scan_file(batch.scans[index], *part.plan));
-    for (const BatchScan& scan : batch.scans) {
-        request.protected_files.push_back(scan.file);
-        for (const std::filesystem::path& other : {scan.truth.file, scan.pose_file})
-            if (!other.empty()) request.protected_files.push_back(other);
-        for (const auto& [name, input] : scan.inputs)
-            request.protected_files.insert(request.protected_files.end(), input.files.begin(), input.files.end());
-    }
-    request.protected_files.emplace_back(batch.file);
     request.only = part.only;
     request.output_folder = options.session.output_folder;
     request.seed = options.seed;
     return request;
+}
+
+/// Every file that the batch names, whether a workflow reads it or not.
+std::vector<std::filesystem::path> files_of(const Batch& batch) {
+    std::vector<std::filesystem::path> files{batch.file};
+    for (const BatchScan& scan : batch.scans) {
+        files.push_back(scan.file);
+        for (const std::filesystem::path& other : {scan.truth.file, scan.pose_file})
+            if (!other.empty()) files.push_back(other);
+        for (const auto& [name, input] : scan.inputs) files.insert(files.end(), input.files.begin(), input.files.end());
+    }
+    return files;
 }
 
 int run_batch(const BatchOptions& options) {
@@ -343,6 +347,7 @@ int run_batch(const BatchOptions& options) {
     std::vector<GraphPart> parts;
     for (const BatchPart& part : checked.parts)
         parts.push_back({part.plan, request_for(checked.batch, part, options.execute)});
+    if (!parts.empty()) parts.front().request.protected_files = files_of(checked.batch);
     const auto hash = [&](const std::filesystem::path& file) { return execution.hash(file); };
     RunGraph graph = make_graph(parts, execution.library(), hash);
     SessionTask task{checked.batch.name, options.file, std::move(graph), checked.batch.limits};

@@ -75,11 +75,11 @@ std::string clock_text(double seconds) {
 }
 
 Progress::Progress(const RunGraph& graph, const std::vector<NodePrediction>& predictions, std::size_t workers,
-                   bool quiet)
+                   bool quiet, unsigned passes)
     : graph_(graph),
       names_(graph),
       board_(workers, graph.nodes.size()),
-      time_left_(workers),
+      time_left_(workers, passes),
       is_settled_(graph.nodes.size()),
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) != 0),
@@ -283,6 +283,7 @@ void Progress::print_failure(const RunCell& cell, const CellReport& report) {
 
 void Progress::pass_started(unsigned pass, unsigned passes) {
     const std::scoped_lock lock(mutex_);
+    time_left_.pass_started(pass, seconds_since(begin_));
     if (!quiet_) print(fmt::format("pass {} of {}: the steps run again, to measure their costs", pass, passes));
 }
 

@@ -57,7 +57,8 @@ std::string clock_text(double seconds);
 
 class Progress : public RunObserver {
 public:
-    Progress(const RunGraph& graph, const std::vector<NodePrediction>& predictions, std::size_t workers, bool quiet);
+    Progress(const RunGraph& graph, const std::vector<NodePrediction>& predictions, std::size_t workers, bool quiet,
+             unsigned passes = 1);
 
     void node_started(const RunNode& node, std::size_t worker) override;
     void node_progress(const RunNode& node, double fraction) override;

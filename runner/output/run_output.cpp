@@ -168,13 +168,15 @@ std::string report_text(const RunGraph& graph, const RunReport& report, std::opt
     table.may_cut("files");
     std::size_t doubtful = 0, failed = 0;
     std::set<std::size_t> unreadable;          // nodes
-    std::set<std::filesystem::path> moved_to;  // variants may share a file
+    std::set<std::filesystem::path> moved_to, not_moved;  // variants may share a file
     for (const CellReport& done : report.cells) {
         doubtful += done.outcome == Outcome::doubtful;
         failed += done.outcome == Outcome::failed;
         if (const std::optional<std::size_t> file = unreadable_file(graph, done)) unreadable.insert(*file);
-        for (const OutputReport& output : done.outputs)
+        for (const OutputReport& output : done.outputs) {
             if (!output.moved_to.empty()) moved_to.insert(output.moved_to);
+            if (!output.not_moved.empty()) not_moved.insert(output.file);
+        }
     }
     const std::map<std::size_t, std::size_t> rows = cells_by_row(graph, report);
     for (const auto& [cell, count] : rows) {
@@ -207,6 +209,9 @@ std::string report_text(const RunGraph& graph, const RunReport& report, std::opt
     if (!moved_to.empty())
         text += fmt::format("{} of an earlier run, whose cells failed now, moved to *.previous\n",
                             count_text(moved_to.size(), "file", "files"));
+    if (!not_moved.empty())
+        text += fmt::format("{} of an earlier run, whose cells failed now, could not be moved; see stderr\n",
+                            count_text(not_moved.size(), "file", "files"));
     return text;
 }
 

@@ -42,7 +42,20 @@ std::optional<TimeLeft::Estimate> TimeLeft::left_of(const Task& task, double now
     return is_known ? std::optional(Estimate{elapsed, true}) : std::nullopt;  // as long again
 }
 
+void TimeLeft::pass_started(unsigned pass, double at) {
+    last_pass_ = at - pass_began_;
+    pass_began_ = at;
+    pass_ = pass;
+}
+
 std::optional<double> TimeLeft::seconds(double now) const {
+    const double elapsed = now - pass_began_;
+    const std::optional<double> left = pass_ == 1 ? left_of_tasks(now) : std::optional(last_pass_ - elapsed);
+    if (!left || *left <= 0) return std::nullopt;
+    return *left + (passes_ - pass_) * (elapsed + *left);
+}
+
+std::optional<double> TimeLeft::left_of_tasks(double now) const {
     struct Group {
         double left = 0;
         std::size_t unfinished = 0, running = 0;

@@ -12,7 +12,8 @@ namespace scanmill::runner {
 /// worker, as the steps of one scan do. All times are seconds since the run began.
 class TimeLeft {
 public:
-    explicit TimeLeft(std::size_t workers) : workers_(workers) {}
+    /// The tasks run in the first pass. Further passes take as long as the one before.
+    explicit TimeLeft(std::size_t workers, unsigned passes = 1) : workers_(workers), passes_(passes) {}
 
     /// Returns the task's number, counted from 0.
     std::size_t add(std::size_t kind, std::size_t group, double size);
@@ -21,6 +22,8 @@ public:
     void progressed(std::size_t task, double fraction);
     /// `is_typical`: it did all of its work; others of its kind take as long.
     void ended(std::size_t task, double at, bool is_typical);
+    /// The second pass or a later one begins.
+    void pass_started(unsigned pass, double at);
     /// It will not run.
     void dropped(std::size_t task) { tasks_[task].state = State::done; }
 
@@ -44,8 +47,11 @@ private:
         bool is_guess;
     };
     std::optional<Estimate> left_of(const Task& task, double now) const;
+    std::optional<double> left_of_tasks(double now) const;
 
     std::size_t workers_, groups_ = 0;
+    unsigned passes_, pass_ = 1;
+    double pass_began_ = 0, last_pass_ = 0;  ///< `last_pass_`: seconds of the pass before
     std::vector<Task> tasks_;
     std::vector<Kind> kinds_;
 };

@@ -127,6 +127,9 @@ TEST_F(Killed, RunAfterAKillAtAnyMoment_GivesTheResultsOfAnUndisturbedOne) {
         }
         EXPECT_EQ(runs[1]["outcome"], "failed");
     }
+    RecordProperty("killed-before-the-run", static_cast<int>(killed_before_the_run));
+    RecordProperty("interrupted", static_cast<int>(interrupted));
+    RecordProperty("killed-after-the-end", static_cast<int>(ended));
     EXPECT_GT(interrupted, 2u) << "of the others " << killed_before_the_run << " were killed before their run began, "
                                << ended << " after its end";
 }

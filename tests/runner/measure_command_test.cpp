@@ -163,15 +163,29 @@ TEST_F(MeasureCommand, TruthOfAnotherKnownUnit_IsConverted) {
     EXPECT_EQ(scanmill({"measure", "sphere.ply", "sphere.ply", "--truth-unit", "banana"}).exit_code, 2);
 }
 
-TEST_F(MeasureCommand, TruthInAnotherUnit_IsNotScored) {
+TEST_F(MeasureCommand, TruthOfAnotherSize_IsNotScored) {
     scanmill({"convert", "sphere.ply", "metres.ply", "--unit", "mm", "--to-unit", "m"});
-    const ProgramResult refused = scanmill({"measure", "sphere.ply", "metres.ply"});
+    const ProgramResult refused = scanmill({"measure", "sphere.ply", "metres.ply", "--unit", "m"});
     EXPECT_EQ(refused.exit_code, 1);
     EXPECT_EQ(refused.out, "");
     EXPECT_THAT(refused.err, HasSubstr("1000"));
-    const ProgramResult trusted = scanmill({"measure", "sphere.ply", "metres.ply", "--set", "same-frame=true"});
+    const ProgramResult trusted =
+        scanmill({"measure", "sphere.ply", "metres.ply", "--unit", "m", "--set", "same-frame=true"});
     EXPECT_EQ(trusted.exit_code, 0);
     EXPECT_THAT(trusted.err, HasSubstr("measured anyway"));
+}
+
+TEST_F(MeasureCommand, UnitThatOnlyOneOfBothDeclares_IsNotGuessed) {
+    scanmill({"convert", "sphere.ply", "millimetres.ply", "--unit", "mm"});
+    const ProgramResult mesh = scanmill({"measure", "sphere.ply", "millimetres.ply"});
+    EXPECT_EQ(mesh.exit_code, 1);
+    EXPECT_THAT(mesh.err, HasSubstr("'sphere.ply' declares no unit, 'millimetres.ply' is in mm"));
+    EXPECT_THAT(mesh.err, HasSubstr("--unit mm"));
+    EXPECT_EQ(scanmill({"measure", "sphere.ply", "millimetres.ply", "--unit", "mm"}).exit_code, 0);
+    const ProgramResult truth = scanmill({"measure", "millimetres.ply", "sphere.ply"});
+    EXPECT_EQ(truth.exit_code, 1);
+    EXPECT_THAT(truth.err, HasSubstr("'millimetres.ply' is in mm, 'sphere.ply' declares no unit"));
+    EXPECT_EQ(scanmill({"measure", "millimetres.ply", "sphere.ply", "--truth-unit", "mm"}).exit_code, 0);
 }
 
 TEST_F(MeasureCommand, Step_ExpectsAndWritesItsNumbers) {

@@ -82,6 +82,21 @@ TEST(TimeLeft, FailedAndDroppedTasks_TeachNothing) {
     EXPECT_FALSE(left.seconds(10.1));
 }
 
+TEST(TimeLeft, FurtherPasses_TakeAsLongAsTheOneBefore) {
+    TimeLeft left(1, 3);
+    left.add(0, 0, 1);
+    left.add(0, 1, 1);
+    pass(left, 0, 0, 10);
+    EXPECT_DOUBLE_EQ(*left.seconds(10), 10 + 2 * 20);
+    pass(left, 1, 10, 10);
+    EXPECT_FALSE(left.seconds(20)) << "between two passes";
+    left.pass_started(2, 20);
+    EXPECT_DOUBLE_EQ(*left.seconds(25), 15 + 20);
+    left.pass_started(3, 38);
+    EXPECT_DOUBLE_EQ(*left.seconds(40), 16) << "the second took 18 s, without outputs";
+    EXPECT_FALSE(left.seconds(57)) << "longer than the one before";
+}
+
 TEST(TimeLeft, TaskThatRunsAgain_CountsAgain) {
     TimeLeft left(1);
     left.add(0, 0, 1);

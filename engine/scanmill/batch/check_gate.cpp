@@ -124,10 +124,10 @@ private:
         for (const PlannedStep* step : steps_)
             for (const MetricSpec& metric : step->spec.metrics) metrics.insert(metric.name);
         const std::vector<std::string> known(metrics.begin(), metrics.end());
-        diagnostics_.error(rule.position,
-                           "no step, measurement or output of the batch has a metric '{}'{}; `scanmill show FILTER` "
-                           "lists a filter's metrics",
-                           rule.metric, did_you_mean(rule.metric, known));
+        const std::string proposal = did_you_mean(rule.metric, known);
+        diagnostics_.error(rule.position, "no step, measurement or output of the batch has a metric '{}'{}",
+                           rule.metric,
+                           proposal.empty() ? "; `scanmill show FILTER` lists a filter's metrics" : proposal);
     }
 
     const Batch& batch_;

@@ -140,8 +140,8 @@ void WorkerProcesses::check(std::size_t worker, const WorkerListener& listener) 
     // this time has closed the channel itself, and is useless.
     constexpr std::chrono::seconds time_to_end(1);
     if (slot.channel_closed && Clock::now() - *slot.channel_closed > time_to_end)
-        return kill(worker, listener, Cause::exit,
-                    Error("the filter closed the channel from the worker process to its runner"), 0);
+        return kill(worker, listener, Cause::signal,
+                    Error("the filter closed the channel from the worker process to its runner"), SIGKILL);
     if (slot.job) enforce_limits(worker, listener);
 }
 

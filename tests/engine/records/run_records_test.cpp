@@ -522,6 +522,9 @@ TEST_F(Records, WhatIsNone_IsRefused) {
 TEST_F(Run, Recorder_WritesWhatTheRunReports) {
     prepare("  - test-step: {factor: 2, mode: warn}\n    expect: {points: 4}\n", {scan("a.xyz")},
             "outputs: {'{scan}.ply': test-step}\n");
+    plan_.steps[0].measures = "surface";
+    graph_ = make_graph(plan_, library_, request_);
+    graph_.cells[0].truth = "truth.stl";
     const std::filesystem::path file = folder_ / "records.sqlite";
     std::vector<std::string> told;
     Recorder recorder(file, some_start(), library_, graph_, [&](std::string text) { told.push_back(text); });
@@ -535,6 +538,9 @@ TEST_F(Run, Recorder_WritesWhatTheRunReports) {
     EXPECT_EQ(run.steps[1].metrics.find("points")->value, 4);
     EXPECT_THAT(run.steps[1].warnings, ElementsAre(HasSubstr("asked to warn")));
     ASSERT_EQ(run.cells.size(), 1u);
+    EXPECT_EQ(run.steps[0].measures, "");
+    EXPECT_EQ(run.steps[1].measures, "surface");
+    EXPECT_EQ(run.cells[0].truth, "truth.stl");
     EXPECT_EQ(run.cells[0].outputs[0].kind, "points");
     EXPECT_EQ(run.cells[0].outputs[0].bytes,
               static_cast<std::int64_t>(std::filesystem::file_size(run.cells[0].outputs[0].file)));
