@@ -36,7 +36,7 @@ double median(std::span<const double> values);
 inline constexpr std::size_t least_ranked = 8;
 /// A difference counts if its probability is below 1 in `strong`; one of twice the tolerance if it is below 1 in
 /// `weak`, because a few slow passes among the earlier ones must not hide it.
-inline constexpr std::uint64_t strong = 1000, weak = 20;
+inline constexpr std::uint64_t strong = 1000, weak = 50;
 /// Other programs on the machine make a step wait, which takes time but no processor time. Time that rises without
 /// processor time must therefore rise by this multiple of the tolerance, and by this many seconds: a few time slices.
 /// Measured on two cores with 15 other busy programs: of 7,200 comparisons of unchanged cells in 80 runs of three
