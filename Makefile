@@ -17,7 +17,7 @@ demo: release data ## turn real scans into closed meshes and print a table
 
 nightly: release data ## compare three surfaces of virtual and real scans with the accepted run, and print the report
 	build/release/bin/scanmill run workflows/virtual-scans.yaml $(addprefix build/data/,$(nightly_models)) -o build/virtual-scans -q
-	-build/release/bin/scanmill batch workflows/nightly.yaml -o build/nightly --no-cache
+	-build/release/bin/scanmill batch workflows/nightly.yaml -o build/nightly --no-cache -j $(jobs)
 	build/release/bin/scanmill report build/nightly
 
 test: dev data ## build with assertions on and run every test
