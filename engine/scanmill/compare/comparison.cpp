@@ -350,8 +350,11 @@ private:
             CostChange change{std::string(cost), 0, 0, before.size(), now.size(), {}, {}, Effect::listed};
             const bool is_gated = rule != gate_.rules.end();
             const double tolerance = is_gated ? parse_cost_tolerance(rule->text).amount : infinite;
-            const CostJudgement judgement =
-                judge_costs(before, now, tolerance, cost != "seconds" || used_more_processor(past, tolerance));
+            const bool is_confirmed = cost != "seconds" || used_more_processor(past, tolerance);
+            const CostKind kind = cost == "memory" ? CostKind::other
+                                  : is_confirmed   ? CostKind::time
+                                                   : CostKind::unconfirmed_time;
+            const CostJudgement judgement = judge_costs(before, now, tolerance, kind);
             change.before = judgement.before;
             change.now = judgement.now;
             change.probability = judgement.probability;

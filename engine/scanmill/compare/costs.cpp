@@ -95,14 +95,16 @@ bool all_rise(std::span<const double> before, std::span<const double> now, doubl
 }
 
 CostJudgement judge_costs(std::span<const double> before, std::span<const double> now, double tolerance,
-                          bool is_confirmed) {
+                          CostKind kind) {
     assert(!before.empty() && !now.empty() && now.size() <= most_ranked);
     if (before.size() > most_ranked) before = before.last(most_ranked);
     const bool is_ranked = before.size() >= least_ranked;
     CostJudgement judgement{median(before), median(now), false, false, {}};
     const double rise = rise_of_all(before, now), fall = judgement.before / *std::ranges::max_element(now) - 1;
-    const double limit =
-        is_confirmed ? tolerance : std::max(unconfirmed_factor * tolerance, unconfirmed_seconds / judgement.before);
+    double limit = tolerance;
+    if (kind == CostKind::time) limit = std::max(limit, least_seconds / judgement.before);
+    if (kind == CostKind::unconfirmed_time)
+        limit = std::max(unconfirmed_factor * tolerance, unconfirmed_seconds / judgement.before);
     judgement.is_worse = is_borne_out(rise, now, before, is_ranked, tolerance, limit, judgement.probability);
     judgement.is_better =
         !judgement.is_worse && is_borne_out(fall, before, now, is_ranked, tolerance, tolerance, judgement.probability);

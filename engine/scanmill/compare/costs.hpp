@@ -40,9 +40,18 @@ inline constexpr std::uint64_t strong = 1000, weak = 50;
 /// Other programs on the machine make a step wait, which takes time but no processor time. Time that rises without
 /// processor time must therefore rise by this multiple of the tolerance, and by this many seconds: a few time slices.
 /// Measured on two cores with 15 other busy programs: of 7,200 comparisons of unchanged cells in 80 runs of three
-/// passes, 72 had a false alarm with 1, 66 with 2, 11 with 3, and 4 with 4; `cpu-seconds` and `memory` had none. Of 480
-/// comparisons of cells that take 4 to 100 ms, 4 had a false alarm without the seconds, for rises up to 10 ms.
+/// passes, 72 had a false alarm with 1, 66 with 2, 11 with 3, and 4 with 4. Of 480 comparisons of cells that take 4 to
+/// 100 ms, 4 had a false alarm without the seconds, for rises up to 10 ms.
 inline constexpr double unconfirmed_factor = 4, unconfirmed_seconds = 0.02;
+/// Other programs also empty the caches: 0.7 ms of processor time became at least 1 ms in all passes of one such
+/// comparison. Any time must rise by this many seconds.
+inline constexpr double least_seconds = 0.002;
+
+enum class CostKind {
+    time,
+    unconfirmed_time,  ///< the processor time did not rise
+    other              ///< memory
+};
 
 struct CostJudgement {
     double before = 0, now = 0;  ///< medians
@@ -55,10 +64,10 @@ struct CostJudgement {
 /// earlier median by more than the tolerance, a share, and the ranks are improbable enough. Where the numbers of passes
 /// allow no improbable ranks, the rise of twice the tolerance alone decides. Better is the reverse. That every pass
 /// counts makes a blip in some of them harmless; it costs little, because the noise of times only adds.
-/// `is_confirmed`: false if this is a time and the processor time did not rise. Pre: `before` and `now` are not empty,
+/// Pre: `before` and `now` are not empty,
 /// values positive, `now` has at most most_ranked.
 CostJudgement judge_costs(std::span<const double> before, std::span<const double> now, double tolerance,
-                          bool is_confirmed = true);
+                          CostKind kind = CostKind::other);
 
 /// Whether every pass is above the earlier median by more than the tolerance. Pre: neither is empty.
 bool all_rise(std::span<const double> before, std::span<const double> now, double tolerance);

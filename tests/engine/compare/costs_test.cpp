@@ -178,13 +178,15 @@ TEST(JudgeCosts, OnlyTheLastTwenty_Count) {
 }
 
 TEST(JudgeCosts, TimeWithoutProcessorTime_NeedsMore) {
-    EXPECT_TRUE(judge_costs(around(10, 20), around(15, 3), 0.2, true).is_worse);
-    EXPECT_FALSE(judge_costs(around(10, 20), around(15, 3), 0.2, false).is_worse);
-    EXPECT_TRUE(judge_costs(around(10, 20), around(20, 3), 0.2, false).is_worse);
-    EXPECT_TRUE(judge_costs(around(10, 3), around(20, 3), 0.2, false).is_worse);
-    EXPECT_FALSE(judge_costs(around(0.005, 20), around(0.020, 3), 0.2, false).is_worse) << "a few time slices";
-    EXPECT_TRUE(judge_costs(around(0.005, 20), around(0.030, 3), 0.2, false).is_worse);
-    EXPECT_TRUE(judge_costs(around(0.005, 20), around(0.020, 3), 0.2, true).is_worse);
+    EXPECT_TRUE(judge_costs(around(10, 20), around(15, 3), 0.2, CostKind::time).is_worse);
+    EXPECT_FALSE(judge_costs(around(10, 20), around(15, 3), 0.2, CostKind::unconfirmed_time).is_worse);
+    EXPECT_TRUE(judge_costs(around(10, 20), around(20, 3), 0.2, CostKind::unconfirmed_time).is_worse);
+    EXPECT_TRUE(judge_costs(around(10, 3), around(20, 3), 0.2, CostKind::unconfirmed_time).is_worse);
+    EXPECT_FALSE(judge_costs(around(0.005, 20), around(0.020, 3), 0.2, CostKind::unconfirmed_time).is_worse)
+        << "a few time slices";
+    EXPECT_TRUE(judge_costs(around(0.005, 20), around(0.030, 3), 0.2, CostKind::unconfirmed_time).is_worse);
+    EXPECT_TRUE(judge_costs(around(0.005, 20), around(0.020, 3), 0.2, CostKind::time).is_worse);
+    EXPECT_FALSE(judge_costs(around(0.0008, 20), around(0.0013, 3), 0.2, CostKind::time).is_worse) << "the caches";
 }
 
 /// Passes of a cell on a noisy machine: multiplied by e^(σ·normal), by drift over the nights, and by bursts in which
