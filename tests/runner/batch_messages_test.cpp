@@ -68,9 +68,9 @@ TEST_F(Batch, PlainLines_TellEveryStepAndFailure) {
     write_scans("scan", 2);
     write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: fail}}");
     const ProgramResult result = run_batch();
-    EXPECT_THAT(result.err,
-                AllOf(HasSubstr("scan_01.xyz [factor=1]: last"), HasSubstr("was asked to fail"), HasSubstr("in step 'last' ("),
-                      HasSubstr("on scan '"), HasSubstr("under variant 'factor=2'"), Not(HasSubstr("\x1b"))));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("scan_01.xyz [factor=1]: last"), HasSubstr("was asked to fail"),
+                                  HasSubstr("in step 'last' ("), HasSubstr("on scan '"),
+                                  HasSubstr("under variant 'factor=2'"), Not(HasSubstr("\x1b"))));
     EXPECT_THAT(result.out, HasSubstr("2 of 4 failed"));
 }
 

@@ -49,7 +49,7 @@ TEST_F(DoubtsCommand, JsonEventsAndRecords_CarryTheDoubts) {
     EXPECT_EQ(record["run"]["doubtful"], 1);
     EXPECT_EQ(record["cells"][0]["doubts"], Json({"last: was asked to doubt"}));
     EXPECT_THAT(scanmill({"runs", "out", "show", "1"}).out,
-                HasSubstr("doubt: scans/a_01.xyz: last: was asked to doubt\n"));
+                HasSubstr("doubt: scans/a_01.xyz [default]: last: was asked to doubt\n"));
     EXPECT_THAT(scanmill({"runs", "out"}).out, HasSubstr("doubtful"));
 
     write_batch("scans/*.xyz", "set: {mode: doubt}\n");

@@ -97,14 +97,14 @@ TEST_F(Hostile, FullDisk_FailsTheScanThatDoesNotFit_AndLeavesNothingOfIt) {
     EXPECT_EQ(run_scan("large.xyz").exit_code, 0) << "without the limit there is room";
 }
 
-TEST_F(Hostile, FullDisk_LeavesTheResultOfAnEarlierRun) {
+TEST_F(Hostile, FullDisk_MovesTheResultOfAnEarlierRunAside) {
     folder_.write("w.yaml", workflow("{scan}.ply"));
     folder_.write("large.xyz", many_points());
     folder_.write("out/large.ply", "from yesterday");
     const ProgramResult ran = run_scan("large.xyz", {.file_limit = 8192});
     EXPECT_EQ(ran.exit_code, 1);
     EXPECT_THAT(ran.err, HasSubstr("the file was not made"));
-    EXPECT_EQ(content_of(folder_ / "out/large.ply"), "from yesterday");
+    EXPECT_EQ(content_of(folder_ / "out/large.ply.previous"), "from yesterday");
     EXPECT_EQ(files_below(folder_ / "out"), 1u);
 }
 

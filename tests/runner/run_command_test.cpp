@@ -42,13 +42,13 @@ TEST(RunCommand, TheShippedBatch_PassesCheckWhereItsScansAre) {
         std::filesystem::create_directories(folder / "workflows");
         std::filesystem::copy_file(file.path(), folder / "workflows" / file.path().filename());
     }
-    // The names of files that `make data` fetches; their content is not read.
-    for (const char* scan :
-         {"points_3/kitten.xyz", "points_3/sphere_20k.xyz", "meshes/bunny00.off", "meshes/fandisk_large.off"})
-        folder.write(std::string("build/data/") + scan, "0 0 0\n");
+    // The names of files that `make nightly` fetches and makes; their content is not read.
+    for (const char* scan : {"data/points_3/kitten.xyz", "data/meshes/bunny00.off", "virtual-scans/hand.ply",
+                             "virtual-scans/truth/hand.ply"})
+        folder.write(std::string("build/") + scan, "0 0 0\n");
     const ProgramResult found = scanmill_program({"check", (folder / "workflows" / "nightly.yaml").string()});
     EXPECT_EQ(found.exit_code, 0) << found.err;
-    EXPECT_THAT(found.out, HasSubstr("ok, 4 scans, 1 workflow, 6 variants, 14 cells"));
+    EXPECT_THAT(found.out, HasSubstr("ok, 3 scans, 1 workflow, 6 variants, 18 cells"));
 }
 
 TEST(RunCommand, OnePoint_IsThinnedByABinSizeThatNeedsNoTolerance) {
