@@ -210,7 +210,8 @@ int list_runs(Folder& folder, bool json) {
         if (!folder.acceptances.empty()) row.push_back(accepted_text(folder, run));
         table.add(std::move(row));
     }
-    fmt::print("{}", table.text());
+    table.may_cut("workflow");
+    fmt::print("{}", table.text(stdout_width()));
     return done;
 }
 
@@ -235,12 +236,15 @@ int show_run(Folder& folder, std::int64_t id, bool json) {
     Table cells({"scan", "variant", "outcome", "seconds"});
     for (const CellRecord& cell : run.cells)
         cells.add({cell.scan, cell.variant, cell.outcome, fmt::format("{:.2f}", cell.seconds)});
-    fmt::print("{}\n", cells.text());
+    cells.may_cut("scan");
+    fmt::print("{}\n", cells.text(stdout_width()));
     Table steps({"scan", "step", "variants", "outcome", "seconds", "from", "why"});
     for (const StepRecord& step : run.steps)
         steps.add({step.scan, step.label, variants_text(step), step.outcome, fmt::format("{:.2f}", step.seconds),
                    step.origin, step.why});
-    fmt::print("{}", steps.text());
+    steps.may_cut("scan");
+    steps.may_cut("why");
+    fmt::print("{}", steps.text(stdout_width()));
     std::map<std::pair<std::string, std::string>, std::vector<std::string>> failed;  // scan and error → variants
     for (const CellRecord& cell : run.cells)
         if (!cell.failure.error.empty()) failed[{cell.scan, cell.failure.error}].push_back(cell.variant);
