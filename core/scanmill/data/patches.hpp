@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// `patches`: a surface as the zero set of one cubic polynomial per tetrahedron, after Bernardini et al. 1997.
+///
+/// The tetrahedra stand on both sides of a triangle mesh. In barycentric coordinates a of its tetrahedron the function
+/// is F = sum of 6 / (i! j! k! l!) c_ijkl a0^i a1^j a2^k a3^l over i + j + k + l = 3, with the 20 weights c; it is
+/// negative inside the object and positive outside. Neighbours join with equal gradients. geometry/a_patch.hpp
+/// evaluates it.
+
+#include <array>
+
+#include "scanmill/data/array.hpp"
+#include "scanmill/data/frame.hpp"
+
+namespace scanmill {
+
+/// Weights c_ijkl of one tetrahedron; (i, j, k, l) falls lexicographically: 3000, 2100, 2010, 2001, 1200, …, 0003.
+using PatchWeights = std::array<double, 20>;
+
+enum class PatchKind : u8 {
+    face,  ///< stands on a triangle, or on a third of it: base point w of the triangle, corners i and j, apex
+    edge   ///< fills the gap beside an edge: point x between the apexes of its two triangles, corners i and j, apex
+};
+
+struct PatchComplex {
+    /// In `edge`: the tetrahedron stands on a triangle.
+    static constexpr u32 no_edge = ~u32(0);
+
+    Frame frame;
+    /// #vertices, relative to frame.origin: those of the mesh in its order, then base points, apexes and edge points.
+    Buffer<Vec3> positions;
+    /// #tetrahedra; corners in the order that PatchKind states, or the triangle's three and the apex if it is not
+    /// divided. Those inside the object are mirrored: their orientation is negative.
+    Buffer<std::array<u32, 4>> tets;
+    Buffer<PatchWeights> weights;  ///< #tetrahedra
+    Buffer<PatchKind> kinds;  ///< #tetrahedra
+    Buffer<u8> sides;  ///< #tetrahedra: 1 outside the mesh, 0 inside it
+    Buffer<u32> triangles;  ///< #tetrahedra: the row of the mesh's triangle whose apex is their last corner
+    Buffer<u32> edges;  ///< #tetrahedra: the number of the mesh's edge, by its vertices; or no_edge
+};
+
+}  // namespace scanmill

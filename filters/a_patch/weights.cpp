@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "a_patch/weights.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <atomic>
+
+#include "scanmill/base/parallel.hpp"
+
+namespace scanmill::a_patches {
+
+namespace {
+
+using Vector4 = Eigen::Vector4d;
+
+constexpr std::size_t chunk = 1024;  // faces or edges
+constexpr double least_share = 0.1;  // of a value at an apex, that is kept at the edge points
+constexpr double least_share_of_edge = 0.2;
+
+constexpr std::size_t next(std::size_t i) { return (i + 1) % 3; }
+constexpr std::size_t previous(std::size_t i) { return (i + 2) % 3; }
+
+/// One side of a face. An affine function on its tetrahedron is given by its values at the three corners and the apex.
+struct FaceSide {
+    Vec3 apex;
+    std::array<Vector4, 3> m;  ///< f(v, apex, .)
+    Vector4 n;                 ///< f(apex, apex, .)
+    std::array<Vec3, 3> edge_point{};  ///< of edge i; the apex on the boundary
+    std::array<Vector4, 3> at_edge_point;  ///< its coordinates
+};
+
+/// The quadric that interpolates a face's vertices and normals as well as it can: value and gradient come from the
+/// vertices, H from the differences of the normals.
+Eigen::Matrix3d face_curvature(const Hull& hull, std::size_t f, Curvature curvature) {
+    const Triangle& t = hull.triangles[f];
+    const Vec3& p = hull.positions[t[0]];
+    const Vec3 e1 = hull.positions[t[1]] - p, e2 = hull.positions[t[2]] - p;
+    const Vec3 d1 = hull.normals[t[1]] - hull.normals[t[0]], d2 = hull.normals[t[2]] - hull.normals[t[0]];
+    const Vec3& n = hull.faces[f].normal;
+    const Vec3 x = e1.normalized(), y = n.cross(x);
+    Eigen::Matrix2d edges;
+    edges << x.dot(e1), x.dot(e2), y.dot(e1), y.dot(e2);
+    Eigen::Matrix<double, 3, 2> differences;
+    differences << x.dot(d1), x.dot(d2), y.dot(d1), y.dot(d2), n.dot(d1), n.dot(d2);
+    const Eigen::Matrix<double, 3, 2> change = differences * edges.inverse();
+    Eigen::Matrix3d local;
+    local.topLeftCorner<2, 2>() = (change.topRows<2>() + change.topRows<2>().transpose()) / 2;
+    local.bottomLeftCorner<1, 2>() = change.row(2);
+    local.topRightCorner<2, 1>() = change.row(2).transpose();
+    local(2, 2) = curvature == Curvature::mean ? (local(0, 0) + local(1, 1)) / 2 : 0;
+    Eigen::Matrix3d axes;
+    axes << x, y, n;
+    return axes * local * axes.transpose();
+}
+
+class WeightsBuilder {
+public:
+    WeightsBuilder(const Hull& hull, Curvature curvature, Execution& execution)
+        : hull_(hull),
+          curvature_(curvature),
+          execution_(execution) {}
+
+    Weights weights() {
+        number_vertices();
+        for (auto& sides : sides_) sides.resize(hull_.faces.size());
+        for_each_chunk(execution_.threads(), hull_.faces.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            execution_.check_cancelled();
+            std::size_t raised = 0;
+            for (std::size_t f = begin; f < end; ++f)
+                for (const Side side : both_sides) raised += set_face(f, side);
+            raised_ += raised;
+        });
+        for_each_chunk(execution_.threads(), hull_.faces.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f)
+                for (const Side side : both_sides) write_face(f, side);
+        });
+        for_each_chunk(execution_.threads(), hull_.edges.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            execution_.check_cancelled();
+            std::size_t raised = 0;
+            for (std::size_t e = begin; e < end; ++e)
+                if (hull_.edges[e].second != HullEdge::none)
+                    for (const Side side : both_sides) raised += write_edge(e, side);
+            raised_ += raised;
+        });
+        Weights result;
+        result.raised = raised_;
+        result.patches = {{},
+                          std::move(positions_),
+                          std::move(tets_),
+                          std::move(weights_),
+                          std::move(kinds_),
+                          std::move(tet_sides_),
+                          std::move(triangles_),
+                          std::move(edges_)};
+        return result;
+    }
+
+private:
+    static constexpr std::size_t tets_per_face = 6, tets_per_edge = 4;
+
+    /// Vertices: those of the mesh, base points, apexes inside and outside, edge points inside and outside.
+    void number_vertices() {
+        const std::size_t faces = hull_.faces.size();
+        first_base_ = hull_.positions.size();
+        first_apex_ = first_base_ + faces;
+        first_edge_point_ = first_apex_ + 2 * faces;
+        inner_edge_.resize(hull_.edges.size());
+        std::size_t inner = 0;
+        for (std::size_t e = 0; e < hull_.edges.size(); ++e)
+            if (hull_.edges[e].second != HullEdge::none) inner_edge_[e] = static_cast<u32>(inner++);
+        positions_.resize(first_edge_point_ + 2 * inner);
+        std::ranges::copy(hull_.positions, positions_.begin());
+        const std::size_t count = tets_per_face * faces + tets_per_edge * inner;
+        tets_.resize(count);
+        weights_.resize(count);
+        kinds_.resize(count);
+        tet_sides_.resize(count);
+        triangles_.resize(count);
+        edges_.resize(count);
+    }
+
+    u32 base_number(std::size_t f) const { return static_cast<u32>(first_base_ + f); }
+    u32 apex_number(std::size_t f, Side side) const { return static_cast<u32>(first_apex_ + 2 * f + side); }
+    u32 edge_point_number(std::size_t e, Side side) const {
+        return static_cast<u32>(first_edge_point_ + 2 * inner_edge_[e] + side);
+    }
+
+    /// Sets the free weights of a face's side and what follows from them. Returns how many weights were raised.
+    std::size_t set_face(std::size_t f, Side side) {
+        const HullFace& face = hull_.faces[f];
+        const Triangle& t = hull_.triangles[f];
+        const double sign = sign_of(side);
+        FaceSide& out = sides_[side][f];
+        out.apex = hull_.apex(f, side);
+        const Eigen::Matrix3d curvature = face_curvature(hull_, f, curvature_);
+        std::array<double, 3> at_apex, along_edge, free;
+        double quadric = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 d = out.apex - hull_.positions[t[i]];
+            quadric += (d.dot(hull_.normals[t[i]]) + d.dot(curvature * d) / 2) / 3;
+            at_apex[i] = hull_.at_vertex(t[i], out.apex);
+            along_edge[i] = hull_.at_edge(hull_.edges[face.edges[i]], out.apex);
+        }
+        for (std::size_t i = 0; i < 3; ++i) free[i] = (quadric + 3 * at_apex[i]) / 3;
+        double top = quadric;
+
+        Eigen::Matrix3d corners;
+        for (std::size_t i = 0; i < 3; ++i)
+            corners.col(static_cast<Eigen::Index>(i)) = hull_.positions[t[i]] - out.apex;
+        const Eigen::Matrix3d inverse = corners.inverse();
+        for (std::size_t i = 0; i < 3; ++i) {
+            const HullEdge& edge = hull_.edges[face.edges[i]];
+            out.edge_point[i] = edge_point(edge, side);
+            out.at_edge_point[i].head<3>() = inverse * (out.edge_point[i] - out.apex);
+            out.at_edge_point[i][3] = 1 - out.at_edge_point[i].head<3>().sum();
+        }
+
+        std::size_t raised = 0;
+        for (std::size_t v = 0; v < 3; ++v) {
+            Vector4& m = out.m[v];
+            m[static_cast<Eigen::Index>(v)] = at_apex[v];
+            m[static_cast<Eigen::Index>(next(v))] = along_edge[v];
+            m[static_cast<Eigen::Index>(previous(v))] = along_edge[previous(v)];
+            m[3] = free[v];
+            for (const std::size_t i : {v, previous(v)}) {
+                if (hull_.edges[face.edges[i]].second == HullEdge::none) continue;
+                const double wanted = least_share * hull_.at_vertex(t[v], out.edge_point[i]);
+                raised += raise(m, out.at_edge_point[i], wanted, sign);
+            }
+            free[v] = m[3];
+        }
+        out.n = {free[0], free[1], free[2], top};
+        const double wanted = least_share * (free[0] + free[1] + free[2]) / 3;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (hull_.edges[face.edges[i]].second != HullEdge::none)
+                raised += raise(out.n, out.at_edge_point[i], wanted, sign);
+        return raised;
+    }
+
+    /// Raises (on the inner side: lowers) the value at the apex until the function reaches `wanted` at the point.
+    static std::size_t raise(Vector4& values, const Vector4& at, double wanted, double sign) {
+        const double missing = sign * (wanted - values.dot(at));
+        if (missing <= 0 || at[3] <= 0) return 0;
+        values[3] += sign * missing / at[3];
+        return 1;
+    }
+
+    Vec3 edge_point(const HullEdge& edge, Side side) const {
+        const Vec3 apex = hull_.apex(edge.first, side);
+        return edge.second == HullEdge::none ? apex : (apex + hull_.apex(edge.second, side)) / 2;
+    }
+
+    void write_face(std::size_t f, Side side) {
+        const HullFace& face = hull_.faces[f];
+        const Triangle& t = hull_.triangles[f];
+        const FaceSide& s = sides_[side][f];
+        positions_[base_number(f)] = face.base;
+        positions_[apex_number(f, side)] = s.apex;
+        const Vector4 base(face.share[0], face.share[1], face.share[2], 0);
+        std::array<double, 3> m, k;
+        for (std::size_t v = 0; v < 3; ++v) {
+            m[v] = s.m[v].dot(base);
+            Vector4 values;
+            values[static_cast<Eigen::Index>(v)] = hull_.at_vertex(t[v], face.base);
+            values[static_cast<Eigen::Index>(next(v))] = at_edge(face.edges[v], face.base);
+            values[static_cast<Eigen::Index>(previous(v))] = at_edge(face.edges[previous(v)], face.base);
+            values[3] = m[v];
+            k[v] = values.dot(base);
+        }
+        const double n = s.n.dot(base), ss = Vector4(m[0], m[1], m[2], n).dot(base),
+                     u = Vector4(k[0], k[1], k[2], ss).dot(base);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = next(i), row = tets_per_face * f + 3 * side + i;
+            tets_[row] = {base_number(f), t[i], t[j], apex_number(f, side)};
+            weights_[row] =
+                with_corners(f, s, i,
+                             {u, k[i], k[j], ss, hull_.at_vertex(t[i], face.base), at_edge(face.edges[i], face.base),
+                              m[i], hull_.at_vertex(t[j], face.base), m[j], n});
+            describe(row, PatchKind::face, side, f, PatchComplex::no_edge);
+        }
+    }
+
+    /// Returns how many weights were raised.
+    std::size_t write_edge(std::size_t e, Side side) {
+        const HullEdge& edge = hull_.edges[e];
+        const double sign = sign_of(side);
+        const std::array<u32, 2> faces{edge.first, edge.second};
+        std::array<std::size_t, 2> corner, number;  // of the face: of the edge's a, and of the edge
+        for (std::size_t of = 0; of < 2; ++of) {
+            const Triangle& t = hull_.triangles[faces[of]];
+            corner[of] = static_cast<std::size_t>(std::ranges::find(t, edge.a) - t.begin());
+            number[of] = of == 0 ? corner[of] : previous(corner[of]);
+        }
+        const Vec3 x = sides_[side][edge.first].edge_point[number[0]];
+        positions_[edge_point_number(e, side)] = x;
+        const std::array<u32, 2> ends{edge.a, edge.b};
+        std::array<std::array<double, 2>, 2> m;  // by face and end
+        std::array<double, 2> n, quadratic{};
+        for (std::size_t of = 0; of < 2; ++of) {
+            const FaceSide& s = sides_[side][faces[of]];
+            const Vector4& at = s.at_edge_point[number[of]];
+            const std::size_t other = of == 0 ? next(corner[of]) : previous(corner[of]);
+            m[of] = {s.m[corner[of]].dot(at), s.m[other].dot(at)};
+            n[of] = s.n.dot(at);
+        }
+        for (std::size_t end = 0; end < 2; ++end) quadratic[end] = (m[0][end] + m[1][end]) / 2;
+        double qxx = 0;
+        for (std::size_t end = 0; end < 2; ++end) qxx += 1.5 * (quadratic[end] - hull_.at_vertex(ends[end], x));
+        const double least = least_share_of_edge * std::min(sign * quadratic[0], sign * quadratic[1]);
+        std::array<double, 2> r;
+        std::size_t raised = 0;
+        for (std::size_t of = 0; of < 2; ++of) {
+            const double apex = sides_[side][faces[of]].n[3];
+            r[of] = (qxx + 3 * n[of] - apex) / 3;
+            if (sign * r[of] < least) {
+                r[of] = sign * least;
+                ++raised;
+            }
+        }
+        for (std::size_t of = 0; of < 2; ++of) {
+            const std::size_t f = faces[of],
+                              row = tets_per_face * hull_.faces.size() + tets_per_edge * inner_edge_[e] + 2 * side + of;
+            // Corners i and j follow the face's own direction, as those of its other tetrahedra do.
+            const std::size_t i = of == 0 ? 0 : 1, j = 1 - i;
+            tets_[row] = {edge_point_number(e, side), ends[i], ends[j], apex_number(f, side)};
+            weights_[row] =
+                with_corners(f, sides_[side][f], number[of],
+                             {(r[0] + r[1]) / 2, quadratic[i], quadratic[j], r[of], hull_.at_vertex(ends[i], x),
+                              hull_.at_edge(edge, x), m[of][i], hull_.at_vertex(ends[j], x), m[of][j], n[of]});
+            describe(row, PatchKind::edge, side, f, static_cast<u32>(e));
+        }
+        return raised;
+    }
+
+    /// The ten weights of the first corner, and those of corners i and j of edge i and the apex.
+    PatchWeights with_corners(std::size_t f, const FaceSide& s, std::size_t i, const std::array<double, 10>& first) {
+        const Triangle& t = hull_.triangles[f];
+        const std::size_t j = next(i);
+        PatchWeights c;
+        std::ranges::copy(first, c.begin());
+        const std::array<double, 10> rest{0,
+                                          hull_.at_vertex(t[i], hull_.positions[t[j]]),
+                                          s.m[i][static_cast<Eigen::Index>(i)],
+                                          hull_.at_vertex(t[j], hull_.positions[t[i]]),
+                                          s.m[i][static_cast<Eigen::Index>(j)],
+                                          s.n[static_cast<Eigen::Index>(i)],
+                                          0,
+                                          s.m[j][static_cast<Eigen::Index>(j)],
+                                          s.n[static_cast<Eigen::Index>(j)],
+                                          s.n[3]};
+        std::ranges::copy(rest, c.begin() + 10);
+        return c;
+    }
+
+    double at_edge(u32 edge, const Vec3& point) const { return hull_.at_edge(hull_.edges[edge], point); }
+
+    void describe(std::size_t row, PatchKind kind, Side side, std::size_t f, u32 edge) {
+        kinds_[row] = kind;
+        tet_sides_[row] = static_cast<u8>(side);
+        triangles_[row] = static_cast<u32>(f);
+        edges_[row] = edge;
+    }
+
+    const Hull& hull_;
+    Curvature curvature_;
+    Execution& execution_;
+    std::array<std::vector<FaceSide>, 2> sides_;  // by Side
+    std::size_t first_base_ = 0, first_apex_ = 0, first_edge_point_ = 0;
+    std::vector<u32> inner_edge_;
+    Array<Vec3> positions_;
+    Array<std::array<u32, 4>> tets_;
+    Array<PatchWeights> weights_;
+    Array<PatchKind> kinds_;
+    Array<u8> tet_sides_;
+    Array<u32> triangles_, edges_;
+    std::atomic<std::size_t> raised_ = 0;
+};
+
+}  // namespace
+
+Weights make_weights(const Hull& hull, Curvature curvature, Execution& execution) {
+    return WeightsBuilder(hull, curvature, execution).weights();
+}
+
+}  // namespace scanmill::a_patches

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Triangles on the zero set of a patch complex, after Bernardini et al. 1997, section 5: watertight, without
+/// T-junctions, with the exact normals.
+
+#include <optional>
+
+#include "scanmill/base/execution.hpp"
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/patches.hpp"
+
+namespace scanmill {
+
+struct TessellateParams {
+    /// Segments per edge of the mesh; with max_error the most.
+    unsigned subdivision = 8;
+    /// Largest distance between the triangles and the surface, in the patches' unit; nothing: uniform.
+    std::optional<double> max_error;
+};
+
+/// A grid over every triangle of the mesh is lifted to the surface along lines to the apex on its side; the gap beside
+/// an edge is spanned by fans of lines between the two apexes. The samples on an edge depend on the edge alone, so
+/// neighbours fit.
+///
+/// Vertices: those of the mesh that are used, then edge by edge, then triangle by triangle. Columns: vertex `normal`
+/// (unit, of the gradient); face `patch` (u32, the row of the mesh's triangle) and `side` (u8, 1 where the surface is
+/// outside the mesh or on it).
+///
+/// With max_error edges get 1, 2, 4, … segments, until the surface in the middle of every segment is as near as that;
+/// the distance is measured there, not bounded. Throws Error if `subdivision` does not suffice, with the distance left;
+/// for patches without tetrahedra. Cost: linear in the triangles made, about 1 us each.
+TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution);
+
+}  // namespace scanmill
