@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill::a_patches {
 
@@ -15,6 +17,10 @@ constexpr double share_of_radius = 0.15;  // added to a height
 constexpr double low_factor = 1.05, low_share = 0.02;  // the least height that an apex is lowered to
 constexpr double higher_factor = 1.4, higher_share = 0.05;
 constexpr int most_rounds = 12;
+constexpr double share_of_gap = 0.45;  // of the distance to the next sheet
+constexpr double least_sine = 0.1;  // between two undivided triangles
+constexpr double most_change = 0.1;  // of an edge's gradient, whose length is 1
+constexpr std::size_t chunk = 256;  // triangles
 // Cosine and sine of the limits 4 and 172 degrees of the angle between two apexes, seen along their edge.
 constexpr double cosine_of_4 = 0.9975640502598242, cosine_of_172 = -0.9902680687415704;
 
@@ -54,19 +60,30 @@ Opening opening(const Hull& hull, const HullEdge& edge, Side side) {
 
 class HullBuilder {
 public:
-    HullBuilder(const TriangleMesh& mesh, std::vector<Vec3> normals, double apex_factor) : apex_factor_(apex_factor) {
+    HullBuilder(const TriangleMesh& mesh, std::vector<Vec3> normals, double apex_factor, Split split,
+                Execution& execution)
+        : apex_factor_(apex_factor),
+          split_(split),
+          execution_(execution) {
         hull_.positions = mesh.positions.span();
         hull_.triangles = mesh.triangles.span();
         hull_.normals = std::move(normals);
         opposites_ = half_edges::opposites(mesh);
     }
 
-    Hull hull(Execution& execution) {
+    Hull hull() {
         add_faces();
         add_edges();
-        execution.check_cancelled();
+        find_opposed();
+        if (!hull_.faults.empty()) return std::move(hull_);
+        if (split_ == Split::where_needed) undivide();
+        execution_.check_cancelled();
         set_heights();
+        const TriangleTree tree(hull_.positions, hull_.triangles, execution_.threads());
+        limit_heights(tree);
         open_gaps();
+        limit_heights(tree);  // of those that were raised
+        find_faults();
         return std::move(hull_);
     }
 
@@ -96,6 +113,99 @@ private:
         }
     }
 
+    void find_opposed() {
+        for (u32 f = 0; f < hull_.faces.size(); ++f)
+            if (std::ranges::any_of(hull_.triangles[f], [&](u32 v) {
+                    return !(hull_.faces[f].normal.dot(hull_.normals[v]) >= least_cosine);
+                }))
+                hull_.faults.opposed.push_back(f);
+    }
+
+    // Undivided triangles.
+
+    /// The corner opposite to edge `e`, as seen from its a.
+    Vec3 opposite(u32 e, u32 f) const {
+        const HullFace& face = hull_.faces[f];
+        const auto i = static_cast<std::size_t>(std::ranges::find(face.edges, e) - face.edges.begin());
+        return hull_.positions[hull_.triangles[f][(i + 2) % 3]] - hull_.positions[hull_.edges[e].a];
+    }
+
+    /// Leaves triangles undivided unless an edge then has no slope, or one far from its default.
+    void undivide() {
+        std::vector<Vec3> defaults;
+        for (const HullEdge& edge : hull_.edges) defaults.push_back(edge.slope);
+        for (u32 f = 0; f < hull_.faces.size(); ++f) {
+            HullFace& face = hull_.faces[f];
+            face.is_divided = false;
+            face.middle = 0;
+            for (std::size_t i = 0; i < 3; ++i)
+                face.middle += hull_.at_edge(hull_.edges[face.edges[i]],
+                                             hull_.positions[hull_.triangles[f][(i + 2) % 3]]) /
+                               3;
+        }
+        for (;;) {
+            std::vector<u32> bad;
+            for (u32 e = 0; e < hull_.edges.size(); ++e)
+                if (!set_slope(e, defaults[e])) bad.push_back(e);
+            if (bad.empty()) return;
+            divide(bad);
+            execution_.check_cancelled();
+        }
+    }
+
+    /// Sets the slope nearest to its default that the undivided triangles at the edge allow. Returns whether it is
+    /// sound.
+    bool set_slope(u32 e, const Vec3& by_default) {
+        HullEdge& edge = hull_.edges[e];
+        edge.slope = by_default;
+        const Vec3 d = (hull_.positions[edge.b] - hull_.positions[edge.a]).normalized();
+        std::array<Vec3, 2> across;
+        std::array<double, 2> missing;
+        std::size_t conditions = 0;
+        for (const u32 f : {edge.first, edge.second}) {
+            if (f == HullEdge::none || hull_.faces[f].is_divided) continue;
+            const Vec3 to = opposite(e, f);
+            across[conditions] = to - d * d.dot(to);
+            missing[conditions++] = hull_.faces[f].middle - hull_.at_edge(edge, hull_.positions[edge.a] + to);
+        }
+        if (conditions == 0) return true;
+        Vec3 change;
+        if (conditions == 1) {
+            change = across[0] * (missing[0] / across[0].squaredNorm());
+        } else {
+            const double area = d.dot(across[0].cross(across[1]));
+            if (std::abs(area) < least_sine * std::sqrt(across[0].squaredNorm() * across[1].squaredNorm()))
+                return false;
+            change = (missing[0] * across[1].cross(d) + missing[1] * d.cross(across[0])) / area;
+        }
+        if (3 * change.norm() > most_change) return false;
+        edge.slope += change;
+        return std::ranges::all_of(std::array{edge.first, edge.second}, [&](u32 f) {
+            return f == HullEdge::none || hull_.faces[f].normal.dot(edge.slope) > 0;
+        });
+    }
+
+    /// Divides triangles, those with the most bad edges first, until every bad edge has a newly divided one.
+    void divide(const std::vector<u32>& bad) {
+        std::vector<u32> count(hull_.faces.size(), 0), candidates;
+        std::vector<bool> is_bad(hull_.edges.size(), false);
+        for (const u32 e : bad) {
+            is_bad[e] = true;
+            for (const u32 f : {hull_.edges[e].first, hull_.edges[e].second})
+                if (f != HullEdge::none && !hull_.faces[f].is_divided && count[f]++ == 0) candidates.push_back(f);
+        }
+        std::ranges::sort(candidates);
+        std::ranges::stable_sort(candidates, [&](u32 one, u32 other) { return count[one] > count[other]; });
+        for (const u32 f : candidates) {
+            HullFace& face = hull_.faces[f];
+            if (std::ranges::none_of(face.edges, [&](u32 e) { return is_bad[e]; })) continue;
+            face.is_divided = true;
+            for (const u32 e : face.edges) is_bad[e] = false;
+        }
+    }
+
+    // Heights.
+
     void set_heights() {
         for (std::size_t f = 0; f < hull_.faces.size(); ++f) {
             HullFace& face = hull_.faces[f];
@@ -115,6 +225,59 @@ private:
                 face.height[side] = apex_factor_ * least + share_of_radius * face.radius;
             }
         }
+    }
+
+    /// An apex stays below the next sheet that the line from its base point meets.
+    void limit_heights(const TriangleTree& tree) {
+        for_each_chunk(execution_.threads(), hull_.faces.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            execution_.check_cancelled();
+            Array<u32> rows;
+            for (std::size_t f = begin; f < end; ++f)
+                for (const Side side : both_sides) {
+                    HullFace& face = hull_.faces[f];
+                    const Vec3 reach = sign_of(side) * (face.height[side] / share_of_gap) * face.normal;
+                    BoundingBox box;
+                    box.add(face.base);
+                    box.add(face.base + reach);
+                    rows.clear();
+                    tree.meeting(box, rows);
+                    double nearest = 1;
+                    for (const u32 row : rows)
+                        if (row != f) nearest = std::min(nearest, share_until(face.base, reach, row));
+                    if (nearest == 1) continue;
+                    face.limit[side] = nearest * face.height[side];
+                    face.height[side] = face.limit[side];
+                }
+        });
+    }
+
+    /// The share of `reach` at which the line meets the triangle; 1 if it does not.
+    double share_until(const Vec3& from, const Vec3& reach, u32 row) const {
+        const Triangle& t = hull_.triangles[row];
+        const Vec3 &a = hull_.positions[t[0]], u = hull_.positions[t[1]] - a, v = hull_.positions[t[2]] - a;
+        const Vec3 across = reach.cross(v);
+        const double volume = u.dot(across);
+        if (volume == 0) return 1;
+        const Vec3 to = from - a, turned = to.cross(u);
+        const double first = to.dot(across) / volume, second = reach.dot(turned) / volume,
+                     share = v.dot(turned) / volume;
+        return first >= 0 && second >= 0 && first + second <= 1 && share > 0 && share < 1 ? share : 1;
+    }
+
+    /// The least height that an apex may be lowered to.
+    static double low(const HullFace& face, Side side) {
+        return low_factor * face.least[side] + low_share * face.radius;
+    }
+
+    void find_faults() {
+        for (u32 f = 0; f < hull_.faces.size(); ++f)
+            if (std::ranges::any_of(both_sides, [&](Side side) {
+                    return hull_.faces[f].height[side] < low(hull_.faces[f], side);
+                }))
+                hull_.faults.thin.push_back(f);
+        for (u32 e = 0; e < hull_.edges.size(); ++e)
+            if (std::ranges::any_of(both_sides, [&](Side side) { return !hull_.is_sound(hull_.edges[e], side); }))
+                hull_.faults.inverted.push_back(e);
     }
 
     /// Lowers apexes that collide across a concave edge, raises those whose connection passes under a convex edge.
@@ -137,14 +300,15 @@ private:
     static void change(HullFace& face, Side side, Opening found) {
         double& height = face.height[side];
         if (found == Opening::too_large) {
-            height = higher_factor * height + higher_share * face.radius;
+            height = std::min(face.limit[side], higher_factor * height + higher_share * face.radius);
         } else {
-            const double low = low_factor * face.least[side] + low_share * face.radius;
-            height = std::min(height, (height + low) / 2);
+            height = std::min(height, (height + low(face, side)) / 2);
         }
     }
 
     double apex_factor_;
+    Split split_;
+    Execution& execution_;
     Array<u32> opposites_;
     Hull hull_;
 };
@@ -158,8 +322,9 @@ bool Hull::is_sound(const HullEdge& edge, Side side) const {
     return sign_of(side) * d.dot(u.cross(v)) > 0;
 }
 
-Hull make_hull(const TriangleMesh& mesh, std::vector<Vec3> normals, double apex_factor, Execution& execution) {
-    return HullBuilder(mesh, std::move(normals), apex_factor).hull(execution);
+Hull make_hull(const TriangleMesh& mesh, std::vector<Vec3> normals, double apex_factor, Split split,
+               Execution& execution) {
+    return HullBuilder(mesh, std::move(normals), apex_factor, split, execution).hull();
 }
 
 }  // namespace scanmill::a_patches

@@ -3,6 +3,7 @@
 /// The simplicial hull of a mesh: an apex on both sides of every triangle, and the tetrahedra between the apexes of
 /// neighbours (Bernardini et al. 1997, section 5).
 
+#include <limits>
 #include <vector>
 
 #include "scanmill/base/execution.hpp"
@@ -23,7 +24,12 @@ struct HullFace {
     double radius = 0;      ///< of the inscribed circle
     std::array<double, 2> least{};   ///< by Side: above it the signs at the apex are right
     std::array<double, 2> height{};  ///< by Side
+    /// By Side: the most that the next sheet of the mesh above the base point allows.
+    std::array<double, 2> limit{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     std::array<u32, 3> edges{};      ///< edge i goes from corner i to the next
+    /// Whether a tetrahedron per side is divided at the base point into three (Clough-Tocher).
+    bool is_divided = true;
+    double middle = 0;  ///< undivided: f(corner 0, corner 1, corner 2)
 };
 
 /// An edge a → b of the first face, and, unless it is on the boundary, b → a of the second.
@@ -32,7 +38,22 @@ struct HullEdge {
 
     u32 a = 0, b = 0;
     u32 first = 0, second = none;
-    Vec3 slope;  ///< g: f(a, b, X) = (b - a) · n_a / 3 + g · (X - a)
+    Vec3 slope = Vec3::Zero();  ///< g: f(a, b, X) = (b - a) · n_a / 3 + g · (X - a)
+};
+
+/// Which triangles are divided.
+enum class Split {
+    always,
+    where_needed  ///< where one tetrahedron per side cannot join its neighbours with equal gradients
+};
+
+/// What keeps a hull from carrying a surface; numbers ascend.
+struct HullFaults {
+    std::vector<u32> opposed;   ///< triangles with a normal at a corner that is more than 84 degrees from their own
+    std::vector<u32> thin;      ///< triangles too near to the next sheet
+    std::vector<u32> inverted;  ///< edges beside which a tetrahedron is inside out
+
+    bool empty() const { return opposed.empty() && thin.empty() && inverted.empty(); }
 };
 
 struct Hull {
@@ -41,6 +62,7 @@ struct Hull {
     std::vector<Vec3> normals;  ///< the gradient of every vertex
     std::vector<HullFace> faces;
     std::vector<HullEdge> edges;
+    HullFaults faults;  ///< with `opposed` there are no heights
 
     Vec3 apex(std::size_t face, Side side) const {
         return faces[face].base + sign_of(side) * faces[face].height[side] * faces[face].normal;
@@ -55,8 +77,12 @@ struct Hull {
     bool is_sound(const HullEdge& edge, Side side) const;
 };
 
-/// `apex_factor`: the apex is so many times as high as it must be, and a bit more. Pre: an oriented manifold without
-/// triangles of no area; a normal per vertex.
-Hull make_hull(const TriangleMesh& mesh, std::vector<Vec3> normals, double apex_factor, Execution& execution);
+/// The least cosine between the normals of a triangle and of its corners.
+inline constexpr double least_cosine = 0.1;
+
+/// `apex_factor`: the apex is so many times as high as it must be, and a bit more; but at most 0.45 of the distance to
+/// the next sheet of the mesh. Pre: an oriented manifold without triangles of no area; a normal per vertex.
+Hull make_hull(const TriangleMesh& mesh, std::vector<Vec3> normals, double apex_factor, Split split,
+               Execution& execution);
 
 }  // namespace scanmill::a_patches

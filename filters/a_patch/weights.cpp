@@ -97,13 +97,20 @@ public:
     }
 
 private:
-    static constexpr std::size_t tets_per_face = 6, tets_per_edge = 4;
+    static constexpr std::size_t tets_per_edge = 4;
 
-    /// Vertices: those of the mesh, base points, apexes inside and outside, edge points inside and outside.
+    /// Vertices: those of the mesh, base points of divided triangles, apexes inside and outside, edge points inside and
+    /// outside.
     void number_vertices() {
         const std::size_t faces = hull_.faces.size();
-        first_base_ = hull_.positions.size();
-        first_apex_ = first_base_ + faces;
+        std::size_t bases = hull_.positions.size();
+        for (const HullFace& face : hull_.faces) {
+            base_.push_back(static_cast<u32>(bases));
+            bases += face.is_divided;
+            first_row_.push_back(tets_of_faces_);
+            tets_of_faces_ += face.is_divided ? 6 : 2;
+        }
+        first_apex_ = bases;
         first_edge_point_ = first_apex_ + 2 * faces;
         inner_edge_.resize(hull_.edges.size());
         std::size_t inner = 0;
@@ -111,7 +118,7 @@ private:
             if (hull_.edges[e].second != HullEdge::none) inner_edge_[e] = static_cast<u32>(inner++);
         positions_.resize(first_edge_point_ + 2 * inner);
         std::ranges::copy(hull_.positions, positions_.begin());
-        const std::size_t count = tets_per_face * faces + tets_per_edge * inner;
+        const std::size_t count = tets_of_faces_ + tets_per_edge * inner;
         tets_.resize(count);
         weights_.resize(count);
         kinds_.resize(count);
@@ -120,7 +127,6 @@ private:
         edges_.resize(count);
     }
 
-    u32 base_number(std::size_t f) const { return static_cast<u32>(first_base_ + f); }
     u32 apex_number(std::size_t f, Side side) const { return static_cast<u32>(first_apex_ + 2 * f + side); }
     u32 edge_point_number(std::size_t e, Side side) const {
         return static_cast<u32>(first_edge_point_ + 2 * inner_edge_[e] + side);
@@ -195,8 +201,12 @@ private:
         const HullFace& face = hull_.faces[f];
         const Triangle& t = hull_.triangles[f];
         const FaceSide& s = sides_[side][f];
-        positions_[base_number(f)] = face.base;
         positions_[apex_number(f, side)] = s.apex;
+        if (!face.is_divided) {
+            write_undivided(f, side);
+            return;
+        }
+        positions_[base_[f]] = face.base;
         const Vector4 base(face.share[0], face.share[1], face.share[2], 0);
         std::array<double, 3> m, k;
         for (std::size_t v = 0; v < 3; ++v) {
@@ -211,14 +221,29 @@ private:
         const double n = s.n.dot(base), ss = Vector4(m[0], m[1], m[2], n).dot(base),
                      u = Vector4(k[0], k[1], k[2], ss).dot(base);
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = next(i), row = tets_per_face * f + 3 * side + i;
-            tets_[row] = {base_number(f), t[i], t[j], apex_number(f, side)};
+            const std::size_t j = next(i), row = first_row_[f] + 3 * side + i;
+            tets_[row] = {base_[f], t[i], t[j], apex_number(f, side)};
             weights_[row] =
                 with_corners(f, s, i,
                              {u, k[i], k[j], ss, hull_.at_vertex(t[i], face.base), at_edge(face.edges[i], face.base),
                               m[i], hull_.at_vertex(t[j], face.base), m[j], n});
             describe(row, PatchKind::face, side, f, PatchComplex::no_edge);
         }
+    }
+
+    void write_undivided(std::size_t f, Side side) {
+        const Triangle& t = hull_.triangles[f];
+        const FaceSide& s = sides_[side][f];
+        const std::size_t row = first_row_[f] + side;
+        tets_[row] = {t[0], t[1], t[2], apex_number(f, side)};
+        // Corner 0 takes the place of the base point, edge 1 is the opposite one.
+        weights_[row] =
+            with_corners(f, s, 1,
+                         {0, hull_.at_vertex(t[0], hull_.positions[t[1]]),
+                          hull_.at_vertex(t[0], hull_.positions[t[2]]), s.m[0][0],
+                          hull_.at_vertex(t[1], hull_.positions[t[0]]), hull_.faces[f].middle, s.m[0][1],
+                          hull_.at_vertex(t[2], hull_.positions[t[0]]), s.m[0][2], s.n[0]});
+        describe(row, PatchKind::face, side, f, PatchComplex::no_edge);
     }
 
     /// Returns how many weights were raised.
@@ -260,7 +285,7 @@ private:
         }
         for (std::size_t of = 0; of < 2; ++of) {
             const std::size_t f = faces[of],
-                              row = tets_per_face * hull_.faces.size() + tets_per_edge * inner_edge_[e] + 2 * side + of;
+                              row = tets_of_faces_ + tets_per_edge * inner_edge_[e] + 2 * side + of;
             // Corners i and j follow the face's own direction, as those of its other tetrahedra do.
             const std::size_t i = of == 0 ? 0 : 1, j = 1 - i;
             tets_[row] = {edge_point_number(e, side), ends[i], ends[j], apex_number(f, side)};
@@ -306,8 +331,9 @@ private:
     Curvature curvature_;
     Execution& execution_;
     std::array<std::vector<FaceSide>, 2> sides_;  // by Side
-    std::size_t first_base_ = 0, first_apex_ = 0, first_edge_point_ = 0;
-    std::vector<u32> inner_edge_;
+    std::size_t first_apex_ = 0, first_edge_point_ = 0, tets_of_faces_ = 0;
+    std::vector<u32> base_, inner_edge_;
+    std::vector<std::size_t> first_row_;  ///< of a face's tetrahedra
     Array<Vec3> positions_;
     Array<std::array<u32, 4>> tets_;
     Array<PatchWeights> weights_;
