@@ -139,9 +139,8 @@ private:
             face.is_divided = false;
             face.middle = 0;
             for (std::size_t i = 0; i < 3; ++i)
-                face.middle += hull_.at_edge(hull_.edges[face.edges[i]],
-                                             hull_.positions[hull_.triangles[f][(i + 2) % 3]]) /
-                               3;
+                face.middle +=
+                    hull_.at_edge(hull_.edges[face.edges[i]], hull_.positions[hull_.triangles[f][(i + 2) % 3]]) / 3;
         }
         for (;;) {
             std::vector<u32> bad;
@@ -271,9 +270,8 @@ private:
 
     void find_faults() {
         for (u32 f = 0; f < hull_.faces.size(); ++f)
-            if (std::ranges::any_of(both_sides, [&](Side side) {
-                    return hull_.faces[f].height[side] < low(hull_.faces[f], side);
-                }))
+            if (std::ranges::any_of(both_sides,
+                                    [&](Side side) { return hull_.faces[f].height[side] < low(hull_.faces[f], side); }))
                 hull_.faults.thin.push_back(f);
         for (u32 e = 0; e < hull_.edges.size(); ++e)
             if (std::ranges::any_of(both_sides, [&](Side side) { return !hull_.is_sound(hull_.edges[e], side); }))

@@ -239,9 +239,8 @@ private:
         // Corner 0 takes the place of the base point, edge 1 is the opposite one.
         weights_[row] =
             with_corners(f, s, 1,
-                         {0, hull_.at_vertex(t[0], hull_.positions[t[1]]),
-                          hull_.at_vertex(t[0], hull_.positions[t[2]]), s.m[0][0],
-                          hull_.at_vertex(t[1], hull_.positions[t[0]]), hull_.faces[f].middle, s.m[0][1],
+                         {0, hull_.at_vertex(t[0], hull_.positions[t[1]]), hull_.at_vertex(t[0], hull_.positions[t[2]]),
+                          s.m[0][0], hull_.at_vertex(t[1], hull_.positions[t[0]]), hull_.faces[f].middle, s.m[0][1],
                           hull_.at_vertex(t[2], hull_.positions[t[0]]), s.m[0][2], s.n[0]});
         describe(row, PatchKind::face, side, f, PatchComplex::no_edge);
     }
@@ -284,8 +283,7 @@ private:
             }
         }
         for (std::size_t of = 0; of < 2; ++of) {
-            const std::size_t f = faces[of],
-                              row = tets_of_faces_ + tets_per_edge * inner_edge_[e] + 2 * side + of;
+            const std::size_t f = faces[of], row = tets_of_faces_ + tets_per_edge * inner_edge_[e] + 2 * side + of;
             // Corners i and j follow the face's own direction, as those of its other tetrahedra do.
             const std::size_t i = of == 0 ? 0 : 1, j = 1 - i;
             tets_[row] = {edge_point_number(e, side), ends[i], ends[j], apex_number(f, side)};

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A-patches: a smooth implicit surface through the vertices of a mesh, one cubic polynomial per tetrahedron.
+///
+/// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 5, after Bajaj, Chen, Xu 1995, "Modeling with cubic
+/// A-patches". The weights are derived anew through polar forms.
+
+#include "a_patch/weights.hpp"
+#include "scanmill/data/points.hpp"
+#include "scanmill/filter/context.hpp"
+
+namespace scanmill {
+
+struct APatchParams {
+    enum class Normals {
+        automatic,  ///< given if the mesh has them, else points if there are any, else mesh
+        given,      ///< the mesh's face column `corner-normals`; of several at a vertex the mean
+        points,     ///< of a quadric through the vertex, fitted to the 25 nearest points
+        mesh        ///< the mean of the triangles' normals, exact for a mesh inscribed in a sphere
+    };
+    Normals normals = Normals::automatic;
+    a_patches::Split split = a_patches::Split::always;
+    a_patches::Curvature curvature = a_patches::Curvature::distance;
+    /// An apex is so many times as high above its triangle as it must be, and 0.15 inradii. 1.05 to 3.
+    double apex_factor = 1.5;
+};
+
+struct APatchResult {
+    /// Its triangles are rows of `mesh`.
+    PatchComplex patches;
+    /// The input's triangles in their rows, some of them cut: the second parts follow, and the new vertices follow the
+    /// input's. Vertex column `normal`, no other columns.
+    TriangleMesh mesh;
+    std::size_t bisected = 0;  ///< edges
+    std::size_t divided = 0;  ///< triangles with three tetrahedra per side
+    std::size_t raised = 0;  ///< see Weights::raised
+    std::size_t replaced_normals = 0;  ///< that opposed a triangle
+    std::size_t inverted = 0;  ///< tetrahedra inside out; always 0
+    /// The largest difference between the gradients on the two sides of a shared triangle, as a share of the larger
+    /// one, at three points each.
+    double c1_jump = 0;
+    /// Weights of the wrong sign beside or above a base triangle; 0: every line to an apex meets the surface once.
+    std::size_t sign_violations = 0;
+};
+
+/// The surface F = 0 through the mesh's vertices, with a gradient of length 1 there, along the normal. F is negative
+/// inside, positive outside, cubic in every tetrahedron, and has equal gradients where tetrahedra meet.
+///
+/// A vertex whose normal is more than 84 degrees from that of one of its triangles gets the normal of the mesh, or the
+/// direction nearest to all its triangles' normals. Where tetrahedra are inside out, or apexes do not fit below the
+/// next sheet of the mesh, the longest edges of the triangles there are bisected, by a cubic through their ends and
+/// tangent planes, and all is computed anew.
+///
+/// Pre:  a manifold, closed or open, of any number of components, consistently oriented, finite, with area in every
+///       triangle, without two vertices at one position. Sharp edges are smoothed, with a warning; the surface ends at
+///       a boundary, with a warning. `points`, if not null, lie near the surface, in the mesh's frame.
+///       Throws Error with numbers and a hint otherwise, and if bisecting does not help.
+/// Post: `inverted` and `sign_violations` are 0.
+/// Ties: of equally long edges the one whose triangle comes first is bisected. Bytes depend neither on the number of
+/// threads nor on the processor.
+/// Cost: linear; about 30 us and 3 kB per triangle.
+/// Metrics and warnings: see plugin.cpp.
+APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params, Context& context);
+
+}  // namespace scanmill
