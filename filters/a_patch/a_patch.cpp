@@ -21,7 +21,7 @@ namespace {
 using namespace a_patches;
 
 constexpr double thinnest = 1e-9;  // height over longest edge of a triangle with area
-constexpr std::size_t most_rounds = 40;
+constexpr std::size_t most_rounds = 8;
 constexpr std::size_t most_listed = 5;
 constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
@@ -101,21 +101,35 @@ std::vector<std::vector<Vec3>> normals_around(const TriangleMesh& mesh) {
     return around;
 }
 
+bool opposes(const Vec3& normal, std::span<const Vec3> around) {
+    return std::ranges::any_of(around, [&](const Vec3& n) { return !(n.dot(normal) >= least_cosine); });
+}
+
 /// Replaces normals that oppose a triangle. Returns how many.
 std::size_t replace_opposing(MeshWithNormals& mesh) {
     const std::vector<std::vector<Vec3>> around = normals_around(mesh.mesh);
     std::vector<Vec3> of_mesh;
     std::size_t replaced = 0;
     for (std::size_t v = 0; v < around.size(); ++v) {
-        const auto opposes = [&](const Vec3& normal) {
-            return std::ranges::any_of(around[v], [&](const Vec3& n) { return !(n.dot(normal) >= least_cosine); });
-        };
-        if (!opposes(mesh.normals[v])) continue;
+        if (!opposes(mesh.normals[v], around[v])) continue;
         ++replaced;
         if (of_mesh.empty()) of_mesh = mesh_normals(mesh.mesh);
-        mesh.normals[v] = opposes(of_mesh[v]) ? most_normal(around[v]) : of_mesh[v];
+        mesh.normals[v] = opposes(of_mesh[v], around[v]) ? most_normal(around[v]) : of_mesh[v];
     }
     return replaced;
+}
+
+/// Gives the corners of the triangles the direction nearest to all their triangles' normals. Returns how many there
+/// are.
+std::size_t turn_normals(MeshWithNormals& mesh, std::span<const u32> triangles) {
+    const std::vector<std::vector<Vec3>> around = normals_around(mesh.mesh);
+    std::vector<u32> corners;
+    for (const u32 f : triangles)
+        corners.insert(corners.end(), mesh.mesh.triangles[f].begin(), mesh.mesh.triangles[f].end());
+    std::ranges::sort(corners);
+    corners.erase(std::ranges::unique(corners).begin(), corners.end());
+    for (const u32 v : corners) mesh.normals[v] = most_normal(around[v]);
+    return corners.size();
 }
 
 /// Throws if most given normals point inwards.
@@ -169,16 +183,24 @@ std::vector<u32> triangles_at(const Hull& hull) {
 }
 
 [[noreturn]] void throw_faults(const Hull& hull, const TriangleMesh& mesh) {
-    std::string list;
     const std::vector<u32> triangles = triangles_at(hull);
+    std::string list;
     for (std::size_t i = 0; i < std::min(most_listed, triangles.size()); ++i)
         list += (i > 0 ? ", " : "") + place(mesh, mesh.triangles[triangles[i]][0]);
+    if (triangles.size() > most_listed) list += " …";
+    if (!hull.faults.opposed.empty())
+        throw Error(
+            "the mesh is folded: {} a corner where no direction is within 84 degrees of all triangles' normals: at {}",
+            count_text(triangles.size(), "triangle has", "triangles have"), list)
+            .hint(
+                "a larger alpha of 'alpha-solid' closes narrow gaps; 'decimate' with a smaller max-error leaves "
+                "fewer folds");
     throw Error(
-        "no surface fits at {}: {} a normal that opposes it, {} too near to the next sheet, beside {} a tetrahedron is "
-        "inside out; bisecting edges {} times did not help; the triangles are at {}{}",
-        count_text(triangles.size(), "triangle", "triangles"), count_text(hull.faults.opposed.size(), "has", "have"),
-        count_text(hull.faults.thin.size(), "is", "are"), count_text(hull.faults.inverted.size(), "edge", "edges"),
-        most_rounds, list, triangles.size() > most_listed ? " …" : "")
+        "no smooth surface fits at {} after {} rounds of bisection: {} too near to the next sheet, and beside {} a "
+        "tetrahedron is inside out: at {}",
+        count_text(triangles.size(), "triangle", "triangles"), most_rounds,
+        count_text(hull.faults.thin.size(), "triangle is", "triangles are"),
+        count_text(hull.faults.inverted.size(), "edge", "edges"), list)
         .hint("a mesh with more triangles follows the surface better: 'decimate' with a smaller max-error");
 }
 
@@ -258,12 +280,14 @@ void warn_about(const APatchResult& result, const TriangleMesh& mesh, const Mesh
         context.warn(fmt::format("the mesh's {} smoothed",
                                  count_text(mesh.sharp_edges.size(), "sharp edge is", "sharp edges are")));
     if (result.replaced_normals > 0)
-        context.warn(fmt::format("{} of {} normals {} more than 84 degrees from a triangle's: replaced by the mesh's",
-                                 result.replaced_normals, counts.vertices,
-                                 by_count(result.replaced_normals, "is", "are")));
+        context.warn(fmt::format("{} replaced, because tetrahedra are inside out with them, or a triangle opposes them",
+                                 count_text(result.replaced_normals, "normal is", "normals are")));
     if (result.bisected > 0)
-        context.warn(fmt::format("{} bisected, because tetrahedra of the hull were inside out or too large there",
+        context.warn(fmt::format("{} bisected, because tetrahedra were inside out or too large there",
                                  count_text(result.bisected, "edge is", "edges are")));
+    if (result.sign_violations > 0)
+        context.doubt(fmt::format("{} the wrong sign: the surface may have several sheets there",
+                                  count_text(result.sign_violations, "weight has", "weights have")));
     if (!counts.closed) return;
     double volume = 0;
     for (const Triangle& t : mesh.triangles) {
@@ -303,12 +327,15 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     Hull hull;
     for (std::size_t round = 0;; ++round) {
         context.check_cancelled();
-        const std::size_t replaced = replace_opposing(refined);
-        if (round == 0) result.replaced_normals = replaced;
+        result.replaced_normals += replace_opposing(refined);
         hull = make_hull(refined.mesh, refined.normals, params.apex_factor, params.split, context);
         if (hull.faults.empty()) break;
-        if (round == most_rounds) throw_faults(hull, refined.mesh);
-        result.bisected += bisect(refined, triangles_at(hull));
+        if (!hull.faults.opposed.empty() || round == most_rounds) throw_faults(hull, refined.mesh);
+        const std::vector<u32> triangles = triangles_at(hull);
+        if (round == 0)
+            result.replaced_normals += turn_normals(refined, triangles);
+        else
+            result.bisected += bisect(refined, triangles);
     }
     context.progress(0.5);
     Weights weights = make_weights(hull, params.curvature, context);

@@ -34,7 +34,7 @@ struct APatchResult {
     std::size_t bisected = 0;  ///< edges
     std::size_t divided = 0;  ///< triangles with three tetrahedra per side
     std::size_t raised = 0;  ///< see Weights::raised
-    std::size_t replaced_normals = 0;  ///< that opposed a triangle
+    std::size_t replaced_normals = 0;  ///< that opposed a triangle, or had tetrahedra inside out
     std::size_t inverted = 0;  ///< tetrahedra inside out; always 0
     /// The largest difference between the gradients on the two sides of a shared triangle, as a share of the larger
     /// one, at three points each.
@@ -47,15 +47,16 @@ struct APatchResult {
 /// inside, positive outside, cubic in every tetrahedron, and has equal gradients where tetrahedra meet.
 ///
 /// A vertex whose normal is more than 84 degrees from that of one of its triangles gets the normal of the mesh, or the
-/// direction nearest to all its triangles' normals. Where tetrahedra are inside out, or apexes do not fit below the
-/// next sheet of the mesh, the longest edges of the triangles there are bisected, by a cubic through their ends and
-/// tangent planes, and all is computed anew.
+/// direction nearest to all its triangles' normals. Where tetrahedra are inside out, or apexes do not fit below 0.45 of
+/// the distance to the next sheet, vertices get that direction, too; where that does not help, the longest edges of the
+/// triangles are bisected, by a cubic through their ends and tangent planes, up to 7 times.
 ///
 /// Pre:  a manifold, closed or open, of any number of components, consistently oriented, finite, with area in every
 ///       triangle, without two vertices at one position. Sharp edges are smoothed, with a warning; the surface ends at
 ///       a boundary, with a warning. `points`, if not null, lie near the surface, in the mesh's frame.
-///       Throws Error with numbers and a hint otherwise, and if bisecting does not help.
-/// Post: `inverted` and `sign_violations` are 0.
+///       Throws Error with numbers and a hint otherwise, if no direction is within 84 degrees of all triangles at a
+///       vertex, and if bisecting does not help: both happen at sharp folds.
+/// Post: `inverted` is 0. Every vertex of `mesh` is on the surface. A doubt if `sign_violations` is not 0.
 /// Ties: of equally long edges the one whose triangle comes first is bisected. Bytes depend neither on the number of
 /// threads nor on the processor.
 /// Cost: linear; about 30 us and 3 kB per triangle.

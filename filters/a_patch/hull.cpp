@@ -43,6 +43,10 @@ Vec3 default_slope(const Vec3& d, const Vec3& na, const Vec3& nb) {
     return mean - d * ((mean.dot(d) + sum.dot(d) / 3) / d.squaredNorm());
 }
 
+bool are_adjacent(const Triangle& one, const Triangle& other) {
+    return std::ranges::any_of(one, [&](u32 v) { return std::ranges::find(other, v) != other.end(); });
+}
+
 /// The opening between two apexes across an edge.
 enum class Opening { sound, too_small, too_large };
 
@@ -242,7 +246,8 @@ private:
                     tree.meeting(box, rows);
                     double nearest = 1;
                     for (const u32 row : rows)
-                        if (row != f) nearest = std::min(nearest, share_until(face.base, reach, row));
+                        if (!are_adjacent(hull_.triangles[f], hull_.triangles[row]))
+                            nearest = std::min(nearest, share_until(face.base, reach, row));
                     if (nearest == 1) continue;
                     face.limit[side] = nearest * face.height[side];
                     face.height[side] = face.limit[side];
