@@ -75,6 +75,7 @@ void require_distinct_vertices(const TriangleMesh& mesh, const std::vector<bool>
 MeshTopology require_usable(const TriangleMesh& mesh, const std::vector<bool>& is_used, const APatchParams& params) {
     if (!(params.apex_factor >= least_factor && params.apex_factor <= most_factor))
         throw Error("apex-factor must be from {} to {}; it is {}", least_factor, most_factor, params.apex_factor);
+    if (params.fit) throw Error("fit is not possible yet").hint("leave it out: the surface interpolates the vertices");
     require_finite(mesh.positions.span(), "vertices");
     half_edges::opposites(mesh);
     require_areas(mesh);

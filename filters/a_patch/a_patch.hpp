@@ -20,6 +20,8 @@ struct APatchParams {
     };
     Normals normals = Normals::automatic;
     a_patches::Split split = a_patches::Split::always;
+    /// Only false: fitting is not possible yet.
+    bool fit = false;
     a_patches::Curvature curvature = a_patches::Curvature::distance;
     /// An apex is so many times as high above its triangle as it must be, and 0.15 inradii. 1.05 to 3.
     double apex_factor = 1.5;

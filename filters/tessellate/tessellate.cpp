@@ -16,6 +16,7 @@ namespace {
 constexpr u32 none = ~u32(0);
 constexpr std::size_t chunk = 256;  // edges or triangles
 constexpr unsigned uniform_fan = 4;  // segments of a fan
+constexpr unsigned most_subdivision = 1024;
 
 /// A point of the surface.
 struct SurfacePoint {
@@ -68,12 +69,17 @@ class Tessellation {
 public:
     Tessellation(const PatchComplex& patches, const TessellateParams& params, Execution& execution)
         : patches_(patches),
-          params_(params),
-          execution_(execution) {}
+          subdivision_(params.subdivision),
+          max_error_(params.max_error ? std::optional(params.max_error->value()) : std::nullopt),
+          execution_(execution) {
+        if (subdivision_ < 1 || subdivision_ > most_subdivision)
+            throw Error("subdivision must be from 1 to {}; it is {}", most_subdivision, subdivision_);
+        if (max_error_ && !(*max_error_ > 0)) throw Error("max-error must be above 0; it is {:g}", *max_error_);
+    }
 
     TriangleMesh mesh() {
         collect();
-        params_.max_error ? choose_levels() : set_levels();
+        max_error_ ? choose_levels() : set_levels();
         number_vertices();
         lift_edges();
         lift_triangles();
@@ -88,21 +94,32 @@ private:
         if (patches_.tets.empty()) throw Error("the patches have no tetrahedra");
         const std::size_t rows = patches_.tets.size();
         u32 triangles = 0;
-        for (std::size_t row = 0; row < rows; ++row) triangles = std::max(triangles, patches_.triangles[row] + 1);
+        for (std::size_t row = 0; row < rows; ++row) {
+            if (patches_.triangles[row] >= rows) throw_incomplete(patches_.triangles[row]);
+            triangles = std::max(triangles, patches_.triangles[row] + 1);
+        }
         triangles_.resize(triangles);
         for (u32 row = 0; row < rows; ++row) {
             if (patches_.kinds[row] != PatchKind::face) continue;
-            TriangleTets& t = triangles_[patches_.triangles[row]];
-            auto& of_side = t.rows[patches_.sides[row]];
-            *std::ranges::find(of_side, none) = row;
+            auto& of_side = triangles_[patches_.triangles[row]].rows[patches_.sides[row]];
+            const auto free = std::ranges::find(of_side, none);
+            if (free == of_side.end()) throw_incomplete(patches_.triangles[row]);
+            *free = row;
         }
         for (u32 f = 0; f < triangles_.size(); ++f) {
             TriangleTets& t = triangles_[f];
             t.count = t.rows[1][1] == none ? 1 : 3;
+            for (const auto& of_side : t.rows)
+                if (std::ranges::count(of_side, none) != 3 - t.count) throw_incomplete(f);
             for (std::size_t i = 0; i < 3; ++i)
                 t.corners[i] = t.count == 3 ? patches_.tets[t.rows[1][i]][1] : patches_.tets[t.rows[1][0]][i];
         }
         collect_edges();
+    }
+
+    [[noreturn]] static void throw_incomplete(u32 triangle) {
+        throw Error("the patches are not complete: tetrahedra of triangle {} are missing or too many", triangle)
+            .hint("'a-patch' makes complete ones");
     }
 
     void collect_edges() {
@@ -113,6 +130,7 @@ private:
         std::ranges::sort(halves);
         for (std::size_t h = 0; h < halves.size(); ++h) {
             const bool is_second = h > 0 && halves[h - 1].edge == halves[h].edge;
+            if (h > 1 && halves[h - 2].edge == halves[h].edge) throw_incomplete(halves[h].triangle);
             if (!is_second) edges_.emplace_back();
             EdgeTets& edge = edges_.back();
             edge.triangles[is_second] = halves[h].triangle;
@@ -126,9 +144,14 @@ private:
             const TriangleTets& t = triangles_[patches_.triangles[row]];
             const auto i =
                 static_cast<std::size_t>(std::ranges::find(t.corners, patches_.tets[row][1]) - t.corners.begin());
+            if (i == t.corners.size()) throw_incomplete(patches_.triangles[row]);
             EdgeTets& edge = edges_[t.edges[i]];
             edge.rows[patches_.sides[row]][edge.triangles[1] == patches_.triangles[row]] = row;
         }
+        for (const EdgeTets& edge : edges_)
+            for (const auto& of_side : edge.rows)
+                if (!edge.is_border() && std::ranges::find(of_side, none) != of_side.end())
+                    throw_incomplete(edge.triangles[0]);
     }
 
     // Points of the surface.
@@ -176,14 +199,14 @@ private:
 
     void set_levels() {
         for (EdgeTets& edge : edges_) {
-            edge.segments = params_.subdivision;
+            edge.segments = subdivision_;
             edge.fan = uniform_fan;
         }
-        levels_.assign(triangles_.size(), params_.subdivision);
+        levels_.assign(triangles_.size(), subdivision_);
     }
 
     void choose_levels() {
-        const unsigned most = std::bit_floor(params_.subdivision);
+        const unsigned most = std::bit_floor(subdivision_);
         std::vector<double> left(edges_.size(), 0.0), left_above(triangles_.size(), 0.0);
         for_each_chunk(execution_.threads(), edges_.size(), chunk, [&](std::size_t begin, std::size_t end) {
             execution_.check_cancelled();
@@ -195,17 +218,17 @@ private:
             for (std::size_t f = begin; f < end; ++f) left_above[f] = choose_level(f, most);
         });
         const double worst = std::max(std::ranges::max(left), std::ranges::max(left_above));
-        if (worst <= *params_.max_error) return;
+        if (worst <= *max_error_) return;
         unsigned enough = most;  // the distance falls with the square of the segments
-        for (double distance = worst; distance > *params_.max_error; distance /= 4) enough *= 2;
+        for (double distance = worst; distance > *max_error_; distance /= 4) enough *= 2;
         throw Error("with {} segments per edge the triangles are up to {:.3g} from the surface; max-error is {:.3g}",
-                    most, worst, *params_.max_error)
+                    most, worst, *max_error_)
             .hint(fmt::format("subdivision {} may suffice", enough));
     }
 
     /// Returns the distance that is left.
     double choose_level(EdgeTets& edge, unsigned most) const {
-        const double wanted = *params_.max_error;
+        const double wanted = *max_error_;
         edge.segments = 1;
         edge.fan = edge.is_border() ? 1 : 2;
         for (;;) {
@@ -258,7 +281,7 @@ private:
                         worst = std::max(worst, above_plane(at(i + 2. / 3, j + 2. / 3), b, at(i + 1, j + 1), c));
                     }
             }
-            if (worst <= *params_.max_error || 2 * level > most) return worst;
+            if (worst <= *max_error_ || 2 * level > most) return worst;
         }
     }
 
@@ -478,7 +501,8 @@ private:
     }
 
     const PatchComplex& patches_;
-    const TessellateParams& params_;
+    unsigned subdivision_;
+    std::optional<double> max_error_;
     Execution& execution_;
     std::vector<TriangleTets> triangles_;
     std::vector<EdgeTets> edges_;

@@ -8,14 +8,15 @@
 #include "scanmill/base/execution.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/patches.hpp"
+#include "scanmill/data/quantity.hpp"
 
 namespace scanmill {
 
 struct TessellateParams {
     /// Segments per edge of the mesh; with max_error the most.
-    unsigned subdivision = 8;
-    /// Largest distance between the triangles and the surface, in the patches' unit; nothing: uniform.
-    std::optional<double> max_error;
+    u32 subdivision = 8;
+    /// Largest distance between the triangles and the surface, above 0; nothing: uniform.
+    std::optional<Length> max_error;
 };
 
 /// A grid over every triangle of the mesh is lifted to the surface along lines to the apex on its side; the gap beside
@@ -28,7 +29,7 @@ struct TessellateParams {
 ///
 /// With max_error edges get 1, 2, 4, … segments, until the surface in the middle of every segment is as near as that;
 /// the distance is measured there, not bounded. Throws Error if `subdivision` does not suffice, with the distance left;
-/// for patches without tetrahedra. Cost: linear in the triangles made, about 1 us each.
+/// for patches without tetrahedra or with some missing, and for parameters out of range. Cost: linear in the triangles made, about 1 us each.
 TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution);
 
 }  // namespace scanmill

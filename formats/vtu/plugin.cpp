@@ -7,8 +7,8 @@ SCANMILL_FORMAT() {
     return {{"VTU",
              {"vtu"},
              {"<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\"", "<VTKFile type=\"UnstructuredGrid\""},
-             {kind_of<TetMesh>()},
+             {kind_of<TetMesh>(), kind_of<PatchComplex>()},
              false},
             {},
-            {{kind_of<TetMesh>(), vtk::write_vtu}}};
+            {{kind_of<TetMesh>(), vtk::write_vtu}, {kind_of<PatchComplex>(), vtk::write_vtu_patches}}};
 }

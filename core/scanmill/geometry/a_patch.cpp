@@ -2,6 +2,7 @@
 #include "scanmill/geometry/a_patch.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace scanmill {
@@ -129,6 +130,191 @@ std::optional<double> zero_of_cubic(const std::array<double, 4>& c) {
 std::optional<double> patch_hit(const PatchWeights& weights, const Barycentric& from, const Barycentric& to) {
     const Eigen::Vector4d first = linear_part(weights, from, from), last = linear_part(weights, to, to);
     return zero_of_cubic({first.dot(from), first.dot(to), last.dot(from), last.dot(to)});
+}
+
+std::optional<double> first_zero_of_cubic(const std::array<double, 4>& c) {
+    // Halves the interval until the weights change sign at most once.
+    struct Part {
+        double begin, length;
+        std::array<double, 4> c;
+    };
+    constexpr double shortest = 1e-15;
+    std::vector<Part> parts{{0, 1, c}};
+    while (!parts.empty()) {
+        const Part part = parts.back();
+        parts.pop_back();
+        const auto& w = part.c;
+        if (w[0] == 0) return part.begin;
+        int changes = 0;
+        for (std::size_t i = 1; i < 4; ++i) changes += (w[i] < 0) != (w[i - 1] < 0);
+        if (changes == 0) {
+            if (w[3] == 0) return part.begin + part.length;
+            continue;
+        }
+        if (changes == 1) {
+            if (const auto zero = zero_of_cubic(w)) return part.begin + part.length * *zero;
+            continue;
+        }
+        if (part.length < shortest) return part.begin;
+        const double a0 = (w[0] + w[1]) / 2, a1 = (w[1] + w[2]) / 2, a2 = (w[2] + w[3]) / 2;
+        const double b0 = (a0 + a1) / 2, b1 = (a1 + a2) / 2, middle = (b0 + b1) / 2, half = part.length / 2;
+        parts.push_back({part.begin + half, half, {middle, b1, a2, w[3]}});
+        parts.push_back({part.begin, half, {w[0], a0, b0, middle}});
+    }
+    return std::nullopt;
+}
+
+// PatchSurface.
+
+namespace {
+
+BoundingBox box_of(const PatchComplex& patches, std::size_t tet) {
+    BoundingBox box;
+    for (const u32 v : patches.tets[tet]) box.add(patches.positions[v]);
+    return box;
+}
+
+/// A tree of degenerate triangles, the diagonals of the tetrahedra's boxes, which have the same boxes.
+TriangleTree tree_of(const PatchComplex& patches, unsigned threads) {
+    Array<Vec3> ends;
+    Array<Triangle> diagonals;
+    for (std::size_t tet = 0; tet < patches.tets.size(); ++tet) {
+        const BoundingBox box = box_of(patches, tet);
+        const auto first = static_cast<u32>(ends.size());
+        diagonals.push_back({first, first + 1, first});
+        ends.push_back(box.low);
+        ends.push_back(box.high);
+    }
+    return TriangleTree(ends, diagonals, threads);
+}
+
+constexpr double outside_by = 1e-9;  // a coordinate of a point on a face may be below 0 by rounding
+constexpr int pieces_per_diagonal = 64, most_steps = 50;
+constexpr double end_of_steps = 1e-14;  // of the diagonal
+
+}  // namespace
+
+PatchSurface::PatchSurface(const PatchComplex& patches, unsigned threads)
+    : patches_(patches),
+      box_(bounding_box(patches.positions.span())),
+      tree_(tree_of(patches, threads)) {}
+
+std::optional<u32> PatchSurface::locate(const Vec3& point) const {
+    Array<u32> rows;
+    BoundingBox box;
+    box.add(point);
+    tree_.meeting(box, rows);
+    std::ranges::sort(rows);
+    for (const double least : {0.0, -outside_by})
+        for (const u32 row : rows)
+            if (cell(row).coordinates(point).minCoeff() >= least) return row;
+    return std::nullopt;
+}
+
+std::optional<double> PatchSurface::value(const Vec3& point) const {
+    const auto tet = locate(point);
+    return tet ? std::optional(cell(*tet).value(point)) : std::nullopt;
+}
+
+std::optional<Vec3> PatchSurface::gradient(const Vec3& point) const {
+    const auto tet = locate(point);
+    return tet ? std::optional(cell(*tet).gradient(point)) : std::nullopt;
+}
+
+std::optional<Eigen::Matrix3d> PatchSurface::hessian(const Vec3& point) const {
+    const auto tet = locate(point);
+    return tet ? std::optional(cell(*tet).hessian(point)) : std::nullopt;
+}
+
+bool PatchSurface::is_inside(const Vec3& point) const {
+    if (const auto here = value(point)) return *here < 0;
+    // The first hit leaves the object, or enters it.
+    const Vec3 direction(2 * box_.diagonal(), 0, 0);
+    const auto hit = first_hit(point, direction);
+    return hit && hit->gradient.dot(direction) > 0;
+}
+
+std::optional<PatchSurface::Hit> PatchSurface::hit_in(u32 tet, const Vec3& from, const Vec3& direction) const {
+    const PatchCell here = cell(tet);
+    const Barycentric start = here.coordinates(from), change = here.coordinates(from + direction) - start;
+    double begin = 0, end = 1;
+    for (int i = 0; i < 4; ++i) {
+        if (change[i] > 0)
+            begin = std::max(begin, (-outside_by - start[i]) / change[i]);
+        else if (change[i] < 0)
+            end = std::min(end, (-outside_by - start[i]) / change[i]);
+        else if (start[i] < -outside_by)
+            return std::nullopt;
+    }
+    if (begin > end) return std::nullopt;
+    const Barycentric a = start + begin * change, b = start + end * change;
+    const PatchWeights& w = patches_.weights[tet];
+    const auto zero = first_zero_of_cubic(
+        {patch_blossom(w, a, a, a), patch_blossom(w, a, a, b), patch_blossom(w, a, b, b), patch_blossom(w, b, b, b)});
+    if (!zero) return std::nullopt;
+    const double share = begin + *zero * (end - begin);
+    const Vec3 point = from + share * direction;
+    return Hit{share, tet, point, here.gradient(point)};
+}
+
+std::optional<PatchSurface::Hit> PatchSurface::first_hit(const Vec3& from, const Vec3& direction) const {
+    // Only the part within the box matters.
+    double begin = 0, end = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = box_.low[axis] - from[axis], high = box_.high[axis] - from[axis];
+        if (direction[axis] == 0) {
+            if (low > 0 || high < 0) return std::nullopt;
+            continue;
+        }
+        const double one = low / direction[axis], other = high / direction[axis];
+        begin = std::max(begin, std::min(one, other));
+        end = std::min(end, std::max(one, other));
+    }
+    if (begin > end) return std::nullopt;
+    const double pieces =
+        std::ceil(std::max(1.0, (end - begin) * direction.norm() / box_.diagonal() * pieces_per_diagonal));
+    Array<u32> rows;
+    for (double piece = 0; piece < pieces; ++piece) {
+        const double first = begin + (end - begin) * piece / pieces, last = begin + (end - begin) * (piece + 1) / pieces;
+        BoundingBox box;
+        box.add(from + first * direction);
+        box.add(from + last * direction);
+        rows.clear();
+        tree_.meeting(box, rows);
+        std::ranges::sort(rows);
+        std::optional<Hit> nearest;
+        for (const u32 row : rows) {
+            const auto hit = hit_in(row, from, direction);
+            if (hit && (!nearest || hit->share < nearest->share)) nearest = hit;
+        }
+        if (nearest && nearest->share <= last) return nearest;
+        // A hit farther on is found again, unless rounding puts it just behind the last piece.
+        if (nearest && piece + 1 == pieces) return nearest;
+    }
+    return std::nullopt;
+}
+
+std::optional<PatchSurface::Foot> PatchSurface::foot(const Vec3& point) const {
+    Vec3 x = point;
+    double sign = 1;
+    const double enough = end_of_steps * box_.diagonal();
+    for (int step = 0; step < most_steps; ++step) {
+        const auto tet = locate(x);
+        if (!tet) return std::nullopt;
+        const PatchCell here = cell(*tet);
+        const Barycentric at = here.coordinates(x);
+        const double value = patch_value(patches_.weights[*tet], at);
+        const Vec3 gradient = here.gradient(at);
+        const double squared = gradient.squaredNorm();
+        if (!(squared > 0)) return std::nullopt;
+        if (step == 0) sign = value < 0 ? -1 : 1;
+        const Vec3 to = point - x;
+        // Onto the surface, and below the point.
+        const Vec3 change = to - gradient * ((gradient.dot(to) + value) / squared);
+        x += change;
+        if (change.norm() <= enough) return Foot{x, sign * (point - x).norm()};
+    }
+    return std::nullopt;
 }
 
 }  // namespace scanmill

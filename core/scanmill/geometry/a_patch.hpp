@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Cubic polynomials in Bernstein-Bezier form over a tetrahedron: value, derivatives, polar form, zeros along a line.
+/// Evaluates A-patches: cubic polynomials in Bernstein-Bezier form over tetrahedra. PatchCell is one tetrahedron,
+/// PatchSurface the whole complex: value, gradient and second derivatives at a point, inside or outside, the first hit
+/// of a ray, the nearest point of the surface. tests/core/geometry/a_patch_example.cpp shows its use.
 ///
-/// Barycentric coordinates are four numbers whose sum is 1, or 0 for a direction. All functions cost a few hundred
-/// operations and use no libm function whose result depends on the processor.
+/// Barycentric coordinates are four numbers whose sum is 1, or 0 for a direction. Functions of one tetrahedron cost a
+/// few hundred operations; none uses a libm function whose result depends on the processor. Everything is safe from
+/// several threads.
 
 #include <Eigen/Core>
 #include <optional>
 
 #include "scanmill/data/patches.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill {
 
@@ -47,5 +51,56 @@ std::optional<double> zero_of_cubic(const std::array<double, 4>& weights);
 
 /// The point where the segment from `from` to `to` meets the surface, as its share t of the segment.
 std::optional<double> patch_hit(const PatchWeights& weights, const Barycentric& from, const Barycentric& to);
+
+/// The smallest zero t in [0, 1] of any cubic, to about 1e-15; nothing if there is none.
+std::optional<double> first_zero_of_cubic(const std::array<double, 4>& weights);
+
+/// Finds the tetrahedra of a complex that a question is about. Points outside all of them have no value: the function
+/// is defined near the surface only.
+class PatchSurface {
+public:
+    struct Hit {
+        double share;  ///< of the ray: the point is from + share * direction
+        u32 tet;
+        Vec3 point;
+        Vec3 gradient;
+    };
+    struct Foot {
+        Vec3 point;       ///< of the surface
+        double distance;  ///< positive outside the object, negative inside
+    };
+
+    /// Keeps a reference to `patches`. Pre: at least one tetrahedron. Cost: O(n log n), about 200 bytes per
+    /// tetrahedron.
+    explicit PatchSurface(const PatchComplex& patches, unsigned threads = 1);
+
+    /// The tetrahedron that contains the point; of several the first row. Cost: O(log n).
+    std::optional<u32> locate(const Vec3& point) const;
+    PatchCell cell(u32 tet) const { return PatchCell(patches_, tet); }
+
+    /// Negative inside the object, positive outside; near the surface about the distance.
+    std::optional<double> value(const Vec3& point) const;
+    std::optional<Vec3> gradient(const Vec3& point) const;
+    std::optional<Eigen::Matrix3d> hessian(const Vec3& point) const;
+
+    /// Whether the point is inside the object. Away from the tetrahedra a ray decides. Pre: a closed surface.
+    bool is_inside(const Vec3& point) const;
+
+    /// The first point of the surface on the segment from + t * direction, 0 <= t <= 1. Cost: O(log n) times the
+    /// length over a 64th of the complex's diagonal.
+    std::optional<Hit> first_hit(const Vec3& from, const Vec3& direction) const;
+
+    /// The point of the surface whose gradient points to or from `point`, by Newton's method from there: the nearest
+    /// one, if the point is nearer than the radius of curvature. Nothing if the way leaves the tetrahedra, or does not
+    /// end within 50 steps.
+    std::optional<Foot> foot(const Vec3& point) const;
+
+private:
+    std::optional<Hit> hit_in(u32 tet, const Vec3& from, const Vec3& direction) const;
+
+    const PatchComplex& patches_;
+    BoundingBox box_;
+    TriangleTree tree_;  ///< over the diagonals of the tetrahedra's boxes
+};
 
 }  // namespace scanmill

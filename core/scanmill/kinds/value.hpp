@@ -8,6 +8,7 @@
 
 #include "scanmill/data/features.hpp"
 #include "scanmill/data/mesh.hpp"
+#include "scanmill/data/patches.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/data/tets.hpp"
 #include "scanmill/data/transform.hpp"

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/plugin.hpp"
+#include "a_patch/a_patch.hpp"
+
+using namespace scanmill;
+
+SCANMILL_FILTER() {
+    using P = APatchParams;
+    using a_patches::Curvature;
+    using a_patches::Split;
+    return Declare<P>("a-patch", 1)
+        .summary("Spans a smooth implicit surface over a mesh: cubic patches that join with equal gradients.")
+        .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
+        .ties("Of equally long edges the one with the lower vertices is bisected first.")
+        .not_finite("Refused, with their number and the first of them.")
+        .in<TriangleMesh>("mesh",
+                          "A manifold, closed or open, oriented consistently. Its vertices lie on the surface; its face "
+                          "column `corner-normals` gives the normals there.")
+        .in<PointCloud>("points", "The scan, for normals at the vertices of a mesh without `corner-normals`.", optional)
+        .out<PatchComplex>("patches", "Tetrahedra on both sides of the mesh, with the cubic's 20 weights each.")
+        .choice("normals", &P::normals,
+                {{"auto", P::Normals::automatic,
+                  "given if the mesh has the column, else points if there are any, else mesh."},
+                 {"given", P::Normals::given, "The mesh's face column `corner-normals`."},
+                 {"points", P::Normals::points, "Of quadrics fitted to the points near each vertex."},
+                 {"mesh", P::Normals::mesh, "Of the triangles around each vertex."}},
+                "Where the normals at the vertices come from; they decide most of the surface's error.")
+        .choice("split", &P::split,
+                {{"always", Split::always, "Three tetrahedra per side of every triangle: the smaller error."},
+                 {"where-needed", Split::where_needed,
+                  "One, unless it cannot join its neighbours with equal gradients: up to a third fewer tetrahedra."}},
+                "Which triangles' tetrahedra are divided at a base point.")
+        .param("fit", &P::fit, "Whether free weights are fitted to the points. Not possible yet: only false.")
+        .choice("curvature", &P::curvature,
+                {{"distance", Curvature::distance, "None: F grows like a distance."},
+                 {"mean", Curvature::mean, "The mean curvature of the triangle's quadric: exact for spheres."}},
+                "The second derivative of F along the normal.")
+        .param("apex-factor", &P::apex_factor,
+               "Height of the tetrahedra over the least possible height. Higher ones contain more of the space near the "
+               "surface.",
+               at_least(1.05), at_most(3))
+        .metric("tetrahedra", Unit::count, "Tetrahedra.", headline)
+        .metric("inverted", Unit::count, "Tetrahedra inside out: always 0.")
+        .metric("c1-jump", Unit::number,
+                "Largest difference of the gradients where tetrahedra meet, as a share of the gradient.", headline)
+        .metric("sign-violations", Unit::count, "Weights whose sign allows a second sheet.")
+        .metric("refined", Unit::count, "Edges bisected because tetrahedra were inside out or too large.")
+        .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
+        .metric("raised", Unit::count, "Weights changed so that every line to an apex meets the surface once.")
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            return Outputs().set("patches", a_patch(inputs.get<TriangleMesh>("mesh"), inputs.find<PointCloud>("points"),
+                                                    params, context)
+                                                .patches);
+        });
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "patch_distance/patch_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/a_patch.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr std::size_t chunk = 1024;
+constexpr const char* column_name = "distance-to-patches";
+
+}  // namespace
+
+PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud& points, Context& context) {
+    if (patches.tets.empty()) throw Error("the patches have no tetrahedra");
+    if (points.size() == 0) throw Error("needs points; there are none");
+    require_finite(points.positions.span());
+    const PatchSurface surface(patches, context.threads());
+    Array<double> distances(points.size());
+    for_each_chunk(context.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        context.check_cancelled();
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto foot = surface.foot(points.positions[i]);
+            distances[i] = foot ? foot->distance : std::nan("");
+        }
+    });
+    PatchDistanceResult result;
+    std::vector<double> found;
+    double squares = 0;
+    for (const double d : distances) {
+        if (std::isnan(d)) continue;
+        found.push_back(std::abs(d));
+        squares += d * d;
+    }
+    if (found.empty())
+        throw Error("none of the {} points is within the tetrahedra around the surface", points.size())
+            .hint("are points and patches in the same frame and unit?");
+    std::ranges::sort(found);
+    const auto count = static_cast<double>(found.size());
+    result.unlocated = distances.size() - found.size();
+    result.rms = std::sqrt(squares / count);
+    result.p95 = found[static_cast<std::size_t>(std::ceil(0.95 * count)) - 1];
+    result.max = found.back();
+    result.points.frame = points.frame;
+    result.points.positions = points.positions;
+    for (const Column& column : points.columns) {
+        if (column.name() == column_name)
+            context.warn("the points' column 'distance-to-patches' is replaced");
+        else
+            result.points.columns.add(column);
+    }
+    result.points.columns.add(Column(column_name, 1, Buffer<double>(std::move(distances))).with_length_exponent(1));
+    if (result.unlocated > 0)
+        context.warn(fmt::format("{} of {} points {} no distance: outside the tetrahedra around the surface",
+                                 result.unlocated, points.size(), by_count(result.unlocated, "has", "have")));
+    context.metric("rms", result.rms, Unit::length);
+    context.metric("p95", result.p95, Unit::length);
+    context.metric("max", result.max, Unit::length);
+    context.metric("unlocated", static_cast<double>(result.unlocated));
+    return result;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/plugin.hpp"
+#include "patch_distance/patch_distance.hpp"
+
+using namespace scanmill;
+
+namespace {
+
+struct PatchDistanceParams {};
+
+}  // namespace
+
+SCANMILL_FILTER() {
+    return Declare<PatchDistanceParams>("patch-distance", 1)
+        .summary("Signed distance of points to the surface of A-patches.")
+        .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
+        .ties("None: of tetrahedra that share a point the first answers, with the same value.")
+        .not_finite("Refused, with their number and the first of them.")
+        .adds({"distance-to-patches"})
+        .in<PatchComplex>("patches", "The surface.")
+        .in<PointCloud>("points", "The points to measure.")
+        .out<PointCloud>("points", "All points with `distance-to-patches`: positive outside; NaN where there is none.")
+        .metric("rms", Unit::length, "Root of the mean squared distance.", headline)
+        .metric("p95", Unit::length, "95 % quantile of the distances without sign.")
+        .metric("max", Unit::length, "Largest distance without sign.", headline)
+        .metric("unlocated", Unit::count, "Points outside the tetrahedra around the surface: without a distance.")
+        .run([](const Inputs& inputs, const PatchDistanceParams&, Context& context) {
+            return Outputs().set("points", patch_distance(inputs.get<PatchComplex>("patches"),
+                                                          inputs.get<PointCloud>("points"), context)
+                                               .points);
+        });
+}

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/plugin.hpp"
+#include "tessellate/tessellate.hpp"
+
+using namespace scanmill;
+
+SCANMILL_FILTER() {
+    using P = TessellateParams;
+    return Declare<P>("tessellate", 1)
+        .summary("Triangles on the surface of A-patches: watertight, with exact normals.")
+        .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
+        .ties("Between an edge and the inside of a triangle, the edge's next sample comes first.")
+        .not_finite("Patches have finite coordinates.")
+        .in<PatchComplex>("patches", "The surface.")
+        .out<TriangleMesh>("mesh",
+                           "Triangles with `patch`, the row of the mesh's triangle, and `side`, 1 outside the mesh; "
+                           "vertices with `normal`.")
+        .param("subdivision", &P::subdivision,
+               "Segments per edge of the mesh; with max-error the most, as a power of two.", at_least(1), at_most(1024))
+        .param("max-error", &P::max_error,
+               "Largest distance between the triangles and the surface, measured amid the triangles; `none`: uniform.",
+               word("none"), above(0))
+        .metric("triangles", Unit::count, "Triangles.", headline)
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            TriangleMesh mesh = tessellate(inputs.get<PatchComplex>("patches"), params, context);
+            context.metric("triangles", static_cast<double>(mesh.triangles.size()));
+            return Outputs().set("mesh", std::move(mesh));
+        });
+}
