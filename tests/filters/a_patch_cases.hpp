@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Meshes for a-patch, and what holds for every complex of patches, computed anew.
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "a_patch/a_patch.hpp"
+#include "scanmill/base/random.hpp"
+#include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
+#include "support/mesh_operations.hpp"
+#include "support/shapes.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+
+using a_patches::Curvature;
+using a_patches::Split;
+using PatchNormals = APatchParams::Normals;
+
+/// The mesh with corner-normals from one normal per vertex.
+inline TriangleMesh with_normals(TriangleMesh mesh, const std::vector<Vec3>& normals) {
+    Array<double> values;
+    for (const Triangle& t : mesh.triangles)
+        for (const u32 v : t) values.insert(values.end(), normals[v].data(), normals[v].data() + 3);
+    mesh.face_columns = {};
+    mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(values))));
+    return mesh;
+}
+
+/// Inscribed in the unit sphere, with the sphere's normals.
+inline TriangleMesh exact_sphere(u32 frequency) {
+    const TriangleMesh mesh = geodesic_sphere(1, frequency);
+    return with_normals(mesh, std::vector<Vec3>(mesh.positions.begin(), mesh.positions.end()));
+}
+inline double sphere_distance(const Vec3& p) { return p.norm() - 1; }
+
+/// Radii 1 and 0.4, with the torus's normals; diagonals all in one direction.
+inline TriangleMesh exact_torus(u32 around, u32 along) {
+    std::vector<Vec3> positions, normals;
+    std::vector<Triangle> triangles;
+    for (u32 i = 0; i < around; ++i)
+        for (u32 j = 0; j < along; ++j) {
+            const double u = 2 * std::numbers::pi * i / around, v = 2 * std::numbers::pi * j / along;
+            const Vec3 out(std::cos(u), std::sin(u), 0);
+            normals.push_back(std::cos(v) * out + std::sin(v) * Vec3::UnitZ());
+            positions.push_back(out + 0.4 * normals.back());
+        }
+    const auto id = [&](u32 i, u32 j) { return i % around * along + j % along; };
+    for (u32 i = 0; i < around; ++i)
+        for (u32 j = 0; j < along; ++j) {
+            triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+            triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+        }
+    return with_normals(soup({positions.begin(), positions.end()}, {triangles.begin(), triangles.end()}), normals);
+}
+inline double torus_distance(const Vec3& p) { return std::hypot(std::hypot(p.x(), p.y()) - 1, p.z()) - 0.4; }
+
+struct PatchRun {
+    APatchResult result;
+    std::vector<std::string> warnings;
+    Metrics metrics;
+};
+
+inline PatchRun patched(const TriangleMesh& mesh, const APatchParams& params = {}, const PointCloud* points = nullptr,
+                        unsigned threads = 1) {
+    ContextOptions options;
+    options.threads = threads;
+    Context context(options);
+    PatchRun run{a_patch(mesh, points, params, context), {}, {}};
+    run.warnings = context.warnings();
+    for (const Doubt& doubt : context.doubts()) run.warnings.push_back(doubt.text);
+    run.metrics = context.metrics();
+    return run;
+}
+inline PatchRun patched(const TriangleMesh& mesh, Curvature curvature, Split split = Split::always) {
+    APatchParams params;
+    params.curvature = curvature;
+    params.split = split;
+    return patched(mesh, params);
+}
+
+/// Faces that two tetrahedra share; the largest differences of values and (relative) of gradients at random points.
+struct Joints {
+    std::size_t shared = 0;
+    double value = 0, gradient = 0;
+};
+
+inline Joints joints_of(const PatchComplex& patches) {
+    std::map<std::array<u32, 3>, std::vector<u32>> tets_of;
+    for (u32 tet = 0; tet < patches.tets.size(); ++tet)
+        for (std::size_t without = 0; without < 4; ++without) {
+            std::array<u32, 3> face;
+            for (std::size_t i = 0, n = 0; i < 4; ++i)
+                if (i != without) face[n++] = patches.tets[tet][i];
+            std::ranges::sort(face);
+            tets_of[face].push_back(tet);
+        }
+    Random random(7);
+    Joints joints;
+    for (const auto& [face, tets] : tets_of) {
+        EXPECT_LE(tets.size(), 2u);
+        if (tets.size() != 2) continue;
+        ++joints.shared;
+        const PatchCell one(patches, tets[0]), other(patches, tets[1]);
+        for (int i = 0; i < 3; ++i) {
+            double a = random.uniform(0, 1), b = random.uniform(0, 1);
+            if (a + b > 1) a = 1 - a, b = 1 - b;
+            const Vec3 p = a * patches.positions[face[0]] + b * patches.positions[face[1]] +
+                           (1 - a - b) * patches.positions[face[2]];
+            const Vec3 g = one.gradient(p), h = other.gradient(p);
+            joints.value = std::max(joints.value, std::abs(one.value(p) - other.value(p)));
+            joints.gradient = std::max(joints.gradient, (g - h).norm() / std::max(g.norm(), h.norm()));
+        }
+    }
+    return joints;
+}
+
+/// Largest |F| and difference of the gradient from the normal at the mesh's vertices.
+inline std::pair<double, double> errors_at_vertices(const APatchResult& result) {
+    const PatchComplex& patches = result.patches;
+    const Column* normals = result.mesh.vertex_columns.find("normal");
+    double value = 0, gradient = 0;
+    for (u32 tet = 0; tet < patches.tets.size(); ++tet)
+        for (const u32 v : patches.tets[tet]) {
+            if (v >= result.mesh.positions.size()) continue;
+            const PatchCell cell(patches, tet);
+            const Vec3 n(normals->number(v, 0), normals->number(v, 1), normals->number(v, 2));
+            value = std::max(value, std::abs(cell.value(patches.positions[v])));
+            gradient = std::max(gradient, (cell.gradient(patches.positions[v]) - n).norm());
+        }
+    return {value, gradient};
+}
+
+/// Points of the surface above random points of the triangles, on the lines to the apexes. Each line must have exactly
+/// one point of the surface, found by sampling the function along it.
+template <class Action>
+std::size_t for_each_ray(const PatchComplex& patches, int per_tet, Action&& action) {
+    Random random(3);
+    std::size_t rays = 0;
+    for (u32 tet = 0; tet < patches.tets.size(); ++tet) {
+        if (patches.kinds[tet] != PatchKind::face) continue;
+        const PatchCell cell(patches, tet);
+        const PatchWeights& weights = patches.weights[tet];
+        for (int i = 0; i < per_tet; ++i) {
+            double a = random.uniform(0, 1), b = random.uniform(0, 1);
+            if (a + b > 1) a = 1 - a, b = 1 - b;
+            const Barycentric from(a, b, 1 - a - b, 0), to(0, 0, 0, 1);
+            const double sign = patches.sides[tet] == 1 ? 1 : -1;
+            if (sign * patch_value(weights, from) > 0) continue;  // seen from the other side
+            ++rays;
+            const auto share = patch_hit(weights, from, to);
+            EXPECT_TRUE(share);
+            if (!share) continue;
+            int changes = 0;
+            bool before = false;
+            for (int step = 1; step <= 16; ++step) {
+                const double t = step / 16.0;
+                const bool above = sign * patch_value(weights, (1 - t) * from + t * to) > 0;
+                changes += above != before;
+                before = above;
+            }
+            EXPECT_EQ(changes, 1);
+            action(tet, cell.point((1 - *share) * from + *share * to));
+        }
+    }
+    return rays;
+}
+
+template <class Distance>
+double worst_distance(const PatchComplex& patches, Distance&& distance, int per_tet = 20) {
+    double worst = 0;
+    for_each_ray(patches, per_tet, [&](u32, const Vec3& p) { worst = std::max(worst, std::abs(distance(p))); });
+    return worst;
+}
+
+inline double metric_of(const PatchRun& run, std::string_view name) {
+    for (const Metric& metric : run.metrics.values)
+        if (metric.name == name) return metric.value;
+    return std::nan("");
+}
+
+}  // namespace scanmill::test

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
+
+#include "filters/a_patch_cases.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace test;
+using testing::AllOf;
+using testing::HasSubstr;
+
+Error refusal(const TriangleMesh& mesh, const APatchParams& params = {}) {
+    return error_of([&] { patched(mesh, params); });
+}
+const double nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(APatchRefuses, NoTriangles) {
+    EXPECT_THAT(refusal(TriangleMesh{}).sentence(), HasSubstr("needs a mesh with triangles"));
+}
+
+TEST(APatchRefuses, AnEdgeInThreeTriangles) {
+    const Error error =
+        refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
+    EXPECT_THAT(error.sentence(), HasSubstr("in 3 triangles"));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(APatchRefuses, NeighboursOrientedDifferently) {
+    const Error error = refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 1, 3}}));
+    EXPECT_THAT(error.sentence(), HasSubstr("in the same direction"));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(APatchRefuses, AVertexWithTwoFans) {
+    const Error error =
+        refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}));
+    EXPECT_THAT(error.sentence(), HasSubstr("at 1 of 5 vertices the triangles do not form one fan"));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(APatchRefuses, ATriangleWithoutArea) {
+    const Error error = refusal(soup({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_THAT(error.sentence(), HasSubstr("1 of 2 triangles has no area, the first is triangle 0 at (0, 0, 0)"));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(APatchRefuses, VerticesAtOnePosition) {
+    const Error error =
+        refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 1, 1}, {1, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}));
+    EXPECT_THAT(error.sentence(), HasSubstr("1 of 6 vertices is at the position of another one"));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(APatchRefuses, NotFiniteVertices) {
+    EXPECT_THAT(refusal(soup({{0, 0, 0}, {1, nan, 0}, {0, 1, 0}}, {{0, 1, 2}})).sentence(), HasSubstr("vert"));
+}
+
+TEST(APatchRefuses, NotFiniteNormals) {
+    std::vector<Vec3> normals(12, Vec3::UnitX());
+    normals[3] = Vec3(nan, 0, 0);
+    const Error error = refusal(with_normals(icosahedron(), normals));
+    EXPECT_THAT(error.sentence(),
+                AllOf(HasSubstr("5 of 60 corner normals are NaN"), HasSubstr("the first at triangle")));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(APatchRefuses, NormalsThatPointInwards) {
+    const TriangleMesh mesh = icosahedron();
+    std::vector<Vec3> normals;
+    for (const Vec3& p : mesh.positions) normals.push_back(-p);
+    const Error error = refusal(with_normals(mesh, normals));
+    EXPECT_THAT(error.sentence(), HasSubstr("12 of 12 normals point against the triangles"));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(APatchRefuses, GivenNormalsThatAreNotThere) {
+    APatchParams params;
+    params.normals = PatchNormals::given;
+    const Error error = refusal(icosahedron(), params);
+    EXPECT_THAT(error.sentence(), HasSubstr("no face column 'corner-normals'"));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(APatchRefuses, CornerNormalsOfAnotherShape) {
+    TriangleMesh mesh = icosahedron();
+    mesh.face_columns.add(Column("corner-normals", 3, Buffer<double>(Array<double>(60, 1.0))));
+    EXPECT_THAT(refusal(mesh).sentence(), HasSubstr("has 3 numbers per triangle; 9 are needed"));
+}
+
+TEST(APatchRefuses, NormalsOfPointsWithoutPoints) {
+    APatchParams params;
+    params.normals = PatchNormals::points;
+    const Error error = refusal(icosahedron(), params);
+    EXPECT_THAT(error.sentence(), HasSubstr("there are no points"));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(APatchRefuses, AFactorOutOfRange_AndFitting) {
+    APatchParams params;
+    params.apex_factor = 1;
+    EXPECT_THAT(refusal(icosahedron(), params).sentence(), HasSubstr("apex-factor must be from 1.05 to 3; it is 1"));
+    params = {};
+    params.fit = true;
+    EXPECT_THAT(refusal(icosahedron(), params).sentence(), HasSubstr("not possible yet"));
+}
+
+TEST(APatchRefuses, AFoldedMesh_WithTheTriangles) {
+    // Two triangles folded flat onto each other: their normals are opposite at both common corners.
+    const Error error = refusal(soup({{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 1.1, 1e-3}}, {{0, 1, 2}, {1, 0, 3}}));
+    EXPECT_THAT(error.sentence(), AllOf(HasSubstr("the mesh is folded: 2 triangles have a corner"),
+                                        HasSubstr("at (0, 0, 0), (1, 0, 0)")));
+    EXPECT_FALSE(error.hint().empty());
+}
+
+}  // namespace
+}  // namespace scanmill

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The construction: interpolation, equal gradients, exact spheres, orders of convergence, counts, signs.
+#include "filters/a_patch_cases.hpp"
+
+#include "scanmill/kinds/value.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace test;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+void expect_sound(const PatchRun& run, double jump = 1e-11) {
+    const APatchResult& result = run.result;
+    const auto [value, gradient] = errors_at_vertices(result);
+    EXPECT_LT(value, 1e-13);
+    EXPECT_LT(gradient, 1e-12);
+    const Joints joints = joints_of(result.patches);
+    EXPECT_LT(joints.gradient, jump);
+    EXPECT_LT(joints.value, 1e-13);
+    EXPECT_LT(result.c1_jump, jump);
+    EXPECT_EQ(result.inverted, 0u);
+    EXPECT_EQ(result.sign_violations, 0u);
+}
+
+TEST(APatch, ASingleTetrahedron_HasTwelveTetrahedraPerTriangleAndItsCornersOnTheSurface) {
+    const PatchRun run = patched(regular_tetrahedron());
+    expect_sound(run);
+    EXPECT_EQ(run.result.patches.tets.size(), 48u);
+    // The normals of the corners are the directions from the centre, so the surface is exactly the sphere.
+    const double radius = std::sqrt(6.0) / 4;
+    const PatchRun mean = patched(regular_tetrahedron(), Curvature::mean);
+    EXPECT_LT(worst_distance(mean.result.patches, [&](const Vec3& p) { return p.norm() - radius; }), 1e-15);
+}
+
+TEST(APatch, SpheresWithTheMeanCurvature_AreReproducedExactly) {
+    for (const Split split : {Split::always, Split::where_needed})
+        for (const u32 frequency : {1u, 2u, 4u}) {
+            const PatchRun run = patched(exact_sphere(frequency), Curvature::mean, split);
+            expect_sound(run);
+            EXPECT_LT(worst_distance(run.result.patches, sphere_distance), 5e-16) << frequency;
+            for_each_ray(run.result.patches, 3, [&](u32 tet, const Vec3& p) {
+                EXPECT_NEAR(PatchCell(run.result.patches, tet).gradient(p).norm(), 1, 1e-13);
+            });
+        }
+}
+
+TEST(APatch, OfSpheresWithoutCurvature_TheErrorFallsWithAlmostTheFourthPower) {
+    const double most[] = {2.66e-2, 2.33e-3, 1.61e-4};  // measured: 2.653e-2, 2.319e-3, 1.604e-4
+    double before = 0;
+    for (int level = 0; level < 3; ++level) {
+        const PatchRun run = patched(exact_sphere(1u << level));
+        expect_sound(run);
+        const double worst = worst_distance(run.result.patches, sphere_distance, 40);
+        EXPECT_LT(worst, most[level]);
+        if (level > 0) {
+            EXPECT_GT(std::log2(before / worst), 3.4);
+        }
+        before = worst;
+    }
+}
+
+TEST(APatch, OfTori_TheErrorFallsWithAtLeastTheThirdPower) {
+    const double most[] = {8.3e-3, 7.2e-4, 7.5e-5};
+    double before = 0;
+    for (int level = 0; level < 3; ++level) {
+        const PatchRun run = patched(exact_torus(12u << level, 6u << level));
+        expect_sound(run);
+        const double worst = worst_distance(run.result.patches, torus_distance);
+        EXPECT_LT(worst, most[level]);
+        if (level > 0) {
+            EXPECT_GT(std::log2(before / worst), 3);
+        }
+        before = worst;
+    }
+}
+
+TEST(APatch, CountsFollowFromTheTriangles) {
+    for (const u32 frequency : {1u, 2u, 4u}) {
+        const PatchRun run = patched(exact_sphere(frequency));
+        const std::size_t triangles = 20 * frequency * frequency;
+        EXPECT_EQ(run.result.patches.tets.size(), 12 * triangles);
+        EXPECT_EQ(joints_of(run.result.patches).shared, 18 * triangles);
+        EXPECT_EQ(metric_of(run, "tetrahedra"), 12.0 * static_cast<double>(triangles));
+        EXPECT_EQ(metric_of(run, "split-faces"), static_cast<double>(triangles));
+        EXPECT_EQ(metric_of(run, "refined"), 0);
+    }
+}
+
+TEST(APatch, DisturbedNormals_KeepGradientsEqualAndSignsRight) {
+    const TriangleMesh mesh = geodesic_sphere(1, 4);
+    const double degrees[] = {2, 5, 10}, most[] = {1e-2, 2e-2, 4e-2};
+    for (int i = 0; i < 3; ++i) {
+        Random random(5);
+        std::vector<Vec3> normals;
+        for (const Vec3& p : mesh.positions) {
+            const Vec3 side = p.cross(Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+            normals.push_back(Eigen::AngleAxisd(degrees[i] * std::numbers::pi / 180, side.normalized()) * p);
+        }
+        const PatchRun run = patched(with_normals(mesh, normals));
+        expect_sound(run);
+        EXPECT_LT(worst_distance(run.result.patches, sphere_distance), most[i]);
+    }
+}
+
+TEST(APatch, WhereNeeded_SplitsNothingOnSpheresAndHalfOfATorus) {
+    for (const u32 frequency : {1u, 2u}) {
+        const PatchRun run = patched(exact_sphere(frequency), Curvature::distance, Split::where_needed);
+        expect_sound(run);
+        EXPECT_EQ(run.result.divided, 0u);
+        EXPECT_EQ(run.result.patches.tets.size(), 160u * frequency * frequency);
+    }
+    const PatchRun torus = patched(exact_torus(12, 6), Curvature::distance, Split::where_needed);
+    expect_sound(torus);
+    EXPECT_EQ(torus.result.divided, 72u);
+    EXPECT_EQ(torus.result.patches.tets.size(), 1440u);
+    EXPECT_EQ(joints_of(torus.result.patches).shared, 2016u);
+    EXPECT_LT(worst_distance(torus.result.patches, torus_distance), 9.3e-3);
+    EXPECT_EQ(patched(exact_torus(24, 12), Curvature::distance, Split::where_needed).result.divided, 292u);
+}
+
+TEST(APatch, WhereNeeded_SplitsATriangleOfEveryCoplanarPair) {
+    const TriangleMesh mesh = cube();
+    const PatchRun run = patched(mesh, Curvature::distance, Split::where_needed);
+    expect_sound(run);
+    // Triangle rows with a base point have three tetrahedra per side.
+    std::vector<int> tets(mesh.triangles.size(), 0);
+    for (u32 tet = 0; tet < run.result.patches.tets.size(); ++tet)
+        if (run.result.patches.kinds[tet] == PatchKind::face) ++tets[run.result.patches.triangles[tet]];
+    for (u32 f = 0; f < mesh.triangles.size(); ++f)
+        for (u32 g = 0; g < f; ++g) {
+            const auto normal = [&](u32 t) -> Vec3 {
+                const Triangle& c = mesh.triangles[t];
+                return (mesh.positions[c[1]] - mesh.positions[c[0]]).cross(mesh.positions[c[2]] - mesh.positions[c[0]]);
+            };
+            const long common = std::ranges::count_if(mesh.triangles[f], [&](u32 v) {
+                return std::ranges::find(mesh.triangles[g], v) != mesh.triangles[g].end();
+            });
+            if (common == 2 && normal(f).cross(normal(g)).norm() < 1e-12) {
+                EXPECT_TRUE(tets[f] == 6 || tets[g] == 6);
+            }
+        }
+}
+
+TEST(APatch, SeveralComponents_AreSeveralSurfaces) {
+    const TriangleMesh two = both(geodesic_sphere(1, 2), shifted(geodesic_sphere(1, 2), {5, 0, 0}));
+    const PatchRun run = patched(two, Curvature::mean);
+    expect_sound(run);
+    EXPECT_EQ(run.result.patches.tets.size(), 2 * 960u);
+    EXPECT_LT(worst_distance(run.result.patches,
+                             [](const Vec3& p) { return std::min(p.norm(), (p - Vec3(5, 0, 0)).norm()) - 1; }),
+              1e-14);
+}
+
+TEST(APatch, AnOpenMesh_EndsAtItsBoundary) {
+    const PatchRun run = patched(without_triangles(geodesic_sphere(1, 2), {0}));
+    expect_sound(run);
+    EXPECT_THAT(run.warnings, ElementsAre("the mesh is open: the surface ends at 3 boundary edges"));
+    // 79 triangles, and 120 edges of which 3 are on the boundary.
+    EXPECT_EQ(run.result.patches.tets.size(), 6 * 79u + 4 * 117u);
+}
+
+TEST(APatch, ThinWalls_KeepTheSheetsApart) {
+    // Two parallel squares of 8 × 8 cells whose distance is far less than an edge.
+    const double gap = 0.01;
+    const u32 n = 8;
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    for (const bool is_top : {false, true}) {
+        const auto first = static_cast<u32>(positions.size());
+        for (u32 y = 0; y <= n; ++y)
+            for (u32 x = 0; x <= n; ++x) positions.emplace_back(x, y, is_top ? gap : 0);
+        for (u32 y = 0; y < n; ++y)
+            for (u32 x = 0; x < n; ++x) {
+                const u32 a = first + y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+                if (is_top) {
+                    triangles.push_back({a, b, d});
+                    triangles.push_back({a, d, c});
+                } else {
+                    triangles.push_back({a, d, b});
+                    triangles.push_back({a, c, d});
+                }
+            }
+    }
+    const PatchRun run = patched(soup(positions, triangles));
+    expect_sound(run);
+    ASSERT_EQ(run.result.bisected, 0u);
+    for (u32 tet = 0; tet < run.result.patches.tets.size(); ++tet)
+        for (const u32 v : run.result.patches.tets[tet]) {
+            const double z = run.result.patches.positions[v].z();
+            if (run.result.patches.sides[tet] == 1) continue;  // between the sheets
+            const bool is_top = positions[triangles[run.result.patches.triangles[tet]][0]].z() > 0;
+            EXPECT_LE(is_top ? gap - z : z, 0.45 * gap * (1 + 1e-12));
+        }
+}
+
+TEST(APatch, AFold_IsBisectedUntilNothingIsInverted) {
+    // A coarse torus whose inner side is sharply concave against normals that lean over.
+    TriangleMesh mesh = exact_torus(5, 3);
+    const PatchRun run = patched(mesh);
+    EXPECT_EQ(run.result.inverted, 0u);
+    const auto [value, gradient] = errors_at_vertices(run.result);
+    EXPECT_LT(value, 1e-13);
+    EXPECT_LT(gradient, 1e-12);
+}
+
+TEST(APatch, TwoRuns_AndAnyNumberOfThreads_GiveTheSameBits) {
+    const TriangleMesh mesh = exact_torus(48, 24);
+    const APatchResult one = patched(mesh).result, four = patched(mesh, {}, nullptr, 4).result;
+    EXPECT_TRUE(std::ranges::equal(one.patches.positions, four.patches.positions));
+    EXPECT_TRUE(std::ranges::equal(one.patches.tets, four.patches.tets));
+    EXPECT_TRUE(std::ranges::equal(one.patches.weights, four.patches.weights));
+    EXPECT_EQ(one.c1_jump, four.c1_jump);
+}
+
+TEST(APatch, AScaledMesh_HasScaledWeights) {
+    const TriangleMesh mesh = exact_torus(12, 6);
+    const APatchResult one = patched(mesh).result, large = patched(scaled(mesh, 3)).result;
+    for (u32 tet = 0; tet < one.patches.tets.size(); ++tet)
+        for (std::size_t i = 0; i < 20; ++i)
+            EXPECT_NEAR(large.patches.weights[tet][i], 3 * one.patches.weights[tet][i], 1e-13);
+}
+
+TEST(APatch, ATurnedAndShiftedMesh_HasTheSameWeights) {
+    const TriangleMesh mesh = geodesic_sphere(1, 3);
+    const APatchResult one = patched(mesh).result,
+                       moved = patched(shifted(turned(mesh, 1, Vec3(1, 2, 3)), Vec3(3, -2, 5))).result;
+    for (u32 tet = 0; tet < one.patches.tets.size(); ++tet)
+        for (std::size_t i = 0; i < 20; ++i)
+            EXPECT_NEAR(moved.patches.weights[tet][i], one.patches.weights[tet][i], 1e-12);
+}
+
+// Normals.
+
+TEST(APatch, NormalsOfTheMesh_AreExactOnSpheres) {
+    const TriangleMesh mesh = geodesic_sphere(2, 3);
+    const APatchResult result = patched(mesh).result;
+    const Column* normals = result.mesh.vertex_columns.find("normal");
+    for (u32 v = 0; v < mesh.positions.size(); ++v)
+        EXPECT_LT(
+            (Vec3(normals->number(v, 0), normals->number(v, 1), normals->number(v, 2)) - mesh.positions[v] / 2).norm(),
+            1e-14);
+}
+
+TEST(APatch, NormalsOfPoints_AreBetterThanThoseOfACoarseMesh) {
+    const TriangleMesh coarse = exact_torus(12, 6);
+    TriangleMesh without = coarse;
+    without.face_columns = {};
+    PointCloud scan;
+    scan.positions = exact_torus(120, 60).positions;
+    const auto worst = [&](const PointCloud* points) {
+        const APatchResult result = patched(without, {}, points).result;
+        const Column* normals = result.mesh.vertex_columns.find("normal");
+        double largest = 0;
+        for (u32 v = 0; v < without.positions.size(); ++v) {
+            const Vec3& p = without.positions[v];
+            const Vec3 out = Vec3(p.x(), p.y(), 0).normalized(), exact = (p - out) / 0.4;
+            largest = std::max(
+                largest, (Vec3(normals->number(v, 0), normals->number(v, 1), normals->number(v, 2)) - exact).norm());
+        }
+        return largest;
+    };
+    EXPECT_LT(worst(&scan), 5e-3);
+    EXPECT_GT(worst(nullptr), 5e-2);
+}
+
+TEST(APatch, SharpEdges_AreSmoothedWithAWarning) {
+    TriangleMesh mesh = cube();
+    Array<double> normals;
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 n = (mesh.positions[t[1]] - mesh.positions[t[0]])
+                           .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
+                           .normalized();
+        for (int i = 0; i < 3; ++i) normals.insert(normals.end(), n.data(), n.data() + 3);
+    }
+    mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(normals))));
+    mesh.sharp_edges = {make_edge(mesh.triangles[0][0], mesh.triangles[0][1])};
+    const PatchRun run = patched(mesh);
+    EXPECT_THAT(run.warnings, ElementsAre("sharp edges are smoothed: 8 vertices with several normals get their mean",
+                                          "the mesh's 1 sharp edge is smoothed"));
+    expect_sound(run);
+}
+
+TEST(APatch, ANormalThatOpposesATriangle_IsReplaced) {
+    const TriangleMesh mesh = geodesic_sphere(1, 2);
+    std::vector<Vec3> normals(mesh.positions.begin(), mesh.positions.end());
+    normals[7] = -normals[7];
+    const PatchRun run = patched(with_normals(mesh, normals), Curvature::mean);
+    EXPECT_EQ(run.result.replaced_normals, 1u);
+    EXPECT_THAT(run.warnings, ElementsAre(HasSubstr("1 normal is replaced")));
+    EXPECT_LT(worst_distance(run.result.patches, sphere_distance), 1e-14);
+}
+
+TEST(APatch, AMeshInsideOut_IsDoubtful) {
+    EXPECT_THAT(patched(inside_out(geodesic_sphere(1, 1))).warnings, ElementsAre(HasSubstr("the mesh is inside out")));
+}
+
+}  // namespace
+}  // namespace scanmill
