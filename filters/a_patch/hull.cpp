@@ -275,8 +275,9 @@ private:
 
     void find_faults() {
         for (u32 f = 0; f < hull_.faces.size(); ++f)
-            if (std::ranges::any_of(both_sides,
-                                    [&](Side side) { return hull_.faces[f].height[side] < low_factor * hull_.faces[f].least[side]; }))
+            if (std::ranges::any_of(both_sides, [&](Side side) {
+                    return hull_.faces[f].height[side] < low_factor * hull_.faces[f].least[side];
+                }))
                 hull_.faults.thin.push_back(f);
         for (u32 e = 0; e < hull_.edges.size(); ++e)
             if (std::ranges::any_of(both_sides, [&](Side side) { return !hull_.is_sound(hull_.edges[e], side); }))

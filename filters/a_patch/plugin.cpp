@@ -13,9 +13,10 @@ SCANMILL_FILTER() {
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties("Of equally long edges the one with the lower vertices is bisected first.")
         .not_finite("Refused, with their number and the first of them.")
-        .in<TriangleMesh>("mesh",
-                          "A manifold, closed or open, oriented consistently. Its vertices lie on the surface; its face "
-                          "column `corner-normals` gives the normals there.")
+        .in<TriangleMesh>(
+            "mesh",
+            "A manifold, closed or open, oriented consistently. Its vertices lie on the surface; its face "
+            "column `corner-normals` gives the normals there.")
         .in<PointCloud>("points", "The scan, for normals at the vertices of a mesh without `corner-normals`.", optional)
         .out<PatchComplex>("patches", "Tetrahedra on both sides of the mesh, with the cubic's 20 weights each.")
         .choice("normals", &P::normals,
@@ -35,10 +36,11 @@ SCANMILL_FILTER() {
                 {{"distance", Curvature::distance, "None: F grows like a distance."},
                  {"mean", Curvature::mean, "The mean curvature of the triangle's quadric: exact for spheres."}},
                 "The second derivative of F along the normal.")
-        .param("apex-factor", &P::apex_factor,
-               "Height of the tetrahedra over the least possible height. Higher ones contain more of the space near the "
-               "surface.",
-               at_least(1.05), at_most(3))
+        .param(
+            "apex-factor", &P::apex_factor,
+            "Height of the tetrahedra over the least possible height. Higher ones contain more of the space near the "
+            "surface.",
+            at_least(1.05), at_most(3))
         .metric("tetrahedra", Unit::count, "Tetrahedra.", headline)
         .metric("inverted", Unit::count, "Tetrahedra inside out: always 0.")
         .metric("c1-jump", Unit::number,
@@ -48,8 +50,8 @@ SCANMILL_FILTER() {
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
         .metric("raised", Unit::count, "Weights changed so that every line to an apex meets the surface once.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
-            return Outputs().set("patches", a_patch(inputs.get<TriangleMesh>("mesh"), inputs.find<PointCloud>("points"),
-                                                    params, context)
-                                                .patches);
+            return Outputs().set(
+                "patches",
+                a_patch(inputs.get<TriangleMesh>("mesh"), inputs.find<PointCloud>("points"), params, context).patches);
         });
 }

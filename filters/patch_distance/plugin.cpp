@@ -25,8 +25,8 @@ SCANMILL_FILTER() {
         .metric("max", Unit::length, "Largest distance without sign.", headline)
         .metric("unlocated", Unit::count, "Points outside the tetrahedra around the surface: without a distance.")
         .run([](const Inputs& inputs, const PatchDistanceParams&, Context& context) {
-            return Outputs().set("points", patch_distance(inputs.get<PatchComplex>("patches"),
-                                                          inputs.get<PointCloud>("points"), context)
-                                               .points);
+            return Outputs().set(
+                "points",
+                patch_distance(inputs.get<PatchComplex>("patches"), inputs.get<PointCloud>("points"), context).points);
         });
 }

@@ -207,6 +207,19 @@ private:
 
     void choose_levels() {
         const unsigned most = std::bit_floor(subdivision_);
+        const double worst = choose_levels(most);
+        if (worst <= *max_error_) return;
+        unsigned enough = 2 * most;
+        while (enough <= most_subdivision && choose_levels(enough) > *max_error_) enough *= 2;
+        Error error("with {} segments per edge the triangles are up to {:.3g} from the surface; max-error is {:.3g}",
+                    most, worst, *max_error_);
+        error.set_hint(enough <= most_subdivision ? fmt::format("subdivision {} suffices", enough)
+                                                  : fmt::format("not even subdivision {} suffices", most_subdivision));
+        throw error;
+    }
+
+    /// Returns the distance that is left.
+    double choose_levels(unsigned most) {
         std::vector<double> left(edges_.size(), 0.0), left_above(triangles_.size(), 0.0);
         for_each_chunk(execution_.threads(), edges_.size(), chunk, [&](std::size_t begin, std::size_t end) {
             execution_.check_cancelled();
@@ -217,13 +230,7 @@ private:
             execution_.check_cancelled();
             for (std::size_t f = begin; f < end; ++f) left_above[f] = choose_level(f, most);
         });
-        const double worst = std::max(std::ranges::max(left), std::ranges::max(left_above));
-        if (worst <= *max_error_) return;
-        unsigned enough = most;  // the distance falls with the square of the segments
-        for (double distance = worst; distance > *max_error_; distance /= 4) enough *= 2;
-        throw Error("with {} segments per edge the triangles are up to {:.3g} from the surface; max-error is {:.3g}",
-                    most, worst, *max_error_)
-            .hint(fmt::format("subdivision {} may suffice", enough));
+        return std::max(std::ranges::max(left), std::ranges::max(left_above));
     }
 
     /// Returns the distance that is left.
@@ -233,34 +240,23 @@ private:
         edge.fan = edge.is_border() ? 1 : 2;
         for (;;) {
             double along = 0, across = 0;
-            const unsigned columns = edge.columns();
-            for (unsigned s = 0; s < edge.segments; ++s) {
-                const double middle = (s + 0.5) / edge.segments;
-                Vec3 before = Vec3::Zero();
-                for (unsigned k = 0; k < columns; ++k) {
-                    const auto fan = [&](double at) { return edge.is_border() ? 0 : at / edge.fan; };
-                    const Vec3 low = sample(edge, s, k), high = sample(edge, s + 1, k),
-                               here = beside(edge, middle, fan(k)).position;
-                    along = std::max(along, distance_to_segment(here, low, high));
-                    if (k > 0)
-                        across = std::max(
-                            across, distance_to_segment(beside(edge, middle, fan(k - 0.5)).position, before, here));
-                    before = here;
+            const auto at = [&](double s, double k) {
+                if (s == 0) return patches_.positions[edge.a];
+                if (s == edge.segments) return patches_.positions[edge.b];
+                return beside(edge, s / edge.segments, edge.is_border() ? 0 : k / edge.fan).position;
+            };
+            for (unsigned s = 0; s < edge.segments; ++s)
+                for (unsigned k = 0; k < edge.columns(); ++k) {
+                    const Vec3 here = at(s + 0.5, k);
+                    along = std::max(along, distance_to_segment(here, at(s, k), at(s + 1, k)));
+                    if (k + 1 < edge.columns())
+                        across = std::max(across, distance_to_segment(at(s + 0.5, k + 0.5), here, at(s + 0.5, k + 1)));
                 }
-            }
             const bool is_long = along > wanted && edge.segments<most, is_wide = across> wanted && edge.fan < most;
             if (!is_long && !is_wide) return std::max(along, across);
             if (is_long) edge.segments *= 2;
             if (is_wide) edge.fan *= 2;
         }
-    }
-
-    Vec3 sample(const EdgeTets& edge, unsigned s, unsigned k) const {
-        if (s == 0) return patches_.positions[edge.a];
-        if (s == edge.segments) return patches_.positions[edge.b];
-        return beside(edge, static_cast<double>(s) / edge.segments,
-                      edge.is_border() ? 0 : static_cast<double>(k) / edge.fan)
-            .position;
     }
 
     double choose_level(std::size_t f, unsigned most) {
@@ -273,12 +269,18 @@ private:
                 const auto at = [&](double i, double j) {
                     return above(t, third, Vec3(level - i - j, i, j) / level).position;
                 };
+                const auto measure = [&](double i, double j, double step) {
+                    const Vec3 a = at(i, j), b = at(i + step, j), c = at(i, j + step);
+                    const double half = step / 2, part = step / 3;
+                    worst = std::max({worst, above_plane(at(i + part, j + part), a, b, c),
+                                      distance_to_segment(at(i + half, j), a, b),
+                                      distance_to_segment(at(i + half, j + half), b, c),
+                                      distance_to_segment(at(i, j + half), c, a)});
+                };
                 for (unsigned i = 0; i < level; ++i)
                     for (unsigned j = 0; i + j < level; ++j) {
-                        const Vec3 a = at(i, j), b = at(i + 1, j), c = at(i, j + 1);
-                        worst = std::max(worst, above_plane(at(i + 1. / 3, j + 1. / 3), a, b, c));
-                        if (i + j + 2 > level) continue;
-                        worst = std::max(worst, above_plane(at(i + 2. / 3, j + 2. / 3), b, at(i + 1, j + 1), c));
+                        measure(i, j, 1);
+                        if (i + j + 2 <= level) measure(i + 1, j + 1, -1);
                     }
             }
             if (worst <= *max_error_ || 2 * level > most) return worst;

@@ -275,7 +275,8 @@ std::optional<PatchSurface::Hit> PatchSurface::first_hit(const Vec3& from, const
         std::ceil(std::max(1.0, (end - begin) * direction.norm() / box_.diagonal() * pieces_per_diagonal));
     Array<u32> rows;
     for (double piece = 0; piece < pieces; ++piece) {
-        const double first = begin + (end - begin) * piece / pieces, last = begin + (end - begin) * (piece + 1) / pieces;
+        const double first = begin + (end - begin) * piece / pieces,
+                     last = begin + (end - begin) * (piece + 1) / pieces;
         BoundingBox box;
         box.add(from + first * direction);
         box.add(from + last * direction);

@@ -102,11 +102,9 @@ private:
         std::ranges::copy(numbers, weights.begin());
         const std::string kind = text_member(json, "kind", place);
         const auto found = std::ranges::find(kind_names_of_tets, kind);
-        if (found == kind_names_of_tets.end())
-            throw Error("{}: unknown kind '{}'; expected face or edge", place, kind);
+        if (found == kind_names_of_tets.end()) throw Error("{}: unknown kind '{}'; expected face or edge", place, kind);
         const std::string combine = text_member(json, "combine", place);
-        if (combine != "none" && !combine.empty())
-            throw Error("{}: 'combine' is '{}'; expected none", place, combine);
+        if (combine != "none" && !combine.empty()) throw Error("{}: 'combine' is '{}'; expected none", place, combine);
         constexpr u64 most = PatchComplex::no_edge;
         const Json& edge = member(json, "edge");
         tets_.push_back(tet);
@@ -139,8 +137,8 @@ struct KindTraits<PatchComplex> : FromPositions<PatchComplex> {
         Buffer<double> weights(patches.weights.owner(), reinterpret_cast<const double*>(patches.weights.data()),
                                each * patches.weights.size());
         visitor.lengths("weights", weights, 1);
-        patches.weights = Buffer<PatchWeights>(
-            weights.owner(), reinterpret_cast<const PatchWeights*>(weights.data()), weights.size() / each);
+        patches.weights = Buffer<PatchWeights>(weights.owner(), reinterpret_cast<const PatchWeights*>(weights.data()),
+                                               weights.size() / each);
         visitor.plain("kinds", patches.kinds);
         visitor.plain("sides", patches.sides);
         visitor.plain("triangles", patches.triangles);

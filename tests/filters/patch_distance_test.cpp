@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "patch_distance/patch_distance.hpp"
+
+#include "filters/a_patch_cases.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace test;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+PatchDistanceResult measured(const PatchComplex& patches, const PointCloud& points, Context& context) {
+    return patch_distance(patches, points, context);
+}
+
+const PatchComplex& unit_sphere() {
+    static const PatchComplex patches = patched(exact_sphere(2), Curvature::mean).result.patches;
+    return patches;
+}
+
+PointCloud around_sphere(std::size_t count, double least, double most) {
+    Random random(2);
+    Array<Vec3> points;
+    for (const Vec3& p : random_sphere(count, 1).positions) points.push_back(p * random.uniform(least, most));
+    PointCloud cloud;
+    cloud.positions = std::move(points);
+    return cloud;
+}
+
+TEST(PatchDistance, OfASphere_IsTheSignedDistanceToIt) {
+    Context context;
+    const PointCloud points = around_sphere(2000, 0.98, 1.02);
+    const PatchDistanceResult result = measured(unit_sphere(), points, context);
+    const Column* column = result.points.columns.find("distance-to-patches");
+    ASSERT_TRUE(column);
+    EXPECT_EQ(column->length_exponent(), 1);
+    double squares = 0, largest = 0;
+    std::size_t located = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double wanted = points.positions[i].norm() - 1, found = column->number(i);
+        if (std::isnan(found)) continue;
+        EXPECT_NEAR(found, wanted, 1e-14);
+        squares += wanted * wanted;
+        largest = std::max(largest, std::abs(wanted));
+        ++located;
+    }
+    EXPECT_GT(located, 1800u);
+    EXPECT_EQ(result.unlocated, points.size() - located);
+    EXPECT_NEAR(result.rms, std::sqrt(squares / static_cast<double>(located)), 1e-14);
+    EXPECT_NEAR(result.max, largest, 1e-14);
+    EXPECT_LE(result.p95, result.max);
+    EXPECT_GE(result.p95, result.rms);
+}
+
+TEST(PatchDistance, ByHand) {
+    Context context;
+    // Five points on a line through a vertex: the gradient there is radial.
+    PointCloud points;
+    const Vec3 v = exact_sphere(2).positions[0];
+    points.positions = {v, v * 1.01, v * 0.99, v * 1.005, v * 50};
+    points.columns.add(Column("weight", 1, Buffer<double>{1, 2, 3, 4, 5}));
+    const PatchDistanceResult result = measured(unit_sphere(), points, context);
+    const Column* column = result.points.columns.find("distance-to-patches");
+    EXPECT_NEAR(column->number(0), 0, 1e-15);
+    EXPECT_TRUE(std::isnan(column->number(4)));
+    EXPECT_EQ(result.points.columns.find("weight")->number(4), 5);
+    EXPECT_GE(result.unlocated, 1u);
+    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("of 5 points")));
+}
+
+TEST(PatchDistance, AnExistingColumn_IsReplacedWithAWarning) {
+    Context context;
+    PointCloud points;
+    points.positions = {exact_sphere(2).positions[0]};
+    points.columns.add(Column("distance-to-patches", 1, Buffer<double>{7}));
+    const PatchDistanceResult result = measured(unit_sphere(), points, context);
+    EXPECT_NEAR(result.points.columns.find("distance-to-patches")->number(0), 0, 1e-15);
+    EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("is replaced")));
+}
+
+TEST(PatchDistance, AnyNumberOfThreads_GivesTheSameBits) {
+    ContextOptions four;
+    four.threads = 4;
+    Context one, many(four);
+    const PointCloud points = around_sphere(5000, 0.98, 1.02);
+    const PatchDistanceResult a = measured(unit_sphere(), points, one), b = measured(unit_sphere(), points, many);
+    EXPECT_TRUE(std::ranges::equal(a.points.columns.find("distance-to-patches")->bytes(),
+                                   b.points.columns.find("distance-to-patches")->bytes()));
+    EXPECT_EQ(a.rms, b.rms);
+}
+
+TEST(PatchDistanceRefuses, NothingToMeasure) {
+    Context context;
+    EXPECT_THAT(error_of([&] { measured({}, around_sphere(3, 1, 1.01), context); }).sentence(), HasSubstr("no tetra"));
+    EXPECT_THAT(error_of([&] { measured(unit_sphere(), {}, context); }).sentence(), HasSubstr("needs points"));
+    const Error far = error_of([&] { measured(unit_sphere(), around_sphere(3, 5, 6), context); });
+    EXPECT_THAT(far.sentence(), HasSubstr("none of the 3 points"));
+    EXPECT_FALSE(far.hint().empty());
+    PointCloud invalid;
+    invalid.positions = {Vec3(0, std::nan(""), 1)};
+    EXPECT_THROW(measured(unit_sphere(), invalid, context), Error);
+}
+
+}  // namespace
+}  // namespace scanmill

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tessellate/tessellate.hpp"
+
+#include <set>
+
+#include "filters/a_patch_cases.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
+
+namespace scanmill {
+namespace {
+
+using namespace test;
+using testing::HasSubstr;
+
+TriangleMesh tessellated(const PatchComplex& patches, const TessellateParams& params, unsigned threads = 1) {
+    Execution execution({threads, {}, {}});
+    return tessellate(patches, params, execution);
+}
+TriangleMesh tessellated(const PatchComplex& patches, u32 subdivision, std::optional<Length> max_error = {}) {
+    return tessellated(patches, TessellateParams{subdivision, max_error});
+}
+
+/// |F| / |grad F| at the vertices, and the largest difference of their normals from the gradient.
+std::pair<double, double> errors_of(const TriangleMesh& mesh, const PatchComplex& patches) {
+    const PatchSurface surface(patches);
+    const Column* normals = mesh.vertex_columns.find("normal");
+    double off = 0, turned = 0;
+    for (u32 v = 0; v < mesh.positions.size(); ++v) {
+        const auto value = surface.value(mesh.positions[v]);
+        const auto gradient = surface.gradient(mesh.positions[v]);
+        EXPECT_TRUE(value && gradient);
+        if (!value || !gradient) continue;
+        off = std::max(off, std::abs(*value) / gradient->norm());
+        const Vec3 n(normals->number(v, 0), normals->number(v, 1), normals->number(v, 2));
+        turned = std::max(turned, (n - gradient->normalized()).norm());
+    }
+    return {off, turned};
+}
+
+/// Closed, with the topology of `mesh`, every directed edge once against its opposite, vertices on the surface.
+void expect_sound(const TriangleMesh& result, const TriangleMesh& mesh, const PatchComplex& patches) {
+    const MeshTopology found = topology(result), wanted = topology(mesh);
+    EXPECT_TRUE(found.closed);
+    EXPECT_EQ(found.euler, wanted.euler);
+    EXPECT_EQ(found.components, wanted.components);
+    EXPECT_EQ(found.unused_vertices, 0u);
+    std::set<std::array<u32, 2>> directed;
+    for (const Triangle& t : result.triangles)
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(directed.insert({t[i], t[(i + 1) % 3]}).second);
+    for (const auto& [a, b] : directed) EXPECT_TRUE(directed.contains({b, a}));
+    const auto [off, turned] = errors_of(result, patches);
+    EXPECT_LT(off, 1e-12);
+    EXPECT_LT(turned, 1e-9);
+}
+
+TEST(Tessellate, AnySubdivision_IsClosedAndOnTheSurface) {
+    for (const Split split : {Split::always, Split::where_needed})
+        for (const TriangleMesh& mesh : {exact_sphere(1), exact_torus(12, 6)}) {
+            const PatchComplex patches = patched(mesh, Curvature::distance, split).result.patches;
+            for (const u32 subdivision : {1u, 2u, 3u, 4u, 5u, 8u})
+                expect_sound(tessellated(patches, subdivision), mesh, patches);
+        }
+}
+
+TEST(Tessellate, TrianglesByHand) {
+    // Per triangle of an icosahedron and side 3 n² triangles, per edge a fan of 4 columns of n quadrilaterals whose
+    // ends are triangles.
+    const PatchComplex patches = patched(exact_sphere(1)).result.patches;
+    for (const u32 n : {1u, 2u, 5u}) {
+        const std::size_t strip = n == 1 ? 0 : 8 * (n - 1);
+        EXPECT_EQ(tessellated(patches, n).triangles.size(), 20 * 3 * n * n + 30 * strip) << n;
+    }
+}
+
+TEST(Tessellate, Patch_IsTheTriangleBelowAndSide_IsOutsideOfAConvexMesh) {
+    const TriangleMesh mesh = exact_sphere(2);
+    const TriangleMesh result = tessellated(patched(mesh).result.patches, 4);
+    const Column *patch = result.face_columns.find("patch"), *side = result.face_columns.find("side");
+    ASSERT_TRUE(patch && side);
+    std::set<u32> found;
+    for (u32 t = 0; t < result.triangles.size(); ++t) {
+        const auto row = static_cast<u32>(patch->number(t));
+        found.insert(row);
+        EXPECT_EQ(side->number(t), 1);
+        Vec3 centre = Vec3::Zero(), below = Vec3::Zero();
+        for (std::size_t i = 0; i < 3; ++i) {
+            centre += result.positions[result.triangles[t][i]] / 3;
+            below += mesh.positions[mesh.triangles[row][i]] / 3;
+        }
+        EXPECT_GT(centre.normalized().dot(below.normalized()), 0.9);
+    }
+    EXPECT_EQ(found.size(), mesh.triangles.size());
+}
+
+TEST(Tessellate, MaxError_IsKeptAndLevelsFollowIt) {
+    for (const Split split : {Split::always, Split::where_needed})
+        for (const TriangleMesh& mesh : {exact_sphere(1), exact_torus(12, 6)}) {
+            const PatchComplex patches = patched(mesh, Curvature::distance, split).result.patches;
+            const PatchSurface surface(patches);
+            // The distance is sampled at fewer places, and beside undivided triangles at other ones than here.
+            const double share = split == Split::always ? 1.5 : 2.5;
+            const double error = 1e-2;
+            {
+                const TriangleMesh result = tessellated(patches, 256, Length(error));
+                expect_sound(result, mesh, patches);
+                Random random(1);
+                double worst = 0;
+                const std::size_t stride = result.triangles.size() / 300 + 1;
+                for (std::size_t row = 0; row < result.triangles.size(); row += stride)
+                    for (int i = 0; i < 10; ++i) {
+                        const Triangle& t = result.triangles[row];
+                        double a = random.uniform(0, 1), b = random.uniform(0, 1);
+                        if (a + b > 1) a = 1 - a, b = 1 - b;
+                        const auto foot = surface.foot(a * result.positions[t[0]] + b * result.positions[t[1]] +
+                                                       (1 - a - b) * result.positions[t[2]]);
+                        if (foot) worst = std::max(worst, std::abs(foot->distance));
+                    }
+                EXPECT_LT(worst, share * error) << mesh.triangles.size() << " triangles";
+            }
+        }
+    // A quarter of the error doubles the segments, so triangles grow about fourfold.
+    const PatchComplex patches = patched(exact_sphere(1), Curvature::mean).result.patches;
+    const auto count = [&](double error) { return tessellated(patches, 256, Length(error)).triangles.size(); };
+    const double ratio = static_cast<double>(count(2.5e-4)) / static_cast<double>(count(1e-3));
+    EXPECT_GT(ratio, 2);
+    EXPECT_LT(ratio, 8);
+}
+
+TEST(Tessellate, DifferentLevelsSideBySide_LeaveNoCracks) {
+    // Long and short triangles in one mesh: edges get from 1 to many segments.
+    const TriangleMesh mesh =
+        with_positions(geodesic_sphere(1, 3), [](const Vec3& p) { return Vec3(p.x(), p.y(), 5 * p.z()); });
+    const APatchResult result = patched(mesh).result;
+    for (const double error : {0.1, 0.02, 0.004})
+        expect_sound(tessellated(result.patches, 512, Length(error)), result.mesh, result.patches);
+}
+
+TEST(Tessellate, ATooSmallSubdivision_IsRefusedWithTheDistanceLeftAndWhatWouldDo) {
+    const PatchComplex patches = patched(exact_sphere(1), Curvature::mean).result.patches;
+    const Error error = error_of([&] { tessellated(patches, 4, Length(1e-4)); });
+    EXPECT_THAT(error.sentence(), HasSubstr("with 4 segments per edge"));
+    EXPECT_THAT(error.sentence(), HasSubstr("max-error is 0.0001"));
+    ASSERT_THAT(error.hint(), HasSubstr("subdivision "));
+    const auto enough = static_cast<u32>(std::stoul(error.hint().substr(std::string("subdivision ").size())));
+    EXPECT_NO_THROW(tessellated(patches, enough, Length(1e-4)));
+}
+
+TEST(Tessellate, AnOpenMesh_HasItsBoundary) {
+    const TriangleMesh mesh = without_triangles(geodesic_sphere(1, 2), {0, 1});
+    for (const Split split : {Split::always, Split::where_needed}) {
+        const PatchComplex patches = patched(mesh, Curvature::distance, split).result.patches;
+        for (const TriangleMesh& result : {tessellated(patches, 3), tessellated(patches, 64, Length(1e-3))}) {
+            const MeshTopology found = topology(result);
+            EXPECT_EQ(found.euler, topology(mesh).euler);
+            EXPECT_EQ(found.boundary_loops, 1u);
+            EXPECT_EQ(found.nonmanifold_vertices + found.nonmanifold_edges + found.misoriented_edges, 0u);
+        }
+    }
+}
+
+TEST(Tessellate, AFlatMesh_StaysFlat) {
+    const PatchComplex patches =
+        patched(soup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}})).result.patches;
+    const TriangleMesh result = tessellated(patches, 4);
+    for (const Vec3& p : result.positions) EXPECT_NEAR(p.z(), 0, 1e-15);
+    EXPECT_NEAR(area(result), 1, 1e-12);
+}
+
+TEST(Tessellate, ATorus_DoesNotIntersectItself) {
+    const TriangleMesh result = tessellated(patched(exact_torus(12, 6)).result.patches, 4);
+    const TriangleTree tree(result.positions.span(), result.triangles.span(), 1);
+    Execution execution;
+    EXPECT_EQ(self_intersections(result.positions.span(), result.triangles.span(), tree, execution).count, 0u);
+}
+
+TEST(Tessellate, AnyNumberOfThreads_GivesTheSameBits) {
+    const PatchComplex patches = patched(exact_torus(24, 12)).result.patches;
+    for (const TessellateParams& params : {TessellateParams{3, {}}, TessellateParams{64, Length(1e-3)}}) {
+        const TriangleMesh one = tessellated(patches, params), four = tessellated(patches, params, 4);
+        EXPECT_TRUE(std::ranges::equal(one.positions, four.positions));
+        EXPECT_TRUE(std::ranges::equal(one.triangles, four.triangles));
+        EXPECT_TRUE(one.vertex_columns == four.vertex_columns && one.face_columns == four.face_columns);
+    }
+}
+
+TEST(TessellateRefuses, PatchesThatAreNotComplete) {
+    EXPECT_THAT(error_of([&] { tessellated(PatchComplex{}, 1); }).sentence(), HasSubstr("no tetrahedra"));
+    const PatchComplex whole = patched(exact_sphere(1)).result.patches;
+    for (std::size_t missing = 0; missing < whole.tets.size(); missing += 17) {
+        Array<u32> rows;
+        for (u32 row = 0; row < whole.tets.size(); ++row)
+            if (row != missing) rows.push_back(row);
+        PatchComplex part = whole;
+        part.tets = gather(whole.tets, rows);
+        part.weights = gather(whole.weights, rows);
+        part.kinds = gather(whole.kinds, rows);
+        part.sides = gather(whole.sides, rows);
+        part.triangles = gather(whole.triangles, rows);
+        part.edges = gather(whole.edges, rows);
+        const Error error = error_of([&] { tessellated(part, 1); });
+        EXPECT_THAT(error.sentence(), HasSubstr("not complete")) << missing;
+        EXPECT_FALSE(error.hint().empty());
+    }
+}
+
+TEST(TessellateRefuses, ParametersOutOfRange) {
+    const PatchComplex patches = patched(exact_sphere(1)).result.patches;
+    EXPECT_THAT(error_of([&] { tessellated(patches, 0); }).sentence(), HasSubstr("subdivision must be from 1"));
+    EXPECT_THAT(error_of([&] { tessellated(patches, 4, Length(0)); }).sentence(),
+                HasSubstr("max-error must be above 0"));
+}
+
+}  // namespace
+}  // namespace scanmill
