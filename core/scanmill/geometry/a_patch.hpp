@@ -2,7 +2,7 @@
 #pragma once
 /// Evaluates A-patches: cubic polynomials in Bernstein-Bezier form over tetrahedra. PatchCell is one tetrahedron,
 /// PatchSurface the whole complex: value, gradient and second derivatives at a point, inside or outside, the first hit
-/// of a ray, the nearest point of the surface. tests/core/geometry/a_patch_example.cpp shows its use.
+/// of a ray, the nearest point of the surface. tests/core/geometry/a_patch_example.hpp shows its use.
 ///
 /// Barycentric coordinates are four numbers whose sum is 1, or 0 for a direction. Functions of one tetrahedron cost a
 /// few hundred operations; none uses a libm function whose result depends on the processor. Everything is safe from

@@ -29,6 +29,7 @@ TEST(Kind, EveryKind_HasItsNameItsTypeAndMaybeAFrame) {
     expect_kind<TriangleMesh>(kind_of<TriangleMesh>(), "mesh", true);
     expect_kind<TetMesh>(kind_of<TetMesh>(), "tets", true);
     expect_kind<FeatureGraph>(kind_of<FeatureGraph>(), "features", true);
+    expect_kind<PatchComplex>(kind_of<PatchComplex>(), "patches", true);
     expect_kind<RigidTransform>(kind_of<RigidTransform>(), "transform", false);
     expect_kind<Metrics>(kind_of<Metrics>(), "metrics", false);
 }
@@ -41,7 +42,7 @@ const Frame far_away{LengthUnit::millimetre, Vec3(1000, -2000, 0), "machine"};
 
 template <class T>
 class Reframed : public testing::Test {};
-using Geometries = testing::Types<PointCloud, TriangleMesh, TetMesh, FeatureGraph>;
+using Geometries = testing::Types<PointCloud, TriangleMesh, TetMesh, FeatureGraph, PatchComplex>;
 TYPED_TEST_SUITE(Reframed, Geometries);
 
 TYPED_TEST(Reframed, OtherOrigin_KeepsWorldPositions) {

@@ -55,6 +55,23 @@ inline TetMesh tets() {
     return tets;
 }
 
+inline PatchComplex patches() {
+    PatchComplex patches;
+    patches.frame = some_frame();
+    patches.positions = mesh().positions;
+    patches.tets = {std::array<u32, 4>{0, 1, 2, 3}};
+    PatchWeights weights{};
+    weights[1] = 0.1 + 0.2;
+    weights[2] = -0.0;
+    weights[19] = 1e-310;
+    patches.weights = {weights};
+    patches.kinds = {PatchKind::edge};
+    patches.sides = {1};
+    patches.triangles = {7};
+    patches.edges = {PatchComplex::no_edge};
+    return patches;
+}
+
 inline FeatureGraph features() {
     FeatureGraph graph;
     graph.frame = some_frame();
@@ -80,7 +97,8 @@ inline Metrics metrics() {
 }
 
 inline std::vector<Value> one_of_each_kind() {
-    return {value(cloud()), value(mesh()), value(tets()), value(features()), value(transform()), value(metrics())};
+    return {value(cloud()),   value(mesh()),      value(tets()),   value(features()),
+            value(patches()), value(transform()), value(metrics())};
 }
 
 /// Of everything that the value holds.
