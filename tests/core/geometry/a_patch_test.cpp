@@ -131,7 +131,10 @@ TEST(PatchSurface, OfASphereInOneTetrahedron_AnswersEveryQuestion) {
     const auto foot = surface.foot(Vec3(0.3, 0.4, 1.2));
     ASSERT_TRUE(foot);
     EXPECT_NEAR(foot->distance, 0.3, 1e-13);
-    EXPECT_NEAR(surface.foot(Vec3(0.3, 0.4, 0))->distance, -0.5, 1e-12);
+    const auto from_inside = surface.foot(Vec3(0.45, 0.6, 0));
+    ASSERT_TRUE(from_inside);
+    EXPECT_NEAR(from_inside->distance, -0.25, 1e-12);
+    EXPECT_FALSE(surface.foot(Vec3(0.1, 0, 0))) << "the first step leaves the tetrahedron";
 }
 
 TEST(PatchSurface, TheExample_Works) {
