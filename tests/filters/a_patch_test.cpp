@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The construction: interpolation, equal gradients, exact spheres, orders of convergence, counts, signs.
+#include "a_patch/normals.hpp"
 #include "filters/a_patch_cases.hpp"
 
 #include "scanmill/kinds/value.hpp"
@@ -74,6 +75,41 @@ TEST(APatch, OfTori_TheErrorFallsWithAtLeastTheThirdPower) {
             EXPECT_GT(std::log2(before / worst), 3);
         }
         before = worst;
+    }
+}
+
+/// The convex hull of random points of the unit sphere: a triple is a triangle if all others are on one side.
+TriangleMesh random_hull(std::size_t count) {
+    TriangleMesh mesh;
+    mesh.positions = random_sphere(count, 11).positions;
+    Array<Triangle> triangles;
+    for (u32 a = 0; a < count; ++a)
+        for (u32 b = a + 1; b < count; ++b)
+            for (u32 c = b + 1; c < count; ++c) {
+                const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
+                const Vec3 normal = (q - p).cross(r - p);
+                const double sign = normal.dot(p) > 0 ? 1 : -1;
+                const bool is_face = std::ranges::all_of(mesh.positions, [&](const Vec3& x) {
+                    return &x == &p || &x == &q || &x == &r || sign * normal.dot(x - p) < 0;
+                });
+                if (is_face) triangles.push_back(sign > 0 ? Triangle{a, b, c} : Triangle{a, c, b});
+            }
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
+TEST(APatch, HullsOfRandomPoints_WithNeedles_AreSound) {
+    const std::size_t counts[] = {60, 200};
+    const double most[] = {0.15, 1e-2};
+    for (int i = 0; i < 2; ++i) {
+        const TriangleMesh mesh = random_hull(counts[i]);
+        ASSERT_EQ(mesh.triangles.size(), 2 * counts[i] - 4);
+        const PatchRun exact =
+            patched(with_normals(mesh, std::vector<Vec3>(mesh.positions.begin(), mesh.positions.end())));
+        EXPECT_EQ(exact.result.inverted + exact.result.sign_violations + exact.result.bisected, 0u);
+        EXPECT_LT(joints_of(exact.result.patches).gradient, 1e-9);
+        EXPECT_LT(worst_distance(exact.result.patches, sphere_distance), most[i]);
+        EXPECT_LT(patched(with_normals(mesh, a_patches::mesh_normals(mesh))).result.c1_jump, 1e-8);
     }
 }
 
