@@ -85,14 +85,14 @@ public:
         });
         Weights result;
         result.raised = raised_;
-        result.patches = {{},
-                          std::move(positions_),
-                          std::move(tets_),
-                          std::move(weights_),
-                          std::move(kinds_),
-                          std::move(tet_sides_),
-                          std::move(triangles_),
-                          std::move(edges_)};
+        PatchComplex& patches = result.patches;
+        patches.positions = std::move(positions_);
+        patches.tets = std::move(tets_);
+        patches.weights = std::move(weights_);
+        patches.kinds = std::move(kinds_);
+        patches.sides = std::move(tet_sides_);
+        patches.triangles = std::move(triangles_);
+        patches.edges = std::move(edges_);
         return result;
     }
 
