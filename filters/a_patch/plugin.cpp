@@ -41,7 +41,7 @@ SCANMILL_FILTER() {
             "Height of the tetrahedra over the least possible height. Higher ones contain more of the space near the "
             "surface.",
             at_least(1.05), at_most(3))
-        .metric("tetrahedra", Unit::count, "Tetrahedra.", headline)
+        .metric("tetrahedra", Unit::count, "Tetrahedra of the result.", headline)
         .metric("inverted", Unit::count, "Tetrahedra inside out: always 0.")
         .metric("c1-jump", Unit::number,
                 "Largest difference of the gradients where tetrahedra meet, as a share of the gradient.", headline)

@@ -20,7 +20,7 @@ SCANMILL_FILTER() {
         .param("max-error", &P::max_error,
                "Largest distance between the triangles and the surface, measured amid the triangles; `none`: uniform.",
                word("none"), above(0))
-        .metric("triangles", Unit::count, "Triangles.", headline)
+        .metric("triangles", Unit::count, "Triangles of the result.", headline)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             TriangleMesh mesh = tessellate(inputs.get<PatchComplex>("patches"), params, context);
             context.metric("triangles", static_cast<double>(mesh.triangles.size()));
