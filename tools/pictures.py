@@ -4,12 +4,14 @@
 import pathlib
 
 import cloud_pictures as clouds
+import patch_pictures as patches
 import surface_pictures as surfaces
 
 
 def main():
     filters = pathlib.Path(__file__).resolve().parent.parent / "filters"
     for name, draw in (
+        ("a_patch", patches.a_patch),
         ("alpha_solid", surfaces.alpha_solid),
         ("cluster_mesh", surfaces.cluster_mesh),
         ("crop", clouds.crop),
@@ -20,8 +22,10 @@ def main():
         ("measure", surfaces.measure),
         ("merge", clouds.merge),
         ("outlier_removal", clouds.outlier_removal),
+        ("patch_distance", patches.patch_distance),
         ("region_grow", surfaces.region_grow),
         ("sculpt", surfaces.sculpt),
+        ("tessellate", patches.tessellate),
         ("virtual_scan", clouds.virtual_scan),
         ("voxel_thin", clouds.voxel_thin),
     ):
