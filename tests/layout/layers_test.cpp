@@ -19,7 +19,8 @@ const std::vector<std::string> layers{"base",     "io",     "data",    "geometry
                                       "filter",   "plugin",    // core
                                       "workflow", "plan",   "gate",    "batch",    "graph",   "cache",
                                       "worker",   "run",    "records", "compare",  "session", "describe"};  // engine
-const std::vector<std::string> geometry_layers{"spatial", "mesh", "fit", "tets", "distance", "growing"};
+const std::vector<std::string> geometry_layers{"spatial",  "mesh",    "fit",         "tets",
+                                               "distance", "growing", "a_patch.hpp", "a_patch.cpp"};
 
 struct Include {
     std::string file;  ///< relative to core/ or engine/: "scanmill/io/atomic_file.cpp"
