@@ -199,7 +199,7 @@ std::vector<u32> triangles_at(const Hull& hull) {
     throw Error(
         "no smooth surface fits at {} after {} rounds of bisection: {} too near to the next sheet, and beside {} a "
         "tetrahedron is inside out: at {}",
-        count_text(triangles.size(), "triangle", "triangles"), most_rounds,
+        count_text(triangles.size(), "triangle", "triangles"), most_rounds - 1,
         count_text(hull.faults.thin.size(), "triangle is", "triangles are"),
         count_text(hull.faults.inverted.size(), "edge", "edges"), list)
         .hint("a mesh with more triangles follows the surface better: 'decimate' with a smaller max-error");
