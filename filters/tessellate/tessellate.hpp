@@ -28,11 +28,11 @@ struct TessellateParams {
 /// outside the mesh or on it).
 ///
 /// With max_error edges get 1, 2, 4, … segments, until the surface in the middle of every segment is as near as that;
-/// the distance is measured there, not bounded: on tori it reaches 0.9 max_error, beside undivided triangles 2.1. Where
-/// the surface crosses an edge of the mesh, the distance falls with the segments, elsewhere with their square: there a
-/// small max_error needs many triangles. Throws Error if `subdivision` does not suffice, with the distance left;
-/// for patches without tetrahedra or with some missing, and for parameters out of range. Cost: linear in the triangles
-/// made, about 1 us each.
+/// the distance is measured there, not bounded: on spheres and tori random points reached 1.06 max_error, beside
+/// undivided triangles 3.1. Where the surface crosses an edge of the mesh, the distance falls with the segments,
+/// elsewhere with their square: there a small max_error needs many triangles. Throws Error if `subdivision` does not
+/// suffice, with the distance left; for patches without tetrahedra or with some missing, and for parameters out of
+/// range. Cost: linear in the triangles made, about 1 us each.
 TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution);
 
 }  // namespace scanmill

@@ -3,9 +3,9 @@
 /// A file that appears whole or not at all.
 ///
 /// Bytes go to an unnamed file on the target's file system. commit() writes them to disk (fsync), gives the file a
-/// temporary name (`.scanmill-….part`) and renames it to the target. Without commit() no file is left, even if the
-/// process is killed. On file systems without unnamed files, the temporary name exists from the start and stays if the
-/// process is killed; remove_abandoned_parts() removes it.
+/// temporary name (`.scanmill-….part`) and renames it to the target. A target that already holds these bytes stays as
+/// it is. Without commit() no file is left, even if the process is killed. On file systems without unnamed files, the
+/// temporary name exists from the start and stays if the process is killed; remove_abandoned_parts() removes it.
 
 #include <filesystem>
 #include <string_view>
