@@ -44,8 +44,9 @@ SCANMILL_FILTER() {
         .metric("tetrahedra", Unit::count, "Tetrahedra of the result.", headline)
         .metric("inverted", Unit::count, "Tetrahedra inside out: always 0.")
         .metric("c1-jump", Unit::number,
-                "Largest difference of the gradients where tetrahedra meet, as a share of the gradient.", headline)
-        .metric("sign-violations", Unit::count, "Weights whose sign allows a second sheet.")
+                "Largest difference of the gradients where tetrahedra meet, as a share of the gradient.", headline,
+                smaller_is_better)
+        .metric("sign-violations", Unit::count, "Weights whose sign allows a second sheet.", smaller_is_better)
         .metric("refined", Unit::count, "Edges bisected because tetrahedra were inside out or too large.")
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
         .metric("raised", Unit::count, "Weights changed so that every line to an apex meets the surface once.")

@@ -20,10 +20,11 @@ SCANMILL_FILTER() {
         .in<PatchComplex>("patches", "The surface.")
         .in<PointCloud>("points", "The points to measure.")
         .out<PointCloud>("points", "All points with `distance-to-patches`: positive outside; NaN where there is none.")
-        .metric("rms", Unit::length, "Root of the mean squared distance.", headline)
-        .metric("p95", Unit::length, "95 % quantile of the distances without sign.")
-        .metric("max", Unit::length, "Largest distance without sign.", headline)
-        .metric("unlocated", Unit::count, "Points outside the tetrahedra around the surface: without a distance.")
+        .metric("rms", Unit::length, "Root of the mean squared distance.", headline, smaller_is_better)
+        .metric("p95", Unit::length, "95 % quantile of the distances without sign.", smaller_is_better)
+        .metric("max", Unit::length, "Largest distance without sign.", headline, smaller_is_better)
+        .metric("unlocated", Unit::count, "Points outside the tetrahedra around the surface: without a distance.",
+                smaller_is_better)
         .run([](const Inputs& inputs, const PatchDistanceParams&, Context& context) {
             return Outputs().set(
                 "points",
