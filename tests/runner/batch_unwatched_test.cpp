@@ -61,16 +61,7 @@ TEST_F(Unwatched, StepThatClosesTheChannelAndGoesOn_IsEnded) {
 }
 
 TEST_F(Unwatched, ClosedTerminal_IsAnInterrupt_AlsoIfItSignalsTwice) {
-    write_workflow("1");
-    write_scans("scan", 3);
-    write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: loop}}, scans/scan_03.xyz");
-    RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1"}, options());
-    while (!batch.has_ended() && batch.err().find("scan_02.xyz: shared") == std::string::npos)
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    batch.signal(SIGHUP);
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    batch.signal(SIGHUP);
-    const ProgramResult result = batch.wait();
+    const ProgramResult result = interrupted_batch({SIGHUP, SIGHUP});
     EXPECT_EQ(result.exit_code, 130);
     EXPECT_THAT(result.err, HasSubstr("interrupted"));
     EXPECT_EQ(outputs().size(), 2u);

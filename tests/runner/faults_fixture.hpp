@@ -2,12 +2,31 @@
 #pragma once
 /// Batches of three scans, the second of which misbehaves.
 
+#include <chrono>
+#include <initializer_list>
+#include <thread>
+
 #include "runner/batch_fixture.hpp"
 
 namespace scanmill::test {
 
 class FaultyBatch : public Batch {
 protected:
+    /// Runs a batch of three scans, of which the second would never end, and sends the signals while it runs.
+    ProgramResult interrupted_batch(std::initializer_list<int> signals) {
+        write_workflow("1");
+        write_scans("scan", 3);
+        write_batch("scans/scan_01.xyz, {path: scans/scan_02.xyz, set: {mode: loop}}, scans/scan_03.xyz");
+        RunningProgram batch({"batch", "b.yaml", "-o", "out", "-j", "1"}, options());
+        while (!batch.has_ended() && batch.err().find("scan_02.xyz: shared") == std::string::npos)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        for (const int signal : signals) {
+            batch.signal(signal);
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+        return batch.wait();
+    }
+
     /// Runs such a batch; returns the record of its step.
     Json poisoned(const std::string& mode, const std::string& limits = "", std::vector<std::string> more = {}) {
         write_workflow("{sweep: [1, 2]}");
