@@ -56,17 +56,19 @@ bench-peers: deps ## compare with CGAL, PCL, Open3D, VTK and others: ROWS=delaun
 reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculpt scanmill-decimate scanmill-measure
 # Filters that thin a scan, make an open mesh of it and find its features.
 hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features scanmill-cluster-mesh
+smooth := scanmill-a-patch scanmill-tessellate scanmill-patch-distance
 
 bench-quality: deps ## compare our results with trimesh, Open3D, three papers and other decimations: LARGE=1
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
-	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) scanmill-decimate peers-drivers
+	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) $(smooth) peers-drivers
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
 	python3 bench/quality/sangveraphunsiri_table_1.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/decimate.py build/bench $(if $(LARGE),--large)
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/smooth_surface.py build/bench/bin/scanmill
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// sculpt, features and measure give the same bytes on every processor: on one without fused multiply-add the C library
-/// takes other variants of atan2, sin and the like, whose last bits differ.
+/// sculpt, features, measure and a-patch give the same bytes on every processor: on one without fused multiply-add the
+/// C library takes other variants of atan2, sin and the like, whose last bits differ.
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -10,11 +10,14 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "a_patch/a_patch.hpp"
 #include "features/features.hpp"
 #include "filters/sculpt_cases.hpp"
 #include "measure/measure.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
+#include "support/shapes.hpp"
 #include "support/temporary_folder.hpp"
+#include "tessellate/tessellate.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -76,9 +79,23 @@ std::uint64_t of_measured(const TriangleMesh& mesh, const TriangleMesh& truth) {
     return digest.value();
 }
 
+/// Of a bumpy surface with normals of the mesh, where heights and weights are adjusted, and of its tessellation.
+std::uint64_t of_patches(TriangleMesh mesh) {
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] *= 1 + static_cast<double>(i % 5) / 64;
+    mesh.positions = std::move(positions);
+    Context context;
+    const PatchComplex patches = a_patch(mesh, nullptr, {}, context).patches;
+    Digest digest;
+    for (const PatchWeights& weights : patches.weights)
+        for (const double weight : weights) digest.add(weight);
+    for (const Vec3& p : tessellate(patches, {}, context).positions) digest.add(p);
+    return digest.value();
+}
+
 /// The points have exact coordinates, which do not depend on the processor.
 std::string results() {
-    std::string text = fmt::format("angles {:x}\n", of_angles());
+    std::string text = fmt::format("angles {:x}\npatches {:x}\n", of_angles(), of_patches(geodesic_sphere(1, 3)));
     for (const TetMesh& tets : {hull_of(random_cube(2000, 1)), hull_of(lattice_cube(4)),
                                 solid_of(tets_of(l_block_surface(3, 2, 6, 2e-3))).tets})
         for (const SculptWeight weight : {SculptWeight::none, SculptWeight::length}) {

@@ -17,7 +17,7 @@ for target in "${targets[@]}"; do
     mkdir -p "$build/corpus/$target" "$build/findings" "$build/seeds/$target"
     seeds=("$fuzz/corpus/$target" "$build/seeds/$target")
     case $target in
-        workflow | batch | setting | manifest | format-manifest | poses) ;;
+        workflow | batch | setting | manifest | format-manifest | poses | document) ;;
         *) seeds+=("$fuzz/../data") ;; # broken scans of every format
     esac
     words=()

@@ -7,7 +7,7 @@
 namespace scanmill::test {
 
 std::span<const FuzzTarget> fuzz_targets() {
-    static constexpr std::array<FuzzTarget, 16> table{{
+    static constexpr std::array<FuzzTarget, 17> table{{
         {"ply", [](std::string_view bytes) { return read_scan("ply", bytes); }},
         {"stl", [](std::string_view bytes) { return read_scan("stl", bytes); }},
         {"off", [](std::string_view bytes) { return read_scan("off", bytes); }},
@@ -24,6 +24,7 @@ std::span<const FuzzTarget> fuzz_targets() {
         {"manifest", check_manifest},
         {"format-manifest", check_format_manifest},
         {"poses", check_poses},
+        {"document", check_document},
     }};
     return table;
 }

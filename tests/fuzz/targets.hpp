@@ -49,5 +49,8 @@ bool check_manifest(std::string_view bytes);
 bool check_format_manifest(std::string_view bytes);
 /// Reads the bytes as a file of poses, in either syntax.
 bool check_poses(std::string_view bytes);
+/// Reads the bytes as a JSON document of any kind (features, patches, transform, metrics …); what was read is written
+/// and read back as the same text.
+bool check_document(std::string_view bytes);
 
 }  // namespace scanmill::test

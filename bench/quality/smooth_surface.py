@@ -1,0 +1,211 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""smooth_surface.py PROGRAM: compares the smooth surface of `a-patch` with PyMeshLab's APSS and Open3D's Poisson.
+
+All programs get the points of one scan; APSS and Poisson also get normals with correct signs: Open3D's, of 25
+neighbours, on the side of the solid's nearest triangle. Distances are from all points of the scan: `patch-distance`
+measures those from the patches, `scanmill measure` those from a mesh. VTK reads the stored patches and evaluates its
+own interpolation at vertices of the result of `tessellate`: values near 0 mean that ParaView's contour 0 is our surface.
+Writes smooth-surface.md and .json. The exit code is 1 if a program fails, or if such a value is above 0.1 % of the diagonal.
+"""
+import pathlib
+import sys
+import time
+
+import numpy
+
+BENCH = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(BENCH), str(BENCH / "peers")]
+
+from harness import machine  # noqa: E402
+from tables import options as options_of  # noqa: E402
+from tables import page, scanmill  # noqa: E402
+from tables.ply import write_ply  # noqa: E402
+
+MODELS = {"kitten": "points_3/kitten.xyz", "bunny": "meshes/bunny00.off", "ball": "points_3/ball.ply",
+          "armadillo": "meshes/armadillo.off"}
+#: Largest errors of the light mesh, in percent of the diagonal.
+SHARES = (0.3, 0.1)
+#: Cells of APSS's marching cubes along the longest side.
+RESOLUTION = 200
+DEPTHS = (8, 9)
+#: Largest value of VTK's field on our surface, as a share of the diagonal, and the number of places.
+LARGEST = 1e-3
+PLACES = 5000
+
+NOTES = f"""\
+All programs get the points of one scan. *light* is the mesh that `decimate` makes within the max-error, *a-patch* the
+smooth surface through its vertices, fitted to the points. PyMeshLab's APSS (filter scale 2) is sampled by marching cubes
+with {RESOLUTION} cells along the longest side, Open3D's Poisson runs with two depths; both get normals of 25 neighbours
+with correct signs, which a scan without its scanner's positions does not have.
+
+*rms*, *95 %* and *largest* are distances of the scan's points from the surface, in percent of the diagonal. *patches*
+counts triangles of the light mesh for ours, triangles of the result for the others. *jump* is the largest change of the
+normal between neighbours: for a-patch the metric `c1-jump`, for a mesh the 99 % quantile of the angles between
+neighbouring triangles. *VTK* is the largest value that VTK interpolates in the stored patches at {PLACES:,} vertices of the
+result of `tessellate`, in percent of the diagonal; the field is about the distance from the surface."""
+
+
+def run_ours(program, file, share, folder, limit):
+    """Steps by their names, and the folder's files by their last word."""
+    report = scanmill.run(program, BENCH / "quality" / "smooth-surface.yaml", [file], folder, limit,
+                          settings={"max-error": f"{share} %diag"})
+    cell = report["cells"][0]
+    if cell["outcome"] not in ("ok", "doubtful"):
+        raise scanmill.Broken(cell.get("error", cell["outcome"]))
+    files = {pathlib.Path(one["file"]).stem.rsplit("-", 1)[-1]: one["file"] for one in cell["outputs"]}
+    return scanmill.named(report, cell), files
+
+
+def distances(program, mesh, points, limit):
+    """Of the points from the mesh: rms, 95 % and largest; and the mesh's facts."""
+    facts = scanmill.measure(program, mesh, points, limit, ["self-intersections=false"])
+    return {"rms": facts["rms-from-truth"], "p95": facts["p95-from-truth"], "max": facts["max-from-truth"],
+            "patches": int(facts["triangles"]), "closed": facts["closed"]}
+
+
+def angle_between_neighbours(vertices, triangles):
+    """The 99 % quantile, in degrees."""
+    import trimesh
+
+    mesh = trimesh.Trimesh(vertices, triangles, process=False)
+    return float(numpy.degrees(numpy.quantile(mesh.face_adjacency_angles, 0.99)))
+
+
+def with_normals(points, solid):
+    """An Open3D cloud."""
+    import open3d
+    import trimesh
+
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
+    cloud.estimate_normals(open3d.geometry.KDTreeSearchParamKNN(25))
+    mesh = trimesh.load(solid, process=False)
+    scene = open3d.t.geometry.RaycastingScene()
+    scene.add_triangles(numpy.asarray(mesh.vertices, "f4"), numpy.asarray(mesh.faces, "u4"))
+    outward = mesh.face_normals[scene.compute_closest_points(points.astype("f4"))["primitive_ids"].numpy()]
+    normals = numpy.asarray(cloud.normals)
+    normals[(normals * outward).sum(axis=1) < 0] *= -1
+    cloud.normals = open3d.utility.Vector3dVector(normals)
+    return cloud
+
+
+def apss(cloud):
+    import pymeshlab
+
+    shapes = pymeshlab.MeshSet()
+    shapes.add_mesh(pymeshlab.Mesh(numpy.asarray(cloud.points), v_normals_matrix=numpy.asarray(cloud.normals)))
+    shapes.generate_marching_cubes_apss(resolution=RESOLUTION)
+    made = shapes.current_mesh()
+    return made.vertex_matrix(), made.face_matrix()
+
+
+def poisson(depth):
+    def run(cloud):
+        import open3d
+
+        made, _ = open3d.geometry.TriangleMesh.create_from_point_cloud_poisson(cloud, depth=depth)
+        return numpy.asarray(made.vertices), numpy.asarray(made.triangles)
+
+    return run
+
+
+def vtk_values(patches, points):
+    """The values of a stored complex at those of the points that VTK finds in a cell."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkPolyData
+    from vtkmodules.vtkFiltersCore import vtkProbeFilter
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(patches)
+    reader.Update()
+    places, wanted = vtkPoints(), vtkPolyData()
+    places.SetData(numpy_to_vtk(points, deep=True))
+    wanted.SetPoints(places)
+    probe = vtkProbeFilter()
+    probe.SetInputData(wanted)
+    probe.SetSourceData(reader.GetOutput())
+    probe.Update()
+    found = probe.GetOutput().GetPointData()
+    return vtk_to_numpy(found.GetArray("weights"))[vtk_to_numpy(found.GetArray("vtkValidPointMask")) == 1]
+
+
+def record_of(name, options):
+    import trimesh
+
+    file = options.data / MODELS[name]
+    rows, diagonal = [], 0.0
+    work = options.program.resolve().parents[2] / "peers" / "smooth-surface" / name
+    points_file = work / "points.ply"
+    for share in SHARES:
+        steps, files = run_ours(options.program, file, share, work / str(share), options.limit)
+        points = numpy.asarray(trimesh.load(file, process=False).vertices) if file.suffix != ".xyz" else \
+            numpy.loadtxt(file)[:, :3]
+        write_ply(points_file, points)
+        diagonal = float(numpy.linalg.norm(points.max(axis=0) - points.min(axis=0)))
+        light = distances(options.program, files["light"], points_file, options.limit)
+        mesh = trimesh.load(files["light"], process=False)
+        seconds = sum(steps[one]["seconds"] for one in ("delaunay", "alpha-solid", "solid", "light"))
+        rows.append({**light, "name": f"light, {share} %", "seconds": seconds,
+                     "jump": f"{angle_between_neighbours(mesh.vertices, mesh.faces):.1f}°"})
+        found, made = steps["distances"]["metrics"], steps["surface"]["metrics"]
+        smooth = numpy.asarray(trimesh.load(files["smooth"], process=False).vertices)
+        values = vtk_values(files["patches"], smooth[:: max(1, len(smooth) // PLACES)])
+        rows.append({"name": f"a-patch, {share} %", "rms": found["rms"], "p95": found["p95"], "max": found["max"],
+                     "unlocated": int(found["unlocated"]), "patches": int(light["patches"]), "closed": True,
+                     "seconds": seconds + steps["surface"]["seconds"], "jump": f"{made['c1-jump']:.0e}",
+                     "vtk": float(abs(values).max())})
+    cloud = with_normals(points, files["solid"])
+    others = {f"PyMeshLab APSS, {RESOLUTION} cells": apss,
+              **{f"Open3D Poisson, depth {depth}": poisson(depth) for depth in DEPTHS}}
+    for title, make in others.items():
+        begin = time.perf_counter()
+        vertices, triangles = make(cloud)
+        seconds = time.perf_counter() - begin
+        write_ply(work / "other.ply", vertices, triangles)
+        rows.append({**distances(options.program, work / "other.ply", points_file, options.limit), "name": title,
+                     "seconds": seconds, "jump": f"{angle_between_neighbours(vertices, triangles):.1f}°"})
+    return {"name": name, "points": len(points), "diagonal": diagonal, "surfaces": rows}
+
+
+def lines_of(results):
+    lines = [*page.heading("Smooth surfaces through scans", results, "smooth-surface.json"), NOTES, ""]
+    for record in results["models"]:
+        lines += [f"## {record['name']}, {record['points']:,} points", ""]
+        share = lambda value: f"{100 * value / record['diagonal']:.3g}"
+        lines += page.table(
+            ["surface", "rms", "95 %", "largest", "patches", "closed", "jump", "seconds", "VTK", "unlocated"],
+            [[row["name"], share(row["rms"]), share(row["p95"]), share(row["max"]), f"{row['patches']:,}",
+              "yes" if row["closed"] else "no", row["jump"], f"{row['seconds']:.2f}",
+              share(row["vtk"]) if "vtk" in row else "", row.get("unlocated", "")]
+             for row in record["surfaces"]])
+        lines.append("")
+    return [*lines, page.other_load(results["load"])]
+
+
+def main():
+    parser = options_of.of_a_table("Compares smooth surfaces through scans.", None, 600, "quality")
+    parser.add_argument("--models", default=",".join(MODELS), help="names, separated by commas (default: %(default)s)")
+    options = parser.parse_args()
+    load = machine.Load()
+    records, failed = [], []
+    for name in options.models.split(","):
+        try:
+            records.append(record_of(name, options))
+        except scanmill.Broken as failure:
+            failed.append(f"{name}: {failure}")
+            continue
+        failed += [f"{name}: VTK has {row['vtk']:.3g} on the surface {row['name']}"
+                   for row in records[-1]["surfaces"] if row.get("vtk", 0) > LARGEST * records[-1]["diagonal"]]
+    results = {**page.described("make bench-quality"), "load": load.described(), "models": records}
+    lines = lines_of(results)
+    print("\n".join(lines))
+    page.write(options.into, "smooth-surface", results, lines)
+    for failure in failed:
+        print(f"error: {failure}", file=sys.stderr)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
