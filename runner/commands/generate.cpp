@@ -10,6 +10,7 @@
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
 #include "scanmill/base/error.hpp"
+#include "scanmill/describe/document_schemas.hpp"
 #include "scanmill/describe/filter_page.hpp"
 #include "scanmill/describe/output_schemas.hpp"
 #include "scanmill/describe/schemas.hpp"
@@ -42,18 +43,25 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
     }
 }
 
+bool is_document(const std::string& name) {
+    return std::ranges::find(document_names(), name) != document_names().end();
+}
+
 int schema(const SchemaOptions& options) {
     const FilterLibrary library = open_library();
     if (options.folder.empty()) {
-        fmt::print("{}", options.kind == "workflow" ? workflow_schema(library)
-                         : options.kind == "batch"  ? batch_schema(library)
-                                                    : output_schema(options.kind));
+        fmt::print("{}", options.kind == "workflow"  ? workflow_schema(library)
+                         : options.kind == "batch"   ? batch_schema(library)
+                         : is_document(options.kind) ? document_schema(options.kind)
+                                                     : output_schema(options.kind));
         return done;
     }
     write_text(options.folder / "workflow.schema.json", workflow_schema(library));
     write_text(options.folder / "batch.schema.json", batch_schema(library));
     for (const std::string& name : output_names())
         write_text(options.folder / "output" / (name + ".schema.json"), output_schema(name));
+    for (const std::string& name : document_names())
+        write_text(options.folder / "documents" / (name + ".schema.json"), document_schema(name));
     return done;
 }
 
@@ -89,20 +97,25 @@ int docs(const DocsOptions& options) {
 }  // namespace
 
 void add_schema_and_docs(CLI::App& app, Action& chosen) {
-    auto [schema_command, schema_options] = add_command<SchemaOptions>(
-        app, chosen, "schema",
-        "Prints a JSON Schema: of workflow or batch files, for editors, or of what a command prints with --json",
-        schema);
+    auto [schema_command, schema_options] =
+        add_command<SchemaOptions>(app, chosen, "schema",
+                                   "Prints a JSON Schema: of workflow or batch files, for editors, of what a command "
+                                   "prints with --json, or of the "
+                                   "JSON documents that steps write",
+                                   schema);
     std::vector<std::string> kinds{"workflow", "batch"};
     kinds.insert(kinds.end(), output_names().begin(), output_names().end());
-    CLI::Option* kind = schema_command
-                            .add_option("KIND", schema_options.kind,
-                                        "Which to print: workflow (the default), batch, or of the output of a command")
-                            ->check(CLI::IsMember(kinds));
+    kinds.insert(kinds.end(), document_names().begin(), document_names().end());
+    CLI::Option* kind =
+        schema_command
+            .add_option("KIND", schema_options.kind,
+                        "Which to print: workflow (the default), batch, of the output of a command, or of a "
+                        "document")
+            ->check(CLI::IsMember(kinds));
     schema_command
         .add_option("-o,--output", schema_options.folder,
-                    "Write all into this folder instead: workflow.schema.json, batch.schema.json and "
-                    "output/NAME.schema.json")
+                    "Write all into this folder instead: workflow.schema.json, batch.schema.json, "
+                    "output/NAME.schema.json and documents/NAME.schema.json")
         ->excludes(kind);
 
     auto [docs_command, docs_options] =

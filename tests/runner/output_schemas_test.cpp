@@ -164,6 +164,7 @@ TEST_F(OutputSchemas, Command_PrintsAndWritesThem) {
         EXPECT_EQ(content_of(std::string(SCANMILL_SOURCE_DIR "/schemas/") + file), text) << "run: make generate";
         EXPECT_EQ(json::parse(text)["$schema"], "http://json-schema.org/draft-07/schema#");
     }
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / "schemas/documents/patches.schema.json"));
 }
 
 }  // namespace

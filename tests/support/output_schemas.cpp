@@ -2,6 +2,7 @@
 #include "support/output_schemas.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <sstream>
@@ -22,7 +23,8 @@ const valijson::Schema& schema_named(const std::string& name) {
     static std::map<std::string, valijson::Schema> schemas;
     const auto [found, is_new] = schemas.try_emplace(name);
     if (is_new) {
-        const std::string file = SCANMILL_SOURCE_DIR "/schemas/output/" + name + ".schema.json";
+        std::string file = SCANMILL_SOURCE_DIR "/schemas/output/" + name + ".schema.json";
+        if (!std::filesystem::exists(file)) file = SCANMILL_SOURCE_DIR "/schemas/documents/" + name + ".schema.json";
         const json document = json::parse(content_of(file));
         valijson::SchemaParser(valijson::SchemaParser::kDraft7)
             .populateSchema(valijson::adapters::NlohmannJsonAdapter(document), found->second);

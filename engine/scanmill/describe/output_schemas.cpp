@@ -3,12 +3,10 @@
 
 #include <array>
 #include <cassert>
-#include <initializer_list>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "scanmill/compare/comparison.hpp"
-#include "scanmill/data/metrics.hpp"
+#include "scanmill/describe/schema_parts.hpp"
 #include "scanmill/filter/parameter.hpp"
 #include "scanmill/worker/report.hpp"
 
@@ -16,67 +14,10 @@ namespace scanmill {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json text() { return {{"type", "string"}}; }
-Json flag() { return {{"type", "boolean"}}; }
-Json number() { return {{"type", "number"}}; }
-Json count() { return {{"type", "integer"}, {"minimum", 0}}; }
-Json list_of(Json item) { return {{"type", "array"}, {"items", std::move(item)}}; }
-Json map_of(Json value) { return {{"type", "object"}, {"additionalProperties", std::move(value)}}; }
-Json described(const char* description, Json schema) {
-    schema["description"] = description;
-    return schema;
-}
-
-/// An object with these members and no others; a name that ends in ? is optional.
-Json object(std::initializer_list<std::pair<std::string, Json>> members) {
-    Json required = Json::array(), properties = Json::object();
-    for (const auto& [name, schema] : members) {
-        const bool is_optional = name.ends_with('?');
-        const std::string key = name.substr(0, name.size() - is_optional);
-        properties[key] = schema;
-        if (!is_optional) required.push_back(key);
-    }
-    return {{"type", "object"},
-            {"required", std::move(required)},
-            {"additionalProperties", false},
-            {"properties", std::move(properties)}};
-}
-
-/// The members of both.
-Json joined(Json one, const Json& other) {
-    one["properties"].update(other["properties"]);
-    for (const Json& name : other["required"]) one["required"].push_back(name);
-    return one;
-}
-
-/// A whole document.
-Json document(const char* title, const Json& members) {
-    Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
-    schema.update(joined(object({{"scanmill", {{"const", 1}}}}), members));
-    return schema;
-}
-
-/// The names of an enumeration without gaps, from `first` to `last`.
-template <class Enum>
-Json names(Enum first, Enum last) {
-    Json all = Json::array();
-    for (int i = static_cast<int>(first); i <= static_cast<int>(last); ++i)
-        all.push_back(name_of(static_cast<Enum>(i)));
-    return {{"enum", std::move(all)}};
-}
+using namespace schema_parts;
 
 Json outcome() { return names(Outcome::ok, Outcome::skipped); }
 Json cause() { return names(Cause::refused, Cause::output); }
-Json unit() { return names(Unit::count, Unit::boolean); }
-Json length_unit_or_null() {
-    return described("The unit of lengths; null: not declared.",
-                     {{"enum", {"um", "mm", "cm", "m", "in", "ft", nullptr}}});
-}
-Json metrics() {
-    return described("Numbers by name; null: not finite.", map_of({{"type", {"number", "boolean", "null"}}}));
-}
 Json seconds() { return number(); }
 Json bytes() { return described("In bytes.", count()); }
 /// Of a cell or a step.
