@@ -6,7 +6,7 @@ nightly_models := meshes/hand.off meshes/anchor_dense.off meshes/fandisk_large.o
 
 FUZZ_SECONDS ?= 60
 
-.PHONY: help demo nightly test deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
+.PHONY: help demo nightly paper test deps data bench bench-peers bench-quality bench-robustness fuzz generate format lint release dev asan tsan
 .DEFAULT_GOAL := help
 
 help: ## list these targets
@@ -19,6 +19,9 @@ nightly: release data ## compare three surfaces of virtual and real scans with t
 	build/release/bin/scanmill run workflows/virtual-scans.yaml $(addprefix build/data/,$(nightly_models)) -o build/virtual-scans -q
 	-build/release/bin/scanmill batch workflows/nightly.yaml -o build/nightly --no-cache -j $(jobs)
 	build/release/bin/scanmill report build/nightly
+
+paper: release data ## make docs/bernardini-1997.md: every stage of the paper's pipeline on one scan, with pictures
+	python3 tools/bernardini_page.py build/release/bin/scanmill build/data/points_3/kitten.xyz build/paper
 
 test: dev data ## build with assertions on and run every test
 	ctest --preset dev -j $(jobs)
