@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// VTP, the XML files of VTK's polygonal data: points, meshes and features for ParaView, PyVista and other programs
-/// that use VTK.
+/// VTP, the XML files of VTK's polygonal data: points, meshes, features and probes for ParaView, PyVista and other
+/// programs that use VTK.
 ///
 /// Positions are world coordinates, as double. Columns, unit and frame: vtk/vtk_arrays.hpp. NaN is written unchanged.
 ///
@@ -15,6 +15,12 @@
 /// the feature graph. Corners are also cells (`Verts`, which come first). Cell data: `type`, whose names are the field
 /// data `type_names`: 0 outer boundary, 1 hole, 2 crease, 3 corner; and `closed`, 0 or 1. Vertices that are in no
 /// polyline and no corner are left out, with a warning.
+///
+/// Probes: every touch is a cell (`Verts`, which come first), and every direction (from the touch to the start of its
+/// approach) and every move is a polyline (`Lines`) with points of its own. Point data: `direction`, the approach
+/// direction at the touches, zero elsewhere. Cell data: `type`, whose names are the field data `type_names`: 0 touch,
+/// 1 direction, 2 clearance, 3 approach, 4 retract; and of the cell's touch `touch`, `feature`, `reason` (names:
+/// `reason_names`), `order` (4294967295 if it is not made), `phi` in radians and `false_share`.
 
 #include "scanmill/formats/common/format.hpp"
 
@@ -23,5 +29,6 @@ namespace scanmill::vtk {
 void write_vtp_points(const Value& value, OutputBuffer& out, const WriteOptions& options);
 void write_vtp_mesh(const Value& value, OutputBuffer& out, const WriteOptions& options);
 void write_vtp_features(const Value& value, OutputBuffer& out, const WriteOptions& options);
+void write_vtp_probes(const Value& value, OutputBuffer& out, const WriteOptions& options);
 
 }  // namespace scanmill::vtk

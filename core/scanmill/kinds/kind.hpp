@@ -27,6 +27,7 @@ namespace scanmill {
     KIND(TetMesh)                \
     KIND(FeatureGraph)           \
     KIND(PatchComplex)           \
+    KIND(ProbePlan)              \
     KIND(RigidTransform)         \
     KIND(Metrics)
 // clang-format on
@@ -81,10 +82,10 @@ template <class T>
 Kind kind_of();
 
 inline std::string_view name_of(Kind kind) { return kind.name(); }
-/// Every kind: points, mesh, tets, features, patches, transform, metrics, then the registered ones.
+/// Every kind: points, mesh, tets, features, patches, probes, transform, metrics, then the registered ones.
 std::vector<Kind> all_kinds();
 std::optional<Kind> kind_named(std::string_view name);
-/// "points, mesh, tets, features, patches, transform, metrics", for messages.
+/// "points, mesh, tets, features, patches, probes, transform, metrics", for messages.
 std::string kind_names();
 
 /// Adds a kind to all_kinds(), for a module with its own kind; a second one of the same name is ignored.

@@ -92,7 +92,15 @@ private:
 
 struct ReadGeometry : FieldVisitor {
     void frame(const char*, Frame& frame) override { found_frame = frame; }
-    void positions(const char*, Buffer<Vec3>& positions) override { found_positions = positions; }
+    void positions(const char*, Buffer<Vec3>& positions) override {
+        if (!found_positions.empty()) {
+            Array<Vec3> all(found_positions.begin(), found_positions.end());
+            all.insert(all.end(), positions.begin(), positions.end());
+            found_positions = std::move(all);
+        } else {
+            found_positions = positions;
+        }
+    }
     std::optional<Frame> found_frame;
     Buffer<Vec3> found_positions;
 };

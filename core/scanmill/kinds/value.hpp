@@ -10,6 +10,7 @@
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/patches.hpp"
 #include "scanmill/data/points.hpp"
+#include "scanmill/data/probes.hpp"
 #include "scanmill/data/tets.hpp"
 #include "scanmill/data/transform.hpp"
 #include "scanmill/kinds/kind.hpp"

@@ -73,7 +73,8 @@ constexpr std::size_t aligned(std::size_t bytes) { return (bytes + alignment - 1
 
 Bytes padding(std::size_t bytes) { return std::span(zeros).first(aligned(bytes) - bytes); }
 
-/// Adds every field to the header, and arrays to `arrays`; in the header an array is its index and its element size.
+/// Adds every field to the header, and arrays to `arrays`, which share them; in the header an array is its index and
+/// its element size.
 class FieldWriter : public FieldVisitor {
 public:
     void frame(const char* name, Frame& frame) override {
@@ -89,23 +90,27 @@ public:
                             {"type", static_cast<int>(column.type())},
                             {"components", column.components()},
                             {"length-exponent", column.length_exponent()},
-                            {"data", stored(std::as_bytes(column.bytes().span()), 1)},
-                            {"offsets", stored(std::as_bytes(column.offsets().span()), sizeof(u64))}});
+                            {"data", stored(column.bytes(), 1)},
+                            {"offsets", stored(bytes_of(column.offsets()), sizeof(u64))}});
         header[name] = std::move(rows);
     }
 
     Json header = Json::object();
-    std::vector<Bytes> arrays;
+    std::vector<Buffer<std::byte>> arrays;
 
 private:
     void bytes_of(const char* name, Buffer<std::byte>& bytes, std::size_t element) override {
-        header[name] = stored(bytes.span(), element);
+        header[name] = stored(bytes, element);
+    }
+    static Buffer<std::byte> bytes_of(const Buffer<u64>& numbers) {
+        const auto bytes = std::as_bytes(numbers.span());
+        return {numbers.owner(), bytes.data(), bytes.size()};
     }
     bool json_of(const char* name, Json& json) override {
         header[name] = json;
         return false;
     }
-    Json stored(Bytes bytes, std::size_t element) {
+    Json stored(const Buffer<std::byte>& bytes, std::size_t element) {
         arrays.push_back(bytes);
         return {arrays.size() - 1, element};
     }
@@ -157,14 +162,14 @@ private:
 
 struct ValueFields {
     std::string header;
-    std::vector<Bytes> arrays;
+    std::vector<Buffer<std::byte>> arrays;
 };
 
 ValueFields fields_of(const Value& value) {
     FieldWriter writer;
     visited(value, writer);
     writer.header["kind"] = value.kind().name();
-    for (const Bytes& array : writer.arrays) writer.header["arrays"].push_back(array.size());
+    for (const auto& array : writer.arrays) writer.header["arrays"].push_back(array.size());
     ValueFields fields;
     Json::to_cbor(writer.header, fields.header);
     fields.arrays = std::move(writer.arrays);
@@ -188,7 +193,7 @@ struct Preamble {
         hash_of(fields.header).copy(preamble.header_hash, sizeof preamble.header_hash);
         hash_of(array_hashes).copy(preamble.arrays_hash, sizeof preamble.arrays_hash);
         preamble.file_bytes = sizeof preamble + aligned(fields.header.size());
-        for (const Bytes& array : fields.arrays) preamble.file_bytes += aligned(array.size());
+        for (const auto& array : fields.arrays) preamble.file_bytes += aligned(array.size());
         return preamble;
     }
     std::string_view bytes() const { return {reinterpret_cast<const char*>(this), sizeof *this}; }
@@ -218,9 +223,9 @@ std::string ArrayHash::digest() {
 EncodedValue::EncodedValue(Value value) : value_(std::move(value)) {
     ValueFields fields = fields_of(value_);
     std::string hashes;
-    for (const Bytes& array : fields.arrays) {
+    for (const auto& array : fields.arrays) {
         ArrayHash hash;
-        hash.add(array);
+        hash.add(array.span());
         hashes += hash.digest();
     }
     const Preamble preamble = Preamble::of(fields, hashes);
@@ -234,8 +239,8 @@ EncodedValue::EncodedValue(Value value) : value_(std::move(value)) {
 void EncodedValue::write(const std::filesystem::path& file) const {
     AtomicFile target(file);
     target.write(head_);
-    for (const Bytes& array : arrays_) {
-        target.write(text_of(array));
+    for (const auto& array : arrays_) {
+        target.write(text_of(array.span()));
         target.write(text_of(padding(array.size())));
     }
     target.commit(AtomicFile::Sync::no);

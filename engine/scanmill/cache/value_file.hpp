@@ -69,7 +69,7 @@ public:
 private:
     Value value_;
     std::string head_;  ///< preamble, header and zeros
-    std::vector<std::span<const std::byte>> arrays_;  ///< of value_
+    std::vector<Buffer<std::byte>> arrays_;
     ValueName name_;
 };
 

@@ -30,6 +30,7 @@ TEST(Kind, EveryKind_HasItsNameItsTypeAndMaybeAFrame) {
     expect_kind<TetMesh>(kind_of<TetMesh>(), "tets", true);
     expect_kind<FeatureGraph>(kind_of<FeatureGraph>(), "features", true);
     expect_kind<PatchComplex>(kind_of<PatchComplex>(), "patches", true);
+    expect_kind<ProbePlan>(kind_of<ProbePlan>(), "probes", true);
     expect_kind<RigidTransform>(kind_of<RigidTransform>(), "transform", false);
     expect_kind<Metrics>(kind_of<Metrics>(), "metrics", false);
 }

@@ -83,6 +83,23 @@ inline FeatureGraph features() {
     return graph;
 }
 
+inline ProbePlan probes() {
+    ProbePlan plan;
+    plan.frame = some_frame();
+    plan.touches.resize(2);
+    plan.touches[0].position = Vec3(-0.0, 0.1 + 0.2, 1e-310);
+    plan.touches[0].start = Vec3(1, 2, 3);
+    plan.touches[0].assumed = true;
+    plan.touches[0].range = {-0.5, 0.1 + 0.2};
+    plan.touches[1].touch = 7;
+    plan.touches[1].reason = ProbeReason::obstructed;
+    plan.moves = {{ProbeMoveType::retract, 1, 0, 2}};
+    plan.path = {Vec3(4, 5, 6), Vec3(7, -0.0, 9)};
+    plan.radius = 0.1 + 0.2;
+    plan.machine_axis = Vec3(0, -0.0, -1);
+    return plan;
+}
+
 inline RigidTransform transform() {
     RigidTransform transform;
     transform.rotation << 0, -1, 0, 1, 0, 0, 0, 0, 1;
@@ -97,8 +114,8 @@ inline Metrics metrics() {
 }
 
 inline std::vector<Value> one_of_each_kind() {
-    return {value(cloud()),   value(mesh()),      value(tets()),   value(features()),
-            value(patches()), value(transform()), value(metrics())};
+    return {value(cloud()),   value(mesh()),   value(tets()),      value(features()),
+            value(patches()), value(probes()), value(transform()), value(metrics())};
 }
 
 /// Of everything that the value holds.

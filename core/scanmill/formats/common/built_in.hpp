@@ -84,6 +84,13 @@ Format obj_format();
 /// Streamed: three columns, in lines that end with LF.
 std::vector<Format> text_formats();
 
+/// CSV of a probe plan, one row per touch in the plan's order, for spreadsheets and other programs; not read.
+///
+/// Written: comments with unit and frame, a line of names that begins with touch,feature,x,y,z,i,j,k, and the rows.
+/// x y z is the reference point T and i j k the approach direction u, from the part to the probe; all points are
+/// world coordinates, all angles degrees. What is not defined is empty: the direction of a touch that is not made.
+Format probes_csv_format();
+
 /// PTX: scans by Leica's programs, each a grid of cells in the scanner's coordinates, and the matrix that places it.
 ///
 /// Read: for each scan the numbers of columns and rows, the scanner's position and axes, four rows of four numbers that

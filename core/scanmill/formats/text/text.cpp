@@ -467,7 +467,7 @@ std::vector<Format> text_formats() {
     xyz.memory_per_byte = 5;
     xyz.may_stream = may_stream;
     xyz.open_stream = open_stream;
-    // Not written: other programs expect commas, a count or normals in them.
+    // Points are not written: other programs expect commas, a count or normals in them.
     Format csv = xyz;
     csv.name = "CSV";
     csv.extensions = {"csv", "pts", "pwn", "asc"};

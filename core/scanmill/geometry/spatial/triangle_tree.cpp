@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -275,6 +276,91 @@ void TriangleTree::meeting(const BoundingBox& box, Array<u32>& rows) const {
                 rows.push_back(rows_[slot]);
         }
     }
+}
+
+namespace {
+
+/// The convex hull of one to three points, for tests against boxes with separating axes: those of the boxes, and the
+/// normal of a triangle or the three perpendiculars of a segment that are perpendicular to an axis, too.
+class Hull {
+public:
+    Hull(std::span<const Vec3> points, double distance) {
+        for (const Vec3& point : points) box_.add(point);
+        box_.low.array() -= distance;
+        box_.high.array() += distance;
+        if (points.size() == 2)
+            for (int axis = 0; axis < 3; ++axis) add((points[1] - points[0]).cross(Vec3::Unit(axis)), points, distance);
+        if (points.size() == 3) add((points[1] - points[0]).cross(points[2] - points[0]), points, distance);
+    }
+    bool is_separated(const Vec3& low, const Vec3& high) const {
+        if ((low.array() > box_.high.array()).any() || (high.array() < box_.low.array()).any()) return true;
+        const Vec3 centre = (low + high) / 2, half = (high - low) / 2;
+        for (std::size_t i = 0; i < directions_; ++i) {
+            const double middle = direction_[i].dot(centre), reach = direction_[i].cwiseAbs().dot(half);
+            if (middle - reach > high_[i] || middle + reach < low_[i]) return true;
+        }
+        return false;
+    }
+
+private:
+    void add(const Vec3& direction, std::span<const Vec3> points, double distance) {
+        const double length = direction.stableNorm();
+        if (!(length > 0)) return;
+        const Vec3 unit = direction / length;
+        double low = unit.dot(points[0]), high = low;
+        for (const Vec3& point : points) {
+            low = std::min(low, unit.dot(point));
+            high = std::max(high, unit.dot(point));
+        }
+        direction_[directions_] = unit;
+        low_[directions_] = low - distance;
+        high_[directions_] = high + distance;
+        ++directions_;
+    }
+
+    BoundingBox box_;
+    std::size_t directions_ = 0;
+    std::array<Vec3, 3> direction_;
+    std::array<double, 3> low_, high_;
+};
+
+}  // namespace
+
+bool TriangleTree::any_near(std::span<const Vec3> hull, double distance,
+                            const std::function<bool(u32 slot)>& accept) const {
+    assert(!hull.empty() && hull.size() <= 3 && distance >= 0);
+    std::array<Vec3, 3> points;
+    double furthest = 0;
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+        points[i] = scaled(hull[i]);
+        furthest = std::max(furthest, points[i].cwiseAbs().maxCoeff());
+    }
+    // Beyond the rounding of the tests, whose numbers are at most about the furthest coordinate.
+    const Hull query({points.data(), hull.size()}, distance * scale_ + (1 + furthest) * widening);
+    std::array<u32, (arity - 1) * deepest + 1> stack;
+    std::size_t waiting = 0;
+    stack[waiting++] = 0;
+    while (waiting > 0) {
+        const u32 node = stack[--waiting];
+        if (node < nodes_.size()) {
+            const auto& bounds = nodes_[node].bounds;
+            for (u32 i = 0; i < arity; ++i) {
+                const Vec3 low(bounds[0][i], bounds[1][i], bounds[2][i]),
+                    high(bounds[3][i], bounds[4][i], bounds[5][i]);
+                // Boxes without triangles have an infinite low corner.
+                if (low.x() <= high.x() && !query.is_separated(low, high))
+                    stack[waiting++] = static_cast<u32>(arity * node + 1 + i);
+            }
+            continue;
+        }
+        const std::size_t leaf = node - nodes_.size();
+        for (std::size_t slot = begin_of(leaf, depth_); slot < begin_of(leaf + 1, depth_); ++slot) {
+            const auto& [a, b, c] = corners_[slot];
+            const Vec3 least = scaled(a.cwiseMin(b).cwiseMin(c)), most = scaled(a.cwiseMax(b).cwiseMax(c));
+            if (!query.is_separated(least, most) && accept(static_cast<u32>(slot))) return true;
+        }
+    }
+    return false;
 }
 
 }  // namespace scanmill

@@ -11,6 +11,7 @@
 /// triangle with three equal corners.
 
 #include <array>
+#include <functional>
 #include <span>
 
 #include "scanmill/data/mesh.hpp"
@@ -50,11 +51,18 @@ public:
         return (nearest_point(point, slot) - point).squaredNorm();
     }
 
+    /// The row of triangle `slot`.
+    u32 row(u32 slot) const { return rows_[slot]; }
     /// The corners of triangle `slot`.
     const std::array<Vec3, 3>& corners(u32 slot) const { return corners_[slot]; }
 
     /// Appends the rows of all triangles whose bounding boxes meet `box` (borders included), in the tree's order.
     void meeting(const BoundingBox& box, Array<u32>& rows) const;
+
+    /// Calls accept(slot) for triangles whose bounding boxes come within `distance` of the convex hull of one to three
+    /// points, and for a few others, until it returns true; then returns true. In no particular order. Safe from
+    /// several threads. Pre: finite points, distance ≥ 0. Cost: O(log n) and the triangles near the hull.
+    bool any_near(std::span<const Vec3> hull, double distance, const std::function<bool(u32 slot)>& accept) const;
 
 private:
     static constexpr std::size_t arity = 4;

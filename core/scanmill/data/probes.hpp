@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// `probes`: where and from which direction a touch probe touches the edges of a part, after Wang 2006, chapter 5.
+///
+/// A touch has a reference point T near a true edge. The centre of the probe's ball moves along -u from `start`,
+/// through T + s u for falling s, until the ball meets the part: at T + r u, were T on the edge. Directions are
+/// measured in the plane perpendicular to the tangent e of the edge: phi = 0 is the bisector n0 of the normals n1 (left
+/// of e) and n2 (right of e), and u = cos phi n0 - sin phi (e x n0), so a positive phi leans towards n1.
+
+#include <limits>
+#include <vector>
+
+#include "scanmill/data/array.hpp"
+#include "scanmill/data/frame.hpp"
+
+namespace scanmill {
+
+/// Why a touch is not made; `none` if it is.
+enum class ProbeReason : u8 {
+    none,
+    concave,     ///< the interior angle is pi or more
+    too_narrow,  ///< no direction meets the edge first for every position of T, or the ball does not pass the hole
+    too_tilted,  ///< every such direction is farther from the machine's axis than allowed
+    obstructed   ///< ball or stylus would meet the part elsewhere
+};
+
+/// What the ball meets first if it moves against the mesh.
+enum class ProbeContact : u8 {
+    none,       ///< not simulated: the touch is not made
+    edge,       ///< the part, near T
+    elsewhere,  ///< the part, too far from T
+    missed      ///< nothing
+};
+
+/// Radians. NaN where no direction is admissible, or none was sought.
+struct AngleRange {
+    double min = std::numeric_limits<double>::quiet_NaN();
+    double max = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct ProbeTouch {
+    static constexpr u32 no_order = ~u32(0);
+    static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+    u32 touch = 0;    ///< number of the reference point, from 0; two touches of one point have the same
+    u32 feature = 0;  ///< row of the polyline among the features, from 0
+    /// T, relative to frame.origin.
+    Vec3 position = Vec3::Zero();
+    /// e, n1, n2: unit vectors.
+    Vec3 tangent = Vec3::Zero(), left_normal = Vec3::Zero(), right_normal = Vec3::Zero();
+    /// alpha: the angle of the material between the two faces, in radians; pi or more where the edge is concave.
+    double interior_angle = nan;
+    /// Whether n2 is not known, but assumed to be perpendicular to n1.
+    bool assumed = false;
+    /// The directions that meet the edge first, for T anywhere within the scanner's error of the edge.
+    AngleRange range;
+    /// The same for T on the left face, sought where `assumed`.
+    AngleRange known_range;
+    /// The direction that is used, in radians; NaN if there is none.
+    double phi = nan;
+    /// u: unit vector from the part to the probe. Zero if the touch is not made; `start` and `centre` are T then.
+    Vec3 approach = Vec3::Zero();
+    /// The centre of the ball where the approach begins, and where the retraction ends; relative to frame.origin.
+    Vec3 start = Vec3::Zero();
+    /// The centre of the ball at contact if T is on the edge, T + r u; relative to frame.origin.
+    Vec3 centre = Vec3::Zero();
+    ProbeReason reason = ProbeReason::none;
+    /// The share of the tried positions of T for which a face is met before the edge; NaN if the touch is not made.
+    double false_share = nan;
+    ProbeContact contact = ProbeContact::none;
+    /// From T to the point of the mesh that the ball meets first; NaN without one.
+    double contact_distance = nan;
+    /// Position in the order of touches, from 0; no_order if the touch is not made.
+    u32 order = no_order;
+};
+
+enum class ProbeMoveType : u8 { clearance, approach, retract };
+
+/// A move of the ball's centre along a polyline.
+struct ProbeMove {
+    ProbeMoveType type;
+    u32 touch;  ///< row of the touch that the move leads to or, when it retracts, comes from
+    u32 begin, end;  ///< the polyline is path[begin] … path[end - 1] of the plan
+};
+
+struct ProbePlan {
+    Frame frame;
+    /// In the order of the lines; the two touches of one reference point follow one another.
+    std::vector<ProbeTouch> touches;
+    /// In the order in which the machine makes them: for each touch a clearance move to its start, the approach and the
+    /// retraction.
+    std::vector<ProbeMove> moves;
+    /// Positions of the ball's centre, relative to frame.origin.
+    Buffer<Vec3> path;
+
+    double radius = 0;  ///< r, of the ball
+    double scanner_error = 0;  ///< delta: the largest distance of a reference point from the true edge
+    double clearance = 0;  ///< kept between the part, and ball and stylus, on clearance moves
+    double stylus_radius = 0;
+    double stylus_length = 0;  ///< from the ball's centre along the machine's axis
+    /// a: the unit vector from the ball's centre along the stylus.
+    Vec3 machine_axis = Vec3::UnitZ();
+};
+
+}  // namespace scanmill

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "probe_planner/contact_range.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scanmill/geometry/spatial/angle.hpp"
+
+namespace scanmill::probing {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+/// Ranges that are empty by less are a single direction: covers rounding.
+constexpr double angle_rounding = 1e-12;
+
+/// In (-pi, pi].
+double arc_tangent(double y, double x) { return y < 0 ? -angle_of(x, -y) : angle_of(x, y); }
+
+/// NaN if low exceeds high.
+AngleRange range_between(double low, double high) {
+    if (low > high + angle_rounding) return {};
+    return {std::min(low, high), std::max(low, high)};
+}
+
+}  // namespace
+
+Turn turn_of(double angle) {
+    // Quarter turns in two parts, so that the remainder keeps its digits.
+    constexpr double quarter = 1.5707963267948966, quarter_rest = 6.123233995736766e-17;
+    const double quarters = std::floor(angle / quarter + 0.5);
+    const double x = (angle - quarters * quarter) - quarters * quarter_rest, square = x * x;
+    double sine = 0, cosine = 0;  // Taylor series; the terms left out are below 1e-19 for |x| <= pi/4
+    for (int degree = 19; degree > 1; degree -= 2) {
+        sine = (1 - sine) * square / (degree * (degree - 1));
+        cosine = (1 - cosine) * square / ((degree - 1) * (degree - 2 > 0 ? degree - 2 : 1));
+    }
+    sine = x * (1 - sine);
+    cosine = 1 - cosine;
+    switch (static_cast<int>(quarters - 4 * std::floor(quarters / 4))) {
+        case 0: return {cosine, sine};
+        case 1: return {-sine, cosine};
+        case 2: return {-cosine, -sine};
+        default: return {sine, -cosine};
+    }
+}
+
+double arc_cosine(double cosine) { return angle_of(cosine, std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)))); }
+
+bool is_empty(const AngleRange& range) { return !(range.min <= range.max); }
+
+bool contains(const AngleRange& range, double phi) {
+    return phi >= range.min - angle_rounding && phi <= range.max + angle_rounding;
+}
+
+AngleRange range_of_disc(double alpha, double radius, double error) {
+    const double most = arc_cosine(error / radius) - alpha / 2;
+    return range_between(-most, most);
+}
+
+AngleRange range_of_position(double alpha, double radius, const Vec2& position) {
+    const auto [cosine, sine] = turn_of(alpha / 2);
+    const double up = radius * sine - position.y();
+    return range_between(arc_tangent(position.x() - radius * cosine, up),
+                         arc_tangent(position.x() + radius * cosine, up));
+}
+
+AngleRange range_on_left_face(double alpha, double radius, double error, double beyond) {
+    // Along a line, the direction from T to a fixed centre turns one way, so the ends of the line decide.
+    const AngleRange inner = range_of_position(alpha, radius, on_left_face(alpha, error)),
+                     outer = range_of_position(alpha, radius, on_left_face(alpha, -beyond));
+    return range_between(std::max(inner.min, outer.min), std::min(inner.max, outer.max));
+}
+
+Vec2 on_left_face(double alpha, double s) {
+    const auto [cosine, sine] = turn_of(alpha / 2);
+    return -s * Vec2(sine, cosine);
+}
+
+EdgeFirst::EdgeFirst(double alpha, double radius, double phi) {
+    const double half = pi / 2 - alpha / 2;
+    const Turn turn = turn_of(phi);
+    cosine_ = turn.cosine;
+    sine_ = turn.sine;
+    // beta is within a quarter turn; a line that passes farther than the radius meets no edge. With |phi| and `half`
+    // below a quarter turn, only one of the two limits can be beyond that.
+    low_ = phi - half <= -pi / 2 ? -radius : radius * turn_of(phi - half).sine;
+    high_ = phi + half >= pi / 2 ? radius : radius * turn_of(phi + half).sine;
+}
+
+}  // namespace scanmill::probing
