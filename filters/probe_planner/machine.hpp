@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The probe that moves beside the part: which moves are free, and what a ball meets first.
+///
+/// The ball's centre moves along segments; the stylus is a capsule from c + r a to c + L a for the centre c and the
+/// machine's axis a. A clearance move is free if the ball keeps r + clearance and the stylus r_s + clearance from the
+/// mesh; an approach, if the ball keeps r from the facets that do not reach into a ball round the touch, and the stylus
+/// r_s from all facets.
+
+#include "scanmill/data/probes.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
+
+namespace scanmill::probing {
+
+struct Probe {
+    double radius, clearance, stylus_radius, stylus_length;
+    Vec3 axis;  ///< unit vector
+};
+
+struct FirstContact {
+    ProbeContact contact;
+    double distance;  ///< from T to the point that the ball meets; NaN without one
+};
+
+class Machine {
+public:
+    /// Pre: a mesh with triangles, finite positions of their vertices. `mesh` is not kept.
+    Machine(const TriangleMesh& mesh, const Probe& probe, unsigned threads);
+
+    bool is_move_free(const Vec3& from, const Vec3& to) const;
+    /// The approach of a ball from `start` to `end`; `near` is the radius round `touch` within which facets count as
+    /// those that are touched.
+    bool is_approach_free(const Vec3& touch, const Vec3& start, const Vec3& end, double near) const;
+
+    /// Moves the ball from `start` against `direction` by its distance from the mesh, until they meet, and then the
+    /// stylus along the same way. `edge` if the ball meets a point within `near` of the touch, and the stylus nothing;
+    /// `missed` if the centre passes the touch by more than `beyond`. Independent of the functions above: only
+    /// distances of points decide for the ball.
+    FirstContact first_contact(const Vec3& touch, const Vec3& start, const Vec3& direction, double near,
+                               double beyond) const;
+
+    /// The point above `centre` on the clearance plane, or `centre` itself if it is higher. The plane is perpendicular
+    /// to the axis, r + clearance above the highest vertex.
+    Vec3 lifted(const Vec3& centre) const;
+    bool is_lift_free(const Vec3& centre) const { return is_move_free(centre, lifted(centre)); }
+    /// Above the middle of the part's box, on the plane.
+    Vec3 home() const { return home_; }
+    double diagonal() const { return diagonal_; }
+
+private:
+    bool stylus_meets(const Vec3& from, const Vec3& to, double clearance) const;
+
+    Probe probe_;
+    TriangleTree tree_;
+    double plane_;  ///< height along the axis
+    double diagonal_;
+    Vec3 home_;
+};
+
+}  // namespace scanmill::probing

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "probe_planner/probe_planner.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "probe_planner/contact_range.hpp"
+#include "probe_planner/machine.hpp"
+#include "probe_planner/reference_points.hpp"
+#include "probe_planner/tour.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/base/text.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using namespace probing;
+
+constexpr double pi = std::numbers::pi, degree = pi / 180;
+/// Angles and cosines that exceed a limit by this do not, so that rounding does not exclude axis-parallel approaches.
+constexpr double rounding = 1e-9;
+
+struct Settings {
+    Probe probe;
+    double error, spacing, retract;
+    std::optional<double> approach;
+    double least_cosine;  ///< of the tilt
+    bool two_directions;
+    LineChoice lines;
+};
+
+double require_length(const char* name, const Length& length, bool may_be_zero) {
+    const double value = length.value();
+    if (!(may_be_zero ? value >= 0 : value > 0) || !std::isfinite(value))
+        throw Error("{} must be {} 0; it is {} u", name, may_be_zero ? "at least" : "above", number_text(value));
+    return value;
+}
+
+double length_or(const char* name, const std::optional<Length>& length, double otherwise, bool may_be_zero = false) {
+    return length ? require_length(name, *length, may_be_zero) : otherwise;
+}
+
+Settings settings_of(const ProbePlannerParams& params) {
+    Settings settings;
+    Probe& probe = settings.probe;
+    probe.radius = require_length("radius", params.radius, false);
+    settings.error = require_length("scanner-error", params.scanner_error, true);
+    if (!(settings.error < probe.radius))
+        throw Error("scanner-error is {} u, radius {} u: a ball that is not larger than the error cannot be guided",
+                    number_text(settings.error), number_text(probe.radius))
+            .hint("use a larger ball, or a finer scan and smaller voxels with a smaller scanner-error");
+    probe.clearance = length_or("clearance", params.clearance, probe.radius, true);
+    probe.stylus_radius = length_or("stylus-radius", params.stylus_radius, 0.6 * probe.radius);
+    if (!(probe.stylus_radius < probe.radius))
+        throw Error("stylus-radius is {} u, radius {} u: the stylus is as thick as the ball",
+                    number_text(probe.stylus_radius), number_text(probe.radius))
+            .hint("the default is 0.6 radius");
+    probe.stylus_length = length_or("stylus-length", params.stylus_length, 20 * probe.radius);
+    if (!(probe.stylus_length > probe.radius))
+        throw Error("stylus-length is {} u, radius {} u: the stylus ends inside the ball",
+                    number_text(probe.stylus_length), number_text(probe.radius))
+            .hint("stylus-length is measured from the ball's centre; the default is 20 radius");
+    settings.spacing = require_length("spacing", params.spacing, false);
+    settings.retract = length_or("retract", params.retract, 4 * probe.radius + settings.error + probe.clearance);
+    if (params.approach) {
+        settings.approach = params.approach->in_radians();
+        if (!(std::abs(*settings.approach) <= pi / 2 + rounding))
+            throw Error("approach must be from -90 to 90 deg; it is {}", params.approach->text());
+    }
+    const double tilt = params.max_tilt.in_radians();
+    if (!(tilt >= 0 && tilt <= pi + rounding))
+        throw Error("max-tilt must be from 0 to 180 deg; it is {}", params.max_tilt.text());
+    settings.least_cosine = turn_of(std::min(tilt, pi)).cosine - rounding;
+    if (params.machine_axis.size() != 3)
+        throw Error("machine-axis has {} numbers; 3 are needed", params.machine_axis.size());
+    probe.axis = Vec3(params.machine_axis.data()).stableNormalized();
+    if (!(std::abs(probe.axis.norm() - 1) < 1e-6))
+        throw Error("machine-axis is ({}, {}, {}), which is not a direction", params.machine_axis[0],
+                    params.machine_axis[1], params.machine_axis[2])
+            .hint("it points from the ball along the stylus; the default is 0 0 1");
+    if (params.directions != 1 && params.directions != 2)
+        throw Error("directions must be 1 or 2; it is {}", params.directions);
+    settings.two_directions = params.directions == 2;
+    if (settings.two_directions && settings.approach)
+        throw Error("directions: 2 chooses both approaches; approach gives one")
+            .hint("leave out approach, or use directions: 1");
+    using Features = ProbePlannerParams::Features;
+    const auto takes = [&](Features kind) { return params.features == Features::all || params.features == kind; };
+    settings.lines = {takes(Features::creases), takes(Features::holes), takes(Features::boundaries)};
+    return settings;
+}
+
+void require_same_frame(const Frame& features, const Frame& mesh) {
+    if (features.unit != mesh.unit)
+        throw Error("the features are in {}, the mesh in {}", symbol(features.unit), symbol(mesh.unit))
+            .hint("wire both from one step: in: {features: surface.features, mesh: surface}");
+    if (!features.name.empty() && !mesh.name.empty() && features.name != mesh.name)
+        throw Error("the features are in the frame '{}', the mesh in the frame '{}'", features.name, mesh.name)
+            .hint("move both with apply-transform, or neither");
+}
+
+/// The mesh relative to the origin of the features.
+TriangleMesh mesh_beside(const TriangleMesh& mesh, const Frame& frame) {
+    require_consistent(mesh);
+    if (mesh.triangles.empty())
+        throw Error("the mesh has no triangles: collisions cannot be checked").hint("wire the mesh of the features");
+    TriangleMesh moved;
+    moved.triangles = mesh.triangles;
+    const Vec3 shift = mesh.frame.origin - frame.origin;
+    Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+    for (const Triangle& triangle : mesh.triangles)
+        for (const u32 vertex : triangle)
+            if (!positions[vertex].allFinite())
+                throw Error("vertex {} of the mesh is not finite", vertex)
+                    .hint("remove the triangles at such vertices");
+    for (Vec3& position : positions) position += shift;
+    moved.positions = std::move(positions);
+    return moved;
+}
+
+/// Plans the touches of one reference point.
+class TouchPlanner {
+public:
+    TouchPlanner(const Settings& settings, const Machine& machine, const ReferencePoint& reference, u32 number)
+        : settings_(settings),
+          machine_(machine),
+          reference_(reference),
+          near_(settings.probe.radius + settings.error + 1.5 * reference.segment_length),
+          beyond_(std::min(reference.beyond, settings.error)) {
+        bisector_ = (reference.left_normal + reference.right_normal).normalized();
+        across_ = reference.tangent.cross(bisector_);
+        touch_.touch = number;
+        touch_.feature = reference.line;
+        touch_.position = touch_.start = touch_.centre = reference.position;
+        touch_.tangent = reference.tangent;
+        touch_.left_normal = reference.left_normal;
+        touch_.right_normal = reference.right_normal;
+        touch_.interior_angle = reference.interior_angle;
+        touch_.assumed = reference.assumed;
+    }
+
+    /// One touch, or two from different directions.
+    std::vector<ProbeTouch> plan() {
+        if (!(reference_.interior_angle < pi - rounding)) return refused(ProbeReason::concave);
+        touch_.range = range_of_disc(reference_.interior_angle, settings_.probe.radius, settings_.error);
+        if (reference_.assumed)
+            touch_.known_range =
+                range_on_left_face(reference_.interior_angle, settings_.probe.radius, settings_.error, beyond_);
+        const std::vector<double> candidates = candidate_angles();
+        if (candidates.empty() || !passes_hole(candidates.front())) return refused(ProbeReason::too_narrow);
+        if (settings_.two_directions && !is_empty(touch_.range))
+            if (std::vector<ProbeTouch> two = two_directions(); !two.empty()) return two;
+
+        ProbeReason reason = ProbeReason::too_tilted;
+        for (const double phi : candidates) {
+            if (!passes_hole(phi) || !is_tilted_little(phi)) continue;
+            reason = ProbeReason::obstructed;
+            if (const auto planned = touch_at(phi)) return {*planned};
+        }
+        return refused(reason);
+    }
+
+    /// T for trial `trial`: uniform in the disc of the scanner's error, or on the left face.
+    static void try_positions(const Settings& settings, const ReferencePoint& reference, ProbeTouch& touch,
+                              Random random) {
+        constexpr int trials = 1000;
+        const EdgeFirst edge_first(touch.interior_angle, settings.probe.radius, touch.phi);
+        const bool on_face = is_empty(touch.range) && touch.assumed;
+        const Vec2 face = on_left_face(touch.interior_angle, 1);
+        const double beyond = std::min(reference.beyond, settings.error);
+        int missed = 0;
+        for (int trial = 0; trial < trials; ++trial) {
+            Vec2 position;
+            if (on_face) {
+                position = random.uniform(-beyond, settings.error) * face;
+            } else {
+                do position = Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
+                while (position.squaredNorm() > 1);
+                position *= settings.error;
+            }
+            missed += !edge_first(position);
+        }
+        touch.false_share = missed / static_cast<double>(trials);
+    }
+
+private:
+    std::vector<ProbeTouch> refused(ProbeReason reason) {
+        touch_.reason = reason;
+        return {touch_};
+    }
+
+    /// The best first: from the preferred angle outwards in steps of 1 degree.
+    std::vector<double> candidate_angles() const {
+        if (settings_.approach) return {*settings_.approach};
+        const bool by_disc = !is_empty(touch_.range);
+        const AngleRange& range = by_disc ? touch_.range : touch_.known_range;
+        if (is_empty(range)) return {};
+        const double middle = by_disc ? 0 : (range.min + range.max) / 2;
+        std::vector<double> angles{middle};
+        for (int step = 1; middle + step * degree <= range.max + rounding; ++step) {
+            angles.push_back(std::min(middle + step * degree, range.max));
+            angles.push_back(std::max(middle - step * degree, range.min));
+        }
+        return angles;
+    }
+
+    Vec3 direction(double phi) const {
+        const Turn turn = turn_of(phi);
+        return (turn.cosine * bisector_ - turn.sine * across_).normalized();
+    }
+
+    bool passes_hole(double phi) const {
+        if (std::isnan(reference_.hole_radius)) return true;
+        const double psi = (pi - reference_.interior_angle) / 2 - phi;
+        return settings_.probe.radius * turn_of(psi).sine <= reference_.hole_radius * (1 + rounding);
+    }
+    bool is_tilted_little(double phi) const {
+        return direction(phi).dot(settings_.probe.axis) >= settings_.least_cosine;
+    }
+
+    /// Nothing if the probe would meet the part elsewhere.
+    std::optional<ProbeTouch> touch_at(double phi) const {
+        const double r = settings_.probe.radius;
+        ProbeTouch touch = touch_;
+        touch.phi = phi;
+        touch.approach = direction(phi);
+        touch.centre = reference_.position + r * touch.approach;
+        constexpr double least_cosine = 1.0 / 6;  // a start at most 6 h away
+        const double distance = settings_.retract / std::max(turn_of(phi).cosine, least_cosine);
+        if (!find_start(distance, touch)) return std::nullopt;
+        const FirstContact first =
+            machine_.first_contact(touch.position, touch.start, touch.approach, near_, r + settings_.error);
+        touch.contact = first.contact;
+        touch.contact_distance = first.distance;
+        if (!settings_.approach && first.contact != ProbeContact::edge) return std::nullopt;
+        return touch;
+    }
+
+    bool find_start(double distance, ProbeTouch& touch) const {
+        constexpr int most_steps = 8;
+        for (int step = 0; step <= most_steps; ++step) {
+            touch.start = touch.position + (distance + step * settings_.probe.radius) * touch.approach;
+            if (!machine_.is_approach_free(touch.position, touch.start, touch.centre, near_)) return false;
+            if (machine_.is_lift_free(touch.start)) return true;
+        }
+        return false;
+    }
+
+    std::vector<ProbeTouch> two_directions() const {
+        constexpr double share = 0.9, most = 30 * degree, least_between = 10 * degree;
+        const double phi = std::min(share * touch_.range.max, most);
+        if (2 * phi < least_between - rounding) return {};
+        std::vector<ProbeTouch> touches;
+        for (const double angle : {phi, -phi}) {
+            if (!passes_hole(angle) || !is_tilted_little(angle)) return {};
+            const auto touch = touch_at(angle);
+            if (!touch) return {};
+            touches.push_back(*touch);
+        }
+        return touches;
+    }
+
+    const Settings& settings_;
+    const Machine& machine_;
+    const ReferencePoint& reference_;
+    const double near_, beyond_;
+    Vec3 bisector_, across_;
+    ProbeTouch touch_;
+};
+
+void count(ProbePlannerResult& result) {
+    for (const ProbeTouch& touch : result.plan.touches) {
+        result.assumed += touch.assumed;
+        switch (touch.reason) {
+            case ProbeReason::none: break;
+            case ProbeReason::concave: ++result.concave; break;
+            case ProbeReason::too_narrow: ++result.too_narrow; break;
+            case ProbeReason::too_tilted: ++result.too_tilted; break;
+            case ProbeReason::obstructed: ++result.obstructed; break;
+        }
+        if (touch.reason != ProbeReason::none) {
+            ++result.unreachable;
+            continue;
+        }
+        result.false_touches += static_cast<std::size_t>(std::lround(touch.false_share * 1000));
+        result.wrong_contacts += touch.contact != ProbeContact::edge;
+    }
+}
+
+void report(const ProbePlannerResult& result, const Settings& settings, Context& context) {
+    const std::size_t touches = result.plan.touches.size();
+    context.metric("touches", static_cast<double>(touches));
+    const std::pair<const char*, std::size_t> counts[] = {{"assumed", result.assumed},
+                                                          {"unreachable", result.unreachable},
+                                                          {"too-narrow", result.too_narrow},
+                                                          {"concave", result.concave},
+                                                          {"obstructed", result.obstructed},
+                                                          {"too-tilted", result.too_tilted},
+                                                          {"false-touches", result.false_touches},
+                                                          {"wrong-contacts", result.wrong_contacts},
+                                                          {"paired-lines", result.paired_lines}};
+    for (const auto& [name, number] : counts) context.metric(name, static_cast<double>(number));
+    context.metric("travel", result.travel, Unit::length);
+    context.metric("edge-roughness", result.edge_roughness, Unit::length);
+    if (result.edge_roughness > settings.error)
+        context.warn(fmt::format(
+            "the lines are rough by {:.6g} u (95 % quantile), more than scanner-error, {:.6g} u: edges may be missed; "
+            "raise scanner-error, or scan more finely",
+            result.edge_roughness, settings.error));
+    if (result.unreachable == touches)
+        context.doubt(
+            fmt::format("no touch can be made: of {} are {} concave, {} too narrow, {} too tilted and {} "
+                        "obstructed",
+                        count_text(touches, "touch", "touches"), result.concave, result.too_narrow, result.too_tilted,
+                        result.obstructed));
+}
+
+}  // namespace
+
+ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMesh& mesh,
+                                 const ProbePlannerParams& params, Context& context) {
+    const Settings settings = settings_of(params);
+    require_same_frame(features.frame, mesh.frame);
+    const TriangleMesh part = mesh_beside(mesh, features.frame);
+    const ReferencePoints references = find_reference_points(features, settings.lines, settings.spacing, context);
+    const Machine machine(part, settings.probe, context.threads());
+
+    std::vector<std::vector<ProbeTouch>> planned(references.points.size());
+    constexpr std::size_t chunk = 16;
+    std::atomic<std::size_t> done = 0;
+    for_each_chunk(context.threads(), planned.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        context.check_cancelled();
+        for (std::size_t i = begin; i < end; ++i) {
+            const ReferencePoint& reference = references.points[i];
+            planned[i] = TouchPlanner(settings, machine, reference, static_cast<u32>(i)).plan();
+            for (std::size_t j = 0; j < planned[i].size(); ++j)
+                if (planned[i][j].reason == ProbeReason::none)
+                    TouchPlanner::try_positions(settings, reference, planned[i][j], context.random().stream(2 * i + j));
+        }
+        context.progress(0.9 * static_cast<double>(done += end - begin) / static_cast<double>(planned.size()));
+    });
+
+    ProbePlannerResult result;
+    ProbePlan& plan = result.plan;
+    plan.frame = features.frame;
+    if (plan.frame.name.empty()) plan.frame.name = mesh.frame.name;
+    plan.radius = settings.probe.radius;
+    plan.scanner_error = settings.error;
+    plan.clearance = settings.probe.clearance;
+    plan.stylus_radius = settings.probe.stylus_radius;
+    plan.stylus_length = settings.probe.stylus_length;
+    plan.machine_axis = settings.probe.axis;
+    std::vector<TouchLine> lines;
+    for (const Chain& chain : references.chains) {
+        TouchLine line{chain.closed, {}};
+        for (u32 i = chain.begin; i < chain.end; ++i)
+            for (const ProbeTouch& touch : planned[i]) {
+                if (touch.reason == ProbeReason::none) line.rows.push_back(static_cast<u32>(plan.touches.size()));
+                plan.touches.push_back(touch);
+            }
+        if (!line.rows.empty()) lines.push_back(std::move(line));
+    }
+    const std::vector<u32> tour = tour_over(lines, plan.touches, machine.home(), machine.diagonal());
+    result.travel = add_moves(plan, tour, machine, context);
+    result.edge_roughness = references.edge_roughness;
+    result.paired_lines = references.paired_lines;
+    count(result);
+    report(result, settings, context);
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill
