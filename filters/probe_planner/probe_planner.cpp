@@ -132,7 +132,8 @@ public:
         : settings_(settings),
           machine_(machine),
           reference_(reference),
-          near_(settings.probe.radius + settings.error + 1.5 * reference.segment_length),
+          edge_reach_(settings.error + 1.5 * reference.segment_length),
+          near_(settings.probe.radius + edge_reach_),
           beyond_(std::min(reference.beyond, settings.error)) {
         bisector_ = (reference.left_normal + reference.right_normal).normalized();
         across_ = reference.tangent.cross(bisector_);
@@ -236,7 +237,7 @@ private:
         const double distance = settings_.retract / std::max(turn_of(phi).cosine, least_cosine);
         if (!find_start(distance, touch)) return std::nullopt;
         const FirstContact first =
-            machine_.first_contact(touch.position, touch.start, touch.approach, near_, r + settings_.error);
+            machine_.first_contact(touch.position, touch.start, touch.approach, edge_reach_, r + settings_.error);
         touch.contact = first.contact;
         touch.contact_distance = first.distance;
         if (!settings_.approach && first.contact != ProbeContact::edge) return std::nullopt;
@@ -270,6 +271,7 @@ private:
     const Settings& settings_;
     const Machine& machine_;
     const ReferencePoint& reference_;
+    const double edge_reach_;  ///< from T to the edge in the mesh, at most
     const double near_, beyond_;
     Vec3 bisector_, across_;
     ProbeTouch touch_;

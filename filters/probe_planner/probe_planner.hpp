@@ -67,12 +67,13 @@ struct ProbePlannerResult {
 /// A touch gets the smallest |phi| for which: the ball meets the edge before a face for every position of the reference
 /// point within `scanner_error` (see contact_range.hpp; where there is none and the second face is assumed, for every
 /// position on the first face); the approach is tilted by at most `max_tilt`; ball and stylus do not meet the mesh
-/// elsewhere; the ball, moved against the mesh, meets it within radius + scanner_error + 1.5 segment lengths of the
-/// reference point; and the start can be left along the machine's axis. Tried in steps of 1 degree; of phi and -phi the
-/// positive one, towards the left face, first. The start is h / cos phi from the reference point (at most 6 h), or up
-/// to 8 radii farther if the way up is not free there. Touches without such a phi stay in the plan with the first
-/// reason that applies: concave, too-narrow, too-tilted, obstructed. With `approach`, that phi is used; only concave
-/// edges, holes, tilt and collisions prevent the touch.
+/// elsewhere (within radius + scanner_error + 1.5 segment lengths of the reference point facets belong to the edge);
+/// the ball, moved against the mesh, meets it within scanner_error + 1.5 segment lengths of the reference point; and
+/// the start can be left along the machine's axis. Tried in steps of 1 degree; of phi and -phi the positive one,
+/// towards the left face, first. The start is h / cos phi from the reference point (at most 6 h), or up to 8 radii
+/// farther if the way up is not free there. Touches without such a phi stay in the plan with the first reason that
+/// applies: concave, too-narrow, too-tilted, obstructed. With `approach`, that phi is used; only concave edges, holes,
+/// tilt and collisions prevent the touch.
 ///
 /// A ball that comes from above meets the rim of a round hole of radius R before the opposite rim if
 /// r sin psi <= R, with the angle psi between the bisector (or the given approach) and the normal of the left face;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
@@ -20,6 +21,8 @@ namespace {
 constexpr double pi = std::numbers::pi, sqrt_half = std::numbers::sqrt2 / 2;
 constexpr u32 reach = 2;  ///< segments of a window on either side
 constexpr std::size_t most_points = 10'000'000;
+
+constexpr const char* damaged = "the features are damaged: make them again from a mesh";
 
 std::string_view name_of(FeatureType type) {
     return type == FeatureType::crease ? "crease" : type == FeatureType::hole ? "hole" : "outer boundary";
@@ -79,11 +82,12 @@ Line read_line(const FeatureGraph& graph, u32 row) {
     const u32 least = line.closed ? 3 : 2;
     if (polyline.begin > polyline.end || polyline.end > graph.vertices.size() || polyline.end - polyline.begin < least)
         throw Error("line {} names the vertices {} to {} of {}; a line needs at least {}", row, polyline.begin,
-                    polyline.end, graph.vertices.size(), least);
+                    polyline.end, graph.vertices.size(), least)
+            .hint(damaged);
     for (u32 i = polyline.begin; i < polyline.end; ++i) {
         const u32 vertex = graph.vertices[i];
         if (vertex >= graph.positions.size())
-            throw Error("line {} names the point {}; there are {}", row, vertex, graph.positions.size());
+            throw Error("line {} names the point {}; there are {}", row, vertex, graph.positions.size()).hint(damaged);
         if (!graph.positions[vertex].allFinite())
             throw Error("vertex {} of line {} is not finite", i - polyline.begin, row)
                 .hint("make the features again from a mesh without NaN");
@@ -252,109 +256,93 @@ struct Place {
     auto operator<=>(const Place&) const = default;
 };
 
-/// Consecutive boundary segments with normals on both sides.
+/// Consecutive boundary segments along one edge: with a normal on both sides, or with a match.
 struct Run {
-    std::vector<u32> sides;  ///< numbers of two-sided segments
-    std::vector<double> lengths;  ///< sorted
+    std::vector<u32> sides;
     double length = 0;
 };
 
+/// Boundary segments are sides. Two sides match if they lie along one edge: of region-grow's two patches at an edge at
+/// least one has the normal of the other beyond its boundary.
 class Pairs {
 public:
     explicit Pairs(const std::vector<Line>& lines) : lines_(lines) {
         partners_.resize(lines.size());
         left_out_.resize(lines.size());
-        for (std::size_t i = 0; i < lines.size(); ++i) {
-            partners_[i].resize(lines[i].segments());
-            left_out_[i].resize(lines[i].segments());
-            find_runs(static_cast<u32>(i));
+        first_side_.resize(lines.size());
+        bool any_right = false;
+        for (u32 number = 0; number < lines.size(); ++number) {
+            const Line& line = lines[number];
+            partners_[number].resize(line.segments());
+            left_out_[number].resize(line.segments());
+            first_side_[number] = static_cast<u32>(sides_.size());
+            std::vector<double> lengths(line.lengths.begin(), line.lengths.end());
+            std::ranges::sort(lengths);
+            sorted_lengths_.push_back(std::move(lengths));
+            if (!line.is_boundary()) continue;
+            for (u32 segment = 0; segment < line.segments(); ++segment) {
+                sides_.push_back({number, segment});
+                any_right = any_right || line.has_right(segment);
+            }
         }
-        if (places_.empty()) return;
+        if (!any_right) return;
         find_matches();
+        run_of_.assign(sides_.size(), none);
+        for (u32 number = 0; number < lines.size(); ++number)
+            if (lines[number].is_boundary()) find_runs(number);
         pair_runs();
     }
 
-    std::size_t count() const { return count_; }
+    std::size_t count() const { return paired_lines_.size(); }
     const std::optional<Place>& partner(u32 line, u32 segment) const { return partners_[line][segment]; }
     bool is_left_out(u32 line, u32 segment) const { return left_out_[line][segment]; }
-    /// The largest distance between the middles of two segments that match.
-    double reach_of(const Place& a, const Place& b) const { return reach_of(run_of_.at(a), run_of_.at(b)); }
 
-private:
-    static constexpr u32 unmatched = ~u32(0);
-
-    const Line& line_of(u32 side) const { return lines_[places_[side].line]; }
-    Vec3 middle(u32 side) const { return line_of(side).middle(places_[side].segment); }
-
-    void find_runs(u32 number) {
-        const Line& line = lines_[number];
-        if (!line.is_boundary()) return;
-        // A closed line begins where a run does.
-        u32 first = 0;
-        for (u32 i = 0; i < line.segments(); ++i)
-            if (!line.has_right(*line.before(i)) || line.stops[i]) {
-                first = i;
-                break;
-            }
-        bool goes_on = false;
-        for (u32 step = 0; step < line.segments(); ++step) {
-            const u32 segment = (first + step) % line.segments();
-            if (line.stops[segment]) goes_on = false;
-            if (line.has_right(segment)) {
-                if (!goes_on) runs_.emplace_back();
-                Run& run = runs_.back();
-                run_of_[{number, segment}] = static_cast<u32>(runs_.size() - 1);
-                run.sides.push_back(static_cast<u32>(places_.size()));
-                run.lengths.push_back(line.lengths[segment]);
-                run.length += line.lengths[segment];
-                places_.push_back({number, segment});
-                runs_of_sides_.push_back(static_cast<u32>(runs_.size() - 1));
-            }
-            goes_on = line.has_right(segment);
-        }
-    }
-
-    /// Twice the median segment length of both runs.
+    /// The largest distance between the middles of segments of two lines that match: twice the median segment length.
     double reach_of(u32 one, u32 other) const {
         const auto key = std::minmax(one, other);
         const auto found = reaches_.find(key);
         if (found != reaches_.end()) return found->second;
         std::vector<double> lengths;
-        std::ranges::merge(runs_[one].lengths, runs_[other].lengths, std::back_inserter(lengths));
+        std::ranges::merge(sorted_lengths_[one], sorted_lengths_[other], std::back_inserter(lengths));
         return reaches_[key] = 2 * lengths[lengths.size() / 2];
     }
 
+private:
+    static constexpr u32 none = ~u32(0);
+
+    const Line& line_of(u32 side) const { return lines_[sides_[side].line]; }
+    double length_of(u32 side) const { return line_of(side).lengths[sides_[side].segment]; }
+    bool has_right(u32 side) const { return line_of(side).has_right(sides_[side].segment); }
+
     bool is_far_along(u32 a, u32 b, double distance) const {
         const Line& line = line_of(a);
-        double along = std::abs(line.middle_arc(places_[a].segment) - line.middle_arc(places_[b].segment));
+        double along = std::abs(line.middle_arc(sides_[a].segment) - line.middle_arc(sides_[b].segment));
         if (line.closed) along = std::min(along, line.arcs.back() - along);
         return along > distance;
     }
 
     bool may_match(u32 a, u32 b, double squared_distance) const {
-        const double d = reach_of(runs_of_sides_[a], runs_of_sides_[b]);
+        if (!has_right(a) && !has_right(b)) return false;
+        const double d = reach_of(sides_[a].line, sides_[b].line);
         if (squared_distance > d * d) return false;
-        const bool is_other_run = runs_of_sides_[a] != runs_of_sides_[b];
-        if (!is_other_run && !is_far_along(a, b, 4 * d)) return false;
+        if (sides_[a].line == sides_[b].line && !is_far_along(a, b, 4 * d)) return false;
         const Line &one = line_of(a), &other = line_of(b);
-        const u32 i = places_[a].segment, j = places_[b].segment;
+        const u32 i = sides_[a].segment, j = sides_[b].segment;
         const double cosine_30 = std::sqrt(0.75);
         return one.directions[i].dot(other.directions[j]) <= -sqrt_half &&
-               one.left[i].dot(other.right[j]) >= cosine_30 && one.right[i].dot(other.left[j]) >= cosine_30;
+               (!has_right(b) || one.left[i].dot(other.right[j]) >= cosine_30) &&
+               (!has_right(a) || one.right[i].dot(other.left[j]) >= cosine_30);
     }
 
     void find_matches() {
         double farthest = 0;
-        for (Run& run : runs_) {
-            std::ranges::sort(run.lengths);
-            farthest = std::max(farthest, 2 * run.lengths[run.lengths.size() / 2]);
-        }
-        Array<Vec3> middles(places_.size());
-        for (u32 side = 0; side < places_.size(); ++side) middles[side] = middle(side);
+        for (const auto& lengths : sorted_lengths_) farthest = std::max(farthest, 2 * lengths[lengths.size() / 2]);
+        Array<Vec3> middles(sides_.size());
+        for (u32 side = 0; side < sides_.size(); ++side) middles[side] = line_of(side).middle(sides_[side].segment);
         const TriangleTree tree = tree_of_points(middles, 1);
-        matches_.assign(places_.size(), unmatched);
+        matches_.assign(sides_.size(), none);
         Array<u32> near;
-        for (u32 side = 0; side < places_.size(); ++side) {
+        for (u32 side = 0; side < sides_.size(); ++side) {
             near.clear();
             BoundingBox box;
             box.low = middles[side].array() - farthest;
@@ -371,45 +359,82 @@ private:
         }
     }
 
+    /// Runs end at corners, and where the matching line changes.
+    void find_runs(u32 number) {
+        const Line& line = lines_[number];
+        const auto side_of = [&](u32 segment) { return first_side_[number] + segment; };
+        const auto is_member = [&](u32 side) { return has_right(side) || matches_[side] != none; };
+        const auto line_matched = [&](u32 side) { return matches_[side] == none ? none : sides_[matches_[side]].line; };
+        const auto ends_between = [&](u32 matched, u32 side) {
+            const u32 next = line_matched(side);
+            return matched != none && next != none && matched != next;
+        };
+        u32 first = 0;  // a closed line begins where a run does
+        for (u32 i = 0; i < line.segments(); ++i) {
+            const u32 before = side_of((i + line.segments() - 1) % line.segments());
+            if (line.stops[i] || !is_member(before) || ends_between(line_matched(before), side_of(i))) {
+                first = i;
+                break;
+            }
+        }
+        bool goes_on = false;
+        u32 matched = none;
+        for (u32 step = 0; step < line.segments(); ++step) {
+            const u32 segment = (first + step) % line.segments(), side = side_of(segment);
+            goes_on = goes_on && is_member(side) && !line.stops[segment] && !ends_between(matched, side);
+            if (!is_member(side)) continue;
+            if (!goes_on) {
+                runs_.emplace_back();
+                matched = none;
+                goes_on = true;
+            }
+            if (line_matched(side) != none) matched = line_matched(side);
+            runs_.back().sides.push_back(side);
+            runs_.back().length += length_of(side);
+            run_of_[side] = static_cast<u32>(runs_.size() - 1);
+        }
+    }
+
     void pair_runs() {
         std::map<std::pair<u32, u32>, std::pair<double, double>> matched;  // of runs: lengths of the first and second
-        for (u32 side = 0; side < places_.size(); ++side) {
-            if (matches_[side] == unmatched) continue;
-            const u32 run = runs_of_sides_[side], other = runs_of_sides_[matches_[side]];
+        for (u32 side = 0; side < sides_.size(); ++side) {
+            if (matches_[side] == none) continue;
+            const u32 run = run_of_[side], other = run_of_[matches_[side]];
+            if (other == none) continue;
             auto& [first, second] = matched[std::minmax(run, other)];
-            (run <= other ? first : second) += line_of(side).lengths[places_[side].segment];
+            (run <= other ? first : second) += length_of(side);
         }
         for (const auto& [runs, lengths] : matched) {
             const Run &kept = runs_[runs.first], &other = runs_[runs.second];
             const bool is_first_shorter = kept.length <= other.length;
             const double shorter = std::min(kept.length, other.length);
             if ((is_first_shorter ? lengths.first : lengths.second) < shorter / 2) continue;
-            ++count_;
+            paired_lines_.insert({sides_[kept.sides[0]].line, sides_[other.sides[0]].line});
             for (const u32 side : kept.sides) {
                 const u32 match = matches_[side];
-                if (match == unmatched || runs_of_sides_[match] != runs.second) continue;
+                if (match == none || run_of_[match] != runs.second) continue;
                 if (runs.first != runs.second || side < match)
-                    partners_[places_[side].line][places_[side].segment] = places_[match];
+                    partners_[sides_[side].line][sides_[side].segment] = sides_[match];
             }
             for (const u32 side : other.sides) {
                 const u32 match = matches_[side];
-                if (match == unmatched || runs_of_sides_[match] != runs.first) continue;
+                if (match == none || run_of_[match] != runs.first) continue;
                 if (runs.first != runs.second || match < side)
-                    left_out_[places_[side].line][places_[side].segment] = true;
+                    left_out_[sides_[side].line][sides_[side].segment] = true;
             }
         }
     }
 
     const std::vector<Line>& lines_;
-    std::vector<Place> places_;  ///< of two-sided segments, run after run
-    std::vector<u32> runs_of_sides_;
+    std::vector<Place> sides_;  ///< of boundary segments, line after line
+    std::vector<u32> first_side_;  ///< by line
+    std::vector<std::vector<double>> sorted_lengths_;  ///< by line
     std::vector<Run> runs_;
-    std::map<Place, u32> run_of_;
+    std::vector<u32> run_of_, matches_;  ///< by side
     mutable std::map<std::pair<u32, u32>, double> reaches_;
-    std::vector<u32> matches_;
+    std::set<std::pair<u32, u32>> paired_lines_;
     std::vector<std::vector<std::optional<Place>>> partners_;  ///< by line and segment
     std::vector<std::vector<bool>> left_out_;
-    std::size_t count_ = 0;
 };
 
 /// Moves a point of a paired segment to the intersection of the planes of both faces.
@@ -436,7 +461,7 @@ ReferencePoint between_faces(const std::vector<Line>& lines, const Pairs& pairs,
     const double cosine = n1.dot(n2), c1 = n1.dot(middle_a - between), c2 = n2.dot(middle_b - between);
     const double determinant = 1 - cosine * cosine;
     const Vec3 shift = ((c1 - cosine * c2) * n1 + (c2 - cosine * c1) * n2) / determinant;
-    if (shift.norm() <= pairs.reach_of(a, b)) reference.position += shift;
+    if (shift.norm() <= pairs.reach_of(a.line, b.line)) reference.position += shift;
     return reference;
 }
 
@@ -544,7 +569,8 @@ std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& c
     if (features.left_normals.size() != features.vertices.size() ||
         features.right_normals.size() != features.vertices.size())
         throw Error("the features have {} left and {} right normals for {} vertices of lines",
-                    features.left_normals.size(), features.right_normals.size(), features.vertices.size());
+                    features.left_normals.size(), features.right_normals.size(), features.vertices.size())
+            .hint(damaged);
     std::vector<Line> lines;
     std::array<std::size_t, 3> counts{};
     for (u32 row = 0; row < features.polylines.size(); ++row) {

@@ -41,7 +41,7 @@ struct Chain {
 struct ReferencePoints {
     std::vector<ReferencePoint> points;
     std::vector<Chain> chains;
-    /// Pairs of boundary lines along one edge, of which the later one is left out.
+    /// Pairs of boundary lines along one edge, of which the later one is left out there.
     std::size_t paired_lines = 0;
     /// The 95 % quantile, over the vertices of lines with 16 or more, of the distance across the line between a vertex
     /// and the quadratic in arc length through the vertices up to four before and after it; 0 without such lines.
@@ -55,9 +55,11 @@ struct LineChoice {
 /// Reference points at about `spacing`: on a closed line max(3, round(length / spacing)) at equal arc lengths, on an
 /// open one max(1, round(length / spacing)), half a spacing from its ends.
 ///
-/// Two patches of region-grow end in two boundary lines along one edge, each with the normals of both. Such runs of
-/// segments are paired: the one of the earlier line gets points on the intersection of the planes of both sides, the
-/// other one none. Ties: the lower row.
+/// Two patches of region-grow end in two boundary lines along one edge, one or both with the normals of both. Segments
+/// match that run in opposite directions (to within 45 degrees), have their middles within two median segment lengths,
+/// and have left normals that are within 30 degrees of the other's right normal; the nearest one, ties: the lower row.
+/// Runs of segments that match along half of the shorter run are paired: the one of the earlier line gets points on the
+/// intersection of the planes of both faces, the matching part of the other one none.
 ///
 /// Throws Error: no line of the choice, an open boundary, a line with too few vertices or with arrays that do not fit,
 /// a segment of length 0, a coordinate or normal that is not finite, a left normal that is missing, a normal that is

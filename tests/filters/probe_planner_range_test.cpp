@@ -151,7 +151,9 @@ TEST(RangeOfPosition, ItsEnds_AreOnTheBorder) {
         const Vec2 t = at(random.uniform(0, 1.95), random.uniform(0, 2 * pi));
         const AngleRange range = range_of_position(wedge.alpha, wedge.radius, t);
         for (const double phi : {range.min, range.max})
-            if (std::abs(phi) < pi / 2) EXPECT_NEAR(margin(wedge, phi, t), 0, 1e-12 / std::cos(1.55)) << i;
+            if (std::abs(phi) < pi / 2) {
+                EXPECT_NEAR(margin(wedge, phi, t), 0, 1e-12 / std::cos(1.55)) << i;
+            }
         // Nearly everywhere far better than that, which asin near 1 needs.
     }
 }
