@@ -5,6 +5,7 @@ import pathlib
 
 import cloud_pictures as clouds
 import patch_pictures as patches
+import probe_pictures as probes
 import surface_pictures as surfaces
 
 
@@ -23,6 +24,7 @@ def main():
         ("merge", clouds.merge),
         ("outlier_removal", clouds.outlier_removal),
         ("patch_distance", patches.patch_distance),
+        ("probe_planner", probes.probe_planner),
         ("region_grow", surfaces.region_grow),
         ("sculpt", surfaces.sculpt),
         ("tessellate", patches.tessellate),
