@@ -183,15 +183,22 @@ TEST(ProbePlannerMoves, KeepTheirClearance_AndLeadFromTouchToTouch) {
 
 TEST(ProbePlannerMoves, AWallBetweenTwoParts_ForcesADetourOverThePlane) {
     const TriangleMesh parts = joined(box(Vec3(0, 0, 0), Vec3(10, 10, 4), 4), box(Vec3(30, 0, 0), Vec3(40, 11, 4), 4));
-    for (const auto& [height, points] : {std::pair(20.0, 4u), std::pair(1.0, 2u)}) {
-        const TriangleMesh mesh = joined(parts, box(Vec3(19, -20, 0), Vec3(21, 30, height), 4));
-        const Planned result = planned(lines_of(parts), mesh, probe_of(0.5, 0.05, 3));
+    // Starts are at z = 5.8. The ball of radius 0.5 keeps 0.5, and the stylus above it as well.
+    const struct {
+        double low, height;
+        std::size_t points;
+    } walls[] = {{0, 20, 4}, {0, 1, 2}, {0, 4.75, 2}, {0, 5, 4}, {8, 9, 4}, {16.2, 17, 4}, {17, 18, 2}};
+    for (const auto& [low, height, points] : walls) {
+        const TriangleMesh mesh = joined(parts, box(Vec3(19, -20, low), Vec3(21, 30, height), 4));
+        ProbePlannerParams params = probe_of(0.5, 0.05, 3);
+        params.max_tilt = Angle::degrees(60);  // the upper edges alone
+        const Planned result = planned(lines_of(parts), mesh, params);
         int across = 0;
         for (const ProbeMove& move : result.plan.moves) {
             const auto path = result.plan.path.span().subspan(move.begin, move.end - move.begin);
             if (move.begin == 0 || (path.front().x() < 20) == (path.back().x() < 20)) continue;
             ++across;
-            ASSERT_EQ(path.size(), points);
+            ASSERT_EQ(path.size(), points) << low << ' ' << height;
             if (points == 2) continue;
             EXPECT_NEAR(path[1].z(), height + 0.5 + 0.5, 1e-9) << "radius and clearance above the wall";
             EXPECT_NEAR(path[2].z(), height + 0.5 + 0.5, 1e-9);

@@ -68,6 +68,38 @@ TEST(ProbePlannerPairs, TwoPlanesAsOnePatch_HaveACreaseAndNoPair) {
     EXPECT_EQ(std::ranges::count_if(one.plan.touches, is_on_edge), 20);
 }
 
+TEST(ProbePlannerPairs, TheTwoRimsOfASlot_AreTwoEdges) {
+    // Two tops beside each other, 0.5 apart; between them the surface goes down on both sides.
+    TriangleMesh mesh;
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    for (const double left : {0.0, 5.5})
+        for (const auto& p : box(Vec3(left, 0, 0), Vec3(left + 5, 20, 0.01), 4).positions) positions.push_back(p);
+    const TriangleMesh one = box(Vec3(0, 0, 0), Vec3(5, 20, 0.01), 4);
+    const auto half = static_cast<u32>(positions.size() / 2);
+    for (const u32 first : {0u, half})
+        for (const auto& [a, b, c] : one.triangles)
+            if (positions[a].z() == 0.01 && positions[b].z() == 0.01 && positions[c].z() == 0.01)
+                triangles.push_back({a + first, b + first, c + first});
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    FeatureGraph features = lines_of(mesh);
+    const Buffer<Vec3> none = features.right_normals;
+    for (const bool both : {true, false}) {
+        Array<Vec3> right(none.begin(), none.end());
+        std::size_t sides = 0;
+        for (std::size_t i = 0; i < right.size(); ++i) {
+            const double x = features.positions[features.vertices[i]].x();
+            if (x != 5 && !(both && x == 5.5)) continue;
+            right[i] = x == 5 ? Vec3::UnitX() : Vec3(-Vec3::UnitX());
+            ++sides;
+        }
+        ASSERT_GT(sides, both ? 30u : 15u);
+        features.right_normals = std::move(right);
+        EXPECT_EQ(planned(features, mesh, probe_of(0.2, 0.01, 1)).paired_lines, 0u);
+    }
+}
+
 /// The rows of two patches that end about 0.42 from an edge along y, with noise across their faces; the second face is
 /// turned by `angle` from the first, the plane z = 0. Normals are those of triangles of edge length 1.
 struct TwoRows {

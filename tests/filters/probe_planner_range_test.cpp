@@ -187,14 +187,26 @@ TEST(RangeOnLeftFace, LeansTowardsTheRightNormal_AndIsWider) {
             EXPECT_LE(face.min, disc.min + 1e-15);
             EXPECT_GE(face.max, disc.max - 1e-15);
         }
-        Random random(4);
-        for (int i = 0; i < 1000; ++i) {
-            const double beyond = 0.2, s = random.uniform(-beyond, error);
-            const AngleRange with_beyond = range_on_left_face(90 * degree, 2, error, beyond);
-            const double phi = random.uniform(with_beyond.min, with_beyond.max);
-            EXPECT_TRUE(EdgeFirst(90 * degree, 2, phi)(on_left_face(90 * degree, s))) << s << ' ' << phi / degree;
-        }
     }
+}
+
+TEST(RangeOnLeftFace, IsExactlyWhatAllItsPositionsHaveInCommon) {
+    Random random(4);
+    for (const double alpha : {50 * degree, 90 * degree, 130 * degree})
+        for (const auto& [error, beyond] :
+             {std::pair(0.0, 0.4), std::pair(0.3, 0.2), std::pair(0.2, 0.5), std::pair(1.5, 0.2)}) {
+            const AngleRange range = range_on_left_face(alpha, 2, error, beyond);
+            if (is_empty(range)) continue;
+            for (int i = 0; i < 1000; ++i) {
+                const double s = random.uniform(-beyond, error), phi = random.uniform(range.min, range.max);
+                EXPECT_TRUE(EdgeFirst(alpha, 2, phi)(on_left_face(alpha, s))) << s << ' ' << phi / degree;
+            }
+            for (const double phi : {range.min - 1e-6, range.max + 1e-6}) {
+                const EdgeFirst edge_first(alpha, 2, phi);
+                EXPECT_FALSE(edge_first(on_left_face(alpha, error)) && edge_first(on_left_face(alpha, -beyond)))
+                    << alpha / degree << ' ' << error << ' ' << beyond << ' ' << phi / degree;
+            }
+        }
 }
 
 /// The exact share of the disc of radius delta for which the nearer face is met first.

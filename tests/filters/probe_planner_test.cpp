@@ -261,6 +261,35 @@ TEST(ProbePlanner, BeyondABorder_ARightAngleIsAssumed) {
     }
 }
 
+TEST(ProbePlanner, WhereLinesMeet_NormalsOfTwoFacesAreNotMixed) {
+    // Two strips that meet in the y axis at 30 degrees; the border turns there by 30 degrees only.
+    TriangleMesh mesh;
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    constexpr u32 across = 21, along = 6;
+    const Vec3 down(std::cos(30 * degree), 0, -std::sin(30 * degree));
+    for (u32 j = 0; j < along; ++j)
+        for (u32 i = 0; i < across; ++i) {
+            const double x = static_cast<double>(i) - 10;
+            positions.push_back(Vec3(j * Vec3::UnitY() + x * (x < 0 ? Vec3::UnitX() : down)));
+            if (i == 0 || j == 0) continue;
+            const u32 here = j * across + i;
+            triangles.insert(triangles.end(),
+                             {{here, here - 1, here - across}, {here - 1, here - across - 1, here - across}});
+        }
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    const FeatureGraph features = lines_of(mesh, 20);
+    ASSERT_EQ(features.polylines.size(), 2u) << "the border and the crease";
+    ProbePlannerParams params = probe_of(0.5, 0.05, 0.5);
+    params.features = ProbePlannerParams::Features::boundaries;
+    for (const ProbeTouch& touch : planned(features, mesh, params).plan.touches) {
+        const Vec3 normal =
+            touch.position.x() < 0 ? Vec3::UnitZ() : Vec3(std::sin(30 * degree), 0, std::cos(30 * degree));
+        EXPECT_NEAR((touch.left_normal - normal).norm(), 0, 1e-9) << touch.position.transpose();
+    }
+}
+
 /// A double cone: radius 10 at z = 0, apexes at z = ± height.
 TriangleMesh bicone(double height, u32 around) {
     TriangleMesh mesh;
