@@ -220,23 +220,27 @@ void set_interior_angle(ReferencePoint& reference) {
 }
 
 ReferencePoint reference_at(const Line& line, u32 segment, const Vec3& point, double hole_radius) {
-    const Window window = window_round(line, segment, point);
+    Window window = window_round(line, segment, point);
     ReferencePoint reference;
     reference.line = line.row;
     reference.position = point;
     reference.hole_radius = hole_radius;
-    reference.segment_length = window.length / static_cast<double>(window.segments.size());
+    reference.beyond = 0;
+    constexpr double least = 0.1;
     const Vec3 chord = window.end - window.start;
     reference.tangent = chord.norm() > 0.5 * window.length ? chord.normalized() : line.directions[segment];
-    const Vec3 left = perpendicular(mean_normal(line, window, line.left), reference.tangent) / window.length;
-    constexpr double least = 0.1;
+    Vec3 left = perpendicular(mean_normal(line, window, line.left), reference.tangent) / window.length;
+    if (!(left.norm() > least)) {  // a fold: the segment's own triangle decides
+        window = {{segment}, line.points[segment], line.end_of(segment), line.lengths[segment]};
+        reference.tangent = line.directions[segment];
+        left = perpendicular(line.left[segment], reference.tangent);
+    }
     if (!(left.norm() > least))
-        throw Error("the left normals round segment {} of line {} are along the line or cancel out", segment, line.row)
-            .hint("make the features again from a mesh");
+        throw Error("the left normal of segment {} of line {} is along the line", segment, line.row).hint(damaged);
+    reference.segment_length = window.length / static_cast<double>(window.segments.size());
     reference.left_normal = left.normalized();
     const Vec3 right = perpendicular(mean_normal(line, window, line.right), reference.tangent);
     reference.assumed = !(right.norm() > least * line.lengths[segment]);
-    reference.beyond = 0;
     if (reference.assumed) {
         reference.right_normal = reference.tangent.cross(reference.left_normal);
         reference.interior_angle = pi / 2;

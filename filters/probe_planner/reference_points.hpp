@@ -6,7 +6,8 @@
 /// Directions and normals are length-weighted means over a window of two segments on either side of the point's
 /// segment; the window ends where lines meet and where the line turns: at a corner with more than 45 degrees between
 /// the chords of two segments on either side (boundaries over scanned points have corners of one segment everywhere).
-/// It shrinks until the line turns by at most 45 degrees in it, measured between its chords before and after the point.
+/// It shrinks until the line turns by at most 45 degrees in it, measured between its chords before and after the point,
+/// and to one segment where the left normals cancel out.
 ///
 /// Source: Wang 2006, section 5.2. The window replaces the thesis's fan of triangles, since lines have no mesh.
 

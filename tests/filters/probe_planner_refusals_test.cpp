@@ -146,7 +146,7 @@ TEST(ProbePlannerRefusals, Lines) {
                     const Vec3 along = Vec3::UnitY();
                     for (std::size_t row = 4; row < 7; ++row) g.left_normals = with(g.left_normals, row, along);
                 }),
-                HasSubstr("the left normals round segment 0 of line 1 are along the line"));
+                HasSubstr("the left normal of segment 0 of line 1 is along the line"));
     EXPECT_EQ(sentence([](FeatureGraph& g) { g.vertices = with(g.vertices, 6, 99u); }),
               "line 1 names the point 99; there are 8");
     EXPECT_EQ(sentence([](FeatureGraph& g) { g.polylines[1].end = 5; }),
