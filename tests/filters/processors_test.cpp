@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// sculpt, features, measure and a-patch give the same bytes on every processor: on one without fused multiply-add the
-/// C library takes other variants of atan2, sin and the like, whose last bits differ.
+/// sculpt, features, measure, a-patch and probe-planner give the same bytes on every processor: on one without fused
+/// multiply-add the C library takes other variants of atan2, sin and the like, whose last bits differ.
 
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 
@@ -14,6 +15,7 @@
 #include "features/features.hpp"
 #include "filters/sculpt_cases.hpp"
 #include "measure/measure.hpp"
+#include "probe_planner/probe_planner.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 #include "support/shapes.hpp"
 #include "support/temporary_folder.hpp"
@@ -93,9 +95,35 @@ std::uint64_t of_patches(TriangleMesh mesh) {
     return digest.value();
 }
 
+/// With a given and with a sought approach.
+std::uint64_t of_probes(const TriangleMesh& mesh) {
+    Digest digest;
+    ProbePlannerParams params;
+    params.radius = 0.04;
+    params.scanner_error = 0.01;
+    params.spacing = 0.1;
+    for (int round = 0; round < 3; ++round) {
+        Context context;
+        params.directions = round == 1 ? 2 : 1;
+        if (round == 2) params.approach = Angle::degrees(33);
+        const ProbePlannerResult result = probe_planner(features(mesh, {}, context).graph, mesh, params, context);
+        for (const ProbeTouch& touch : result.plan.touches) {
+            digest.add(touch.position);
+            digest.add(touch.approach);
+            digest.add(touch.start);
+            digest.add(touch.false_share);
+            for (const double number : {touch.interior_angle, touch.range.max, touch.phi, touch.contact_distance})
+                if (!std::isnan(number)) digest.add(number);
+        }
+        digest.add(result.travel);
+    }
+    return digest.value();
+}
+
 /// The points have exact coordinates, which do not depend on the processor.
 std::string results() {
-    std::string text = fmt::format("angles {:x}\npatches {:x}\n", of_angles(), of_patches(geodesic_sphere(1, 3)));
+    std::string text = fmt::format("angles {:x}\npatches {:x}\nprobes {:x}\n", of_angles(),
+                                   of_patches(geodesic_sphere(1, 3)), of_probes(l_block(1)));
     for (const TetMesh& tets : {hull_of(random_cube(2000, 1)), hull_of(lattice_cube(4)),
                                 solid_of(tets_of(l_block_surface(3, 2, 6, 2e-3))).tets})
         for (const SculptWeight weight : {SculptWeight::none, SculptWeight::length}) {
