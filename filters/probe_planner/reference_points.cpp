@@ -20,7 +20,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi, sqrt_half = std::numbers::sqrt2 / 2;
 constexpr u32 reach = 2;  ///< segments of a window on either side
-constexpr std::size_t most_points = 10'000'000;
+constexpr std::size_t most_points = 1'000'000;
 
 constexpr const char* damaged = "the features are damaged: make them again from a mesh";
 

@@ -64,7 +64,7 @@ struct LineChoice {
 ///
 /// Throws Error: no line of the choice, an open boundary, a line with too few vertices or with arrays that do not fit,
 /// a segment of length 0, a coordinate or normal that is not finite, a left normal that is missing, a normal that is
-/// not a unit vector, equal normals on both sides, more than 10^7 points. Cost: O(n log n) in the segments and points.
+/// not a unit vector, equal normals on both sides, more than 10^6 points. Cost: O(n log n) in the segments and points.
 ReferencePoints find_reference_points(const FeatureGraph& features, const LineChoice& choice, double spacing,
                                       const Context& context);
 

@@ -40,7 +40,7 @@ TEST(ProbePlannerRefusals, Parameters) {
               "scanner-error is 1 u, radius 1 u: a ball that is not larger than the error cannot be guided");
     EXPECT_EQ(refusal_of_params([](P& p) { p.spacing = 0; }), "spacing must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.spacing = 1e-9; }),
-              "a spacing of 1e-09 u gives more than 10000000 touches");
+              "a spacing of 1e-09 u gives more than 1000000 touches");
     EXPECT_EQ(refusal_of_params([](P& p) { p.clearance = -0.5; }), "clearance must be at least 0; it is -0.5 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.retract = 0; }), "retract must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.stylus_radius = 1; }),
