@@ -85,7 +85,7 @@ struct ProbePlannerResult {
 /// Throws Error: a parameter out of range; features and mesh in different units or named frames; a mesh without
 /// triangles or with a vertex that is not finite; features as in find_reference_points().
 ///
-/// Deterministic: the same bytes for any number of threads. Cost: O((touches + triangles) log triangles), about 0.2 ms
+/// Deterministic: the same bytes for any number of threads. Cost: O((touches + triangles) log triangles), about 0.05 ms
 /// per touch; obstructed touches, for which all directions are tried, up to some milliseconds.
 ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMesh& mesh,
                                  const ProbePlannerParams& params, Context& context);
