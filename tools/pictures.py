@@ -4,6 +4,7 @@
 import pathlib
 
 import cloud_pictures as clouds
+import frame_pictures as frames
 import patch_pictures as patches
 import probe_pictures as probes
 import surface_pictures as surfaces
@@ -13,7 +14,9 @@ def main():
     filters = pathlib.Path(__file__).resolve().parent.parent / "filters"
     for name, draw in (
         ("a_patch", patches.a_patch),
+        ("align", frames.align),
         ("alpha_solid", surfaces.alpha_solid),
+        ("apply_transform", frames.apply_transform),
         ("cluster_mesh", surfaces.cluster_mesh),
         ("crop", clouds.crop),
         ("decimate", surfaces.decimate),

@@ -111,15 +111,23 @@ ReadGeometry geometry_of(const Value& value) {
     return read;
 }
 
+/// The numbers per row of a column of directions with this name; 0 for others.
+u32 numbers_of_directions(std::string_view column) {
+    if (column == "normal" || column == "approach") return 3;
+    return column == "corner-normals" ? 9 : 0;
+}
+
 template <class Number>
-Column turned_to(const Column& normals, const Eigen::Matrix3d& rotation) {
-    Array<Number> values(3 * normals.rows());
-    for (std::size_t row = 0; row < normals.rows(); ++row) {
-        const Vec3 normal = rotation * Vec3(normals.number(row, 0), normals.number(row, 1), normals.number(row, 2));
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            values[3 * row + axis] = static_cast<Number>(normal[static_cast<Eigen::Index>(axis)]);
-    }
-    return {normals.name(), 3, Buffer<Number>(std::move(values))};
+Column turned_to(const Column& directions, const Eigen::Matrix3d& rotation) {
+    Array<Number> values;
+    values.reserve(directions.rows() * directions.components());
+    for (std::size_t row = 0; row < directions.rows(); ++row)
+        for (u32 first = 0; first < directions.components(); first += 3) {
+            const Vec3 direction(directions.number(row, first), directions.number(row, first + 1),
+                                 directions.number(row, first + 2));
+            for (const double number : Vec3(rotation * direction)) values.push_back(static_cast<Number>(number));
+        }
+    return {directions.name(), directions.components(), Buffer<Number>(std::move(values))};
 }
 
 }  // namespace
@@ -169,7 +177,7 @@ Vec3 translation_in(LengthUnit unit, const RigidTransform& pose) {
 }
 
 Column turned(const Column& column, const Eigen::Matrix3d& rotation) {
-    if (column.name() != "normal" || column.components() != 3) return column;
+    if (column.is_list() || column.components() != numbers_of_directions(column.name())) return column;
     return column.type() == ScalarType::float32 ? turned_to<float>(column, rotation)
                                                 : turned_to<double>(column, rotation);
 }

@@ -71,8 +71,8 @@ std::vector<PropertySpec> property_specs(Kind kind);
 Metrics properties_of(const Value& value);
 
 /// The value with its world positions moved by the pose. Positions are only rotated and frame.origin is translated, so
-/// coordinates of 10^6 m keep their micrometres. Directions and columns `normal` of three numbers are rotated too;
-/// integer columns become float64. The frame gets the name `pose.to` unless that is empty; its unit stays, and the
+/// coordinates of 10^6 m keep their micrometres. Directions and columns of directions (see turned()) are rotated too;
+/// integer ones become float64. The frame gets the name `pose.to` unless that is empty; its unit stays, and the
 /// translation is converted to it. The identity changes no bit of a position. Throws Error if the pose has a unit and
 /// the value has none, for an origin outside the range of double, and for kinds without positions.
 Value placed(const Value& value, const RigidTransform& pose);
@@ -81,8 +81,8 @@ Value placed(const Value& value, const RigidTransform& pose);
 /// pose has one and `unit` is unknown.
 Vec3 translation_in(LengthUnit unit, const RigidTransform& pose);
 
-/// A column of directions (`normal`, three numbers per row) rotated: float32 stays float32, other types become float64.
-/// Any other column is returned unchanged.
+/// A column of directions rotated: `normal` and `approach` with three numbers per row, `corner-normals` with nine.
+/// float32 stays float32, other types become float64. Any other column is returned unchanged.
 Column turned(const Column& column, const Eigen::Matrix3d& rotation);
 
 }  // namespace scanmill

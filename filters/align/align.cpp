@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "align/align.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Matrix3 = Eigen::Matrix3d;
+using Points = std::vector<Vec3>;
+
+/// Largest accepted standard error of the rotation about any axis. Of 10,000 trials each with three or four points on a
+/// line of length 200 and noise from 0.001 to 1, it refuses 99.9 % or more; noise of 1 on the corners of a plate of
+/// 200 x 120 gives 0.5 degrees.
+constexpr double largest_angle = std::numbers::pi / 180;
+/// Residuals below this share of the points' extent are rounding.
+constexpr double rounding = 1e-12;
+/// One fit is clearly better than another if its residuals are this many times smaller.
+constexpr double clear = 10;
+/// Residuals that are reported one by one.
+constexpr std::size_t most_residuals = 100;
+
+Vec3 mean_of(const Points& points) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& p : points) sum += p;
+    return sum / static_cast<double>(points.size());
+}
+
+Points about(const Points& points, const Vec3& centre) {
+    Points result;
+    for (const Vec3& p : points) result.push_back(p - centre);
+    return result;
+}
+
+/// Pairs about their centroids, and the motion between them.
+struct Fit {
+    Vec3 source_mean, target_mean;
+    Points source, target;
+    Matrix3 rotation;
+    /// Sums over the residuals' squared lengths: of the rotation, and of the best reflection.
+    double squares = 0, mirrored_squares = 0;
+    double scale = 1;
+
+    Vec3 residual(std::size_t row) const { return target[row] - rotation * source[row]; }
+};
+
+double squares_of(const Fit& fit, const Matrix3& map) {
+    double sum = 0;
+    for (std::size_t row = 0; row < fit.source.size(); ++row)
+        sum += (fit.target[row] - map * fit.source[row]).squaredNorm();
+    return sum;
+}
+
+/// Kabsch: the singular value decomposition of the pairs' covariance, with the last axis turned where the product would
+/// be a reflection.
+Fit fit_of(const Points& source, const Points& target) {
+    Fit fit{mean_of(source), mean_of(target), {}, {}, Matrix3::Identity()};
+    fit.source = about(source, fit.source_mean);
+    fit.target = about(target, fit.target_mean);
+    Matrix3 covariance = Matrix3::Zero();
+    double extent = 0;
+    for (std::size_t row = 0; row < source.size(); ++row) {
+        covariance += fit.source[row] * fit.target[row].transpose();
+        extent += fit.source[row].squaredNorm();
+    }
+    const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const double sign = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1 : 1;
+    const auto map_of = [&](double last) -> Matrix3 {
+        return svd.matrixV() * Vec3(1, 1, last).asDiagonal() * svd.matrixU().transpose();
+    };
+    fit.rotation = map_of(sign);
+    fit.squares = squares_of(fit, fit.rotation);
+    fit.mirrored_squares = squares_of(fit, map_of(-sign));
+    const Vec3& values = svd.singularValues();
+    if (extent > 0) fit.scale = (values[0] + values[1] + sign * values[2]) / extent;
+    return fit;
+}
+
+double root_mean_square(double squares, std::size_t points) { return std::sqrt(squares / static_cast<double>(points)); }
+
+/// sigma of the contract.
+double noise_of(const Fit& fit) { return std::sqrt(fit.squares / static_cast<double>(3 * fit.source.size() - 6)); }
+
+Matrix3 cross_matrix(const Vec3& v) {
+    Matrix3 matrix;
+    matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return matrix;
+}
+
+/// J of the contract.
+Matrix3 inertia_of(const Points& centred) {
+    Matrix3 inertia = Matrix3::Zero();
+    for (const Vec3& c : centred) inertia += c.squaredNorm() * Matrix3::Identity() - c * c.transpose();
+    return inertia;
+}
+
+/// Root of the sum of the squared distances from the line that fits the points best: the root of the least moment of
+/// inertia.
+double spread_about_line(const Points& centred) {
+    Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(centred.size()));
+    for (std::size_t row = 0; row < centred.size(); ++row) columns.col(static_cast<Eigen::Index>(row)) = centred[row];
+    // Of the points themselves, not of their moments, whose roots lose half of the digits.
+    const Vec3 values = Eigen::JacobiSVD<Eigen::MatrixXd>(columns).singularValues();
+    return std::hypot(values[1], values[2]);
+}
+
+double extent_of(const Points& centred) {
+    double largest = 0;
+    for (const Vec3& c : centred) largest = std::max(largest, c.norm());
+    return largest;
+}
+
+// Refusals.
+
+void require_cloud(const PointCloud& cloud, std::string_view port) {
+    try {
+        require_finite(cloud.positions.span());
+    } catch (Error& error) {
+        error.add_frame(fmt::format("at '{}'", port));
+        if (error.hint().empty()) error.set_hint("remove these points from the file");
+        throw;
+    }
+}
+
+void require_pairs(const PointCloud& source, const PointCloud& target) {
+    if (source.size() != target.size())
+        throw Error("the source has {} and the target {}; each point needs a partner",
+                    count_text(source.size(), "point", "points"), count_text(target.size(), "point", "points"))
+            .hint(
+                "write corresponding points in the same row of both files; `plate-corners` finds the four corners of "
+                "a plate in a scan");
+    if (source.size() < 3)
+        throw Error("there {} {}; a motion needs at least 3 that are not on a line",
+                    by_count(source.size(), "is", "are"),
+                    count_text(source.size(), "pair of points", "pairs of points"))
+            .hint("add corresponding points");
+    require_cloud(source, "source");
+    require_cloud(target, "target");
+    if (source.frame.unit != target.frame.unit)
+        throw Error("the source is in {}, the target in {}; both need one unit", symbol(source.frame.unit),
+                    symbol(target.frame.unit))
+            .hint("convert one of them (u: a unit that is not declared)");
+}
+
+void require_not_mirrored(const Fit& fit, std::string_view unit) {
+    const double rotated = root_mean_square(fit.squares, fit.source.size());
+    const double mirrored = root_mean_square(fit.mirrored_squares, fit.source.size());
+    if (rotated <= clear * mirrored || rotated <= rounding * extent_of(fit.target)) return;
+    throw Error(
+        "the target is a mirror image of the source: residuals are {:.4g} {} RMS after a rotation, {:.4g} {} "
+        "after a reflection",
+        rotated, unit, mirrored, unit)
+        .hint("an axis of one of the files points the wrong way, or rows are exchanged");
+}
+
+void require_determined(const Fit& fit, std::string_view unit) {
+    const double noise = std::max(noise_of(fit), rounding * std::max(extent_of(fit.source), extent_of(fit.target)));
+    const double spread = std::min(spread_about_line(fit.source), spread_about_line(fit.target));
+    if (spread > 0 && noise <= largest_angle * spread) return;
+    const double pairs = static_cast<double>(fit.source.size());
+    throw Error(
+        "the {} pairs determine the rotation only to {} deg; 1 deg is needed: the points lie {:.4g} {} RMS from one "
+        "line, and the residuals are {:.4g} {} RMS",
+        fit.source.size(),
+        spread > noise ? fmt::format("{:.3g}", noise / spread * 180 / std::numbers::pi) : std::string("more than 57"),
+        spread / std::sqrt(pairs), unit, root_mean_square(fit.squares, fit.source.size()), unit)
+        .hint(fmt::format("use points that do not lie on a line; if they do not, check which points correspond, and "
+                          "the units: the best scale is {:.6g}",
+                          fit.scale));
+}
+
+// Normals and rectangles.
+
+/// The unit normal of every row, zero where it has none; nothing without a column of normals.
+std::optional<Points> normals_of(const PointCloud& cloud) {
+    const Column* column = cloud.columns.find("normal");
+    if (!column || column->components() != 3) return {};
+    Points normals;
+    for (std::size_t row = 0; row < column->rows(); ++row) {
+        const Vec3 normal(column->number(row, 0), column->number(row, 1), column->number(row, 2));
+        normals.push_back(normal.allFinite() ? normal : Vec3::Zero());
+    }
+    return normals;
+}
+
+void require_same_side(const PointCloud& source, const PointCloud& target, std::span<const u32> partner,
+                       const Matrix3& rotation) {
+    const std::optional<Points> before = normals_of(source), after = normals_of(target);
+    if (!before || !after) return;
+    for (std::size_t row = 0; row < partner.size(); ++row)
+        if (!((rotation * (*before)[partner[row]]).dot((*after)[row]) < 0)) return;
+    throw Error(
+        "the normals of all {} pairs point to opposite sides after the motion: the target is a mirror image of "
+        "the source",
+        partner.size())
+        .hint("the points of one file run the other way round; exchange its rows");
+}
+
+/// Twice the area vector of the polygon, which is counter-clockwise seen from its tip.
+Vec3 area_of(const Points& corners) {
+    Vec3 area = Vec3::Zero();
+    for (std::size_t i = 0; i < corners.size(); ++i) area += corners[i].cross(corners[(i + 1) % corners.size()]);
+    return area;
+}
+
+/// The normal of the plane through the corners, whatever their order: of the largest of the three possible polygons.
+Vec3 plane_normal(const Points& c) {
+    Vec3 largest = Vec3::Zero();
+    for (const Points& order :
+         {Points{c[0], c[1], c[2], c[3]}, Points{c[0], c[2], c[1], c[3]}, Points{c[0], c[1], c[3], c[2]}})
+        if (const Vec3 area = area_of(order); area.squaredNorm() > largest.squaredNorm()) largest = area;
+    return largest.normalized();
+}
+
+Vec3 up_of(const PointCloud& cloud, const Points& corners, const Vec3& otherwise, std::string_view port) {
+    Vec3 up = otherwise;
+    std::string_view name = "`up`";
+    if (const std::optional<Points> normals = normals_of(cloud)) {
+        const Vec3 mean = mean_of(*normals);
+        if (mean.norm() > 0) {
+            up = mean;
+            name = "the mean normal of the corners";
+        }
+    }
+    const Vec3 normal = plane_normal(corners);
+    const double cosine = normal.dot(up.normalized());
+    constexpr double least = 0.5;  // 60 degrees: half of the way to upright and a safe margin for rough directions
+    if (!(std::abs(cosine) >= least))
+        throw Error("{} is {:.3g} deg off the normal of the plate at '{}'; at most 60 deg decide which side is up",
+                    name, std::acos(std::min(1.0, std::abs(cosine))) * 180 / std::numbers::pi, port)
+            .hint("give `up`, a direction that points away from the plate's upper side");
+    return cosine > 0 ? normal : Vec3(-normal);
+}
+
+/// The rows in counter-clockwise order seen from `up`, beginning with row 0.
+std::array<u32, 4> order_around(const Points& centred, const Vec3& up, std::string_view port) {
+    const Vec3 x = (centred[0] - up * up.dot(centred[0])).normalized(), y = up.cross(x);
+    std::array<u32, 4> order{0, 1, 2, 3};
+    // The quadrant of an angle, then its tangent within it, ascend with the angle.
+    const auto angle = [&](u32 row) {
+        const double across = centred[row].dot(x), along = centred[row].dot(y),
+                     size = std::abs(across) + std::abs(along);
+        const double share = along / size;
+        return row == 0 || size == 0 ? 0.0 : across >= 0 ? (along >= 0 ? share : 4 + share) : 2 - share;
+    };
+    std::ranges::sort(order, {}, angle);
+    Points sorted;
+    for (const u32 row : order) sorted.push_back(centred[row]);
+    for (std::size_t i = 0; i < 4; ++i)
+        if (!(sorted[i].cross(sorted[(i + 1) % 4]).dot(up) > 0))
+            throw Error("the four corners at '{}' do not go once around their centre", port)
+                .hint("give the four different corners of a rectangle");
+    return order;
+}
+
+/// World coordinates.
+Vec3 first_corner_of(const AlignParams& params) {
+    if (!params.first_corner)
+        throw Error("a rectangle fits its corners in 2 ways, half a turn apart, and `first-corner` is not given")
+            .hint(
+                "give `first-corner`, a rough position in the source of the corner that belongs to the first target "
+                "point");
+    if (params.first_corner->size() != 3)
+        throw Error("`first-corner` has {}; it needs 3", count_text(params.first_corner->size(), "length", "lengths"))
+            .hint("give x, y, z");
+    Vec3 position;
+    for (int axis = 0; axis < 3; ++axis)
+        position[axis] = (*params.first_corner)[static_cast<std::size_t>(axis)].value();
+    if (!position.allFinite())
+        throw Error("a length of `first-corner` is not finite").hint("give x, y, z as finite lengths");
+    return position;
+}
+
+/// The index in `order` of the corner near `position`, which is relative to the same point as the corners.
+std::size_t corner_near(const Points& corners, const std::array<u32, 4>& order, const Vec3& position,
+                        std::string_view unit) {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 4; ++i)
+        shortest = std::min(shortest, (corners[order[(i + 1) % 4]] - corners[order[i]]).norm());
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < 4; ++i)
+        if ((corners[order[i]] - position).norm() < (corners[order[nearest]] - position).norm()) nearest = i;
+    const double distance = (corners[order[nearest]] - position).norm();
+    if (!(distance < shortest / 2))
+        throw Error(
+            "`first-corner` is {:.4g} {} from the nearest corner of the source; less than {:.4g} {}, half of "
+            "the shortest side, is needed",
+            distance, unit, shortest / 2, unit)
+            .hint("give it in the coordinates of the source, as `scanmill info` prints them");
+    return nearest;
+}
+
+void require_direction(std::span<const double> up) {
+    if (up.size() != 3)
+        throw Error("`up` has {}; it needs 3", count_text(up.size(), "number", "numbers")).hint("give x, y, z");
+    const Vec3 direction(up[0], up[1], up[2]);
+    if (!direction.allFinite() || !(direction.norm() > 0))
+        throw Error("`up` is ({}, {}, {}); it must have a length", up[0], up[1], up[2])
+            .hint("give a direction, as 0, 0, 1");
+}
+
+Points points_of(const PointCloud& cloud) { return {cloud.positions.begin(), cloud.positions.end()}; }
+
+/// The source row of every target row.
+std::vector<u32> partners_in_rectangle(const PointCloud& source, const PointCloud& target, const AlignParams& params) {
+    if (source.size() != 4)
+        throw Error("the source and the target have {} points each; a rectangle has 4 corners", source.size())
+            .hint("`correspondence: rows` aligns any number of pairs");
+    require_direction(params.up);
+    const std::string_view unit = symbol(source.frame.unit);
+    const Points from = points_of(source), to = points_of(target);
+    const Points from_centre = about(from, mean_of(from)), to_centre = about(to, mean_of(to));
+    const Vec3 given_up(params.up[0], params.up[1], params.up[2]);
+    const Vec3 by_order = area_of(from_centre);
+    const Vec3 source_up = up_of(source, from_centre, by_order.norm() > 0 ? by_order : given_up, "source");
+    const Vec3 target_up = up_of(target, to_centre, given_up, "target");
+    const std::array<u32, 4> from_order = order_around(from_centre, source_up, "source");
+    const std::array<u32, 4> to_order = order_around(to_centre, target_up, "target");
+    const std::size_t first = corner_near(from, from_order, first_corner_of(params) - source.frame.origin, unit);
+
+    const auto partners = [&](std::size_t turn) {
+        std::vector<u32> partner(4);
+        for (std::size_t i = 0; i < 4; ++i) partner[to_order[i]] = from_order[(first + turn + i) % 4];
+        return partner;
+    };
+    const auto squares = [&](std::size_t turn) {
+        Points paired;
+        for (const u32 row : partners(turn)) paired.push_back(from[row]);
+        return fit_of(paired, to).squares;
+    };
+    // Half a turn fits as well, by symmetry; a quarter exchanges long and short sides.
+    const double chosen = squares(0), other = std::min(squares(1), squares(3));
+    if (root_mean_square(chosen, 4) > std::max(clear * root_mean_square(other, 4), rounding * extent_of(to_centre)))
+        throw Error(
+            "with the corner at `first-corner` long sides meet short ones: residuals are {:.4g} {} RMS, and "
+            "{:.4g} {} with a corner next to it",
+            root_mean_square(chosen, 4), unit, root_mean_square(other, 4), unit)
+            .hint("`first-corner` is the corner of the source that belongs to the first point of the target");
+    return partners(0);
+}
+
+std::vector<u32> partners_by_row(const PointCloud& source, const AlignParams& params) {
+    if (params.first_corner)
+        throw Error("`first-corner` is given, but `correspondence` is rows")
+            .hint("write `correspondence: rectangle`, or remove `first-corner`");
+    std::vector<u32> partner(source.size());
+    for (std::size_t row = 0; row < partner.size(); ++row) partner[row] = static_cast<u32>(row);
+    return partner;
+}
+
+double error_at(const AlignPart& part, const PointCloud& source, const Fit& fit) {
+    if (!part.frame.empty() && !source.frame.name.empty() && part.frame != source.frame.name)
+        throw Error("the part is in the frame '{}', the source in '{}'; both need one frame", part.frame,
+                    source.frame.name)
+            .hint("wire the part as the scanner saw it, before `apply-transform`");
+    if (part.box.empty())
+        throw Error("the part has no points; its box is empty").hint("wire the scan of the part, or leave `part` out");
+    const Vec3 centre = source.frame.origin + fit.source_mean;
+    const Matrix3 inverse = inertia_of(fit.source).inverse();
+    double largest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 world((corner & 1 ? part.box.high : part.box.low).x(),
+                         (corner & 2 ? part.box.high : part.box.low).y(),
+                         (corner & 4 ? part.box.high : part.box.low).z());
+        const Matrix3 arm = cross_matrix(world - centre);
+        const double variance = 3 / static_cast<double>(fit.source.size()) + (arm * inverse * arm.transpose()).trace();
+        largest = std::max(largest, noise_of(fit) * std::sqrt(variance));
+    }
+    return largest;
+}
+
+void report(const AlignResult& result, const AlignParams& params, Context& context) {
+    context.metric("rms", result.rms, Unit::length);
+    context.metric("largest-residual", result.largest_residual, Unit::length);
+    for (std::size_t row = 0; row < std::min(result.residuals.size(), most_residuals); ++row)
+        context.metric(row == 0 ? "residual" : fmt::format("residual@{}", row + 1), result.residuals[row].norm(),
+                       Unit::length);
+    if (params.scale == AlignParams::Scale::report) context.metric("scale", result.scale, Unit::number);
+    if (result.error_at_part) context.metric("error-at-part", *result.error_at_part, Unit::length);
+}
+
+}  // namespace
+
+AlignResult align(const PointCloud& source, const PointCloud& target, const std::optional<AlignPart>& part,
+                  const AlignParams& params, Context& context) {
+    require_pairs(source, target);
+    const std::string_view unit = symbol(source.frame.unit);
+    AlignResult result;
+    result.partner = params.correspondence == AlignParams::Correspondence::rectangle
+                         ? partners_in_rectangle(source, target, params)
+                         : partners_by_row(source, params);
+    Points paired;
+    for (const u32 row : result.partner) paired.push_back(source.positions[row]);
+    const Fit fit = fit_of(paired, points_of(target));
+    require_not_mirrored(fit, unit);
+    require_determined(fit, unit);
+    require_same_side(source, target, result.partner, fit.rotation);
+    if (!source.frame.name.empty() && source.frame.name == target.frame.name)
+        context.warn(
+            fmt::format("source and target are both in the frame '{}': nothing prevents that the transform is "
+                        "applied twice",
+                        source.frame.name));
+
+    result.transform.rotation = fit.rotation;
+    result.transform.translation =
+        (target.frame.origin + fit.target_mean) - fit.rotation * (source.frame.origin + fit.source_mean);
+    result.transform.unit = source.frame.unit;
+    result.transform.from = source.frame.name;
+    result.transform.to = target.frame.name;
+    for (std::size_t row = 0; row < result.partner.size(); ++row) {
+        result.residuals.push_back(fit.residual(row));
+        result.largest_residual = std::max(result.largest_residual, result.residuals.back().norm());
+    }
+    result.rms = root_mean_square(fit.squares, result.partner.size());
+    result.scale = fit.scale;
+    if (part) result.error_at_part = error_at(*part, source, fit);
+    report(result, params, context);
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/plugin.hpp"
+#include "align/align.hpp"
+#include "scanmill/data/robust_box.hpp"
+
+using namespace scanmill;
+
+namespace {
+
+AlignPart part_of(BoundingBox box, const Frame& frame) {
+    if (!box.empty()) box = {box.low + frame.origin, box.high + frame.origin};
+    return {box, frame.name};
+}
+
+std::optional<AlignPart> part_at(const Inputs& inputs) {
+    if (const auto* cloud = inputs.find<PointCloud>("part"))
+        return part_of(robust_box(cloud->positions.span()).robust, cloud->frame);
+    if (const auto* mesh = inputs.find<TriangleMesh>("part")) return part_of(surface_box(*mesh), mesh->frame);
+    return {};
+}
+
+}  // namespace
+
+SCANMILL_FILTER() {
+    using P = AlignParams;
+    return Declare<P>("align", 1)
+        .summary("Finds the rigid motion that carries points onto corresponding points.")
+        .source("Kabsch 1978; Umeyama 1991; Wang 2006, chapter 5")
+        .ties("A `first-corner` that is equally near to two corners is refused.")
+        .not_finite("Refused, with their number and the first of them.")
+        .in<PointCloud>("source", "The points that are moved, such as the corners of a plate in a scan.")
+        .in<PointCloud>("target", "The corresponding points, such as the same corners measured by a machine.")
+        .in<PointCloud, TriangleMesh>("part", "What will be moved, in the frame of the source: for `error-at-part`.",
+                                      optional)
+        .out<RigidTransform>("transform", "From the frame of the source to that of the target; it never scales.")
+        .choice("scale", &P::scale,
+                {{"none", P::Scale::none, "The metric `scale` is not computed."},
+                 {"report", P::Scale::report, "The metric `scale` is the size of the target relative to the source."}},
+                "The scale that would fit best, as a check of the units; the transform does not contain it.")
+        .choice("correspondence", &P::correspondence,
+                {{"rows", P::Correspondence::rows, "Row i of the source belongs to row i of the target."},
+                 {"rectangle", P::Correspondence::rectangle,
+                  "Each has the four corners of a rectangle, in any order; needs `first-corner`."}},
+                "Which points belong together.")
+        .param("first-corner", &P::first_corner,
+               "x, y, z of a rough position in the source of the corner that belongs to the first target point.",
+               size(3))
+        .param("up", &P::up,
+               "Rectangle: a direction away from the upper side of a plate, where the points have no normals.", size(3))
+        .metric("rms", Unit::length, "Root of the mean squared residual.", headline, smaller_is_better)
+        .metric("largest-residual", Unit::length, "Largest residual.", headline, smaller_is_better)
+        .metric("residual", Unit::length, "Residual of each of the first 100 target points.", numbered,
+                smaller_is_better)
+        .metric("error-at-part", Unit::length,
+                "Standard error of a moved point, the largest over the corners of the part's bounding box.", headline,
+                smaller_is_better)
+        .metric("scale", Unit::number, "Size of the target relative to the source: 1 if the units agree.")
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            return Outputs().set("transform", align(inputs.get<PointCloud>("source"), inputs.get<PointCloud>("target"),
+                                                    part_at(inputs), params, context)
+                                                  .transform);
+        });
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "apply_transform/apply_transform.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+
+#include "scanmill/base/error.hpp"
+
+namespace scanmill {
+
+namespace {
+
+void require_rigid(const RigidTransform& transform) {
+    constexpr double most = 1e-6;  // as for the matrices of files
+    const Eigen::Matrix3d& rotation = transform.rotation;
+    const double off = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    if (!(off <= most) || !(rotation.determinant() > 0))
+        throw Error(
+            "the transform is not a rigid motion: the product of its matrix with its transpose is {:.3g} off "
+            "the identity, and its determinant is {:.6g}; 0 and 1 are needed",
+            off, rotation.determinant())
+            .hint("`align` finds a rigid motion between points");
+    if (!transform.translation.allFinite())
+        throw Error("the translation is ({}, {}, {}); it must be finite", transform.translation.x(),
+                    transform.translation.y(), transform.translation.z())
+            .hint("check the file of the transform");
+}
+
+void require_frame(const Frame& frame, const RigidTransform& transform) {
+    const std::string& name = frame.name;
+    if (name.empty()) return;
+    if (name == transform.to && name != transform.from)
+        throw Error("the value is already in the frame '{}', to which the transform leads", name)
+            .hint("wire the value as it was before; a transform is applied once");
+    if (!transform.from.empty() && name != transform.from)
+        throw Error("the value is in the frame '{}'; the transform starts from '{}'", name, transform.from)
+            .hint("wire a value in that frame, or declare its frame at the workflow's input");
+}
+
+}  // namespace
+
+Value apply_transform(const Value& value, const RigidTransform& transform, Context& context) {
+    const std::optional<Frame> frame = frame_of(value);
+    if (!frame)
+        throw Error("the value is {}, which has no positions", name_of(value.kind()))
+            .hint("wire points, a mesh, features or patches");
+    require_rigid(transform);
+    require_frame(*frame, transform);
+    if (transform.unit == LengthUnit::unknown && frame->unit != LengthUnit::unknown && !transform.translation.isZero(0))
+        context.warn(fmt::format("the transform has no unit; its translation is read in {}, the unit of the value",
+                                 symbol(frame->unit)));
+    Value moved = placed(value, transform);
+    if (transform.to.empty() && !frame->name.empty()) {
+        context.warn(
+            fmt::format("the transform does not name the frame that it leads to; the value is no longer in "
+                        "'{}' and has no frame's name",
+                        frame->name));
+        Frame unnamed = *frame_of(moved);
+        unnamed.name.clear();
+        moved = reframed(moved, unnamed);
+    }
+    context.progress(1);
+    return moved;
+}
+
+}  // namespace scanmill
