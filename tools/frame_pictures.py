@@ -64,3 +64,48 @@ def apply_transform():
         axes(picture, (shift[0] - 2, 0.55), 0 if name == "machine" else 0.6, name)
     picture.arrow((4.2, 1.9), (5, 1.9), INK)
     return picture
+
+
+def plate_corners():
+    """The outermost points of strips, a line through those of each side that agree, and their intersections."""
+    picture = Picture(9, 4.2)
+    source = random.Random(3)
+    angle, middle, width, depth, strips = 0.18, (4.5, 2.1), 5.2, 2.8, 13
+    plate = []
+    for i in range(27):
+        for k in range(15):
+            x, y = (i - 13) * width / 27, (k - 7) * depth / 15
+            on_part, bitten = -1.2 < x < 0.9 and -0.6 < y < 0.5, x > 1.7 and y > 0.95
+            if not on_part and not bitten:
+                plate.append((x + source.uniform(-0.05, 0.05), y + source.uniform(-0.05, 0.05)))
+    to_picture = lambda points: turned(points, angle, middle)
+    lines, border = [], []
+    for axis, sign in ((1, -1), (0, 1), (1, 1), (0, -1)):
+        length = (width, depth)[1 - axis]
+        outermost = {}
+        for p in plate:
+            strip = math.floor((p[1 - axis] / length / 0.8 + 0.5) * strips)
+            if 0 <= strip < strips and (strip not in outermost or sign * p[axis] > sign * outermost[strip][axis]):
+                outermost[strip] = p
+        heights = sorted(p[axis] for p in outermost.values())
+        near = [p for p in outermost.values() if abs(p[axis] - heights[len(heights) // 2]) < 0.12]
+        t = sum(p[1 - axis] for p in near) / len(near)
+        h = sum(p[axis] for p in near) / len(near)
+        slope = sum((p[1 - axis] - t) * (p[axis] - h) for p in near) / sum((p[1 - axis] - t) ** 2 for p in near)
+        lines.append((axis, h - slope * t, slope))
+        border += near
+    corners = []
+    for i in range(4):
+        (_, a, s), (_, b, u) = sorted((lines[i - 1], lines[i]), reverse=True)  # y = a + s x, x = b + u y
+        y = (a + s * b) / (1 - s * u)
+        corners.append((b + u * y, y))
+    part = [(-1.15, -0.55), (0.85, -0.55), (0.85, 0.45), (-1.15, 0.45)]
+    picture.polygon(to_picture(part), SOLID)
+    for p in to_picture(plate):
+        picture.dot(p, PALE, 2)
+    for p in to_picture(border):
+        picture.dot(p, INK, 3)
+    picture.polygon(to_picture(corners), "none", INK, 1.5)
+    for p in to_picture(corners):
+        picture.dot(p, BRIGHT, 6)
+    return picture

@@ -27,6 +27,7 @@ def main():
         ("merge", clouds.merge),
         ("outlier_removal", clouds.outlier_removal),
         ("patch_distance", patches.patch_distance),
+        ("plate_corners", frames.plate_corners),
         ("probe_planner", probes.probe_planner),
         ("region_grow", surfaces.region_grow),
         ("sculpt", surfaces.sculpt),

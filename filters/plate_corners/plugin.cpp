@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/plugin.hpp"
+#include "plate_corners/plate_corners.hpp"
+
+using namespace scanmill;
+
+SCANMILL_FILTER() {
+    using P = PlateCornersParams;
+    return Declare<P>("plate-corners", 1)
+        .summary("Finds the four corners of a rectangular plate in a scan.")
+        .source("Wang 2006, chapter 5; Fischler and Bolles 1981")
+        .ties("Of equally good planes and lines the first in the order of the random samples.")
+        .not_finite("Refused, with their number and the first of them.")
+        .adds({"normal"})
+        .in<PointCloud>("points", "A scan of the plate; a part may stand on it.")
+        .out<PointCloud>("points", "The corners, counter-clockwise seen from above, with `normal` of the upper side.")
+        .param("sides", &P::sides, "The two known lengths of the sides; corners then form a rectangle of this size.",
+               size(2), above(0))
+        .param("tolerance", &P::tolerance, "The largest distance of the plate's points from its plane.", above(0))
+        .param("up", &P::up, "A direction away from the plate's upper side; used if the points have no normals.",
+               size(3))
+        .metric("residual", Unit::length, "Distance of the points at the border from the sides, root mean square.",
+                headline, smaller_is_better)
+        .metric("flatness", Unit::length, "Distance of the plate's points from its plane, root mean square.",
+                smaller_is_better)
+        .metric("side-1", Unit::length, "Found length of the side from the first to the second corner.", headline)
+        .metric("side-2", Unit::length, "Found length of the side from the second to the third corner.", headline)
+        .metric("plane-points", Unit::count, "Points on the plate's plane.")
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            return Outputs().set("points", plate_corners(inputs.get<PointCloud>("points"), params, context).corners);
+        });
+}
