@@ -44,7 +44,7 @@ Value apply_transform(const Value& value, const RigidTransform& transform, Conte
     const std::optional<Frame> frame = frame_of(value);
     if (!frame)
         throw Error("the value is {}, which has no positions", name_of(value.kind()))
-            .hint("wire points, a mesh, features or patches");
+            .hint("wire points, a mesh, features, patches or probes");
     require_rigid(transform);
     require_frame(*frame, transform);
     if (transform.unit == LengthUnit::unknown && frame->unit != LengthUnit::unknown && !transform.translation.isZero(0))

@@ -21,7 +21,7 @@ struct ValueOf {
     }
 };
 /// Every kind with positions.
-using Geometry = ValueOf<PointCloud, TriangleMesh, TetMesh, FeatureGraph, PatchComplex>;
+using Geometry = ValueOf<PointCloud, TriangleMesh, TetMesh, FeatureGraph, PatchComplex, ProbePlan>;
 
 Declare<ApplyTransformParams> declaration() {
     Declare<ApplyTransformParams> filter("apply-transform", 1);

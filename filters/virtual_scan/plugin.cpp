@@ -24,7 +24,13 @@ SCANMILL_FILTER() {
                  {"block-with-holes", P::Shape::holed_block,
                   "A box with a large hole through its middle and four small ones; size: x, y, z, the two radii."},
                  {"hyperboloid", P::Shape::hyperboloid,
-                  "A saddle above a disc, part of a hyperboloid of one sheet; size: radius, height in the middle."}},
+                  "A saddle above a disc, part of a hyperboloid of one sheet; size: radius, height in the middle."},
+                 {"bicone", P::Shape::bicone,
+                  "Two cones with a common base: one circular edge of the angle 2 atan(height / radius); size: radius, "
+                  "height of each."},
+                 {"cone-on-hemisphere", P::Shape::cone_on_hemisphere,
+                  "A cone on half of a sphere: one circular edge of the angle 90 deg + atan(height / radius); size: "
+                  "radius, height of the cone."}},
                 "The shape to scan if no mesh is given. Rays meet its exact surface, not triangles.")
         .param("size", &P::size, "The shape's dimensions in the scan's own unit; empty takes defaults around 1 u.",
                above(0))

@@ -265,6 +265,55 @@ std::optional<Hit> meet_hyperboloid(const Ray& ray, const Hyperboloid& surface) 
     return {};
 }
 
+// Bodies of revolution about the z axis with one circular edge, of known angle, at z = 0. Source: Wang 2006,
+// section 5.3.
+
+/// A cone over the disc of `radius` around 0, with its apex at height `height` · `up`, where `up` is 1 or -1.
+struct Cone {
+    double radius, height, up;
+};
+
+/// Rounding at the circular edge: a ray that passes there must not pass between two surfaces.
+constexpr double edge_rounding = 1e-12;
+
+/// The point where the ray enters the cone through its slope.
+std::optional<Hit> meet_cone(const Ray& ray, const Cone& cone) {
+    const Vec3& d = ray.direction;
+    const Vec3 o = ray.at(-ray.start.dot(d));
+    const double slope = cone.up / cone.height, square = cone.radius * cone.radius;
+    // x² + y² = radius² w² with w = 1 - slope z, at w = along + depth * change.
+    const double along = 1 - slope * o.z(), change = -slope * d.z();
+    const double a = d.x() * d.x() + d.y() * d.y() - square * change * change;
+    const double b = 2 * (o.x() * d.x() + o.y() * d.y() - square * along * change);
+    const double c = o.x() * o.x() + o.y() * o.y() - square * along * along;
+    for (const double depth : roots_of(a, b, c)) {
+        const Vec3 p = o + depth * d;
+        const double w = 1 - slope * p.z();
+        if (!(w >= -edge_rounding && w <= 1 + edge_rounding)) continue;
+        const Vec3 gradient(p.x(), p.y(), square * w * slope);
+        const Vec3 normal = gradient == Vec3::Zero() ? Vec3(0, 0, cone.up) : Vec3(gradient.normalized());
+        if (normal.dot(d) < 0) return Hit{p, normal};
+    }
+    return {};
+}
+
+std::optional<Hit> earlier(const Ray& ray, const std::optional<Hit>& a, const std::optional<Hit>& b) {
+    if (!a || !b) return a ? a : b;
+    return (b->position - a->position).dot(ray.direction) < 0 ? b : a;
+}
+
+/// Two equal cones with a common base.
+std::optional<Hit> meet_bicone(const Ray& ray, double radius, double height) {
+    return earlier(ray, meet_cone(ray, {radius, height, 1}), meet_cone(ray, {radius, height, -1}));
+}
+
+/// A cone above the lower half of a sphere.
+std::optional<Hit> meet_cone_on_hemisphere(const Ray& ray, double radius, double height) {
+    std::optional<Hit> below = meet_sphere(ray, radius);
+    if (below && below->position.z() > edge_rounding * radius) below.reset();
+    return earlier(ray, meet_cone(ray, {radius, height, 1}), below);
+}
+
 // Shapes by name.
 
 struct Kind {
@@ -285,6 +334,8 @@ Kind kind_of(Shape shape) {
                     {"x", "y", "z", "large hole's radius", "small holes' radius"},
                     {0.88, 0.95, 0.41, 0.21, 0.05}};
         case Shape::hyperboloid: return {"hyperboloid", {"radius", "height"}, {1, 0.75}};
+        case Shape::bicone: return {"bicone", {"radius", "height"}, {1, 1}};
+        case Shape::cone_on_hemisphere: return {"cone-on-hemisphere", {"radius", "height"}, {1, 0.5}};
     }
     return {"none", {}, {}};
 }
@@ -353,6 +404,13 @@ std::pair<FirstHit, BoundingBox> surface_of(Shape shape, const std::vector<doubl
             const Hyperboloid surface{size[0], size[1]};
             return {[surface](const Ray& ray) { return meet_hyperboloid(ray, surface); }, bounds_of(surface)};
         }
+        case Shape::bicone: {
+            const Vec3 corner(size[0], size[0], size[1]);
+            return {[r = size[0], h = size[1]](const Ray& ray) { return meet_bicone(ray, r, h); }, {-corner, corner}};
+        }
+        case Shape::cone_on_hemisphere:
+            return {[r = size[0], h = size[1]](const Ray& ray) { return meet_cone_on_hemisphere(ray, r, h); },
+                    {Vec3::Constant(-size[0]), Vec3(size[0], size[0], size[1])}};
     }
     return {};
 }

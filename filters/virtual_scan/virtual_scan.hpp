@@ -15,7 +15,18 @@
 namespace scanmill {
 
 struct VirtualScanParams {
-    enum class Shape { none, sphere, torus, box, cylinder, l_block, holed_block, hyperboloid };
+    enum class Shape {
+        none,
+        sphere,
+        torus,
+        box,
+        cylinder,
+        l_block,
+        holed_block,
+        hyperboloid,
+        bicone,
+        cone_on_hemisphere
+    };
     /// The surface when there is no mesh; intersected by formula, not through a mesh.
     Shape shape = Shape::none;
     /// The shape's dimensions in the scan's own unit; empty means the defaults in brackets. sphere: radius [1], around
@@ -24,7 +35,10 @@ struct VirtualScanParams {
     /// without the quadrant above s in x and y. holed_block: x, y, z, radius of the large hole, radius of the small
     /// ones [0.88, 0.95, 0.41, 0.21, 0.05]: a box around 0 with five holes through it along z, the large one in the
     /// middle, four small ones at (± 0.35 x, ± 0.35 y). hyperboloid: radius r, height h [1, 0.75]: the open surface
-    /// z = h / r √(x² − y² + r²) above the disc of radius r around 0.
+    /// z = h / r √(x² − y² + r²) above the disc of radius r around 0. bicone: radius r, height h [1, 1]: two cones of
+    /// height h on both sides of the disc of radius r around 0 in z = 0; its edge has the interior angle 2 atan(h / r).
+    /// cone_on_hemisphere: radius r, height h [1, 0.5]: a cone of height h on this disc, and half of a sphere below
+    /// it; the angle is 90 deg + atan(h / r).
     std::vector<Length> size;
     /// One whole number n: n directions spread evenly over the sphere (1 looks along the x axis). Else three numbers
     /// per view: the direction from the object to the sensor, of any length.

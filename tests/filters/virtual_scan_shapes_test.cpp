@@ -197,5 +197,67 @@ TEST(VirtualScanShapes, SignChanges_OfAQuarticWithKnownRoots_AreFound) {
     EXPECT_TRUE(scan::sign_changes(std::array<double, 3>{1, 0, 1}, -10.0, 10.0, 1e-12).empty());
 }
 
+/// On the slope of a cone of this radius and height over z = 0, with its apex on the side of `up`.
+Vec3 slope_normal(const Vec3& p, double radius, double height, double up) {
+    return Vec3(p.x() * height, p.y() * height, up * radius * std::hypot(p.x(), p.y())).normalized();
+}
+
+TEST(VirtualScanShapes, Bicone_EveryPointLiesOnItWithItsNormal) {
+    const double radius = 3, height = 2;
+    VirtualScanParams params = shape_of(Shape::bicone, {radius, height}, 0.03);
+    params.views = {40};
+    const VirtualScanResult result = scan(params);
+    ASSERT_GT(result.points.size(), 100000u);
+    double farthest = 0;
+    for (const Vec3& p : result.points.positions) {
+        ASSERT_NEAR(std::hypot(p.x(), p.y()) / radius + std::abs(p.z()) / height, 1, 1e-9);
+        farthest = std::max(farthest, std::hypot(p.x(), p.y()));
+    }
+    EXPECT_GT(farthest, radius - 0.01) << "the edge is sharp";
+    expect_normals(
+        result, [&](const Vec3& p) { return slope_normal(p, radius, height, p.z() >= 0 ? 1 : -1); }, 1e-5);
+}
+
+TEST(VirtualScanShapes, BiconeFromTheSide_ShowsItsLozenge) {
+    VirtualScanParams params = shape_of(Shape::bicone, {3.0, 2.0}, 0.01);
+    params.views = {1, 0, 0, 0, 0, 1, 1, 2, 0.5};
+    const VirtualScanResult result = scan(params);
+    EXPECT_NEAR(static_cast<double>(points_of_view(result.points, 0)) * 1e-4, 12, 0.02);
+    EXPECT_NEAR(static_cast<double>(points_of_view(result.points, 1)) * 1e-4, 9 * pi, 0.02);
+    for (const Vec3& p : result.points.positions) ASSERT_GE(p.dot(Vec3(0, 0, 1)), -2 - 1e-9);
+}
+
+TEST(VirtualScanShapes, ConeOnHemisphere_EveryPointLiesOnItWithItsNormal) {
+    const double radius = 3, height = 1.5;
+    VirtualScanParams params = shape_of(Shape::cone_on_hemisphere, {radius, height}, 0.03);
+    params.views = {40};
+    const VirtualScanResult result = scan(params);
+    ASSERT_GT(result.points.size(), 100000u);
+    std::size_t above = 0;
+    for (const Vec3& p : result.points.positions) {
+        if (p.z() > 0) {
+            ASSERT_NEAR(std::hypot(p.x(), p.y()) / radius + p.z() / height, 1, 1e-9);
+            ++above;
+        } else {
+            ASSERT_NEAR(p.norm(), radius, 1e-9);
+        }
+    }
+    EXPECT_GT(above, result.points.size() / 5);
+    expect_normals(
+        result, [&](const Vec3& p) { return p.z() > 0 ? slope_normal(p, radius, height, 1) : Vec3(p / radius); }, 1e-5);
+}
+
+TEST(VirtualScanShapes, RaysAtTheCircularEdge_DoNotPassThroughTheBody) {
+    // The box of the second shape is not symmetric: a row of its rays lies in the plane of the edge.
+    for (const Shape shape : {Shape::bicone, Shape::cone_on_hemisphere}) {
+        VirtualScanParams params = shape_of(shape, {1.0, 0.83}, 0.01);
+        params.views = {1, 0, 0};
+        const VirtualScanResult result = scan(params);
+        for (const Vec3& p : result.points.positions) ASSERT_GE(p.x(), -1e-9) << "seen from inside";
+        const double silhouette = shape == Shape::bicone ? 2 * 0.83 : 0.83 + pi / 2;
+        EXPECT_NEAR(static_cast<double>(result.points.size()) * 1e-4, silhouette, 0.005);
+    }
+}
+
 }  // namespace
 }  // namespace scanmill::test
