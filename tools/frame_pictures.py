@@ -109,3 +109,32 @@ def plate_corners():
     for p in to_picture(corners):
         picture.dot(p, BRIGHT, 6)
     return picture
+
+
+def virtual_probe():
+    """A ball that meets the edge of a wedge beside its reference point, and what the machine reports."""
+    picture = Picture(9, 3.6)
+    edge, half, radius, phi = (4.5, 1.7), math.radians(42), 0.8, math.radians(18)
+    u = (-math.sin(phi), math.cos(phi))
+    across = (u[1], -u[0])
+    off = 0.38
+    faces = [(edge[0] + s * 2.2 * math.sin(half), edge[1] - 2.2 * math.cos(half)) for s in (-1, 1)]
+    picture.polygon([faces[0], edge, faces[1]], SOLID, INK)
+    reference = (edge[0] + off * across[0], edge[1] + off * across[1])
+    reach = math.sqrt(radius**2 - off**2)
+    at = lambda s: (reference[0] + s * u[0], reference[1] + s * u[1])
+    picture.circle(at(1.9), radius, PALE)
+    picture.arrow(at(1.9), at(reach), INK)
+    picture.circle(at(reach), radius, INK)
+    picture.dot(at(reach), INK, 4)
+    picture.line(at(reach), at(reach - radius), INK, 1, "4 3")
+    picture.dot(at(reach - radius), BRIGHT, 5)
+    picture.dot(reference, INK, 4, hollow=True)
+    picture.dot(edge, INK, 4)
+    picture.text((6.2, 0.9), "reported point", BRIGHT)
+    picture.line((6.1, 0.95), at(reach - radius), BRIGHT, 1)
+    picture.text((6.2, 1.4), "reference point")
+    picture.line((6.1, 1.45), reference, INK, 1)
+    picture.text((1.6, 1.6), "edge")
+    picture.line((2.3, 1.65), edge, INK, 1)
+    return picture

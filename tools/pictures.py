@@ -32,6 +32,7 @@ def main():
         ("region_grow", surfaces.region_grow),
         ("sculpt", surfaces.sculpt),
         ("tessellate", patches.tessellate),
+        ("virtual_probe", frames.virtual_probe),
         ("virtual_scan", clouds.virtual_scan),
         ("voxel_thin", clouds.voxel_thin),
     ):

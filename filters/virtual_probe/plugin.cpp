@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/plugin.hpp"
+#include "virtual_probe/virtual_probe.hpp"
+
+using namespace scanmill;
+
+SCANMILL_FILTER() {
+    using P = VirtualProbeParams;
+    return Declare<P>("virtual-probe", 1)
+        .summary("Makes the touches of a probe plan against a mesh, as a measuring machine would.")
+        .source("Wang 2006, chapter 5; sphere tracing: Hart 1996")
+        .ties("None: of equally near triangles any gives the same contact.")
+        .not_finite("Refused, with their number and the first of them.")
+        .adds({"uncertainty", "touch", "feature", "approach"})
+        .in<ProbePlan>("probes", "The plan; touches that are not made are passed over.")
+        .made_by("probe-planner")
+        .in<TriangleMesh>("mesh", "The part that is touched, in the frame of the plan.")
+        .out<PointCloud>("points", "Measured points of the edges, compensated by the radius along `approach`.")
+        .param("noise", &P::noise, "Standard deviation of the machine's error in each coordinate.", at_least(0))
+        .param("reference-error", &P::reference_error,
+               "Reference points are moved at random across the edge, by at most this.", at_least(0))
+        .metric("points", Unit::count, "Touches that met the mesh.", headline)
+        .metric("missed", Unit::count, "Touches without contact.", headline, smaller_is_better)
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            return Outputs().set("points", virtual_probe(inputs.get<ProbePlan>("probes"),
+                                                         inputs.get<TriangleMesh>("mesh"), params, context)
+                                               .points);
+        });
+}
