@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The numbers of Wang 2006 on thinning and triangulation, and our files for similar scans.
+"""The numbers of Wang 2006 on thinning, triangulation and probing, and our files for similar scans.
 
 wang_clouds.py computes the three clouds that the thesis gives by formulas. The scans are not published.
 """
@@ -54,6 +54,35 @@ class Case:
         """By Euler's identity F = 2 V − 2 χ − b, if every kept point is in a facet; None without printed facets."""
         return 2 * self.kept - 2 * self.euler - self.facets if self.facets else None
 
+
+@dataclass(frozen=True)
+class Probing:
+    """A body with one circular edge, and the range of approaches that the thesis prints, in degrees from the axis."""
+
+    table: str
+    shape: str  #: as virtual-scan names it
+    height: float
+    radius: float
+    low: float
+    high: float
+
+    @property
+    def centre(self):
+        return (self.low + self.high) / 2
+
+    @property
+    def half(self):
+        return (self.high - self.low) / 2
+
+
+#: Of the ball, and the largest distance of a reference point from the edge, for tables 5.1 and 5.2.
+PROBE_RADIUS, REFERENCE_ERROR = 5, 0.2
+PROBING = [
+    *(Probing("5.1", "bicone", height, 100, low, high) for height, low, high in (
+        (150, 72.1, 107.9), (120, 66.2, 113.8), (100, 58.7, 122.3), (80, 55.2, 124.6), (60, 47.5, 132.5))),
+    *(Probing("5.2", "cone-on-hemisphere", height, 100, low, high) for height, low, high in (
+        (20, 105.25, 153.45), (50, 105, 137.5), (70, 105.7, 129.3), (100, 112.5, 120.3))),
+]
 
 CASES = {
     "hyperboloid": Case("a hyperboloid, points given by a formula", COUNTS["hyperboloid"], HYPERBOLOID.bin_size,

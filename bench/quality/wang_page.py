@@ -3,7 +3,9 @@
 import math
 import statistics
 
+import paper_wang as paper
 import wang_numbers
+import wang_probing
 from paper_wang import BLOCK_RADII, BLOCK_SIZE, CASES
 from tables import page
 
@@ -23,6 +25,13 @@ is the thesis's data.** Our voxels have the thesis's size; for a scan of another
 Distances are from all points of the scan to the mesh, without the points nearest to its boundary, which are counted
 separately. Seconds are those of voxel-thin, region-grow and features, with one thread and, after the slash, with all
 threads (median of {rounds} rounds)."""
+
+
+PROBING = """\
+Table 5.1 has two cones with a common base, table 5.2 a cone on half of a sphere: each has one circular edge of a known
+angle. The ranges are those of directions from which a ball of radius {radius} meets the edge before a face, wherever the
+reference point is within {error} of the edge, in degrees from the axis. Scanmill's columns are medians over the touches
+that probe-planner plans from a virtual scan, thinned and triangulated; the interior angle is measured on the mesh."""
 
 
 def printed_line(name):
@@ -142,4 +151,8 @@ def lines(results):
     text += ["## Cases (section 4.4)", "", TABLE.format(rounds=results["rounds"]), "", *page.table(HEADER, rows), ""]
     text += [conclusion(entries), ""]
     text += [f"- {remark(entry)}" for entry in entries]
+    text += ["", "## Directions of the probe (chapter 5)", "",
+             PROBING.format(radius=paper.PROBE_RADIUS, error=paper.REFERENCE_ERROR), "",
+             *page.table(wang_probing.HEADER, wang_probing.rows(results["probing"])), ""]
+    text += [f"- {sentence}" for sentence in wang_probing.remarks()]
     return text + ["", page.other_load(results["load"])]

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""wang_tables.py PROGRAM: compares the numbers of chapters 3 and 4 of Wang 2006 with ours.
+"""wang_tables.py PROGRAM: compares the numbers of chapters 3 to 5 of Wang 2006 with ours.
 
 Makes the thesis's clouds by their formulas and thins them to its tolerances (wang-thinning.yaml). Runs the workflow to
 features on every case of section 4.4, or on a similar scan, ROUNDS times with one thread and with all threads, without
-a cache. Every number comes from the program's JSON (metrics and seconds of the steps, the written features) or from a
-closed form. Writes wang-tables.md and .json. The exit code is 1 if a run failed or a fetched file is missing.
+a cache. Plans the touches of the bodies of tables 5.1 and 5.2 (wang-probing.yaml). Every number comes from the
+program's JSON (metrics and seconds of the steps, the written features and plans) or from a closed form. Writes wang-tables.md and .json. The exit code is 1 if a run failed or a fetched file is missing.
 """
 import pathlib
 import sys
@@ -17,6 +17,7 @@ import paper_wang as thesis  # noqa: E402
 import wang_cases  # noqa: E402
 import wang_clouds  # noqa: E402
 import wang_page  # noqa: E402
+import wang_probing  # noqa: E402
 from tables import options as options_of  # noqa: E402
 from tables import paper, scanmill  # noqa: E402
 
@@ -92,6 +93,7 @@ def run(options, folder):
         "binning": {line.cloud: kept_by_bins(options, files[line.cloud], line, folder)
                     for line in (thesis.HEMISPHERE, thesis.HYPERBOLOID)},
         "cases": wang_cases.run(options, files["hyperboloid"], folder),
+        "probing": wang_probing.run(options, folder),
     }
 
 

@@ -47,9 +47,11 @@ SCANMILL_FILTER() {
                size(3))
         .param("up", &P::up,
                "Rectangle: a direction away from the upper side of a plate, where the points have no normals.", size(3))
-        .metric("rms", Unit::length, "Root of the mean squared residual.", headline, smaller_is_better)
-        .metric("largest-residual", Unit::length, "Largest residual.", headline, smaller_is_better)
-        .metric("residual", Unit::length, "Residual of each of the first 100 target points.", numbered,
+        .metric("rms", Unit::length, "Distance of the target points from their moved partners, root mean square.",
+                headline, smaller_is_better)
+        .metric("largest-residual", Unit::length,
+                "Distance of the target point that stays farthest from its moved partner.", headline, smaller_is_better)
+        .metric("residual", Unit::length, "The same distance of each of the first 100 target points.", numbered,
                 smaller_is_better)
         .metric("error-at-part", Unit::length,
                 "Standard error of a moved point, the largest over the corners of the part's bounding box.", headline,

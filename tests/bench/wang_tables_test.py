@@ -9,8 +9,10 @@ import unittest
 
 import wang_cases as cases
 import wang_clouds as clouds
+import paper_wang as thesis
 import wang_numbers as numbers
 import wang_page as page
+import wang_probing as probing
 import wang_tables as bench
 from tables import scanmill
 
@@ -127,6 +129,58 @@ class HolesTest(unittest.TestCase):
         self.assertAlmostEqual(hole["middle"][0], 0)
         self.assertAlmostEqual(hole["largest"], math.sqrt(2))
         self.assertAlmostEqual(hole["least"], 1)
+
+
+def touch(left, right, low, high):
+    return {"left-normal": left, "right-normal": right, "interior-angle": math.pi / 2,
+            "phi-min": low and math.radians(low), "phi-max": high and math.radians(high)}
+
+
+class ProbingTest(unittest.TestCase):
+    def test_formulas_give_the_ranges_of_equation_5_7(self):
+        # acos(0.2 / 5) = 87.708 degrees, without atan(H / R) of the two cones, or half of 90 degrees and it.
+        halves = [31.40, 37.51, 42.71, 49.05, 56.74, 37.05, 29.43, 25.21, 20.21]
+        centres = [90, 90, 90, 90, 90, 129.35, 121.72, 117.50, 112.50]
+        for case, half, centre in zip(thesis.PROBING, halves, centres):
+            self.assertAlmostEqual(probing.half_range(case), half, delta=0.005)
+            self.assertAlmostEqual(probing.centre(case), centre, delta=0.006)
+
+    def test_directions_are_counted_from_the_axis(self):
+        self.assertAlmostEqual(probing.in_the_tables_angle([3, 4, 0]), 90)
+        self.assertAlmostEqual(probing.in_the_tables_angle([0, 0, 2]), 180)
+        self.assertAlmostEqual(probing.in_the_tables_angle([1, 0, 1]), 135)
+
+    def test_medians_are_over_the_touches_that_have_a_range(self):
+        found = probing.planned({"touches": [touch([0, 0, 1], [1, 0, 0], -10, 20), touch([1, 0, 0], [0, 0, 1], -20, 20),
+                                             touch([0, 0, 1], [0, 0, 1], None, None)]})
+        self.assertEqual((found["touches"], found["ranges"]), (3, 2))
+        self.assertAlmostEqual(found["half"], 17.5)
+        self.assertAlmostEqual(found["centre"], 135)
+        self.assertAlmostEqual(found["interior_angle"], 90)
+        with self.assertRaisesRegex(scanmill.Broken, "no touch with a range"):
+            probing.planned({"touches": [touch([0, 0, 1], [0, 0, 1], None, None)]})
+
+    def test_plan_is_the_one_written_as_json(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "plan.json"
+            file.write_text(json.dumps({"touches": []}))
+            outputs = [{"kind": "probes", "outcome": "ok", "file": "plan.vtp"},
+                       {"kind": "probes", "outcome": "ok", "file": str(file)}]
+            self.assertEqual(probing.plan_of({"outputs": outputs}), {"touches": []})
+        with self.assertRaisesRegex(scanmill.Broken, "too flat"):
+            probing.plan_of({"outputs": [], "error": "too flat"})
+
+    def test_page_says_what_agrees_and_what_does_not(self):
+        centres, halves = probing.remarks()
+        self.assertIn("8 of 9 within 0.55 degrees", centres)
+        self.assertIn("100, 100 of table 5.2, which prints 116.4 instead of 112.5", centres)
+        self.assertIn("10.9 to 16.3 degrees smaller", halves)
+        self.assertIn("Scanmill follows the equation", halves)
+        entry = {"interior_angle": 112.5, "centre": 90.5, "half": 31.5, "touches": 63}
+        row = probing.row(thesis.PROBING[0], entry)
+        self.assertEqual(row, ["5.1", "bicone", "150, 100", "72.1 to 107.9", "90.00", "17.90", "90.00", "31.40",
+                               "58.60 to 121.40", "112.5 (112.6)", "90.5", "31.5", 63])
+        self.assertEqual(len(row), len(probing.HEADER))
 
 
 class PageTest(unittest.TestCase):
