@@ -31,7 +31,8 @@ PROBING = """\
 Table 5.1 has two cones with a common base, table 5.2 a cone on half of a sphere: each has one circular edge of a known
 angle. The ranges are those of directions from which a ball of radius {radius} meets the edge before a face, wherever the
 reference point is within {error} of the edge, in degrees from the axis. Scanmill's columns are medians over the touches
-that probe-planner plans from a virtual scan, thinned and triangulated; the interior angle is measured on the mesh."""
+that probe-planner plans from a virtual scan, thinned and triangulated, as far as the mesh has both faces there; the
+interior angle is measured on the mesh."""
 
 
 def printed_line(name):
@@ -154,5 +155,5 @@ def lines(results):
     text += ["", "## Directions of the probe (chapter 5)", "",
              PROBING.format(radius=paper.PROBE_RADIUS, error=paper.REFERENCE_ERROR), "",
              *page.table(wang_probing.HEADER, wang_probing.rows(results["probing"])), ""]
-    text += [f"- {sentence}" for sentence in wang_probing.remarks()]
+    text += [f"- {sentence}" for sentence in wang_probing.remarks(results["probing"])]
     return text + ["", page.other_load(results["load"])]

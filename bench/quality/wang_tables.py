@@ -5,7 +5,8 @@
 Makes the thesis's clouds by their formulas and thins them to its tolerances (wang-thinning.yaml). Runs the workflow to
 features on every case of section 4.4, or on a similar scan, ROUNDS times with one thread and with all threads, without
 a cache. Plans the touches of the bodies of tables 5.1 and 5.2 (wang-probing.yaml). Every number comes from the
-program's JSON (metrics and seconds of the steps, the written features and plans) or from a closed form. Writes wang-tables.md and .json. The exit code is 1 if a run failed or a fetched file is missing.
+program's JSON (metrics and seconds of the steps, the written features and plans) or from a closed form. Writes
+wang-tables.md and .json. The exit code is 1 if a run failed or a fetched file is missing.
 """
 import pathlib
 import sys

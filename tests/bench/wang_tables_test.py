@@ -131,9 +131,10 @@ class HolesTest(unittest.TestCase):
         self.assertAlmostEqual(hole["least"], 1)
 
 
-def touch(left, right, low, high):
-    return {"left-normal": left, "right-normal": right, "interior-angle": math.pi / 2,
-            "phi-min": low and math.radians(low), "phi-max": high and math.radians(high)}
+def touch(left, right, low, high, assumed=False):
+    return {"left-normal": left, "assumed": assumed, "right-normal": right,
+            "interior-angle": math.pi / 2, "phi-min": low and math.radians(low),
+            "phi-max": high and math.radians(high)}
 
 
 class ProbingTest(unittest.TestCase):
@@ -152,8 +153,9 @@ class ProbingTest(unittest.TestCase):
 
     def test_medians_are_over_the_touches_that_have_a_range(self):
         found = probing.planned({"touches": [touch([0, 0, 1], [1, 0, 0], -10, 20), touch([1, 0, 0], [0, 0, 1], -20, 20),
-                                             touch([0, 0, 1], [0, 0, 1], None, None)]})
-        self.assertEqual((found["touches"], found["ranges"]), (3, 2))
+                                             touch([0, 0, 1], [0, 0, 1], None, None),
+                                             touch([0, 0, 1], [0, 1, 0], -1, 1, assumed=True)]})
+        self.assertEqual((found["touches"], found["ranges"]), (4, 2))
         self.assertAlmostEqual(found["half"], 17.5)
         self.assertAlmostEqual(found["centre"], 135)
         self.assertAlmostEqual(found["interior_angle"], 90)
@@ -171,12 +173,16 @@ class ProbingTest(unittest.TestCase):
             probing.plan_of({"outputs": [], "error": "too flat"})
 
     def test_page_says_what_agrees_and_what_does_not(self):
-        centres, halves = probing.remarks()
+        measured = [{"interior_angle": probing.interior_angle(case)} for case in thesis.PROBING]
+        centres, halves, angles = probing.remarks(measured)
+        self.assertIn("within 1 degree of the true one in 9 of 9 cases.", angles)
+        measured[4]["interior_angle"] = 90
+        self.assertIn("8 of 9 cases; edges of 62 (90) degrees are blunted", probing.about_the_mesh(measured))
         self.assertIn("8 of 9 within 0.55 degrees", centres)
         self.assertIn("100, 100 of table 5.2, which prints 116.4 instead of 112.5", centres)
         self.assertIn("10.9 to 16.3 degrees smaller", halves)
         self.assertIn("Scanmill follows the equation", halves)
-        entry = {"interior_angle": 112.5, "centre": 90.5, "half": 31.5, "touches": 63}
+        entry = {"interior_angle": 112.5, "centre": 90.5, "half": 31.5, "touches": 99, "ranges": 63}
         row = probing.row(thesis.PROBING[0], entry)
         self.assertEqual(row, ["5.1", "bicone", "150, 100", "72.1 to 107.9", "90.00", "17.90", "90.00", "31.40",
                                "58.60 to 121.40", "112.5 (112.6)", "90.5", "31.5", 63])
