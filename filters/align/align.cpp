@@ -217,11 +217,14 @@ Vec3 area_of(const Points& corners) {
 }
 
 /// The normal of the plane through the corners, whatever their order: of the largest of the three possible polygons.
-Vec3 plane_normal(const Points& c) {
+Vec3 plane_normal(const Points& c, std::string_view port) {
     Vec3 largest = Vec3::Zero();
     for (const Points& order :
          {Points{c[0], c[1], c[2], c[3]}, Points{c[0], c[2], c[1], c[3]}, Points{c[0], c[1], c[3], c[2]}})
         if (const Vec3 area = area_of(order); area.squaredNorm() > largest.squaredNorm()) largest = area;
+    if (const double extent = extent_of(c); !(largest.norm() > rounding * extent * extent))
+        throw Error("the four corners at '{}' lie on one line", port)
+            .hint("give the four different corners of a rectangle");
     return largest.normalized();
 }
 
@@ -235,9 +238,9 @@ Vec3 up_of(const PointCloud& cloud, const Points& corners, const Vec3& otherwise
             name = "the mean normal of the corners";
         }
     }
-    const Vec3 normal = plane_normal(corners);
+    const Vec3 normal = plane_normal(corners, port);
     const double cosine = normal.dot(up.normalized());
-    constexpr double least = 0.5;  // 60 degrees: half of the way to upright and a safe margin for rough directions
+    constexpr double least = 0.5;  // of 60 degrees
     if (!(std::abs(cosine) >= least))
         throw Error("{} is {:.3g} deg off the normal of the plate at '{}'; at most 60 deg decide which side is up",
                     name, std::acos(std::min(1.0, std::abs(cosine))) * 180 / std::numbers::pi, port)

@@ -151,6 +151,16 @@ TEST(AlignRefusals, OtherThanFourCorners_OrCornersInOnePlace) {
               "the four corners at 'target' do not go once around their centre");
 }
 
+TEST(AlignRefusals, CornersOnOneLine_AreNoRectangle) {
+    for (const std::vector<Vec3>& line : {std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}},
+                                          std::vector<Vec3>{{5, 5, 5}, {5, 5, 5}, {5, 5, 5}, {5, 5, 5}}}) {
+        EXPECT_EQ(refusal(cloud(plate()), cloud(line), in_rectangle(plate()[0])).sentence(),
+                  "the four corners at 'target' lie on one line");
+        EXPECT_EQ(refusal(cloud(line), cloud(plate()), in_rectangle(plate()[0])).sentence(),
+                  "the four corners at 'source' lie on one line");
+    }
+}
+
 TEST(AlignRefusals, AnUprightPlate_NeedsUp) {
     const std::vector<Vec3> upright{{-100, 0, -60}, {100, 0, -60}, {100, 0, 60}, {-100, 0, 60}};
     EXPECT_EQ(refusal(cloud(plate()), cloud(upright), in_rectangle(plate()[0])).sentence(),
