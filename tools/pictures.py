@@ -3,6 +3,7 @@
 """Draws filters/*/picture.svg, the picture of every filter's page. Each one runs the filter's method in the plane."""
 import pathlib
 
+import cleanup_pictures as cleanups
 import cloud_pictures as clouds
 import frame_pictures as frames
 import patch_pictures as patches
@@ -23,6 +24,7 @@ def main():
         ("delaunay", surfaces.delaunay_filter),
         ("edge_flip", surfaces.edge_flip),
         ("features", surfaces.features),
+        ("fill_holes", cleanups.fill_holes),
         ("measure", surfaces.measure),
         ("merge", clouds.merge),
         ("outlier_removal", clouds.outlier_removal),

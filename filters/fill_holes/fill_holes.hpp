@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Closes the holes of a mesh with triangles that continue the surface around them, and marks what was added.
+///
+/// Source: Liepa 2003, "Filling holes in meshes", for triangulation and refinement; Botsch, Kobbelt 2004, "An intuitive
+/// framework for real-time freeform modeling", for fairing; as CGAL's Polygon_mesh_processing does them.
+
+#include <optional>
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/filter/context.hpp"
+
+namespace scanmill {
+
+struct FillHolesParams {
+    /// Loops with more boundary edges stay open; at least 3. Empty: any number.
+    std::optional<u32> max_edges;
+    /// Loops that are longer stay open; above 0. Empty: any length.
+    std::optional<Length> max_length;
+    /// Moves the new vertices so that the filling continues the surface without a crease. Otherwise they stay in the
+    /// triangles that span the loop.
+    bool fair = true;
+};
+
+struct FillHolesResult {
+    /// The input's vertices and triangles in their rows, then those of the fillings, loop by loop. Sharp edges and edge
+    /// columns are the input's.
+    TriangleMesh mesh;
+    /// Loops closed; loops that a limit left open; loops that no filling closes.
+    std::size_t filled = 0, beyond_limits = 0, failed = 0;
+    /// Loops of `filled` whose faired filling would have met the surface, and that have a plainer one.
+    std::size_t plain = 0;
+    /// Of all fillings.
+    double area = 0;
+    /// Length of the longest filled loop; 0 without one.
+    double longest = 0;
+};
+
+/// Fills every boundary loop within the limits, also the outer boundary of an open surface.
+///
+/// Loops. A loop follows the boundary within one fan of triangles. Where it comes back to a vertex, the part between is
+/// a loop of its own: holes that touch in a vertex are separate holes. Limits include their bounds: a loop of exactly
+/// `max_edges` edges, or exactly `max_length` long, is filled.
+///
+/// Filling. CGAL triangulates a loop: among the triangles of the Delaunay tetrahedralisation of its vertices (among all
+/// triangles if these do not suffice and the loop has at most 200 vertices) it minimises the largest angle to
+/// neighbours, then the area. Triangles are then divided until their edges are about as long as those around the loop,
+/// and with `fair` the new vertices are moved to continue the surface with equal tangents. No filling repeats an edge
+/// of the mesh. A filling that intersects the mesh, itself or another filling (see triangles_intersect.hpp; vertices at
+/// one position count as one) is replaced by the one before fairing, then by the one before division. If that
+/// intersects as well the loop stays open; of two fillings that intersect each other, the one with more edges, or the
+/// later one.
+///
+/// Columns. New vertices and triangles have the values of the loop's vertex nearest to them (of equally near ones the
+/// first along the loop), and of the triangle at the loop's edge that starts there; but the vertex column `normal` is
+/// their normal on the new surface, and the face column `corner-normals` repeats the triangle's own. The face column
+/// `filled` and the vertex column `filled` (uint8) are 1 for new ones; where the input has such a column, its marks
+/// stay. A column `filled` of another type is replaced, with a warning.
+///
+/// Pre:  at least one triangle; finite vertices; at most two triangles at an edge, oriented consistently; no triangle
+///       with a repeated vertex. Throws Error naming the first offender otherwise, and for parameters out of range.
+/// Post: no vertex or triangle of the input is moved or removed. Every filled loop is closed by a disc. A filling
+///       intersects nothing.
+/// Doubts its result if a filled loop is longer than the diagonal of the mesh's box, if more than 5 % of the area is
+/// filled, and if a loop stays open that no limit excludes. Warns of boundary edges at equal positions.
+///
+/// Deterministic: the same bytes for any number of threads. Cost: linear in the triangles and about 1 µs for each of
+/// them if there is a loop; of a filling with n vertices about n² in time.
+/// Metrics: `filled`, `left`, `added-triangles`, `added-points`, `area`, `share`, `longest`, `plain`, `failed`.
+FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& params, Context& context);
+
+}  // namespace scanmill

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scanmill/plugin/plugin.hpp"
+#include "fill_holes/fill_holes.hpp"
+
+using namespace scanmill;
+
+SCANMILL_FILTER() {
+    using P = FillHolesParams;
+    return Declare<P>("fill-holes", 1)
+        .summary("Closes the holes of a mesh with triangles that continue the surface, and marks them.")
+        .source("Liepa 2003, Filling holes in meshes; Botsch, Kobbelt 2004 for fairing; by CGAL")
+        .ties(
+            "A loop at a limit is filled. Of fillings that intersect each other the one with more edges gives way; of "
+            "equally many, the later one.")
+        .not_finite("Refused; the message gives their number and the first one.")
+        .adds({"filled"})
+        .in<TriangleMesh>("mesh",
+                          "At most two triangles at an edge, oriented consistently, no triangle with a repeated "
+                          "vertex. Vertices where holes touch are welcome.")
+        .out<TriangleMesh>("mesh",
+                           "The input's vertices and triangles in their rows, then the new ones. The face column "
+                           "`filled` and the vertex column `filled` are 1 for new ones; other columns have the values "
+                           "of the boundary beside them.")
+        .param("max-edges", &P::max_edges, "Loops with more boundary edges stay open; `none`: any number.", at_least(3),
+               word("none"))
+        .param("max-length", &P::max_length, "Loops that are longer stay open; `none`: any length.", above(0),
+               word("none"))
+        .param("fair", &P::fair,
+               "Moves the new vertices so that the filling continues the surface without a crease. Otherwise they stay "
+               "in the triangles that span the loop.")
+        .metric("filled", Unit::count, "Loops that are filled.", headline)
+        .metric("left", Unit::count, "Loops that stay open: beyond a limit, or without a valid filling.", headline,
+                smaller_is_better)
+        .metric("added-triangles", Unit::count, "New triangles.")
+        .metric("added-points", Unit::count, "New vertices.")
+        .metric("area", Unit::area, "Area of the fillings.")
+        .metric("share", Unit::ratio, "The same as a share of the whole area, fillings included.", smaller_is_better)
+        .metric("longest", Unit::length, "Length of the longest filled loop.", smaller_is_better)
+        .metric("plain", Unit::count,
+                "Filled loops whose faired filling would intersect something and that have a plainer one.")
+        .metric("failed", Unit::count,
+                "Loops within the limits that stay open because every filling would intersect "
+                "something.",
+                smaller_is_better)
+        .run([](const Inputs& inputs, const P& params, Context& context) {
+            return Outputs().set("mesh", fill_holes(inputs.get<TriangleMesh>("mesh"), params, context).mesh);
+        });
+}
