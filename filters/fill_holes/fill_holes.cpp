@@ -243,12 +243,21 @@ BoundingBox box_of(const Array<Vec3>& positions, const Triangle& triangle) {
     return box;
 }
 
-/// Finds which fillings intersect something.
-class Intersections {
+/// Finds which fillings intersect something, or repeat an edge.
+class Conflicts {
 public:
-    Intersections(const TriangleMesh& mesh, unsigned threads)
-        : count_(static_cast<u32>(mesh.triangles.size())),
-          tree_(mesh.positions.span(), mesh.triangles.span(), threads) {}
+    Conflicts(const TriangleMesh& mesh, std::span<const Hole> holes, unsigned threads)
+        : vertices_(static_cast<u32>(mesh.positions.size())),
+          count_(static_cast<u32>(mesh.triangles.size())),
+          tree_(mesh.positions.span(), mesh.triangles.span(), threads) {
+        std::vector<bool> is_rim(mesh.positions.size(), false);
+        for (const Hole& hole : holes)
+            for (const u32 h : hole.loop) is_rim[half_edges::start(mesh, h)] = true;
+        for (const Triangle& triangle : mesh.triangles)
+            for (std::size_t i = 0; i < 3; ++i)
+                if (const u32 a = triangle[i], b = triangle[(i + 1) % 3]; is_rim[a] && is_rim[b])
+                    rim_edges_.insert(key(a, b));
+    }
 
     /// Demotes the fillings that have to give way; false if there is none.
     bool resolve(const Assembly& all, std::vector<Hole>& holes, const Execution& execution) const {
@@ -263,8 +272,9 @@ public:
         for (u32 i = 1; i <= added; ++i)
             if (i == added || all.owners[i] != all.owners[i - 1]) begin.push_back(i);
 
-        std::vector<std::vector<u32>> losers(begin.size() - 1);
-        for_each_chunk(execution.threads(), losers.size(), 1, [&](std::size_t hole, std::size_t) {
+        std::vector<std::vector<u32>> losers(begin.size());
+        losers.back() = owners_of_repeated_edges(all, begin, holes);
+        for_each_chunk(execution.threads(), begin.size() - 1, 1, [&](std::size_t hole, std::size_t) {
             Array<u32> near;
             const u32 owner = all.owners[begin[hole]];
             for (u32 i = begin[hole]; i < begin[hole + 1]; ++i) {
@@ -282,9 +292,7 @@ public:
                     const u32 other = all.owners[row];
                     if (!meets(count_ + row)) continue;
                     if (other == owner) gives_way = true;
-                    const std::size_t ours = holes[owner].loop.size(), theirs = holes[other].loop.size();
-                    if (other != owner)
-                        losers[hole].push_back(ours > theirs || (ours == theirs && owner > other) ? owner : other);
+                    if (other != owner) losers[hole].push_back(loser_of(owner, other, holes));
                 }
                 if (gives_way) {
                     losers[hole] = {owner};
@@ -304,8 +312,41 @@ public:
     }
 
 private:
-    u32 count_;
+    static u64 key(u32 a, u32 b) { return u64{std::min(a, b)} << 32 | std::max(a, b); }
+    static u32 loser_of(u32 one, u32 other, std::span<const Hole> holes) {
+        const std::size_t edges = holes[one].loop.size(), others = holes[other].loop.size();
+        return edges > others || (edges == others && one > other) ? one : other;
+    }
+
+    /// Fillings with an inner edge, between two vertices of rims, that the mesh or another filling has.
+    std::vector<u32> owners_of_repeated_edges(const Assembly& all, std::span<const u32> begin,
+                                              std::span<const Hole> holes) const {
+        std::vector<u32> losers;
+        std::unordered_map<u64, u32> owner_of;
+        std::vector<u64> edges;
+        for (std::size_t hole = 0; hole + 1 < begin.size(); ++hole) {
+            const u32 owner = all.owners[begin[hole]];
+            edges.clear();
+            for (u32 i = begin[hole]; i < begin[hole + 1]; ++i)
+                for (std::size_t k = 0; k < 3; ++k)
+                    if (const u32 a = all.triangles[count_ + i][k], b = all.triangles[count_ + i][(k + 1) % 3];
+                        a < vertices_ && b < vertices_)
+                        edges.push_back(key(a, b));
+            std::ranges::sort(edges);
+            for (std::size_t i = 1; i < edges.size(); ++i) {
+                if (edges[i] != edges[i - 1]) continue;  // an edge of the loop has one triangle of the filling
+                if (rim_edges_.contains(edges[i])) losers.push_back(owner);
+                const auto [found, is_new] = owner_of.try_emplace(edges[i], owner);
+                if (!is_new) losers.push_back(loser_of(owner, found->second, holes));
+            }
+        }
+        return losers;
+    }
+
+    u32 vertices_, count_;
     TriangleTree tree_;
+    /// Of the mesh, between vertices of loops.
+    std::unordered_set<u64> rim_edges_;
 };
 
 /// Where new vertices and triangles take their values from.
@@ -466,8 +507,9 @@ void report_doubts(const FillHolesResult& result, double diagonal, std::size_t t
         context.doubt(
             fmt::format("{:.1f} % of the surface are fillings, more than {:.0f} %", 100 * share, 100 * doubtful_share));
     if (result.failed > 0)
-        context.doubt(fmt::format("{} open: every filling would intersect the surface, itself or another filling",
-                                  count_text(result.failed, "loop stays", "loops stay")));
+        context.doubt(fmt::format(
+            "{} open: no filling was found that intersects neither the surface nor itself nor another filling",
+            count_text(result.failed, "loop stays", "loops stay")));
 }
 
 }  // namespace
@@ -504,8 +546,8 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     fill_all();
     Assembly all(mesh, holes);
     if (!holes.empty()) {
-        const Intersections intersections(mesh, context.threads());
-        while (intersections.resolve(all, holes, context)) {
+        const Conflicts conflicts(mesh, holes, context.threads());
+        while (conflicts.resolve(all, holes, context)) {
             context.check_cancelled();
             done = 0;
             fill_all();

@@ -186,8 +186,9 @@ TEST(FillHoles, TheOutlineOfAFlatSheet_StaysOpenWithADoubt) {
     const Filled result = filled(mesh);
     EXPECT_EQ(result.filled, 0u);
     EXPECT_EQ(result.failed, 1u);
-    EXPECT_THAT(result.doubts, ElementsAre("1 loop stays open: every filling would intersect the surface, itself or "
-                                           "another filling"));
+    EXPECT_THAT(result.doubts,
+                ElementsAre("1 loop stays open: no filling was found that intersects neither the surface nor "
+                            "itself nor another filling"));
     expect_laws(mesh, result);
 }
 

@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "repair/repair.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <unordered_map>
+
+#include "repair/orient_soup.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/distance/triangles_intersect.hpp"
+#include "scanmill/geometry/mesh/editable_mesh.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr double doubtful_share = 0.05;  // of the area, removed
+
+double area_of(std::span<const Vec3> positions, const Triangle& triangle) {
+    const auto& [a, b, c] = triangle;
+    return (positions[b] - positions[a]).cross(positions[c] - positions[a]).norm() / 2;
+}
+
+/// A cell of a grid, for vertices near each other.
+struct Cell {
+    std::array<std::int64_t, 3> at;
+    bool operator==(const Cell&) const = default;
+};
+struct CellHash {
+    std::size_t operator()(const Cell& cell) const {
+        u64 hash = 0;
+        for (const std::int64_t i : cell.at) hash = (hash ^ static_cast<u64>(i)) * 0x9e3779b97f4a7c15u + (hash >> 29);
+        return hash;
+    }
+};
+
+class Repair {
+public:
+    Repair(const TriangleMesh& mesh, const RepairParams& params, Context& context)
+        : mesh_(mesh),
+          params_(params),
+          context_(context),
+          positions_(mesh.positions.begin(), mesh.positions.end()) {}
+
+    RepairResult run() {
+        stitch();
+        step(0.2);
+        drop_repeated();
+        step(0.3);
+        split();
+        step(0.6);
+        orient();
+        step(0.7);
+        carry_edges();
+        replace_without_area();
+        step(0.8);
+        drop_small();
+        step(0.9);
+        assemble();
+        return std::move(result_);
+    }
+
+private:
+    void step(double fraction) {
+        context_.check_cancelled();
+        context_.progress(fraction);
+    }
+
+    void stitch() {
+        joined_ = lowest_at_position(positions_);
+        if (params_.stitch.value() > 0) stitch_boundary(params_.stitch.value());
+        for (u32 v = 0; v < joined_.size(); ++v) result_.stitched += joined_[v] != v;
+    }
+
+    std::vector<u32> boundary_vertices() const {
+        std::vector<Edge> edges;
+        for (const Triangle& triangle : mesh_.triangles)
+            for (std::size_t i = 0; i < 3; ++i)
+                edges.push_back(make_edge(joined_[triangle[i]], joined_[triangle[(i + 1) % 3]]));
+        std::ranges::sort(edges);
+        std::vector<u32> vertices;
+        for (std::size_t i = 0, last; i < edges.size(); i = last) {
+            for (last = i + 1; last < edges.size() && edges[last] == edges[i];) ++last;
+            if (last == i + 1) vertices.insert(vertices.end(), {edges[i][0], edges[i][1]});
+        }
+        std::ranges::sort(vertices);
+        vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+        return vertices;
+    }
+
+    void stitch_boundary(double distance) {
+        const Vec3 low = bounding_box(positions_).low;
+        std::unordered_map<Cell, std::vector<u32>, CellHash> kept;
+        std::vector<u32> becomes(joined_.size());
+        std::iota(becomes.begin(), becomes.end(), 0);
+        for (const u32 v : boundary_vertices()) {
+            Cell own;
+            for (int axis = 0; axis < 3; ++axis)
+                own.at[static_cast<std::size_t>(axis)] =
+                    static_cast<std::int64_t>(std::floor((positions_[v][axis] - low[axis]) / distance));
+            double nearest = distance * distance;
+            u32 found = v;
+            for (int i = 0; i < 27; ++i) {
+                const auto cell =
+                    kept.find({{own.at[0] + i % 3 - 1, own.at[1] + i / 3 % 3 - 1, own.at[2] + i / 9 - 1}});
+                if (cell == kept.end()) continue;
+                for (const u32 other : cell->second) {
+                    const double squared = (positions_[other] - positions_[v]).squaredNorm();
+                    if (squared < nearest || (squared == nearest && other < found)) nearest = squared, found = other;
+                }
+            }
+            becomes[v] = found;
+            if (found == v) kept[own].push_back(v);
+        }
+        for (u32& vertex : joined_) vertex = becomes[vertex];
+    }
+
+    void drop_repeated() {
+        std::vector<std::pair<Triangle, u32>> by_corners;
+        for (u32 row = 0; row < mesh_.triangles.size(); ++row) {
+            Triangle triangle = mesh_.triangles[row];
+            for (u32& vertex : triangle) vertex = joined_[vertex];
+            input_area_ += area_of(positions_, mesh_.triangles[row]);
+            if (half_edges::has_repeated_vertex(triangle)) {
+                ++result_.repeated_vertex;
+                removed_area_ += area_of(positions_, mesh_.triangles[row]);
+                continue;
+            }
+            std::ranges::sort(triangle);
+            by_corners.emplace_back(triangle, row);
+        }
+        if (by_corners.empty())
+            throw Error("no triangle has three different corners; the mesh has {}",
+                        count_text(mesh_.triangles.size(), "triangle", "triangles"))
+                .hint(params_.stitch.value() > 0 ? "lower stitch: it joins vertices of one triangle"
+                                                 : "`scanmill info` shows what a file contains");
+        std::ranges::sort(by_corners);
+        for (std::size_t i = 0; i < by_corners.size(); ++i)
+            if (i > 0 && by_corners[i].first == by_corners[i - 1].first)
+                ++result_.duplicates;
+            else
+                rows_.push_back(by_corners[i].second);
+        std::ranges::sort(rows_);
+        for (const u32 row : rows_) {
+            Triangle triangle = mesh_.triangles[row];
+            for (u32& vertex : triangle) vertex = joined_[vertex];
+            triangles_.push_back(triangle);
+        }
+    }
+
+    TriangleMesh current() const {
+        TriangleMesh mesh;
+        mesh.positions = positions_;
+        mesh.triangles = Array<Triangle>(triangles_.begin(), triangles_.end());
+        return mesh;
+    }
+
+    void split() {
+        half_edges::for_each_edge(half_edges::by_smaller_vertex(current()),
+                                  [&](u32, auto its) { result_.split_edges += its.size() > 2; });
+        const std::vector<u32> originals = orient_soup(positions_.size(), triangles_);
+        result_.split_vertices = originals.size();
+        source_.resize(positions_.size());
+        std::iota(source_.begin(), source_.end(), 0);
+        for (const u32 original : originals) {
+            source_.push_back(source_[original]);
+            positions_.push_back(positions_[original]);
+        }
+    }
+
+    /// Whether the triangle at `index` has the orientation of the input.
+    bool is_reversed(std::size_t index) const {
+        const Triangle& input = mesh_.triangles[rows_[index]];
+        std::array<u32, 3> now;
+        for (std::size_t i = 0; i < 3; ++i) now[i] = source_[triangles_[index][i]];
+        const auto first = static_cast<std::size_t>(std::ranges::find(now, joined_[input[0]]) - now.begin());
+        return now[(first + 1) % 3] != joined_[input[1]];
+    }
+
+    void orient() {
+        const Array<u32> opposite = half_edges::opposites(current());
+        const u32 count = static_cast<u32>(triangles_.size());
+        DisjointSets components(count);
+        std::vector<bool> is_open(count, false);
+        for (u32 h = 0; h < opposite.size(); ++h)
+            if (opposite[h] != half_edges::boundary) components.unite(h / 3, opposite[h] / 3);
+        struct Votes {
+            double kept = 0, reversed = 0, volume = 0;
+        };
+        std::vector<Votes> votes(count);
+        for (u32 t = 0; t < count; ++t) {
+            const u32 component = components.find(t);
+            for (const u32 h : {3 * t, 3 * t + 1, 3 * t + 2})
+                if (opposite[h] == half_edges::boundary) is_open[component] = true;
+            // A share of 0 area also votes.
+            (is_reversed(t) ? votes[component].reversed : votes[component].kept) +=
+                std::max(area_of(positions_, triangles_[t]), std::numeric_limits<double>::min());
+            const Vec3& origin = positions_[triangles_[component][0]];
+            const auto& [a, b, c] = triangles_[t];
+            votes[component].volume +=
+                (positions_[a] - origin).dot((positions_[b] - origin).cross(positions_[c] - origin));
+        }
+        for (u32 t = 0; t < count; ++t) {
+            const u32 component = components.find(t);
+            const Votes& its = votes[component];
+            const bool agree = its.kept == 0 || its.reversed == 0;
+            const bool turn = agree || is_open[component] ? its.reversed > its.kept : its.volume < 0;
+            if (turn) std::swap(triangles_[t][1], triangles_[t][2]);
+            result_.oriented += is_reversed(t);
+        }
+    }
+
+    /// Sharp edges and rows of edge columns, by the vertices that their edges have now.
+    void carry_edges() {
+        if (mesh_.sharp_edges.empty() && mesh_.edges.empty()) return;
+        std::set<Edge> sharp;
+        std::map<Edge, u32> rows;
+        for (const auto& [a, b] : mesh_.sharp_edges) sharp.insert(make_edge(joined_[a], joined_[b]));
+        for (u32 row = 0; row < mesh_.edges.size(); ++row)
+            rows.try_emplace(make_edge(joined_[mesh_.edges[row][0]], joined_[mesh_.edges[row][1]]), row);
+        for (const Triangle& triangle : triangles_)
+            for (std::size_t i = 0; i < 3; ++i) {
+                const u32 a = triangle[i], b = triangle[(i + 1) % 3];
+                const Edge input = make_edge(source_[a], source_[b]);
+                if (sharp.contains(input)) sharp_.insert(make_edge(a, b));
+                if (const auto found = rows.find(input); found != rows.end()) {
+                    edge_rows_.emplace(found->second, make_edge(a, b));
+                    rows.erase(found);
+                }
+            }
+    }
+
+    bool is_collinear(const Triangle& triangle) const {
+        return collinear(positions_[triangle[0]], positions_[triangle[1]], positions_[triangle[2]]);
+    }
+    u32 longest_edge(const EditableMesh& mesh, u32 row) const {
+        u32 longest = 3 * row;
+        const auto length = [&](u32 h) { return (positions_[mesh.end(h)] - positions_[mesh.start(h)]).squaredNorm(); };
+        for (const u32 h : {3 * row + 1, 3 * row + 2})
+            if (length(h) > length(longest)) longest = h;
+        return longest;
+    }
+
+    void replace_without_area() {
+        for (bool again = true; again;) {
+            again = false;
+            std::vector<u32> flat;
+            for (u32 t = 0; t < triangles_.size(); ++t)
+                if (is_collinear(triangles_[t])) flat.push_back(t);
+            result_.left_without_area = flat.size();
+            if (flat.empty()) return;
+            EditableMesh mesh(current());
+            std::vector<bool> dropped(triangles_.size(), false);
+            std::size_t drops = 0;
+            for (const u32 t : flat) {
+                if (!is_collinear(mesh.triangle(t))) continue;
+                const u32 h = longest_edge(mesh, t);
+                if (mesh.is_boundary(h)) {
+                    dropped[t] = true;
+                    ++drops;
+                } else if (mesh.can_flip(h) && !is_collinear(mesh.triangle(mesh.opposite(h) / 3))) {
+                    const u32 a = mesh.start(h), b = mesh.end(h), c = mesh.apex(h);
+                    if (sharp_.erase(make_edge(a, b)) > 0) sharp_.insert({make_edge(a, c), make_edge(c, b)});
+                    mesh.flip(h);
+                    ++result_.flipped;
+                    again = true;
+                }
+            }
+            result_.without_area += drops;
+            again = again || drops > 0;
+            for (u32 t = 0; t < triangles_.size(); ++t) triangles_[t] = mesh.triangle(t);
+            keep([&](std::size_t t) { return !dropped[t]; });
+            if (triangles_.empty())
+                throw Error("the corners of every triangle are on one line").hint("such a mesh has no surface");
+        }
+        if (result_.left_without_area > 0)
+            context_.warn(fmt::format("{} without area: a flip of their longest edge would make an edge twice",
+                                      count_text(result_.left_without_area, "triangle stays", "triangles stay")));
+    }
+
+    template <class Keeps>
+    void keep(Keeps&& keeps) {
+        std::size_t size = 0;
+        for (std::size_t t = 0; t < triangles_.size(); ++t)
+            if (keeps(t)) {
+                triangles_[size] = triangles_[t];
+                rows_[size++] = rows_[t];
+            }
+        triangles_.resize(size);
+        rows_.resize(size);
+    }
+
+    void drop_small() {
+        const double share = params_.min_component.value();
+        if (!(share > 0)) return;
+        const Array<u32> opposite = half_edges::opposites(current());
+        DisjointSets components(triangles_.size());
+        for (u32 h = 0; h < opposite.size(); ++h)
+            if (opposite[h] < half_edges::no_half_edge) components.unite(h / 3, opposite[h] / 3);
+        std::vector<double> areas(triangles_.size(), 0);
+        double whole = 0;
+        for (u32 t = 0; t < triangles_.size(); ++t) {
+            const double area = area_of(positions_, triangles_[t]);
+            areas[components.find(t)] += area;
+            whole += area;
+        }
+        const auto is_small = [&](u32 t) { return areas[components.find(t)] < share * whole; };
+        std::size_t count = 0;
+        double largest = 0;
+        for (u32 t = 0; t < triangles_.size(); ++t) {
+            if (components.find(t) == t) {
+                ++count;
+                largest = std::max(largest, areas[t]);
+                result_.removed_components += is_small(t);
+            }
+            if (is_small(t)) {
+                ++result_.small;
+                removed_area_ += area_of(positions_, triangles_[t]);
+            }
+        }
+        if (result_.removed_components == count)
+            throw Error(
+                "each of the {} components is below min-component: the largest has {:.3g} % of the area, and "
+                "{:.3g} % are needed",
+                count, 100 * largest / whole, 100 * share)
+                .hint("lower min-component; if the mesh is a soup of separate triangles, raise stitch");
+        keep([&](std::size_t t) { return !is_small(static_cast<u32>(t)); });
+    }
+
+    void assemble() {
+        TriangleMesh mesh;
+        mesh.frame = mesh_.frame;
+        mesh.vertex_columns = result_.split_vertices > 0 ? mesh_.vertex_columns.gather(source_) : mesh_.vertex_columns;
+        mesh.positions = positions_;
+        mesh.triangles = Array<Triangle>(triangles_.begin(), triangles_.end());
+        mesh.face_columns =
+            rows_.size() == mesh_.triangles.size() ? mesh_.face_columns : mesh_.face_columns.gather(rows_);
+        if (!sharp_.empty() || !edge_rows_.empty()) set_edges(mesh);
+        result_.mesh = without_unused_vertices(mesh);
+        result_.unused_points = mesh.positions.size() - result_.mesh.positions.size() - result_.stitched;
+        if (removed_area_ > doubtful_share * input_area_)
+            context_.doubt(
+                fmt::format("{:.1f} % of the area were removed: {} of small components, {} that stitch "
+                            "collapses",
+                            100 * removed_area_ / input_area_, count_text(result_.small, "triangle", "triangles"),
+                            result_.repeated_vertex));
+    }
+
+    void set_edges(TriangleMesh& mesh) {
+        std::set<Edge> edges;
+        for (const Triangle& triangle : triangles_)
+            for (std::size_t i = 0; i < 3; ++i) edges.insert(make_edge(triangle[i], triangle[(i + 1) % 3]));
+        Array<Edge> sharp, kept;
+        for (const Edge& edge : sharp_)
+            if (edges.contains(edge)) sharp.push_back(edge);
+        Array<u32> rows;
+        for (const auto& [row, edge] : edge_rows_)
+            if (edges.contains(edge)) {
+                rows.push_back(row);
+                kept.push_back(edge);
+            }
+        mesh.sharp_edges = std::move(sharp);
+        mesh.edge_columns = mesh_.edge_columns.gather(rows);
+        mesh.edges = std::move(kept);
+    }
+
+    const TriangleMesh& mesh_;
+    const RepairParams& params_;
+    Context& context_;
+    RepairResult result_;
+    /// Of the input, then of copies.
+    Array<Vec3> positions_;
+    /// By vertex of the input: the one it is joined to.
+    Array<u32> joined_;
+    /// By vertex: the row of the input's vertex whose values it has.
+    Array<u32> source_;
+    std::vector<Triangle> triangles_;
+    /// By triangle: its row in the input.
+    Array<u32> rows_;
+    std::set<Edge> sharp_;
+    std::map<u32, Edge> edge_rows_;
+    double input_area_ = 0, removed_area_ = 0;
+};
+
+void require_usable(const TriangleMesh& mesh, const RepairParams& params) {
+    const double stitch = params.stitch.value(), share = params.min_component.value();
+    if (!(stitch >= 0) || !std::isfinite(stitch))
+        throw Error("stitch must be 0 or more; it is {:g} u", stitch).hint("0 joins vertices at equal positions only");
+    if (!(share >= 0 && share <= 1))
+        throw Error("min-component must be from 0 to 100 %; it is {:g} %", 100 * share)
+            .hint("`1 %` removes components with less than a hundredth of the area");
+    if (mesh.triangles.empty())
+        throw Error("the mesh has no triangles; repair needs at least one")
+            .hint("`scanmill info` shows what a file contains; alpha-solid and region-grow make meshes of points");
+    require_consistent(mesh);
+    require_finite(mesh.positions.span(), "vertices");
+}
+
+}  // namespace
+
+RepairResult repair(const TriangleMesh& mesh, const RepairParams& params, Context& context) {
+    require_usable(mesh, params);
+    context.check_cancelled();
+    RepairResult result = Repair(mesh, params, context).run();
+    const MeshTopology after = topology(result.mesh);
+    context.metric("oriented", static_cast<double>(result.oriented));
+    context.metric("stitched", static_cast<double>(result.stitched));
+    context.metric("split-vertices", static_cast<double>(result.split_vertices));
+    context.metric("split-edges", static_cast<double>(result.split_edges));
+    context.metric("removed-triangles", static_cast<double>(mesh.triangles.size() - result.mesh.triangles.size()));
+    context.metric("removed-components", static_cast<double>(result.removed_components));
+    context.metric("removed-points", static_cast<double>(result.unused_points));
+    context.metric("flipped", static_cast<double>(result.flipped));
+    context.metric("components", static_cast<double>(after.components));
+    context.metric("boundary-loops", static_cast<double>(after.boundary_loops));
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Makes an oriented 2-manifold, closed or with boundary, of any triangles: joins cuts, orients neighbours equally,
+/// splits edges and vertices where several surfaces meet, and drops triangles without area and small components.
+///
+/// Source: Gueziec, Taubin, Lazarus, Horn 2001, "Cutting and stitching: converting sets of polygons to manifold
+/// surfaces", as CGAL's Polygon_mesh_processing::orient_polygon_soup does it.
+
+#include "scanmill/data/mesh.hpp"
+#include "scanmill/data/quantity.hpp"
+#include "scanmill/filter/context.hpp"
+
+namespace scanmill {
+
+struct RepairParams {
+    /// Vertices on the boundary at most this far apart are joined; 0 or more. Vertices at one position are joined in
+    /// any case, on the boundary or not.
+    Length stitch = Length(0.0);
+    /// Connected components with less than this share of the area are removed, from 0 to 1.
+    Ratio min_component = Ratio::percent(0);
+};
+
+struct RepairResult {
+    TriangleMesh mesh;
+    std::size_t stitched = 0;  ///< vertices joined to another one
+    std::size_t repeated_vertex = 0;  ///< triangles removed because two of their corners are one vertex
+    std::size_t duplicates = 0;  ///< triangles removed because an earlier one has the same three vertices
+    std::size_t without_area = 0;  ///< removed triangles of three collinear vertices, at the boundary
+    std::size_t small = 0;  ///< triangles removed with their component
+    std::size_t flipped = 0;  ///< triangles of three collinear vertices replaced by a flip of their longest edge
+    std::size_t oriented = 0;  ///< triangles that were reversed
+    std::size_t split_edges = 0;  ///< edges that had three or more triangles
+    std::size_t split_vertices = 0;  ///< copies that vertices received where several surfaces met
+    std::size_t removed_components = 0;  ///< below min_component
+    std::size_t unused_points = 0;  ///< vertices that are in no triangle of the result
+    std::size_t left_without_area = 0;  ///< triangles of three collinear vertices that stay
+};
+
+/// 1. Stitch. Vertices at one position become the one with the lowest row. With `stitch` above 0, each vertex on the
+///    boundary (of an edge with one triangle) then joins the nearest vertex on the boundary that stayed before it, in
+///    order of rows, if that is at most `stitch` away; of equally near ones the lower row. The vertex that stays keeps
+///    its position and its values.
+/// 2. Triangles with a repeated vertex are removed, and of triangles with the same three vertices, in any order, all
+/// but
+///    the first.
+/// 3. Orient and split (CGAL). Triangles at an edge with two triangles are oriented equally, starting from the first
+///    triangle. Edges with three or more triangles, and edges where that is impossible (as on a Moebius strip), are
+///    borders: vertices get copies so that every vertex has one fan of triangles. Copies are at the same position.
+///    Then each component whose input triangles agree keeps their orientation. Another one that is closed encloses a
+///    positive volume; one that is open takes the orientation that more of its area had, in a tie that of its first
+///    triangle.
+/// 4. Triangles of three exactly collinear vertices are replaced: the longest edge is flipped. At the boundary they are
+///    removed. Those whose flip would make an edge a second time stay, with a warning.
+/// 5. Connected components with less than `min_component` of the area are removed; those at the limit stay.
+///
+/// Columns. Vertices, triangles and edges keep their values and their order; copies of vertices follow behind, with the
+/// values of the original. A flip swaps area between two triangles; both keep their values. Sharp edges and rows of
+/// edge columns stay while their edge exists; where a split makes two of one edge, both are sharp and the first has the
+/// row.
+///
+/// Pre:  at least one triangle; finite vertices. Throws Error otherwise, for parameters out of range, and if no
+/// triangle
+///       is left.
+/// Post: at most two triangles at an edge, oriented equally; one fan at a vertex; no triangle with a repeated vertex;
+///       no unused vertex. A second run with the same parameters and `min_component` 0 changes no triangle, except that
+///       it joins and splits the same vertices again.
+/// Doubts its result if triangles with more than 5 % of the area are removed.
+///
+/// Deterministic: serial, the same bytes on every machine. Cost: O(n log n) time, about 500 bytes per triangle.
+/// Metrics: `oriented`, `stitched`, `split-vertices`, `split-edges`, `removed-triangles`, `removed-components`,
+/// `removed-points`, `flipped`, `components`, `boundary-loops`.
+RepairResult repair(const TriangleMesh& mesh, const RepairParams& params, Context& context);
+
+}  // namespace scanmill
