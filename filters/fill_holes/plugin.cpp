@@ -29,8 +29,7 @@ SCANMILL_FILTER() {
                "Moves the new vertices so that the filling continues the surface without a crease. Otherwise they stay "
                "in the triangles that span the loop.")
         .metric("filled", Unit::count, "Loops that are filled.", headline)
-        .metric("left", Unit::count, "Loops that stay open: beyond a limit, or without a valid filling.", headline,
-                smaller_is_better)
+        .metric("left", Unit::count, "Loops that stay open: beyond a limit, or without a valid filling.", headline)
         .metric("added-triangles", Unit::count, "New triangles.")
         .metric("added-points", Unit::count, "New vertices.")
         .metric("area", Unit::area, "Area of the fillings.")

@@ -38,7 +38,7 @@ SCANMILL_FILTER() {
         .metric("removed-points", Unit::count, "Vertices, other than joined ones, that are in no triangle that stays.")
         .metric("flipped", Unit::count, "Triangles without area that were replaced by a flip of their longest edge.")
         .metric("components", Unit::count, "Connected components of the result.", headline)
-        .metric("boundary-loops", Unit::count, "Boundary loops of the result.", headline, smaller_is_better)
+        .metric("boundary-loops", Unit::count, "Boundary loops of the result.", headline)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("mesh", repair(inputs.get<TriangleMesh>("mesh"), params, context).mesh);
         });

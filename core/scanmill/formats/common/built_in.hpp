@@ -96,9 +96,10 @@ Format probes_csv_format();
 /// Read: for each scan the numbers of columns and rows, the scanner's position and axes, four rows of four numbers that
 /// map a row vector (x y z 1) to the world, and one line per cell: x y z intensity, optionally red green blue. The
 /// result is one cloud of the placed points with `intensity` (float64) and, when every scan has colours, `colour` (see
-/// text_columns()); several scans are numbered by a column `scan` (uint32) from 0. Cells at 0 0 0 are not points: they
-/// are left out and counted. The grid and the scanner's position are left out. A matrix that scales, shears or mirrors
-/// is applied with a warning; one that is singular, not finite or not affine is an Error.
+/// text_columns()); `approach` (3 × float32) is the unit vector from a point to its scanner, (0, 0, 0) for a point
+/// without a finite position; several scans are numbered by a column `scan` (uint32) from 0. Cells at 0 0 0 are not
+/// points: they are left out and counted. The grid is left out. A matrix that scales, shears or mirrors is applied with
+/// a warning; one that is singular, not finite or not affine is an Error.
 Format ptx_format();
 
 /// LAS, the exchange format of airborne and terrestrial lidar: versions 1.0 to 1.4, point formats 0 to 10.

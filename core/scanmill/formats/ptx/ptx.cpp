@@ -24,7 +24,8 @@ public:
         if (scans_ > 1)
             warn(options_.on_warning, "{} scans were read as one cloud; the column 'scan' has their numbers", scans_);
         warn(options_.on_warning,
-             "the order of the cells in columns and rows and the scanner's position were left out");
+             "the order of the cells in columns and rows was left out; the column 'approach' has the directions to the "
+             "scanner");
         TriangleMesh vertices;
         vertices.vertex_columns = columns();
         LoadedFile loaded = loaded_file("PTX", "ascii", {}, std::move(positions_), std::move(vertices), options_);
@@ -136,6 +137,11 @@ private:
             return (local.transpose() * matrix.topLeftCorner<3, 3>() + matrix.bottomLeftCorner<1, 3>()).transpose();
         };
         positions_.push_back(moves ? placed() : local);
+        // A huge or infinite coordinate has no direction: then it is 0.
+        const Vec3 direction =
+            (moves ? Vec3(matrix.topLeftCorner<3, 3>().transpose() * -local) : Vec3(-local)).stableNormalized();
+        for (const double number : direction)
+            approaches_.push_back(direction.allFinite() ? static_cast<float>(number) : 0.0f);
     }
 
     [[noreturn]] void throw_width() const {
@@ -153,6 +159,7 @@ private:
         names.resize(kept);
         values_.resize(kept);
         ColumnTable table = text_columns(std::move(names), std::move(values_), false, options_.on_warning);
+        table.add(Column("approach", 3, Buffer<float>(std::move(approaches_))));
         if (scans_ > 1) table.add(Column("scan", 1, Buffer(std::move(scan_of_))));
         return table;
     }
@@ -165,6 +172,7 @@ private:
     std::optional<bool> has_colours_;  // of this scan
     Array<Vec3> positions_;
     std::vector<Array<double>> values_{4};  // intensity, red, green, blue
+    Array<float> approaches_;  // unit vectors to the scanner
     Array<u32> scan_of_;
 };
 

@@ -37,6 +37,12 @@ TEST(PtxReader, Matrix_TurnsRowVectors_AndMovesByItsLastRow) {
     EXPECT_EQ(world_of(*cloud, 1), Vec3(98, 200, 305));
 }
 
+TEST(PtxReader, DirectionsToTheScanner_TurnWithTheMatrix) {
+    const std::string turn = "0 1 0 0\n-1 0 0 0\n0 0 1 0\n100 200 300 1\n";
+    const auto cloud = points_in(scan("1", "3", turn, "2 0 0 0\n0 3 4 0\nnan 0 1 0\n"), "a.ptx");
+    EXPECT_THAT(numbers_of<float>(cloud->columns.find("approach")), ElementsAre(0, -1, 0, 0.6f, 0, -0.8f, 0, 0, 0));
+}
+
 TEST(PtxReader, CellsWithoutReturn_AreLeftOutAndCounted_BeforeTheMatrixMovesThem) {
     Warnings warnings;
     const std::string moved = "1 0 0 0\n0 1 0 0\n0 0 1 0\n7 0 0 1\n";

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "smooth/smooth.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/fit/jet.hpp"
+#include "scanmill/geometry/spatial/point_tree.hpp"
+
+namespace scanmill {
+
+namespace {
+
+using Method = SmoothParams::Method;
+
+constexpr double doubtful_spacings = 0.5;  // moved, root of the mean square
+constexpr std::size_t chunk = 1 << 10;
+
+/// By position of the tree.
+struct Moves {
+    Array<Vec3> offsets;
+    Array<double> nearest;  ///< squared distance; 0 without neighbours
+    std::vector<u8> flat;
+};
+
+/// Reusable memory of one thread.
+struct Work {
+    Array<Vec3> offsets;
+    Array<double> weights;
+    NeighbourBuffer buffer;
+};
+
+void move(u32 index, std::span<const Neighbour> neighbours, std::span<const Vec3> positions, const SmoothParams& params,
+          Work& work, Moves& moves) {
+    work.offsets.assign(1, Vec3::Zero());
+    work.weights.clear();
+    for (const Neighbour& neighbour : neighbours) work.offsets.push_back(positions[neighbour.index] - positions[index]);
+    if (params.method == Method::mls && !neighbours.empty()) {
+        const double reach =
+            params.radius ? params.radius->value() * params.radius->value() : neighbours.back().squared;
+        work.weights.push_back(1);
+        for (const Neighbour& neighbour : neighbours) {
+            const double inverse = 1 + neighbour.squared / (reach / 4);
+            work.weights.push_back(1 / (inverse * inverse));
+        }
+    }
+    moves.nearest[index] = neighbours.empty() ? 0 : neighbours.front().squared;
+    moves.flat[index] = 1;
+    moves.offsets[index] = Vec3::Zero();
+    if (neighbours.size() < 3) return;
+    const Jet jet = fit_jet(work.offsets, work.weights);
+    moves.offsets[index] = jet.offset;
+    moves.flat[index] = !jet.is_curved;
+}
+
+Moves moves_of(const PointTree& tree, const SmoothParams& params, Context& context) {
+    const std::span<const Vec3> positions = tree.positions();
+    const std::size_t count = positions.size();
+    Moves moves{Array<Vec3>(count), Array<double>(count), std::vector<u8>(count)};
+    std::atomic<std::size_t> done = 0;
+    const auto report = [&](std::size_t more) {
+        context.progress(0.9 * static_cast<double>(done += more) / static_cast<double>(count));
+    };
+    if (params.radius) {
+        const double squared = params.radius->value() * params.radius->value();
+        for_each_chunk(context.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
+            Work work;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (i % 64 == 0) context.check_cancelled();
+                const u32 index = static_cast<u32>(i);
+                move(index, tree.within(index, squared, work.buffer), positions, params, work, moves);
+            }
+            report(end - begin);
+        });
+    } else {
+        const std::size_t each = std::min<std::size_t>(params.neighbours, count - 1);
+        tree.for_each_nearest(each, context.threads(), [&](const NeighbourBatch& batch) {
+            context.check_cancelled();
+            Work work;
+            for (std::size_t i = 0; i < batch.indices.size(); ++i)
+                move(batch.indices[i], batch.of(i), positions, params, work, moves);
+            report(batch.indices.size());
+        });
+    }
+    return moves;
+}
+
+double median_spacing(Array<double> squares) {
+    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+    std::nth_element(squares.begin(), middle, squares.end());
+    return std::sqrt(*middle);
+}
+
+PointCloud moved_points(const PointCloud& cloud, std::span<const u32> index_of_row, const Moves& moves,
+                        Context& context) {
+    Array<Vec3> positions(cloud.size());
+    Array<float> distances(cloud.size());
+    for (std::size_t row = 0; row < cloud.size(); ++row) {
+        const Vec3& offset = moves.offsets[index_of_row[row]];
+        positions[row] = cloud.positions[row] + offset;
+        distances[row] = static_cast<float>(offset.norm());
+    }
+    PointCloud result{cloud.frame, std::move(positions), {}};
+    for (const Column& column : cloud.columns) {
+        if (column.name() == "moved") {
+            context.warn("the column 'moved' of the input is replaced");
+            continue;
+        }
+        if (column.name() == "normal")
+            context.warn(
+                "the column 'normal' is that of the points before they moved; the filter normals makes new ones");
+        result.columns.add(column);
+    }
+    result.columns.add(Column("moved", 1, Buffer<float>(std::move(distances))).with_length_exponent(1));
+    return result;
+}
+
+void require_usable(const PointCloud& cloud, const SmoothParams& params) {
+    if (params.neighbours < 5 || params.neighbours > 1000)
+        throw Error("neighbours must be from 5 to 1000; it is {}", params.neighbours)
+            .hint("24 suits most scans; more for noisier ones");
+    if (params.radius && !(params.radius->value() > 0 && std::isfinite(params.radius->value())))
+        throw Error("radius must be above 0; it is {:g} u", params.radius->value())
+            .hint("`3 spacing` suits most scans; leave radius out to use the nearest neighbours");
+    if (cloud.size() == 0)
+        throw Error("the cloud has 0 points; smoothing needs at least 6")
+            .hint("`scanmill info` shows what a file contains");
+    if (cloud.size() > ~u32(0))
+        throw Error("the cloud has {} points; at most {} are supported", cloud.size(), ~u32(0)).hint("split the scan");
+    require_finite(cloud.positions.span());
+}
+
+}  // namespace
+
+SmoothResult smooth(const PointCloud& cloud, const SmoothParams& params, Context& context) {
+    require_usable(cloud, params);
+    context.check_cancelled();
+    const PointTree tree(cloud.positions.span(), context.threads());
+    const Moves moves = moves_of(tree, params, context);
+    const std::size_t positions = tree.positions().size();
+    if (std::ranges::all_of(moves.flat, [](u8 it) { return it == 1; }))
+        throw Error("the neighbours of none of the {} determine a surface: they are too few, or on a line",
+                    count_text(positions, "position", "positions"))
+            .hint(params.radius ? "raise radius, or leave it out to use the nearest neighbours"
+                                : "smoothing needs at least 6 positions that are not on one line");
+    SmoothResult result;
+    double squares = 0;
+    for (const u32 index : tree.index_of_row()) {
+        const double squared = moves.offsets[index].squaredNorm();
+        squares += squared;
+        result.moved_max = std::max(result.moved_max, std::sqrt(squared));
+        result.flat += moves.flat[index];
+    }
+    result.moved_rms = std::sqrt(squares / static_cast<double>(cloud.size()));
+    result.points = moved_points(cloud, tree.index_of_row(), moves, context);
+    if (const double spacing = median_spacing(moves.nearest); result.moved_rms > doubtful_spacings * spacing)
+        context.doubt(
+            fmt::format("the points moved by {:.3g} u (root of the mean square), the median distance to the "
+                        "nearest other point is {:.3g} u: details as large as that are lost; fewer neighbours "
+                        "move them less",
+                        result.moved_rms, spacing));
+    context.metric("moved-rms", result.moved_rms, Unit::length);
+    context.metric("moved-max", result.moved_max, Unit::length);
+    context.metric("flat", static_cast<double>(result.flat));
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill

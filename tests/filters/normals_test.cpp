@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "normals/normals.hpp"
+#include "scanmill/base/random.hpp"
+#include "scanmill/formats/files.hpp"
+#include "support/doubts.hpp"
+#include "support/point_sets.hpp"
+#include "support/real_data.hpp"
+#include "support/same_points.hpp"
+#include "support/shapes.hpp"
+#include "support/thrown.hpp"
+
+namespace scanmill::test {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using Method = NormalsParams::Method;
+using Orient = NormalsParams::Orient;
+
+struct Estimated : NormalsResult {
+    std::vector<std::string> doubts, warnings;
+    Metrics metrics;
+    Vec3 normal(std::size_t row) const {
+        const Column& column = *points.columns.find("normal");
+        return {column.number(row, 0), column.number(row, 1), column.number(row, 2)};
+    }
+};
+Estimated estimated(const PointCloud& cloud, const NormalsParams& params = {}, unsigned threads = 1) {
+    ContextOptions options;
+    options.threads = threads;
+    Context context(options);
+    return {normals(cloud, params, context), doubts_of(context), context.warnings(), context.metrics()};
+}
+NormalsParams with(Orient orient, Method method = Method::pca, u32 neighbours = 16) {
+    NormalsParams params;
+    params.orient = orient;
+    params.method = method;
+    params.neighbours = neighbours;
+    return params;
+}
+/// A square grid in the plane z = height, with a column of directions.
+PointCloud sheet(u32 size, double height) {
+    Array<Vec3> positions;
+    for (u32 y = 0; y < size; ++y)
+        for (u32 x = 0; x < size; ++x) positions.emplace_back(x, y, height);
+    PointCloud cloud;
+    cloud.positions = std::move(positions);
+    return cloud;
+}
+PointCloud with_approach(PointCloud cloud, const std::function<Vec3(std::size_t)>& direction) {
+    Array<float> values;
+    for (std::size_t row = 0; row < cloud.size(); ++row)
+        for (const double number : direction(row)) values.push_back(static_cast<float>(number));
+    cloud.columns.add(Column("approach", 3, Buffer<float>(std::move(values))));
+    return cloud;
+}
+
+TEST(Normals, OfFourPoints_AreThoseOfTheirPlanes) {
+    // The nearest two of the first point are in the plane x = 0, those of the last one in the plane z = 0.
+    const PointCloud cloud = cloud_of({{0, 0, 5}, {0, 1, 5}, {0, 0, 6}, {0, 0, 0}, {1, 0, 0}, {0, 1.5, 0}});
+    const Estimated result = estimated(cloud, with(Orient::none, Method::pca, 2));
+    for (const std::size_t row : {0, 1, 2}) EXPECT_EQ(result.normal(row), Vec3(1, 0, 0)) << row;
+    for (const std::size_t row : {3, 4, 5}) EXPECT_EQ(result.normal(row), Vec3(0, 0, 1)) << row;
+    EXPECT_EQ(result.oriented, 0u);
+    EXPECT_EQ(result.components, 2u);
+}
+
+TEST(Normals, EquallyNearPoints_TheLowerIsTaken) {
+    // Four neighbours at distance 1; (-1, 0, 0) and (0, -1, 0) are the lowest, then (0, 0, -1).
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 1}});
+    EXPECT_EQ(estimated(cloud, with(Orient::none, Method::pca, 2)).normal(0), Vec3(0, 0, 1));
+}
+
+TEST(Normals, Duplicates_DoNotCount) {
+    // A point and its repeats have the two others as neighbours.
+    const PointCloud cloud = cloud_of({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    const Estimated result = estimated(cloud, with(Orient::none, Method::pca, 2));
+    for (std::size_t row = 0; row < 5; ++row) EXPECT_EQ(result.normal(row), Vec3(0, 0, 1));
+}
+
+TEST(Normals, OfASphere_PointOutwards) {
+    const PointCloud cloud = fibonacci_sphere(4000);
+    for (const Method method : {Method::pca, Method::jet}) {
+        const Estimated result = estimated(cloud, with(Orient::automatic, method));
+        double least = 1;
+        for (std::size_t row = 0; row < cloud.size(); ++row)
+            least = std::min(least, result.normal(row).dot(cloud.positions[row].normalized()));
+        EXPECT_GT(least, 0.999);
+        EXPECT_EQ(result.oriented, cloud.size());
+        EXPECT_EQ(result.by_sensor, 0u);
+        EXPECT_EQ(result.doubtful, 0u);
+        EXPECT_EQ(result.components, 1u);
+        EXPECT_THAT(result.doubts, IsEmpty());
+        EXPECT_THAT(result.warnings, IsEmpty());
+    }
+}
+
+TEST(Normals, Jets_AreExactOnAParaboloid_PlanesAreNot) {
+    Random random(5);
+    Array<Vec3> positions;
+    for (int i = 0; i < 2000; ++i) {
+        const double x = random.uniform(), y = random.uniform();
+        positions.emplace_back(x, y, 0.3 * x * x + 0.2 * y * y);
+    }
+    PointCloud cloud;
+    cloud.positions = std::move(positions);
+    const auto mean_error = [&](Method method) {
+        const Estimated result = estimated(cloud, with(Orient::tree, method));
+        double sum = 0;
+        for (std::size_t row = 0; row < cloud.size(); ++row) {
+            const Vec3& p = cloud.positions[row];
+            sum += (result.normal(row) - Vec3(-0.6 * p.x(), -0.4 * p.y(), 1).normalized()).norm();
+        }
+        return sum / static_cast<double>(cloud.size());
+    };
+    EXPECT_LT(mean_error(Method::jet), 1e-3);
+    EXPECT_GT(mean_error(Method::pca), 2 * mean_error(Method::jet));
+}
+
+TEST(Normals, Sensor_TurnsEveryPointToItsScanner) {
+    // Both sheets of a plate, each seen from its own side: neighbours on the other sheet do not matter.
+    PointCloud plate = joined(sheet(10, 0), sheet(10, 0.3));
+    plate = with_approach(plate, [](std::size_t row) { return Vec3(0.2, 0, row < 100 ? -1 : 1); });
+    const Estimated result = estimated(plate, with(Orient::automatic, Method::pca, 6));
+    for (std::size_t row = 0; row < 200; ++row) EXPECT_EQ(result.normal(row).z() < 0, row < 100) << row;
+    EXPECT_EQ(result.by_sensor, 200u);
+    EXPECT_EQ(result.metrics.find("by-sensor")->value, 200);
+}
+
+TEST(Normals, ScannersPosition_IsInWorldCoordinates) {
+    PointCloud cloud = sheet(6, 0);
+    cloud.frame.origin = Vec3(1000, 0, 100);
+    NormalsParams params;
+    params.scanner = std::vector<Length>{Length(1000), Length(0.0), Length(99)};  // below the sheet
+    const Estimated result = estimated(cloud, params);
+    for (std::size_t row = 0; row < 36; ++row) EXPECT_EQ(result.normal(row), Vec3(0, 0, -1));
+    params.orient = Orient::tree;
+    EXPECT_EQ(estimated(cloud, params).normal(0), Vec3(0, 0, 1)) << "the tree turns the highest point upwards";
+}
+
+TEST(Normals, WithoutADirectionOrSeenEdgeOn_TheNeighboursDecide) {
+    const PointCloud cloud = with_approach(sheet(8, 0), [](std::size_t row) {
+        if (row == 0) return Vec3(0, 0, -1);
+        if (row % 2 == 0) return Vec3(std::numeric_limits<double>::quiet_NaN(), 0, 1);
+        return row % 3 == 0 ? Vec3(Vec3::Zero()) : Vec3(1, 0, 0.08);  // 85.4 degrees
+    });
+    const Estimated result = estimated(cloud);
+    EXPECT_EQ(result.by_sensor, 1u);
+    EXPECT_EQ(result.oriented, 64u);
+    for (std::size_t row = 0; row < 64; ++row) EXPECT_EQ(result.normal(row), Vec3(0, 0, -1));
+}
+
+TEST(Normals, ComponentsApart_AreDoubtful) {
+    const PointCloud cloud = joined(fibonacci_sphere(500), moved(fibonacci_sphere(400), 1, {9, 0, 0}));
+    const Estimated result = estimated(cloud);
+    EXPECT_EQ(result.components, 2u);
+    EXPECT_THAT(result.doubts, ElementsAre(HasSubstr("2 connected components are turned by their highest points alone: "
+                                                     "44 % of the positions may be inside out")));
+    EXPECT_EQ(result.doubtful, 0u);
+}
+
+TEST(Normals, OfALine_AreDoubtful) {
+    Array<Vec3> line;
+    for (int i = 0; i < 100; ++i) line.emplace_back(10 + 0.1 * i, 0.2 * i, 0);
+    PointCloud tail;
+    tail.positions = std::move(line);
+    const Estimated result = estimated(joined(fibonacci_sphere(500), tail));
+    EXPECT_EQ(result.doubtful, 100u);
+    EXPECT_THAT(result.doubts, Contains(HasSubstr("100 of 600 points (17 %) have a doubtful normal")));
+}
+
+TEST(Normals, OnTheOtherSideOfTheirNeighbours_AreDoubtful) {
+    // One point of a sheet was seen from below.
+    const PointCloud cloud = with_approach(sheet(9, 0), [](std::size_t row) { return Vec3(0, 0, row == 40 ? -1 : 1); });
+    const Estimated result = estimated(cloud);
+    EXPECT_EQ(result.normal(40), Vec3(0, 0, -1));
+    EXPECT_EQ(result.doubtful, 1u);
+    EXPECT_THAT(result.doubts, IsEmpty());
+}
+
+TEST(Normals, AColumnOfTheInput_IsReplaced) {
+    PointCloud cloud = fibonacci_sphere(100);
+    cloud.columns.add(Column("normal", 1, Buffer<float>(Array<float>(100, 1.f))));
+    cloud.columns.add(Column("weight", 1, Buffer<float>(Array<float>(100, 2.f))));
+    const Estimated result = estimated(cloud);
+    EXPECT_THAT(result.warnings, ElementsAre("the column 'normal' of the input is replaced"));
+    EXPECT_EQ(result.points.columns.size(), 2u);
+    EXPECT_EQ(result.points.columns.find("normal")->components(), 3u);
+    EXPECT_EQ(*result.points.columns.find("weight"), *cloud.columns.find("weight"));
+}
+
+TEST(Normals, DoNotDependOnThreadsOrOrder) {
+    const PointCloud cloud = fibonacci_sphere(3000, 0.01);
+    for (const Method method : {Method::pca, Method::jet}) {
+        const Estimated one = estimated(cloud, with(Orient::tree, method));
+        EXPECT_TRUE(same_points(one.points, estimated(cloud, with(Orient::tree, method), 4).points));
+        const PointCloud other = shuffled(one.points, 9);
+        PointCloud bare = other;
+        bare.columns = {};
+        EXPECT_TRUE(same_points(estimated(bare, with(Orient::tree, method)).points, other));
+    }
+}
+
+TEST(NormalsRefuse, TooFewPositions) {
+    EXPECT_EQ(sentence_of([] { estimated({}); }), "the cloud has 0 points; normals need at least 3");
+    const Error error = error_of([] { estimated(cloud_of({{0, 0, 0}, {0, 0, 0}, {1, 0, 0}})); });
+    EXPECT_EQ(error.sentence(), "the cloud has 2 distinct positions; normals need at least 3");
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(NormalsRefuse, ALine) {
+    Array<Vec3> positions;
+    for (int i = 0; i < 50; ++i) positions.emplace_back(i, 2 * i, 0);
+    PointCloud cloud;
+    cloud.positions = std::move(positions);
+    const Error error = error_of([&] { estimated(cloud); });
+    EXPECT_EQ(error.sentence(), "the neighbours of each of the 50 positions lie on one line; a normal needs a plane");
+    EXPECT_FALSE(error.hint().empty());
+}
+
+TEST(NormalsRefuse, NaN) {
+    PointCloud cloud;
+    cloud.positions = Array<Vec3>(5, Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0));
+    EXPECT_THAT(sentence_of([&] { estimated(cloud); }), HasSubstr("5 of 5 points"));
+}
+
+TEST(NormalsRefuse, ParametersOutOfRange) {
+    for (const u32 neighbours : {0u, 1u, 1001u})
+        EXPECT_THAT(error_of([&] { estimated(sheet(5, 0), with(Orient::none, Method::pca, neighbours)); }).sentence(),
+                    HasSubstr("neighbours must be from 2 to 1000"));
+    NormalsParams params;
+    params.scanner = std::vector<Length>{Length(1)};
+    EXPECT_THAT(sentence_of([&] { estimated(sheet(5, 0), params); }), HasSubstr("scanner needs 3 lengths"));
+    params.scanner = std::vector<Length>(3, Length(std::numeric_limits<double>::quiet_NaN()));
+    EXPECT_THAT(sentence_of([&] { estimated(sheet(5, 0), params); }), HasSubstr("NaN or infinite"));
+}
+
+TEST(NormalsRefuse, ASensorWithoutDirections) {
+    const Error error = error_of([] { estimated(sheet(5, 0), with(Orient::sensor)); });
+    EXPECT_THAT(error.sentence(), HasSubstr("no column 'approach'"));
+    EXPECT_THAT(error.hint(), HasSubstr("orient: tree"));
+    PointCloud cloud = sheet(5, 0);
+    cloud.columns.add(Column("approach", 1, Buffer<float>(Array<float>(25, 1.f))));
+    EXPECT_THAT(sentence_of([&] { estimated(cloud); }), HasSubstr("the column 'approach' has 1 number per point"));
+    EXPECT_EQ(estimated(cloud, with(Orient::tree)).oriented, 25u);
+}
+
+TEST(Normals, Cancelled_End) {
+    const PointCloud cloud = fibonacci_sphere(40000);
+    for (const int after : {0, 1, 3, 60}) {
+        ContextOptions options;
+        options.is_cancelled = [left = after]() mutable { return left-- <= 0; };
+        Context context(options);
+        EXPECT_THROW(normals(cloud, {}, context), Cancelled) << after;
+    }
+}
+
+TEST(NormalsReal, OfTheKitten_AreThoseOfTheFile) {
+    SCANMILL_REAL_SCAN(path, shared_data, "2-organic/kitten.xyz");
+    const std::shared_ptr<const PointCloud> cloud = read_points(path);
+    const Column& truth = *cloud->columns.find("normal");
+    const Estimated result = estimated(*cloud, with(Orient::tree), 2);
+    std::size_t outside = 0;
+    for (std::size_t row = 0; row < cloud->size(); ++row)
+        outside += result.normal(row).dot(Vec3(truth.number(row, 0), truth.number(row, 1), truth.number(row, 2))) > 0.9;
+    EXPECT_GT(static_cast<double>(outside), 0.99 * static_cast<double>(cloud->size()));
+    EXPECT_THAT(result.doubts, IsEmpty());
+}
+
+}  // namespace
+}  // namespace scanmill::test
