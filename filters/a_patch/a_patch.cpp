@@ -21,8 +21,7 @@ namespace {
 using namespace a_patches;
 
 constexpr double thinnest = 1e-9;  // height over longest edge of a triangle with area
-constexpr std::size_t most_rounds = 8;
-constexpr std::size_t most_listed = 5;
+constexpr std::size_t most_bisections = 7;  // rounds
 constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
 
@@ -90,47 +89,115 @@ MeshTopology require_usable(const TriangleMesh& mesh, const std::vector<bool>& i
 
 // Normals.
 
-/// The normals of the triangles at every vertex.
-std::vector<std::vector<Vec3>> normals_around(const TriangleMesh& mesh) {
-    std::vector<std::vector<Vec3>> around(mesh.positions.size());
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 n = (mesh.positions[t[1]] - mesh.positions[t[0]])
-                           .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
-                           .normalized();
-        for (const u32 v : t) around[v].push_back(n);
-    }
-    return around;
+std::vector<Vec3> triangle_normals(const TriangleMesh& mesh) {
+    std::vector<Vec3> normals;
+    for (const Triangle& t : mesh.triangles)
+        normals.push_back((mesh.positions[t[1]] - mesh.positions[t[0]])
+                              .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
+                              .normalized());
+    return normals;
 }
 
 bool opposes(const Vec3& normal, std::span<const Vec3> around) {
     return std::ranges::any_of(around, [&](const Vec3& n) { return !(n.dot(normal) >= least_cosine); });
 }
 
-/// Replaces normals that oppose a triangle. Returns how many.
-std::size_t replace_opposing(MeshWithNormals& mesh) {
-    const std::vector<std::vector<Vec3>> around = normals_around(mesh.mesh);
-    std::vector<Vec3> of_mesh;
-    std::size_t replaced = 0;
-    for (std::size_t v = 0; v < around.size(); ++v) {
-        if (!opposes(mesh.normals[v], around[v])) continue;
-        ++replaced;
-        if (of_mesh.empty()) of_mesh = mesh_normals(mesh.mesh);
-        mesh.normals[v] = opposes(of_mesh[v], around[v]) ? most_normal(around[v]) : of_mesh[v];
-    }
-    return replaced;
+std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3> of_triangles) {
+    std::vector<Vec3> around;
+    for (const u32 corner : corners) around.push_back(of_triangles[corner / 3]);
+    return around;
 }
 
-/// Gives the corners of the triangles the direction nearest to all their triangles' normals. Returns how many there
-/// are.
-std::size_t turn_normals(MeshWithNormals& mesh, std::span<const u32> triangles) {
-    const std::vector<std::vector<Vec3>> around = normals_around(mesh.mesh);
-    std::vector<u32> corners;
-    for (const u32 f : triangles)
-        corners.insert(corners.end(), mesh.mesh.triangles[f].begin(), mesh.mesh.triangles[f].end());
-    std::ranges::sort(corners);
-    corners.erase(std::ranges::unique(corners).begin(), corners.end());
-    for (const u32 v : corners) mesh.normals[v] = most_normal(around[v]);
-    return corners.size();
+void set_normal(PatchMesh& mesh, std::span<const u32> corners, const Vec3& normal) {
+    for (const u32 corner : corners) mesh.normals[corner / 3][corner % 3] = normal;
+}
+
+/// Adds to the sharp edges. Returns how many are new.
+std::size_t add_sharp(TriangleMesh& mesh, std::vector<Edge> edges) {
+    const std::size_t before = mesh.sharp_edges.size();
+    edges.insert(edges.end(), mesh.sharp_edges.begin(), mesh.sharp_edges.end());
+    std::ranges::sort(edges);
+    edges.erase(std::ranges::unique(edges).begin(), edges.end());
+    mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
+    return mesh.sharp_edges.size() - before;
+}
+
+/// The edge within a sector between the triangles whose normals differ most; ties: its vertices.
+std::optional<Edge> most_acute_edge(const TriangleMesh& mesh, const Sectors& sectors, std::span<const u32> corners,
+                                    const Array<u32>& opposites, std::span<const Vec3> of_triangles) {
+    std::optional<std::pair<double, Edge>> best;
+    for (const u32 half : corners) {
+        const u32 other = opposites[half];
+        if (other == half_edges::boundary) continue;
+        const u32 beyond = half_edges::after(other);
+        if (sectors.of_corner[beyond / 3][beyond % 3] != sectors.of_corner[half / 3][half % 3]) continue;
+        const Edge edge = make_edge(half_edges::start(mesh, half), half_edges::end(mesh, half));
+        if (std::ranges::binary_search(mesh.sharp_edges, edge)) continue;
+        const std::pair found(of_triangles[half / 3].dot(of_triangles[other / 3]), edge);
+        if (!best || found < *best) best = found;
+    }
+    return best ? std::optional(best->second) : std::nullopt;
+}
+
+/// Replaces normals that oppose a triangle. Where no direction suits all triangles of a sector, its most acute edges
+/// become sharp, until one does.
+void replace_opposing(PatchMesh& mesh, APatchResult& result) {
+    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+    const Array<u32> opposites = half_edges::opposites(mesh.mesh);
+    for (;;) {
+        const Sectors sectors = sectors_of(mesh.mesh);
+        const std::vector<std::vector<u32>> corners = corners_of(sectors);
+        std::vector<Vec3> of_mesh;
+        std::vector<Edge> sharp;
+        for (std::size_t s = 0; s < sectors.size(); ++s) {
+            const std::vector<Vec3> around = normals_at(corners[s], of_triangles);
+            const Vec3 normal = mesh.normals[corners[s][0] / 3][corners[s][0] % 3];
+            const bool is_singular = normal == Vec3::Zero();
+            if (!is_singular && !opposes(normal, around)) continue;
+            if (of_mesh.empty()) of_mesh = mesh_normals(mesh.mesh, sectors);
+            const Vec3 better = opposes(of_mesh[s], around) ? most_normal(around) : of_mesh[s];
+            if (opposes(better, around)) {
+                if (const auto edge = most_acute_edge(mesh.mesh, sectors, corners[s], opposites, of_triangles))
+                    sharp.push_back(*edge);
+            } else if (!is_singular) {
+                ++result.replaced_normals;
+                set_normal(mesh, corners[s], better);
+            }
+        }
+        if (sharp.empty()) return;
+        result.creased += add_sharp(mesh.mesh, std::move(sharp));
+    }
+}
+
+/// Gives the corners of the triangles the direction nearest to all their triangles' normals. Returns how many sectors
+/// there are.
+std::size_t turn_normals(PatchMesh& mesh, std::span<const u32> triangles) {
+    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+    const Sectors sectors = sectors_of(mesh.mesh);
+    const std::vector<std::vector<u32>> corners = corners_of(sectors);
+    std::vector<u32> turned;
+    for (const u32 f : triangles) turned.insert(turned.end(), sectors.of_corner[f].begin(), sectors.of_corner[f].end());
+    std::ranges::sort(turned);
+    turned.erase(std::ranges::unique(turned).begin(), turned.end());
+    for (const u32 s : turned) set_normal(mesh, corners[s], most_normal(normals_at(corners[s], of_triangles)));
+    return turned.size();
+}
+
+/// Makes the surface equal to these triangles.
+void flatten(PatchMesh& mesh, std::span<const u32> triangles, APatchResult& result) {
+    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+    const Array<u32> opposites = half_edges::opposites(mesh.mesh);
+    std::vector<Edge> sharp;
+    for (const u32 f : triangles) {
+        if (mesh.is_flat[f]) continue;
+        mesh.is_flat[f] = true;
+        ++result.flat;
+        mesh.normals[f].fill(of_triangles[f]);
+        for (u32 half = 3 * f; half < 3 * f + 3; ++half)
+            if (opposites[half] != half_edges::boundary)
+                sharp.push_back(make_edge(half_edges::start(mesh.mesh, half), half_edges::end(mesh.mesh, half)));
+    }
+    result.creased += add_sharp(mesh.mesh, std::move(sharp));
 }
 
 /// Throws if most given normals point inwards.
@@ -145,8 +212,8 @@ void require_outward(std::span<const Vec3> normals, std::span<const Vec3> of_mes
             .hint("the mesh or its normals are inside out; 'normals: mesh' takes those of the triangles");
 }
 
-std::vector<Vec3> vertex_normals(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params,
-                                 Context& context) {
+CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params,
+                             Context& context) {
     using Normals = APatchParams::Normals;
     Normals source = params.normals;
     if (source == Normals::automatic)
@@ -154,55 +221,49 @@ std::vector<Vec3> vertex_normals(const TriangleMesh& mesh, const PointCloud* poi
     if (source == Normals::points && !points)
         throw Error("normals is points, but there are no points")
             .hint("wire the scan: 'in: {points: scan}'; 'normals: mesh' needs none");
-    std::vector<Vec3> of_mesh = mesh_normals(mesh);
-    if (source == Normals::mesh) return of_mesh;
+    const Sectors sectors = sectors_of(mesh);
+    std::vector<Vec3> normals = mesh_normals(mesh, sectors);
     if (source == Normals::points) {
         require_finite(points->positions.span());
-        return point_normals(mesh, points->positions.span(), of_mesh, context);
+        normals = point_normals(mesh, sectors, points->positions.span(), normals, context);
+    } else if (source == Normals::given) {
+        GivenNormals given = given_normals(mesh, sectors);
+        require_outward(given.normals, normals);
+        if (given.several > 0)
+            context.warn(fmt::format("{} no sharp edge separates get their mean",
+                                     count_text(given.several, "group of different corner normals that",
+                                                "groups of different corner normals that")));
+        normals = std::move(given.normals);
     }
-    const GivenNormals given = given_normals(mesh);
-    require_outward(given.normals, of_mesh);
-    if (given.several > 0)
-        context.warn(fmt::format("sharp edges are smoothed: {} with several normals {} their mean",
-                                 count_text(given.several, "vertex", "vertices"),
-                                 by_count(given.several, "gets", "get")));
-    return given.normals;
+    return at_corners(sectors, normals);
 }
 
 // The surface.
 
-std::vector<u32> triangles_at(const Hull& hull) {
+/// The sharp edges between two triangles.
+Array<Edge> inner_edges(const TriangleMesh& mesh) {
+    const Array<u32> opposites = half_edges::opposites(mesh);
+    Array<Edge> inner;
+    for (u32 half = 0; half < opposites.size(); ++half) {
+        if (opposites[half] == half_edges::boundary || opposites[half] < half) continue;
+        const Edge edge = make_edge(half_edges::start(mesh, half), half_edges::end(mesh, half));
+        if (std::ranges::binary_search(mesh.sharp_edges, edge)) inner.push_back(edge);
+    }
+    std::ranges::sort(inner);
+    return inner;
+}
+
+/// Those with a fault of their own, and those beside the edges.
+std::vector<u32> triangles_at(const Hull& hull, std::span<const u32> edges) {
     std::vector<u32> triangles = hull.faults.opposed;
     triangles.insert(triangles.end(), hull.faults.thin.begin(), hull.faults.thin.end());
-    for (const u32 e : hull.faults.inverted) {
+    for (const u32 e : edges) {
         triangles.push_back(hull.edges[e].first);
         triangles.push_back(hull.edges[e].second);
     }
     std::ranges::sort(triangles);
     triangles.erase(std::ranges::unique(triangles).begin(), triangles.end());
     return triangles;
-}
-
-[[noreturn]] void throw_faults(const Hull& hull, const TriangleMesh& mesh) {
-    const std::vector<u32> triangles = triangles_at(hull);
-    std::string list;
-    for (std::size_t i = 0; i < std::min(most_listed, triangles.size()); ++i)
-        list += (i > 0 ? ", " : "") + place(mesh, mesh.triangles[triangles[i]][0]);
-    if (triangles.size() > most_listed) list += " …";
-    if (!hull.faults.opposed.empty())
-        throw Error(
-            "the mesh is folded: {} a corner where no direction is within 84 degrees of all triangles' normals: at {}",
-            count_text(triangles.size(), "triangle has", "triangles have"), list)
-            .hint(
-                "a larger alpha of 'alpha-solid' closes narrow gaps; 'decimate' with a smaller max-error leaves "
-                "fewer folds");
-    throw Error(
-        "no smooth surface fits at {} after {} rounds of bisection: {} too near to the next sheet, and beside {} a "
-        "tetrahedron is inside out: at {}",
-        count_text(triangles.size(), "triangle", "triangles"), most_rounds - 1,
-        count_text(hull.faults.thin.size(), "triangle is", "triangles are"),
-        count_text(hull.faults.inverted.size(), "edge", "edges"), list)
-        .hint("a mesh with more triangles follows the surface better: 'decimate' with a smaller max-error");
 }
 
 std::size_t inverted_tets(const PatchComplex& patches) {
@@ -214,15 +275,19 @@ std::size_t inverted_tets(const PatchComplex& patches) {
             (patches.positions[t[1]] - o).cross(patches.positions[t[2]] - o).dot(patches.positions[t[3]] - o);
         // From the base point corners i, j and the apex turn the other way than from an edge point, and inside the
         // other way than outside.
-        const bool is_positive = (patches.kinds[row] == PatchKind::face) == (patches.sides[row] == 1);
+        const bool is_over_face =
+            patches.kinds[row] == PatchKind::face || patches.kinds[row] == PatchKind::continuation;
+        const bool is_positive = is_over_face == (patches.sides[row] == 1);
         inverted += !((is_positive ? volume : -volume) > 0);
     }
     return inverted;
 }
 
+/// Of tetrahedra with one function, and of the functions of triangles.
 std::size_t sign_violations(const PatchComplex& patches) {
     std::size_t violations = 0;
     for (std::size_t row = 0; row < patches.tets.size(); ++row) {
+        if (patches.kinds[row] == PatchKind::sharp || patches.kinds[row] == PatchKind::continuation) continue;
         std::size_t number = 0;
         for (int i = 3; i >= 0; --i)
             for (int j = 3 - i; j >= 0; --j)
@@ -235,6 +300,93 @@ std::size_t sign_violations(const PatchComplex& patches) {
     return violations;
 }
 
+/// Tetrahedra with two functions, sampled: whether every line from the mesh to an apex, or to the line between two,
+/// meets the surface once, and whether the own function of a triangle alone sets the surface where it meets the
+/// triangle's other thirds.
+class CreaseCheck {
+public:
+    explicit CreaseCheck(const PatchComplex& patches) : patches_(patches) {}
+
+    /// Edges with a violation, ascending, and how many there are in all.
+    std::vector<u32> edges;
+    std::size_t violations = 0;
+
+    void run() {
+        for (u32 row = 0; row < patches_.tets.size(); ++row) {
+            const std::size_t before = violations;
+            if (patches_.kinds[row] == PatchKind::continuation) check_continuation(row);
+            if (patches_.kinds[row] == PatchKind::sharp && patches_.partners[row] > row) check_gap(row);
+            if (violations > before) edges.push_back(patches_.edges[row]);
+        }
+        std::ranges::sort(edges);
+        edges.erase(std::ranges::unique(edges).begin(), edges.end());
+    }
+
+private:
+    static constexpr int steps = 8, grid = 5;
+    static constexpr double rounding = 1e-12;  // of the largest weight
+
+    double sign_of_side(u32 row) const { return patches_.sides[row] == 1 ? 1 : -1; }
+
+    double largest_weight(u32 row) const {
+        double largest = 0;
+        for (const u32 each : {row, patches_.partners[row]})
+            for (const double weight : patches_.weights[each]) largest = std::max(largest, std::abs(weight));
+        return largest;
+    }
+
+    double value(u32 row, const Barycentric& at) const {
+        const u32 partner = patches_.partners[row];
+        const Barycentric there = patches_.tets[partner] == patches_.tets[row] ? at : Barycentric(at.reverse());
+        const double one = patch_value(patches_.weights[row], at),
+                     other = patch_value(patches_.weights[partner], there);
+        return patches_.combine[row] == Combine::max ? std::max(one, other) : std::min(one, other);
+    }
+
+    /// Whether the function, seen outwards, rises once from below 0 to above 0 on the way; where it begins above, the
+    /// tetrahedron on the other side counts.
+    bool is_single(u32 row, const Barycentric& from, const Barycentric& to) const {
+        const double sign = sign_of_side(row), least = rounding * largest_weight(row);
+        bool is_above = false;
+        for (int step = 0; step <= steps; ++step) {
+            const double t = static_cast<double>(step) / steps, found = sign * value(row, (1 - t) * from + t * to);
+            if (is_above && found < -least) return false;
+            is_above = is_above || found > least;
+        }
+        return is_above;
+    }
+
+    void check_gap(u32 row) {
+        for (int s = 1; s < grid; ++s)
+            for (int u = 0; u <= grid; ++u) {
+                const double share = static_cast<double>(s) / grid, across = static_cast<double>(u) / grid;
+                violations += !is_single(row, {0, 1 - share, share, 0}, {across, 0, 0, 1 - across});
+            }
+    }
+
+    void check_continuation(u32 row) {
+        const Barycentric apex(0, 0, 0, 1);
+        for (int i = 0; i <= grid; ++i)
+            for (int j = 0; i + j <= grid; ++j) {
+                if (i == grid || j == grid) continue;
+                violations += !is_single(row, Barycentric(grid - i - j, i, j, 0) / grid, apex);
+            }
+        const u32 own = patches_.partners[row];
+        const double sign = patches_.combine[row] == Combine::max ? 1 : -1, least = rounding * largest_weight(row);
+        for (int corner = 1; corner <= 2; ++corner)
+            for (const double share : {0.0, 0.25, 0.5, 0.75, 0.95}) {
+                Barycentric from(1 - share, 0, 0, 0);
+                from[corner] = share;
+                if (sign_of_side(row) * patch_value(patches_.weights[own], from) > 0) continue;
+                const auto hit = patch_hit(patches_.weights[own], from, apex);
+                violations +=
+                    !hit || sign * patch_value(patches_.weights[row], (1 - *hit) * from + *hit * apex) > least;
+            }
+    }
+
+    const PatchComplex& patches_;
+};
+
 struct SharedFace {
     std::array<u32, 3> vertices;  // ascending
     u32 tet;
@@ -246,7 +398,7 @@ double c1_jump(const PatchComplex& patches, Execution& execution) {
     std::vector<SharedFace> faces;
     faces.reserve(4 * patches.tets.size());
     for (u32 row = 0; row < patches.tets.size(); ++row)
-        for (std::size_t without = 0; without < 4; ++without) {
+        for (std::size_t without = 0; without < 4 && patches.kinds[row] != PatchKind::continuation; ++without) {
             SharedFace face{{}, row};
             for (std::size_t i = 0, n = 0; i < 4; ++i)
                 if (i != without) face.vertices[n++] = patches.tets[row][i];
@@ -258,17 +410,21 @@ double c1_jump(const PatchComplex& patches, Execution& execution) {
     std::vector<double> largest(faces.size() / chunk + 1, 0.0);
     for_each_chunk(execution.threads(), faces.size(), chunk, [&](std::size_t begin, std::size_t end) {
         double& jump = largest[begin / chunk];
-        for (std::size_t i = std::max<std::size_t>(1, begin); i < end; ++i) {
-            if (faces[i].vertices != faces[i - 1].vertices) continue;
-            const PatchCell one(patches, faces[i - 1].tet), other(patches, faces[i].tet);
-            for (const Vec3& share : places) {
-                Vec3 point = Vec3::Zero();
-                for (std::size_t v = 0; v < 3; ++v)
-                    point += share[static_cast<Eigen::Index>(v)] * patches.positions[faces[i].vertices[v]];
-                const Vec3 a = one.gradient(point), b = other.gradient(point);
-                jump = std::max(jump, (a - b).norm() / std::max(a.norm(), b.norm()));
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t j = i; j > 0 && faces[i].vertices == faces[j - 1].vertices; --j) {
+                const u32 here = faces[j - 1].tet, there = faces[i].tet;
+                const bool is_sharp =
+                    patches.kinds[here] == PatchKind::sharp || patches.kinds[there] == PatchKind::sharp;
+                if (is_sharp && patches.triangles[here] != patches.triangles[there]) continue;
+                const PatchCell one(patches, here), other(patches, there);
+                for (const Vec3& share : places) {
+                    Vec3 point = Vec3::Zero();
+                    for (std::size_t v = 0; v < 3; ++v)
+                        point += share[static_cast<Eigen::Index>(v)] * patches.positions[faces[i].vertices[v]];
+                    const Vec3 a = one.gradient(point), b = other.gradient(point);
+                    jump = std::max(jump, (a - b).norm() / std::max(a.norm(), b.norm()));
+                }
             }
-        }
     });
     return std::ranges::max(largest);
 }
@@ -277,12 +433,13 @@ void warn_about(const APatchResult& result, const TriangleMesh& mesh, const Mesh
     if (counts.boundary_edges > 0)
         context.warn(fmt::format("the mesh is open: the surface ends at {}",
                                  count_text(counts.boundary_edges, "boundary edge", "boundary edges")));
-    if (!mesh.sharp_edges.empty())
-        context.warn(fmt::format("the mesh's {} smoothed",
-                                 count_text(mesh.sharp_edges.size(), "sharp edge is", "sharp edges are")));
     if (result.replaced_normals > 0)
         context.warn(fmt::format("{} replaced, because tetrahedra are inside out with them, or a triangle opposes them",
                                  count_text(result.replaced_normals, "normal is", "normals are")));
+    if (result.creased > 0)
+        context.warn(fmt::format("no smooth surface follows the mesh's folds: {} sharp, and {}",
+                                 count_text(result.creased, "edge becomes", "edges become"),
+                                 count_text(result.flat, "triangle remains flat", "triangles remain flat")));
     if (result.bisected > 0)
         context.warn(fmt::format("{} bisected, because tetrahedra were inside out or too large there",
                                  count_text(result.bisected, "edge is", "edges are")));
@@ -309,6 +466,8 @@ void report(const APatchResult& result, Context& context) {
     count("refined", result.bisected);
     count("split-faces", result.divided);
     count("raised", result.raised);
+    count("creased-edges", result.creased);
+    count("flat-triangles", result.flat);
 }
 
 }  // namespace
@@ -318,28 +477,42 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
         throw Error("needs a mesh with triangles; it has {} vertices and none", mesh.positions.size());
     const MeshTopology counts = require_usable(mesh, used_vertices(mesh), params);
     APatchResult result;
-    MeshWithNormals refined;
-    refined.mesh.frame = mesh.frame;
-    refined.mesh.positions = mesh.positions;
-    refined.mesh.triangles = mesh.triangles;
-    refined.normals = vertex_normals(mesh, points, params, context);
+    PatchMesh work;
+    work.mesh.frame = mesh.frame;
+    work.mesh.positions = mesh.positions;
+    work.mesh.triangles = mesh.triangles;
+    work.mesh.sharp_edges = inner_edges(mesh);
+    work.is_flat.resize(mesh.triangles.size(), false);
+    TriangleMesh with_columns = work.mesh;
+    with_columns.face_columns = mesh.face_columns;
+    work.normals = corner_normals(with_columns, points, params, context);
     context.progress(0.2);
 
     Hull hull;
+    Weights weights;
     for (std::size_t round = 0;; ++round) {
         context.check_cancelled();
-        result.replaced_normals += replace_opposing(refined);
-        hull = make_hull(refined.mesh, refined.normals, params.apex_factor, params.split, context);
-        if (hull.faults.empty()) break;
-        if (!hull.faults.opposed.empty() || round == most_rounds) throw_faults(hull, refined.mesh);
-        const std::vector<u32> triangles = triangles_at(hull);
-        if (round == 0)
-            result.replaced_normals += turn_normals(refined, triangles);
-        else
-            result.bisected += bisect(refined, triangles);
+        replace_opposing(work, result);
+        hull = make_hull(work, params.apex_factor, params.split, context);
+        std::vector<u32> triangles = triangles_at(hull, hull.faults.inverted);
+        if (triangles.empty()) {
+            weights = make_weights(hull, params.curvature, context);
+            CreaseCheck check(weights.patches);
+            check.run();
+            if (check.edges.empty()) break;
+            triangles = triangles_at(hull, check.edges);
+        }
+        if (round == 0) {
+            result.replaced_normals += turn_normals(work, triangles);
+        } else if (round <= most_bisections) {
+            result.bisected += bisect(work, triangles);
+        } else {
+            const std::size_t before = result.flat;
+            flatten(work, triangles, result);
+            if (result.flat == before) throw Error("no surface fits at {}", place(work.mesh, triangles[0]));
+        }
     }
     context.progress(0.5);
-    Weights weights = make_weights(hull, params.curvature, context);
     result.raised = weights.raised;
     result.divided = static_cast<std::size_t>(std::ranges::count(hull.faces, true, &HullFace::is_divided));
     result.patches = std::move(weights.patches);
@@ -348,11 +521,11 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     result.inverted = inverted_tets(result.patches);
     result.sign_violations = sign_violations(result.patches);
     result.c1_jump = c1_jump(result.patches, context);
-    result.mesh = std::move(refined.mesh);
-    Array<double> components(3 * refined.normals.size());
-    for (std::size_t v = 0; v < refined.normals.size(); ++v)
-        for (std::size_t i = 0; i < 3; ++i) components[3 * v + i] = refined.normals[v][static_cast<Eigen::Index>(i)];
-    result.mesh.vertex_columns.add(Column("normal", 3, Buffer<double>(std::move(components))));
+    result.mesh = std::move(work.mesh);
+    Array<double> components;
+    for (const auto& of_triangle : work.normals)
+        for (const Vec3& n : of_triangle) components.insert(components.end(), n.data(), n.data() + 3);
+    result.mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(components))));
     warn_about(result, mesh, counts, context);
     report(result, context);
     return result;

@@ -14,8 +14,8 @@ namespace scanmill {
 struct APatchParams {
     enum class Normals {
         automatic,  ///< given if the mesh has them, else points if there are any, else mesh
-        given,      ///< the mesh's face column `corner-normals`; of several at a vertex the mean
-        points,     ///< of a quadric through the vertex, fitted to the 25 nearest points
+        given,      ///< the mesh's face column `corner-normals`; of several without a sharp edge between them the mean
+        points,     ///< of a quadric through the vertex, fitted to the 25 nearest points on its side of sharp edges
         mesh        ///< the mean of the triangles' normals, exact for a mesh inscribed in a sphere
     };
     Normals normals = Normals::automatic;
@@ -31,12 +31,14 @@ struct APatchResult {
     /// Its triangles are rows of `mesh`.
     PatchComplex patches;
     /// The input's triangles in their rows, some of them cut: the second parts follow, and the new vertices follow the
-    /// input's. Vertex column `normal`, no other columns.
+    /// input's. Its sharp edges, given and made; face column `corner-normals` as used, no other columns.
     TriangleMesh mesh;
     std::size_t bisected = 0;  ///< edges
     std::size_t divided = 0;  ///< triangles with three tetrahedra per side
     std::size_t raised = 0;  ///< see Weights::raised
     std::size_t replaced_normals = 0;  ///< that opposed a triangle, or had tetrahedra inside out
+    std::size_t creased = 0;  ///< edges made sharp
+    std::size_t flat = 0;  ///< triangles that are their own surface
     std::size_t inverted = 0;  ///< tetrahedra inside out; always 0
     /// The largest difference between the gradients on the two sides of a shared triangle, as a share of the larger
     /// one, at three points each.
@@ -46,21 +48,24 @@ struct APatchResult {
 };
 
 /// The surface F = 0 through the mesh's vertices, with a gradient of length 1 there, along the normal. F is negative
-/// inside, positive outside, cubic in every tetrahedron, and has equal gradients where tetrahedra meet.
+/// inside, positive outside, cubic in every tetrahedron, and has equal gradients where tetrahedra meet, except at sharp
+/// edges: there the functions of the two triangles meet in a crease, a curve through the edge's ends. At a vertex every
+/// fan of triangles between sharp edges has a normal of its own. Where `corner-normals` is zero, and one direction
+/// suits all triangles, the surface has a singular point, as the apex of a cone.
 ///
-/// A vertex whose normal is more than 84 degrees from that of one of its triangles gets the normal of the mesh, or the
-/// direction nearest to all its triangles' normals. Where tetrahedra are inside out, or apexes do not fit below 0.45 of
-/// the distance to the next sheet, vertices get that direction, too; where that does not help, the longest edges of the
-/// triangles are bisected, by a cubic through their ends and tangent planes, up to 7 times.
+/// A normal more than 84 degrees from that of one of its triangles is replaced by that of the mesh, or by the direction
+/// nearest to all its triangles' normals. Where no direction suits, the most acute edges become sharp. Where tetrahedra
+/// are inside out, apexes do not fit below 0.45 of the distance to the next sheet, or a crease leaves the tetrahedra
+/// beside its edge, normals get that direction, too; where that does not help, the longest edges of the triangles are
+/// bisected, by a cubic through their ends and tangent planes. What then remains becomes flat: the surface is the
+/// triangle itself, between three sharp edges.
 ///
 /// Pre:  a manifold, closed or open, of any number of components, consistently oriented, finite, with area in every
-///       triangle, without two vertices at one position. Sharp edges are smoothed, with a warning; the surface ends at
-///       a boundary, with a warning. `points`, if not null, lie near the surface, in the mesh's frame.
-///       Throws Error with numbers and a hint otherwise, if no direction is within 84 degrees of all triangles at a
-///       vertex, and if bisecting does not help: both happen at sharp folds.
+///       triangle, without two vertices at one position. The surface ends at a boundary, with a warning. `points`, if
+///       not null, lie near the surface, in the mesh's frame. Throws Error with numbers and a hint otherwise.
 /// Post: `inverted` is 0. Every vertex of `mesh` is on the surface. A doubt if `sign_violations` is not 0.
-/// Ties: of equally long edges the one whose triangle comes first is bisected. Bytes depend neither on the number of
-/// threads nor on the processor.
+/// Ties: of equally long edges the one whose triangle comes first is bisected; of equally acute edges the one with the
+/// lower vertices becomes sharp. Bytes depend neither on the number of threads nor on the processor.
 /// Cost: linear; about 30 us and 3 kB per triangle.
 /// Metrics and warnings: see plugin.cpp.
 APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params, Context& context);

@@ -20,6 +20,9 @@ constexpr int most_rounds = 12;
 constexpr double share_of_gap = 0.45;  // of the distance to the next sheet
 constexpr double least_sine = 0.1;  // between two undivided triangles
 constexpr double most_change = 0.1;  // of an edge's gradient, whose length is 1
+constexpr double most_cosine_of_straight = 1e-12;  // rounding: between an edge and normals perpendicular to it
+constexpr double cosine_of_acute = -0.5;  // between the triangles' normals
+constexpr double least_turn = 1e-9;  // sines of angles between normals
 constexpr std::size_t chunk = 256;  // triangles
 // Cosine and sine of the limits 4 and 172 degrees of the angle between two apexes, seen along their edge.
 constexpr double cosine_of_4 = 0.9975640502598242, cosine_of_172 = -0.9902680687415704;
@@ -64,15 +67,15 @@ Opening opening(const Hull& hull, const HullEdge& edge, Side side) {
 
 class HullBuilder {
 public:
-    HullBuilder(const TriangleMesh& mesh, std::vector<Vec3> normals, double apex_factor, Split split,
-                Execution& execution)
-        : apex_factor_(apex_factor),
+    HullBuilder(const PatchMesh& mesh, double apex_factor, Split split, Execution& execution)
+        : mesh_(mesh),
+          apex_factor_(apex_factor),
           split_(split),
           execution_(execution) {
-        hull_.positions = mesh.positions.span();
-        hull_.triangles = mesh.triangles.span();
-        hull_.normals = std::move(normals);
-        opposites_ = half_edges::opposites(mesh);
+        hull_.positions = mesh.mesh.positions.span();
+        hull_.triangles = mesh.mesh.triangles.span();
+        hull_.normals = mesh.normals;
+        opposites_ = half_edges::opposites(mesh.mesh);
     }
 
     Hull hull() {
@@ -111,16 +114,42 @@ private:
                 edge.second = other / 3;
                 hull_.faces[edge.second].edges[other % 3] = number;
             }
-            edge.slope = default_slope(hull_.positions[edge.b] - hull_.positions[edge.a], hull_.normals[edge.a],
-                                       hull_.normals[edge.b]);
+            const std::span sharp = mesh_.mesh.sharp_edges.span();
+            edge.is_sharp =
+                edge.second != HullEdge::none && std::ranges::binary_search(sharp, make_edge(edge.a, edge.b));
+            const std::array<Vec3, 2> of_first{hull_.normals[half / 3][half % 3],
+                                               hull_.normals[half / 3][(half + 1) % 3]};
+            const Vec3 d = hull_.positions[edge.b] - hull_.positions[edge.a];
+            edge.slopes.fill(default_slope(d, of_first[0], of_first[1]));
+            if (edge.is_sharp) describe_sharp(edge, of_first, other);
             hull_.edges.push_back(edge);
+        }
+    }
+
+    void describe_sharp(HullEdge& edge, const std::array<Vec3, 2>& of_first, u32 other) {
+        const std::array<Vec3, 2> of_second{hull_.normals[other / 3][(other + 1) % 3],
+                                            hull_.normals[other / 3][other % 3]};
+        const Vec3 d = hull_.positions[edge.b] - hull_.positions[edge.a];
+        edge.slopes[1] = default_slope(d, of_second[0], of_second[1]);
+        edge.is_straight = mesh_.is_flat[edge.first] && mesh_.is_flat[edge.second];
+        if (!edge.is_straight)
+            edge.is_straight = std::ranges::all_of(
+                std::array{of_first[0], of_first[1], of_second[0], of_second[1]},
+                [&](const Vec3& n) { return std::abs(n.dot(d)) <= most_cosine_of_straight * d.norm(); });
+        // The normals turn apart at a convex edge.
+        const double turn = d.dot(of_first[0].cross(of_second[0]) + of_first[1].cross(of_second[1])) / d.norm();
+        if (std::abs(turn) > least_turn) {
+            edge.is_convex = turn > 0;
+        } else {
+            const Vec3& opposite = hull_.positions[hull_.triangles[other / 3][(other + 2) % 3]];
+            edge.is_convex = (opposite - hull_.positions[edge.a]).dot(hull_.faces[edge.first].normal) <= 0;
         }
     }
 
     void find_opposed() {
         for (u32 f = 0; f < hull_.faces.size(); ++f)
-            if (std::ranges::any_of(hull_.triangles[f], [&](u32 v) {
-                    return !(hull_.faces[f].normal.dot(hull_.normals[v]) >= least_cosine);
+            if (std::ranges::any_of(hull_.normals[f], [&](const Vec3& n) {
+                    return n != Vec3::Zero() && !(hull_.faces[f].normal.dot(n) >= least_cosine);
                 }))
                 hull_.faults.opposed.push_back(f);
     }
@@ -129,27 +158,24 @@ private:
 
     /// The corner opposite to edge `e`, as seen from its a.
     Vec3 opposite(u32 e, u32 f) const {
-        const HullFace& face = hull_.faces[f];
-        const auto i = static_cast<std::size_t>(std::ranges::find(face.edges, e) - face.edges.begin());
-        return hull_.positions[hull_.triangles[f][(i + 2) % 3]] - hull_.positions[hull_.edges[e].a];
+        return hull_.positions[hull_.triangles[f][(hull_.number_in(e, f) + 2) % 3]] - hull_.positions[hull_.edges[e].a];
     }
 
     /// Leaves triangles undivided unless an edge then has no slope, or one far from its default.
     void undivide() {
         std::vector<Vec3> defaults;
-        for (const HullEdge& edge : hull_.edges) defaults.push_back(edge.slope);
+        for (const HullEdge& edge : hull_.edges) defaults.push_back(edge.slopes[0]);
         for (u32 f = 0; f < hull_.faces.size(); ++f) {
             HullFace& face = hull_.faces[f];
-            face.is_divided = false;
+            face.is_divided = std::ranges::any_of(face.edges, [&](u32 e) { return hull_.edges[e].is_sharp; });
             face.middle = 0;
             for (std::size_t i = 0; i < 3; ++i)
-                face.middle +=
-                    hull_.at_edge(hull_.edges[face.edges[i]], hull_.positions[hull_.triangles[f][(i + 2) % 3]]) / 3;
+                face.middle += hull_.at_edge(f, i, hull_.positions[hull_.triangles[f][(i + 2) % 3]]) / 3;
         }
         for (;;) {
             std::vector<u32> bad;
             for (u32 e = 0; e < hull_.edges.size(); ++e)
-                if (!set_slope(e, defaults[e])) bad.push_back(e);
+                if (!hull_.edges[e].is_sharp && !set_slope(e, defaults[e])) bad.push_back(e);
             if (bad.empty()) return;
             divide(bad);
             execution_.check_cancelled();
@@ -160,7 +186,7 @@ private:
     /// sound.
     bool set_slope(u32 e, const Vec3& by_default) {
         HullEdge& edge = hull_.edges[e];
-        edge.slope = by_default;
+        edge.slopes.fill(by_default);
         const Vec3 d = (hull_.positions[edge.b] - hull_.positions[edge.a]).normalized();
         std::array<Vec3, 2> across;
         std::array<double, 2> missing;
@@ -169,7 +195,8 @@ private:
             if (f == HullEdge::none || hull_.faces[f].is_divided) continue;
             const Vec3 to = opposite(e, f);
             across[conditions] = to - d * d.dot(to);
-            missing[conditions++] = hull_.faces[f].middle - hull_.at_edge(edge, hull_.positions[edge.a] + to);
+            missing[conditions++] =
+                hull_.faces[f].middle - hull_.at_edge(f, hull_.number_in(e, f), hull_.positions[edge.a] + to);
         }
         if (conditions == 0) return true;
         Vec3 change;
@@ -182,9 +209,9 @@ private:
             change = (missing[0] * across[1].cross(d) + missing[1] * d.cross(across[0])) / area;
         }
         if (3 * change.norm() > most_change) return false;
-        edge.slope += change;
+        edge.slopes.fill(by_default + change);
         return std::ranges::all_of(std::array{edge.first, edge.second}, [&](u32 f) {
-            return f == HullEdge::none || hull_.faces[f].normal.dot(edge.slope) > 0;
+            return f == HullEdge::none || hull_.faces[f].normal.dot(edge.slopes[0]) > 0;
         });
     }
 
@@ -217,12 +244,11 @@ private:
                 // normal.
                 double least = 0;
                 for (std::size_t i = 0; i < 3; ++i) {
-                    const u32 v = hull_.triangles[f][i];
-                    const HullEdge& edge = hull_.edges[face.edges[i]];
-                    least = std::max(
-                        least, -sign_of(side) * 3 * hull_.at_vertex(v, face.base) / face.normal.dot(hull_.normals[v]));
-                    least =
-                        std::max(least, -sign_of(side) * hull_.at_edge(edge, face.base) / face.normal.dot(edge.slope));
+                    const double at_corner = -sign_of(side) * hull_.at_corner(f, i, face.base);
+                    const double at_edge = -sign_of(side) * hull_.at_edge(f, i, face.base);
+                    const Vec3& normal = hull_.normals[f][i];
+                    if (normal != Vec3::Zero()) least = std::max(least, 3 * at_corner / face.normal.dot(normal));
+                    least = std::max(least, at_edge / face.normal.dot(hull_.slope(f, i)));
                 }
                 face.least[side] = least;
                 face.height[side] = apex_factor_ * least + share_of_radius * face.radius;
@@ -280,8 +306,14 @@ private:
                 }))
                 hull_.faults.thin.push_back(f);
         for (u32 e = 0; e < hull_.edges.size(); ++e)
-            if (std::ranges::any_of(both_sides, [&](Side side) { return !hull_.is_sound(hull_.edges[e], side); }))
-                hull_.faults.inverted.push_back(e);
+            for (const Side side : both_sides) {
+                HullEdge& edge = hull_.edges[e];
+                if (hull_.is_sound(edge, side)) continue;
+                if (edge.is_straight)
+                    edge.is_filled[side] = false;
+                else if (hull_.faults.inverted.empty() || hull_.faults.inverted.back() != e)
+                    hull_.faults.inverted.push_back(e);
+            }
     }
 
     /// Lowers apexes that collide across a concave edge, raises those whose connection passes under a convex edge.
@@ -292,13 +324,18 @@ private:
                 if (edge.second == HullEdge::none) continue;
                 for (const Side side : both_sides) {
                     const Opening found = opening(hull_, edge, side);
-                    if (found == Opening::sound) continue;
+                    if (found == Opening::sound || (edge.is_straight && is_acute(edge))) continue;
                     has_changed = true;
                     for (const u32 f : {edge.first, edge.second}) change(hull_.faces[f], side, found);
                 }
             }
             if (!has_changed) return;
         }
+    }
+
+    /// Whether apexes would have to be very high to see each other across the edge.
+    bool is_acute(const HullEdge& edge) const {
+        return hull_.faces[edge.first].normal.dot(hull_.faces[edge.second].normal) < cosine_of_acute;
     }
 
     static void change(HullFace& face, Side side, Opening found) {
@@ -310,6 +347,7 @@ private:
         }
     }
 
+    const PatchMesh& mesh_;
     double apex_factor_;
     Split split_;
     Execution& execution_;
@@ -326,9 +364,8 @@ bool Hull::is_sound(const HullEdge& edge, Side side) const {
     return sign_of(side) * d.dot(u.cross(v)) > 0;
 }
 
-Hull make_hull(const TriangleMesh& mesh, std::vector<Vec3> normals, double apex_factor, Split split,
-               Execution& execution) {
-    return HullBuilder(mesh, std::move(normals), apex_factor, split, execution).hull();
+Hull make_hull(const PatchMesh& mesh, double apex_factor, Split split, Execution& execution) {
+    return HullBuilder(mesh, apex_factor, split, execution).hull();
 }
 
 }  // namespace scanmill::a_patches

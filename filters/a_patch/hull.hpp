@@ -3,6 +3,7 @@
 /// The simplicial hull of a mesh: an apex on both sides of every triangle, and the tetrahedra between the apexes of
 /// neighbours (Bernardini et al. 1997, section 5).
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -38,7 +39,16 @@ struct HullEdge {
 
     u32 a = 0, b = 0;
     u32 first = 0, second = none;
-    Vec3 slope = Vec3::Zero();  ///< g: f(a, b, X) = (b - a) · n_a / 3 + g · (X - a)
+    /// g of the first and of the second triangle, with n_a of that triangle: f(a, b, X) = (b - a) · n_a / 3 + g · (X -
+    /// a). Equal unless the edge is sharp.
+    std::array<Vec3, 2> slopes{Vec3::Zero(), Vec3::Zero()};
+    bool is_sharp = false;
+    /// Sharp: the surface along the edge is the segment itself.
+    bool is_straight = false;
+    /// Sharp: outside is where the larger of the two triangles' functions is positive; else the smaller.
+    bool is_convex = true;
+    /// By Side, sharp: whether tetrahedra connect the apexes of its two triangles. Only straight edges need none.
+    std::array<bool, 2> is_filled{true, true};
 };
 
 /// Which triangles are divided.
@@ -49,17 +59,29 @@ enum class Split {
 
 /// What keeps a hull from carrying a surface; numbers ascend.
 struct HullFaults {
-    std::vector<u32> opposed;   ///< triangles with a normal at a corner that is more than 84 degrees from their own
-    std::vector<u32> thin;      ///< triangles too near to the next sheet
+    std::vector<u32> opposed;  ///< triangles with a normal at a corner that is more than 84 degrees from their own
+    std::vector<u32> thin;  ///< triangles too near to the next sheet
     std::vector<u32> inverted;  ///< edges beside which a tetrahedron is inside out
 
     bool empty() const { return opposed.empty() && thin.empty() && inverted.empty(); }
 };
 
+/// The gradients at the corners of every triangle: unit length, or zero where the surface has a singular point.
+using CornerNormals = std::vector<std::array<Vec3, 3>>;
+
+/// A mesh whose surface is sought.
+struct PatchMesh {
+    TriangleMesh mesh;  ///< with its sharp edges; no columns
+    /// Equal at a vertex in triangles that are connected there without crossing a sharp edge.
+    CornerNormals normals;
+    /// By triangle: the surface is the triangle itself. Its edges are sharp, and its own normal is at its corners.
+    std::vector<bool> is_flat;
+};
+
 struct Hull {
     std::span<const Vec3> positions;
     std::span<const Triangle> triangles;
-    std::vector<Vec3> normals;  ///< the gradient of every vertex
+    std::span<const std::array<Vec3, 3>> normals;  ///< see PatchMesh
     std::vector<HullFace> faces;
     std::vector<HullEdge> edges;
     HullFaults faults;  ///< with `opposed` there are no heights
@@ -67,11 +89,25 @@ struct Hull {
     Vec3 apex(std::size_t face, Side side) const {
         return faces[face].base + sign_of(side) * faces[face].height[side] * faces[face].normal;
     }
-    /// f(v, v, X).
-    double at_vertex(u32 v, const Vec3& point) const { return (point - positions[v]).dot(normals[v]) / 3; }
-    /// f(a, b, X) of an edge.
-    double at_edge(const HullEdge& edge, const Vec3& point) const {
-        return at_vertex(edge.a, positions[edge.b]) + edge.slope.dot(point - positions[edge.a]);
+    /// f(v, v, X) of a face's corner v.
+    double at_corner(std::size_t face, std::size_t corner, const Vec3& point) const {
+        return (point - positions[triangles[face][corner]]).dot(normals[face][corner]) / 3;
+    }
+    /// f(a, b, X) of a face's edge.
+    double at_edge(std::size_t face, std::size_t number, const Vec3& point) const {
+        const HullEdge& edge = edges[faces[face].edges[number]];
+        const bool is_second = edge.first != face;
+        return at_corner(face, is_second ? (number + 1) % 3 : number, positions[edge.b]) +
+               edge.slopes[is_second].dot(point - positions[edge.a]);
+    }
+    const Vec3& slope(std::size_t face, std::size_t number) const {
+        const HullEdge& edge = edges[faces[face].edges[number]];
+        return edge.slopes[edge.first != face];
+    }
+    /// The number of an edge in one of its faces.
+    std::size_t number_in(u32 edge, std::size_t face) const {
+        const std::array<u32, 3>& all = faces[face].edges;
+        return static_cast<std::size_t>(std::ranges::find(all, edge) - all.begin());
     }
     /// Edge `edge` of the side: whether the tetrahedra between the apexes of its two faces have the right orientation.
     bool is_sound(const HullEdge& edge, Side side) const;
@@ -81,8 +117,8 @@ struct Hull {
 inline constexpr double least_cosine = 0.1;
 
 /// `apex_factor`: the apex is so many times as high as it must be, and a bit more; but at most 0.45 of the distance to
-/// the next sheet of the mesh. Pre: an oriented manifold without triangles of no area; a normal per vertex.
-Hull make_hull(const TriangleMesh& mesh, std::vector<Vec3> normals, double apex_factor, Split split,
-               Execution& execution);
+/// the next sheet of the mesh. Triangles with a sharp edge are divided. Pre: an oriented manifold without triangles of
+/// no area. The result refers to `mesh`.
+Hull make_hull(const PatchMesh& mesh, double apex_factor, Split split, Execution& execution);
 
 }  // namespace scanmill::a_patches

@@ -8,15 +8,15 @@ SCANMILL_FILTER() {
     using P = APatchParams;
     using a_patches::Curvature;
     using a_patches::Split;
-    return Declare<P>("a-patch", 1)
-        .summary("Spans a smooth implicit surface over a mesh: cubic patches that join with equal gradients.")
+    return Declare<P>("a-patch", 2)
+        .summary("Spans an implicit surface over a mesh: cubic patches, smooth except at the mesh's sharp edges.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties("Of equally long edges the one with the lower vertices is bisected first.")
         .not_finite("Refused, with their number and the first of them.")
         .in<TriangleMesh>(
             "mesh",
-            "A manifold, closed or open, oriented consistently. Its vertices lie on the surface; its face "
-            "column `corner-normals` gives the normals there.")
+            "A manifold, closed or open, oriented consistently. Its vertices lie on the surface, which has creases "
+            "at its sharp edges; its face column `corner-normals` gives the normals there.")
         .in<PointCloud>("points", "The scan, for normals at the vertices of a mesh without `corner-normals`.", optional)
         .out<PatchComplex>("patches", "Tetrahedra on both sides of the mesh, with the cubic's 20 weights each.")
         .choice("normals", &P::normals,
@@ -44,11 +44,16 @@ SCANMILL_FILTER() {
         .metric("tetrahedra", Unit::count, "Tetrahedra of the result.", headline)
         .metric("inverted", Unit::count, "Tetrahedra inside out: always 0.")
         .metric("c1-jump", Unit::number,
-                "Largest difference of the gradients where tetrahedra meet, as a share of the gradient.", headline,
+                "Largest difference of the gradients where tetrahedra meet, except at sharp edges, as a share of the "
+                "gradient.", headline,
                 smaller_is_better)
         .metric("sign-violations", Unit::count, "Weights whose sign allows a second sheet.", smaller_is_better)
         .metric("refined", Unit::count, "Edges bisected because tetrahedra were inside out or too large.")
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
+        .metric("creased-edges", Unit::count, "Edges made sharp, because no smooth surface follows the mesh there.",
+                smaller_is_better)
+        .metric("flat-triangles", Unit::count, "Triangles that are their own surface, at folds of the mesh.",
+                smaller_is_better)
         .metric("raised", Unit::count, "Weights changed so that every line to an apex meets the surface once.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set(

@@ -26,8 +26,10 @@ struct FaceSide {
     Vec3 apex;
     std::array<Vector4, 3> m;  ///< f(v, apex, .)
     Vector4 n;                 ///< f(apex, apex, .)
-    std::array<Vec3, 3> edge_point{};  ///< of edge i; the apex on the boundary
+    /// Of edge i: the middle of the two apexes; of a sharp edge the other apex; on the boundary the own one.
+    std::array<Vec3, 3> edge_point{};
     std::array<Vector4, 3> at_edge_point;  ///< its coordinates
+    Eigen::Matrix3d curvature;
 };
 
 /// The quadric that interpolates a face's vertices and normals as well as it can: value and gradient come from the
@@ -36,7 +38,8 @@ Eigen::Matrix3d face_curvature(const Hull& hull, std::size_t f, Curvature curvat
     const Triangle& t = hull.triangles[f];
     const Vec3& p = hull.positions[t[0]];
     const Vec3 e1 = hull.positions[t[1]] - p, e2 = hull.positions[t[2]] - p;
-    const Vec3 d1 = hull.normals[t[1]] - hull.normals[t[0]], d2 = hull.normals[t[2]] - hull.normals[t[0]];
+    const std::array<Vec3, 3>& normals = hull.normals[f];
+    const Vec3 d1 = normals[1] - normals[0], d2 = normals[2] - normals[0];
     const Vec3& n = hull.faces[f].normal;
     const Vec3 x = e1.normalized(), y = n.cross(x);
     Eigen::Matrix2d edges;
@@ -79,8 +82,10 @@ public:
             execution_.check_cancelled();
             std::size_t raised = 0;
             for (std::size_t e = begin; e < end; ++e)
-                if (hull_.edges[e].second != HullEdge::none)
+                if (is_smooth(static_cast<u32>(e)))
                     for (const Side side : both_sides) raised += write_edge(e, side);
+                else if (hull_.edges[e].is_sharp)
+                    write_sharp(e);
             raised_ += raised;
         });
         Weights result;
@@ -93,11 +98,13 @@ public:
         patches.sides = std::move(tet_sides_);
         patches.triangles = std::move(triangles_);
         patches.edges = std::move(edges_);
+        patches.combine = std::move(combine_);
+        patches.partners = std::move(partners_);
         return result;
     }
 
 private:
-    static constexpr std::size_t tets_per_edge = 4;
+    static constexpr std::size_t tets_per_edge = 4, none_of_ends = 2;
 
     /// Vertices: those of the mesh, base points of divided triangles, apexes inside and outside, edge points inside and
     /// outside.
@@ -113,18 +120,27 @@ private:
         first_apex_ = bases;
         first_edge_point_ = first_apex_ + 2 * faces;
         inner_edge_.resize(hull_.edges.size());
-        std::size_t inner = 0;
-        for (std::size_t e = 0; e < hull_.edges.size(); ++e)
-            if (hull_.edges[e].second != HullEdge::none) inner_edge_[e] = static_cast<u32>(inner++);
+        std::size_t inner = 0, count = tets_of_faces_;
+        for (std::size_t e = 0; e < hull_.edges.size(); ++e) {
+            const HullEdge& edge = hull_.edges[e];
+            if (is_smooth(static_cast<u32>(e))) inner_edge_[e] = static_cast<u32>(inner++);
+            row_of_edge_.push_back(count);
+            if (is_smooth(static_cast<u32>(e)))
+                count += tets_per_edge;
+            else if (edge.is_sharp)
+                count += 2 * static_cast<std::size_t>(std::ranges::count(edge.is_filled, true)) +
+                         (edge.is_straight ? 0 : tets_per_edge);
+        }
         positions_.resize(first_edge_point_ + 2 * inner);
         std::ranges::copy(hull_.positions, positions_.begin());
-        const std::size_t count = tets_of_faces_ + tets_per_edge * inner;
         tets_.resize(count);
         weights_.resize(count);
         kinds_.resize(count);
         tet_sides_.resize(count);
         triangles_.resize(count);
         edges_.resize(count);
+        combine_.resize(count, Combine::none);
+        partners_.resize(count, PatchComplex::no_partner);
     }
 
     u32 apex_number(std::size_t f, Side side) const { return static_cast<u32>(first_apex_ + 2 * f + side); }
@@ -139,14 +155,14 @@ private:
         const double sign = sign_of(side);
         FaceSide& out = sides_[side][f];
         out.apex = hull_.apex(f, side);
-        const Eigen::Matrix3d curvature = face_curvature(hull_, f, curvature_);
+        out.curvature = face_curvature(hull_, f, curvature_);
         std::array<double, 3> at_apex, along_edge, free;
         double quadric = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 d = out.apex - hull_.positions[t[i]];
-            quadric += (d.dot(hull_.normals[t[i]]) + d.dot(curvature * d) / 2) / 3;
-            at_apex[i] = hull_.at_vertex(t[i], out.apex);
-            along_edge[i] = hull_.at_edge(hull_.edges[face.edges[i]], out.apex);
+            quadric += (d.dot(hull_.normals[f][i]) + d.dot(out.curvature * d) / 2) / 3;
+            at_apex[i] = hull_.at_corner(f, i, out.apex);
+            along_edge[i] = hull_.at_edge(f, i, out.apex);
         }
         for (std::size_t i = 0; i < 3; ++i) free[i] = (quadric + 3 * at_apex[i]) / 3;
         double top = quadric;
@@ -157,7 +173,7 @@ private:
         const Eigen::Matrix3d inverse = corners.inverse();
         for (std::size_t i = 0; i < 3; ++i) {
             const HullEdge& edge = hull_.edges[face.edges[i]];
-            out.edge_point[i] = edge_point(edge, side);
+            out.edge_point[i] = edge_point(edge, f, side);
             out.at_edge_point[i].head<3>() = inverse * (out.edge_point[i] - out.apex);
             out.at_edge_point[i][3] = 1 - out.at_edge_point[i].head<3>().sum();
         }
@@ -170,8 +186,8 @@ private:
             m[static_cast<Eigen::Index>(previous(v))] = along_edge[previous(v)];
             m[3] = free[v];
             for (const std::size_t i : {v, previous(v)}) {
-                if (hull_.edges[face.edges[i]].second == HullEdge::none) continue;
-                const double wanted = least_share * hull_.at_vertex(t[v], out.edge_point[i]);
+                if (!is_smooth(face.edges[i])) continue;
+                const double wanted = least_share * hull_.at_corner(f, v, out.edge_point[i]);
                 raised += raise(m, out.at_edge_point[i], wanted, sign);
             }
             free[v] = m[3];
@@ -179,8 +195,7 @@ private:
         out.n = {free[0], free[1], free[2], top};
         const double wanted = least_share * (free[0] + free[1] + free[2]) / 3;
         for (std::size_t i = 0; i < 3; ++i)
-            if (hull_.edges[face.edges[i]].second != HullEdge::none)
-                raised += raise(out.n, out.at_edge_point[i], wanted, sign);
+            if (is_smooth(face.edges[i])) raised += raise(out.n, out.at_edge_point[i], wanted, sign);
         return raised;
     }
 
@@ -192,9 +207,12 @@ private:
         return 1;
     }
 
-    Vec3 edge_point(const HullEdge& edge, Side side) const {
-        const Vec3 apex = hull_.apex(edge.first, side);
-        return edge.second == HullEdge::none ? apex : (apex + hull_.apex(edge.second, side)) / 2;
+    bool is_smooth(u32 e) const { return hull_.edges[e].second != HullEdge::none && !hull_.edges[e].is_sharp; }
+
+    Vec3 edge_point(const HullEdge& edge, std::size_t f, Side side) const {
+        if (edge.second == HullEdge::none) return hull_.apex(edge.first, side);
+        if (edge.is_sharp) return hull_.apex(edge.first == f ? edge.second : edge.first, side);
+        return (hull_.apex(edge.first, side) + hull_.apex(edge.second, side)) / 2;
     }
 
     void write_face(std::size_t f, Side side) {
@@ -212,9 +230,9 @@ private:
         for (std::size_t v = 0; v < 3; ++v) {
             m[v] = s.m[v].dot(base);
             Vector4 values;
-            values[static_cast<Eigen::Index>(v)] = hull_.at_vertex(t[v], face.base);
-            values[static_cast<Eigen::Index>(next(v))] = at_edge(face.edges[v], face.base);
-            values[static_cast<Eigen::Index>(previous(v))] = at_edge(face.edges[previous(v)], face.base);
+            values[static_cast<Eigen::Index>(v)] = hull_.at_corner(f, v, face.base);
+            values[static_cast<Eigen::Index>(next(v))] = hull_.at_edge(f, v, face.base);
+            values[static_cast<Eigen::Index>(previous(v))] = hull_.at_edge(f, previous(v), face.base);
             values[3] = m[v];
             k[v] = values.dot(base);
         }
@@ -225,8 +243,8 @@ private:
             tets_[row] = {base_[f], t[i], t[j], apex_number(f, side)};
             weights_[row] =
                 with_corners(f, s, i,
-                             {u, k[i], k[j], ss, hull_.at_vertex(t[i], face.base), at_edge(face.edges[i], face.base),
-                              m[i], hull_.at_vertex(t[j], face.base), m[j], n});
+                             {u, k[i], k[j], ss, hull_.at_corner(f, i, face.base), hull_.at_edge(f, i, face.base), m[i],
+                              hull_.at_corner(f, j, face.base), m[j], n});
             describe(row, PatchKind::face, side, f, PatchComplex::no_edge);
         }
     }
@@ -239,9 +257,9 @@ private:
         // Corner 0 takes the place of the base point, edge 1 is the opposite one.
         weights_[row] =
             with_corners(f, s, 1,
-                         {0, hull_.at_vertex(t[0], hull_.positions[t[1]]), hull_.at_vertex(t[0], hull_.positions[t[2]]),
-                          s.m[0][0], hull_.at_vertex(t[1], hull_.positions[t[0]]), hull_.faces[f].middle, s.m[0][1],
-                          hull_.at_vertex(t[2], hull_.positions[t[0]]), s.m[0][2], s.n[0]});
+                         {0, hull_.at_corner(f, 0, hull_.positions[t[1]]), hull_.at_corner(f, 0, hull_.positions[t[2]]),
+                          s.m[0][0], hull_.at_corner(f, 1, hull_.positions[t[0]]), hull_.faces[f].middle, s.m[0][1],
+                          hull_.at_corner(f, 2, hull_.positions[t[0]]), s.m[0][2], s.n[0]});
         describe(row, PatchKind::face, side, f, PatchComplex::no_edge);
     }
 
@@ -252,9 +270,8 @@ private:
         const std::array<u32, 2> faces{edge.first, edge.second};
         std::array<std::size_t, 2> corner, number;  // of the face: of the edge's a, and of the edge
         for (std::size_t of = 0; of < 2; ++of) {
-            const Triangle& t = hull_.triangles[faces[of]];
-            corner[of] = static_cast<std::size_t>(std::ranges::find(t, edge.a) - t.begin());
-            number[of] = of == 0 ? corner[of] : previous(corner[of]);
+            number[of] = hull_.number_in(static_cast<u32>(e), faces[of]);
+            corner[of] = of == 0 ? number[of] : next(number[of]);
         }
         const Vec3 x = sides_[side][edge.first].edge_point[number[0]];
         positions_[edge_point_number(e, side)] = x;
@@ -269,8 +286,10 @@ private:
             n[of] = s.n.dot(at);
         }
         for (std::size_t end = 0; end < 2; ++end) quadratic[end] = (m[0][end] + m[1][end]) / 2;
+        const std::array<double, 2> at_end{hull_.at_corner(edge.first, number[0], x),
+                                           hull_.at_corner(edge.first, next(number[0]), x)};
         double qxx = 0;
-        for (std::size_t end = 0; end < 2; ++end) qxx += 1.5 * (quadratic[end] - hull_.at_vertex(ends[end], x));
+        for (std::size_t end = 0; end < 2; ++end) qxx += 1.5 * (quadratic[end] - at_end[end]);
         const double least = least_share_of_edge * std::min(sign * quadratic[0], sign * quadratic[1]);
         std::array<double, 2> r;
         std::size_t raised = 0;
@@ -283,17 +302,117 @@ private:
             }
         }
         for (std::size_t of = 0; of < 2; ++of) {
-            const std::size_t f = faces[of], row = tets_of_faces_ + tets_per_edge * inner_edge_[e] + 2 * side + of;
+            const std::size_t f = faces[of], row = row_of_edge_[e] + 2 * side + of;
             // Corners i and j follow the face's own direction, as those of its other tetrahedra do.
             const std::size_t i = of == 0 ? 0 : 1, j = 1 - i;
             tets_[row] = {edge_point_number(e, side), ends[i], ends[j], apex_number(f, side)};
             weights_[row] =
                 with_corners(f, sides_[side][f], number[of],
-                             {(r[0] + r[1]) / 2, quadratic[i], quadratic[j], r[of], hull_.at_vertex(ends[i], x),
-                              hull_.at_edge(edge, x), m[of][i], hull_.at_vertex(ends[j], x), m[of][j], n[of]});
+                             {(r[0] + r[1]) / 2, quadratic[i], quadratic[j], r[of], at_end[i],
+                              hull_.at_edge(edge.first, number[0], x), m[of][i], at_end[j], m[of][j], n[of]});
             describe(row, PatchKind::edge, side, f, static_cast<u32>(e));
         }
         return raised;
+    }
+
+    // Sharp edges.
+
+    /// The quadric of a face's side, as it continues beyond the edge with this number: its polar form is the mean of
+    /// those with value and gradient of the edge's ends.
+    struct Continuation {
+        std::array<Vec3, 2> ends, normals;  ///< of the corner where the edge begins, and of the next one
+        Eigen::Matrix3d curvature;
+
+        double polar(const Vec3& x, const Vec3& y) const {
+            double sum = 0;
+            for (std::size_t end = 0; end < 2; ++end) {
+                const Vec3 dx = x - ends[end], dy = y - ends[end];
+                sum += ((dx + dy).dot(normals[end]) + dx.dot(curvature * dy)) / 4;
+            }
+            return sum;
+        }
+        double at_end(std::size_t end, const Vec3& x) const { return (x - ends[end]).dot(normals[end]) / 2; }
+    };
+
+    Continuation continuation(std::size_t f, std::size_t number, Side side) const {
+        const Triangle& t = hull_.triangles[f];
+        const std::size_t j = next(number);
+        return {{hull_.positions[t[number]], hull_.positions[t[j]]},
+                {hull_.normals[f][number], hull_.normals[f][j]},
+                sides_[side][f].curvature};
+    }
+
+    void write_sharp(std::size_t e) {
+        const HullEdge& edge = hull_.edges[e];
+        const std::array<u32, 2> faces{edge.first, edge.second};
+        std::size_t row = row_of_edge_[e];
+        for (const Side side : both_sides) {
+            if (edge.is_filled[side]) {
+                for (std::size_t of = 0; of < 2; ++of)
+                    write_gap(row + of, static_cast<u32>(e), faces[of], faces[1 - of], side);
+                make_partners(row, row + 1, edge);
+                row += 2;
+            }
+            if (edge.is_straight) continue;
+            for (std::size_t of = 0; of < 2; ++of, ++row) {
+                const std::size_t into = faces[1 - of];
+                const std::size_t whole = first_row_[into] + 3 * side + hull_.number_in(static_cast<u32>(e), into);
+                write_continuation(row, whole, static_cast<u32>(e), faces[of], into, side);
+                make_partners(row, whole, edge);
+            }
+        }
+    }
+
+    void make_partners(std::size_t one, std::size_t other, const HullEdge& edge) {
+        combine_[one] = combine_[other] = edge.is_convex ? Combine::max : Combine::min;
+        partners_[one] = static_cast<u32>(other);
+        partners_[other] = static_cast<u32>(one);
+    }
+
+    /// The function of face f in the tetrahedron between the two apexes of a sharp edge.
+    void write_gap(std::size_t row, u32 e, std::size_t f, std::size_t beyond, Side side) {
+        const FaceSide& s = sides_[side][f];
+        const Triangle& t = hull_.triangles[f];
+        const std::size_t i = hull_.number_in(e, f), j = next(i);
+        const Vec3& x = s.edge_point[i];
+        const Vector4& at = s.at_edge_point[i];
+        const Continuation quadric = continuation(f, i, side);
+        const double q = quadric.polar(x, x), n = s.n.dot(at), qa = (3 * n - s.n[3]) / 2;
+        const double at_i = hull_.at_corner(f, i, x), at_j = hull_.at_corner(f, j, x);
+        tets_[row] = {apex_number(beyond, side), t[i], t[j], apex_number(f, side)};
+        weights_[row] = with_corners(f, s, i,
+                                     {q, (q + 3 * at_i) / 3, (q + 3 * at_j) / 3, (q + 2 * qa) / 3, at_i,
+                                      hull_.at_edge(f, i, x), s.m[i].dot(at), at_j, s.m[j].dot(at), n});
+        describe(row, PatchKind::sharp, side, f, e);
+    }
+
+    /// The function of face f in the tetrahedron `whole` of face `into`, which is beside the edge.
+    void write_continuation(std::size_t row, std::size_t whole, u32 e, std::size_t f, std::size_t into, Side side) {
+        const std::size_t number = hull_.number_in(e, f);
+        const Continuation quadric = continuation(f, number, side);
+        tets_[row] = tets_[whole];
+        // The corners are base, the edge's second end, its first end, apex: the edge goes the other way in `into`.
+        const std::array<Vec3, 4> x{hull_.faces[into].base, quadric.ends[1], quadric.ends[0], sides_[side][into].apex};
+        const std::array<std::size_t, 4> end{none_of_ends, 1, 0, none_of_ends};
+        const std::array<std::size_t, 2> corner{number, next(number)};
+        const auto polar = [&](std::size_t a, std::size_t b) {
+            if (end[a] != none_of_ends && end[b] != none_of_ends) return 0.0;
+            if (end[a] != none_of_ends) return quadric.at_end(end[a], x[b]);
+            return end[b] != none_of_ends ? quadric.at_end(end[b], x[a]) : quadric.polar(x[a], x[b]);
+        };
+        const auto weight = [&](std::size_t a, std::size_t b, std::size_t c) {
+            // Ascending: an end that occurs twice, or both ends.
+            for (const auto& [u, v, w] : {std::array{a, b, c}, std::array{b, c, a}, std::array{a, c, b}}) {
+                if (end[u] == none_of_ends || end[v] == none_of_ends) continue;
+                return u == v ? hull_.at_corner(f, corner[end[u]], x[w]) : hull_.at_edge(f, number, x[w]);
+            }
+            return (polar(a, b) + polar(b, c) + polar(a, c)) / 3;
+        };
+        std::size_t next_weight = 0;
+        for (std::size_t a = 0; a < 4; ++a)
+            for (std::size_t b = a; b < 4; ++b)
+                for (std::size_t c = b; c < 4; ++c) weights_[row][next_weight++] = weight(a, b, c);
+        describe(row, PatchKind::continuation, side, into, e);
     }
 
     /// The ten weights of the first corner, and those of corners i and j of edge i and the apex.
@@ -302,10 +421,12 @@ private:
         const std::size_t j = next(i);
         PatchWeights c;
         std::ranges::copy(first, c.begin());
+        // Exactly 0, so that the function is exactly 0 on the edge.
+        const bool is_straight = hull_.edges[hull_.faces[f].edges[i]].is_straight;
         const std::array<double, 10> rest{0,
-                                          hull_.at_vertex(t[i], hull_.positions[t[j]]),
+                                          is_straight ? 0 : hull_.at_corner(f, i, hull_.positions[t[j]]),
                                           s.m[i][static_cast<Eigen::Index>(i)],
-                                          hull_.at_vertex(t[j], hull_.positions[t[i]]),
+                                          is_straight ? 0 : hull_.at_corner(f, j, hull_.positions[t[i]]),
                                           s.m[i][static_cast<Eigen::Index>(j)],
                                           s.n[static_cast<Eigen::Index>(i)],
                                           0,
@@ -315,8 +436,6 @@ private:
         std::ranges::copy(rest, c.begin() + 10);
         return c;
     }
-
-    double at_edge(u32 edge, const Vec3& point) const { return hull_.at_edge(hull_.edges[edge], point); }
 
     void describe(std::size_t row, PatchKind kind, Side side, std::size_t f, u32 edge) {
         kinds_[row] = kind;
@@ -331,13 +450,14 @@ private:
     std::array<std::vector<FaceSide>, 2> sides_;  // by Side
     std::size_t first_apex_ = 0, first_edge_point_ = 0, tets_of_faces_ = 0;
     std::vector<u32> base_, inner_edge_;
-    std::vector<std::size_t> first_row_;  ///< of a face's tetrahedra
+    std::vector<std::size_t> first_row_, row_of_edge_;  ///< of a face's and of an edge's tetrahedra
     Array<Vec3> positions_;
     Array<std::array<u32, 4>> tets_;
     Array<PatchWeights> weights_;
     Array<PatchKind> kinds_;
     Array<u8> tet_sides_;
-    Array<u32> triangles_, edges_;
+    Array<u32> triangles_, edges_, partners_;
+    Array<Combine> combine_;
     std::atomic<std::size_t> raised_ = 0;
 };
 

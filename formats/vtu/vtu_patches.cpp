@@ -61,6 +61,11 @@ void write_vtu_patches(const Value& value, OutputBuffer& out, const WriteOptions
     data->GetCellData()->AddArray(array_of(kinds, 1, "kind"));
     data->GetCellData()->AddArray(array_of(patches.sides.span(), 1, "side"));
     data->GetCellData()->AddArray(array_of(patches.triangles.span(), 1, "patch"));
+    const std::span combine(reinterpret_cast<const u8*>(patches.combine.data()), tets);
+    data->GetCellData()->AddArray(array_of(combine, 1, "combine"));
+    // As signed numbers, no_partner is -1.
+    const std::span partners(reinterpret_cast<const std::int32_t*>(patches.partners.data()), tets);
+    data->GetCellData()->AddArray(array_of(partners, 1, "partner"));
     add_frame(patches.frame, Text::as_numbers, *data->GetFieldData());
     write(*vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New(), *data, out);
 }

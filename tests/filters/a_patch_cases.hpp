@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 
 #include "a_patch/a_patch.hpp"
 #include "scanmill/base/random.hpp"
@@ -87,6 +88,7 @@ inline PatchRun patched(const TriangleMesh& mesh, Curvature curvature, Split spl
 }
 
 /// Faces that two tetrahedra share; the largest differences of values and (relative) of gradients at random points.
+/// At sharp edges only functions of one triangle join.
 struct Joints {
     std::size_t shared = 0;
     double value = 0, gradient = 0;
@@ -96,6 +98,7 @@ inline Joints joints_of(const PatchComplex& patches) {
     std::map<std::array<u32, 3>, std::vector<u32>> tets_of;
     for (u32 tet = 0; tet < patches.tets.size(); ++tet)
         for (std::size_t without = 0; without < 4; ++without) {
+            if (patches.kinds[tet] == PatchKind::continuation) continue;
             std::array<u32, 3> face;
             for (std::size_t i = 0, n = 0; i < 4; ++i)
                 if (i != without) face[n++] = patches.tets[tet][i];
@@ -104,70 +107,117 @@ inline Joints joints_of(const PatchComplex& patches) {
         }
     Random random(7);
     Joints joints;
-    for (const auto& [face, tets] : tets_of) {
-        EXPECT_LE(tets.size(), 2u);
-        if (tets.size() != 2) continue;
-        ++joints.shared;
-        const PatchCell one(patches, tets[0]), other(patches, tets[1]);
-        for (int i = 0; i < 3; ++i) {
-            double a = random.uniform(0, 1), b = random.uniform(0, 1);
-            if (a + b > 1) a = 1 - a, b = 1 - b;
-            const Vec3 p = a * patches.positions[face[0]] + b * patches.positions[face[1]] +
-                           (1 - a - b) * patches.positions[face[2]];
-            const Vec3 g = one.gradient(p), h = other.gradient(p);
-            joints.value = std::max(joints.value, std::abs(one.value(p) - other.value(p)));
-            joints.gradient = std::max(joints.gradient, (g - h).norm() / std::max(g.norm(), h.norm()));
-        }
-    }
+    for (const auto& [face, tets] : tets_of)
+        for (std::size_t m = 0; m < tets.size(); ++m)
+            for (std::size_t n = 0; n < m; ++n) {
+                const bool is_sharp =
+                    patches.kinds[tets[m]] == PatchKind::sharp || patches.kinds[tets[n]] == PatchKind::sharp;
+                if (is_sharp && patches.triangles[tets[m]] != patches.triangles[tets[n]]) continue;
+                ++joints.shared;
+                const PatchCell one(patches, tets[m]), other(patches, tets[n]);
+                for (int i = 0; i < 3; ++i) {
+                    double a = random.uniform(0, 1), b = random.uniform(0, 1);
+                    if (a + b > 1) a = 1 - a, b = 1 - b;
+                    const Vec3 p = a * patches.positions[face[0]] + b * patches.positions[face[1]] +
+                                   (1 - a - b) * patches.positions[face[2]];
+                    const Vec3 g = one.gradient(p), h = other.gradient(p);
+                    joints.value = std::max(joints.value, std::abs(one.value(p) - other.value(p)));
+                    joints.gradient = std::max(joints.gradient, (g - h).norm() / std::max(g.norm(), h.norm()));
+                }
+            }
     return joints;
 }
 
-/// Largest |F| and difference of the gradient from the normal at the mesh's vertices.
+/// The normal at a triangle's corner.
+inline Vec3 corner_normal(const APatchResult& result, std::size_t triangle, u32 vertex) {
+    const Column* normals = result.mesh.face_columns.find("corner-normals");
+    for (u32 i = 0; i < 3; ++i)
+        if (result.mesh.triangles[triangle][i] == vertex)
+            return {normals->number(triangle, 3 * i), normals->number(triangle, 3 * i + 1),
+                    normals->number(triangle, 3 * i + 2)};
+    ADD_FAILURE() << "vertex " << vertex << " is not a corner of triangle " << triangle;
+    return Vec3::Zero();
+}
+
+/// Of a smooth vertex.
+inline Vec3 vertex_normal(const APatchResult& result, u32 vertex) {
+    for (std::size_t f = 0; f < result.mesh.triangles.size(); ++f)
+        if (std::ranges::find(result.mesh.triangles[f], vertex) != result.mesh.triangles[f].end())
+            return corner_normal(result, f, vertex);
+    return Vec3::Zero();
+}
+
+/// Largest |F| and difference of the gradient from the normal at the mesh's vertices, of each triangle's function.
 inline std::pair<double, double> errors_at_vertices(const APatchResult& result) {
     const PatchComplex& patches = result.patches;
-    const Column* normals = result.mesh.vertex_columns.find("normal");
     double value = 0, gradient = 0;
     for (u32 tet = 0; tet < patches.tets.size(); ++tet)
         for (const u32 v : patches.tets[tet]) {
-            if (v >= result.mesh.positions.size()) continue;
+            if (v >= result.mesh.positions.size() || patches.kinds[tet] == PatchKind::continuation) continue;
             const PatchCell cell(patches, tet);
-            const Vec3 n(normals->number(v, 0), normals->number(v, 1), normals->number(v, 2));
+            const Vec3 n = corner_normal(result, patches.triangles[tet], v);
             value = std::max(value, std::abs(cell.value(patches.positions[v])));
             gradient = std::max(gradient, (cell.gradient(patches.positions[v]) - n).norm());
         }
     return {value, gradient};
 }
 
-/// Points of the surface above random points of the triangles, on the lines to the apexes. Each line must have exactly
-/// one point of the surface, found by sampling the function along it.
+/// F in a tetrahedron, of one function or two, at coordinates of its first row.
+inline double combined_value(const PatchComplex& patches, u32 tet, const Barycentric& at) {
+    const double own = patch_value(patches.weights[tet], at);
+    const u32 partner = patches.partners[tet];
+    if (partner == PatchComplex::no_partner) return own;
+    Barycentric there = Barycentric::Zero();
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+            if (patches.tets[partner][static_cast<std::size_t>(j)] == patches.tets[tet][static_cast<std::size_t>(i)])
+                there[j] = at[i];
+    const double other = patch_value(patches.weights[partner], there);
+    return patches.combine[tet] == Combine::max ? std::max(own, other) : std::min(own, other);
+}
+
+/// The point of the surface on a line from the mesh away from it; exactly one, found by sampling. Nothing if the
+/// surface is on the other side of the mesh.
+inline std::optional<Vec3> point_on_ray(const PatchComplex& patches, u32 tet, const Barycentric& from,
+                                        const Barycentric& to) {
+    const double sign = patches.sides[tet] == 1 ? 1 : -1;
+    const auto value = [&](double t) { return sign * combined_value(patches, tet, (1 - t) * from + t * to); };
+    if (value(0) > 1e-15) return std::nullopt;
+    int changes = 0;
+    bool before = false;
+    for (int step = 1; step <= 16; ++step) {
+        const bool above = value(step / 16.0) > 0;
+        changes += above != before;
+        before = above;
+    }
+    EXPECT_EQ(changes, 1) << "tetrahedron " << tet << " of kind " << static_cast<int>(patches.kinds[tet]);
+    double low = 0, high = 1;
+    while (true) {
+        const double middle = (low + high) / 2;
+        if (!(middle > low && middle < high)) break;
+        (value(middle) > 0 ? high : low) = middle;
+    }
+    return PatchCell(patches, tet).point((1 - low) * from + low * to);
+}
+
+/// Points of the surface above random points of the triangles, on the lines to the apexes, and beside sharp edges on
+/// the lines to the segment between two apexes.
 template <class Action>
 std::size_t for_each_ray(const PatchComplex& patches, int per_tet, Action&& action) {
     Random random(3);
     std::size_t rays = 0;
     for (u32 tet = 0; tet < patches.tets.size(); ++tet) {
-        if (patches.kinds[tet] != PatchKind::face) continue;
-        const PatchCell cell(patches, tet);
-        const PatchWeights& weights = patches.weights[tet];
+        const bool is_gap = patches.kinds[tet] == PatchKind::sharp && patches.partners[tet] > tet;
+        if (patches.kinds[tet] != PatchKind::face && !is_gap) continue;
         for (int i = 0; i < per_tet; ++i) {
             double a = random.uniform(0, 1), b = random.uniform(0, 1);
-            if (a + b > 1) a = 1 - a, b = 1 - b;
-            const Barycentric from(a, b, 1 - a - b, 0), to(0, 0, 0, 1);
-            const double sign = patches.sides[tet] == 1 ? 1 : -1;
-            if (sign * patch_value(weights, from) > 0) continue;  // seen from the other side
+            if (!is_gap && a + b > 1) a = 1 - a, b = 1 - b;
+            const Barycentric from = is_gap ? Barycentric(0, a, 1 - a, 0) : Barycentric(a, b, 1 - a - b, 0),
+                              to = is_gap ? Barycentric(b, 0, 0, 1 - b) : Barycentric(0, 0, 0, 1);
+            const auto point = point_on_ray(patches, tet, from, to);
+            if (!point) continue;
             ++rays;
-            const auto share = patch_hit(weights, from, to);
-            EXPECT_TRUE(share);
-            if (!share) continue;
-            int changes = 0;
-            bool before = false;
-            for (int step = 1; step <= 16; ++step) {
-                const double t = step / 16.0;
-                const bool above = sign * patch_value(weights, (1 - t) * from + t * to) > 0;
-                changes += above != before;
-                before = above;
-            }
-            EXPECT_EQ(changes, 1);
-            action(tet, cell.point((1 - *share) * from + *share * to));
+            action(tet, *point);
         }
     }
     return rays;

@@ -105,13 +105,5 @@ TEST(APatchRefuses, AFactorOutOfRange_AndFitting) {
     EXPECT_THAT(refusal(icosahedron(), params).sentence(), HasSubstr("not possible yet"));
 }
 
-TEST(APatchRefuses, AFoldedMesh_WithTheTriangles) {
-    // Two triangles folded flat onto each other: their normals are opposite at both common corners.
-    const Error error = refusal(soup({{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 1.1, 1e-3}}, {{0, 1, 2}, {1, 0, 3}}));
-    EXPECT_THAT(error.sentence(), AllOf(HasSubstr("the mesh is folded: 2 triangles have a corner"),
-                                        HasSubstr("at (0, 0, 0), (1, 0, 0)")));
-    EXPECT_FALSE(error.hint().empty());
-}
-
 }  // namespace
 }  // namespace scanmill

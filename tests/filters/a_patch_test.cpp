@@ -98,6 +98,14 @@ TriangleMesh random_hull(std::size_t count) {
     return mesh;
 }
 
+std::vector<Vec3> mesh_vertex_normals(const TriangleMesh& mesh) {
+    const a_patches::Sectors sectors = a_patches::sectors_of(mesh);  // one per vertex
+    const std::vector<Vec3> of_sectors = a_patches::mesh_normals(mesh, sectors);
+    std::vector<Vec3> normals(mesh.positions.size());
+    for (std::size_t s = 0; s < sectors.size(); ++s) normals[sectors.vertex[s]] = of_sectors[s];
+    return normals;
+}
+
 TEST(APatch, HullsOfRandomPoints_WithNeedles_AreSound) {
     const std::size_t counts[] = {60, 200};
     const double most[] = {0.15, 1e-2};
@@ -109,7 +117,7 @@ TEST(APatch, HullsOfRandomPoints_WithNeedles_AreSound) {
         EXPECT_EQ(exact.result.inverted + exact.result.sign_violations + exact.result.bisected, 0u);
         EXPECT_LT(joints_of(exact.result.patches).gradient, 1e-9);
         EXPECT_LT(worst_distance(exact.result.patches, sphere_distance), most[i]);
-        EXPECT_LT(patched(with_normals(mesh, a_patches::mesh_normals(mesh))).result.c1_jump, 1e-8);
+        EXPECT_LT(patched(with_normals(mesh, mesh_vertex_normals(mesh))).result.c1_jump, 1e-8);
     }
 }
 
@@ -293,11 +301,8 @@ TEST(APatch, ATurnedAndShiftedMesh_HasTheSameWeights) {
 TEST(APatch, NormalsOfTheMesh_AreExactOnSpheres) {
     const TriangleMesh mesh = geodesic_sphere(2, 3);
     const APatchResult result = patched(mesh).result;
-    const Column* normals = result.mesh.vertex_columns.find("normal");
     for (u32 v = 0; v < mesh.positions.size(); ++v)
-        EXPECT_LT(
-            (Vec3(normals->number(v, 0), normals->number(v, 1), normals->number(v, 2)) - mesh.positions[v] / 2).norm(),
-            1e-14);
+        EXPECT_LT((vertex_normal(result, v) - mesh.positions[v] / 2).norm(), 1e-14);
 }
 
 TEST(APatch, NormalsOfPoints_AreBetterThanThoseOfACoarseMesh) {
@@ -310,34 +315,15 @@ TEST(APatch, NormalsOfPoints_AreBetterThanThoseOfACoarseMesh) {
     scan.positions = ellipsoid(30).positions;
     const auto worst = [&](const PointCloud* points) {
         const APatchResult result = patched(coarse, {}, points).result;
-        const Column* normals = result.mesh.vertex_columns.find("normal");
         double largest = 0;
         for (u32 v = 0; v < coarse.positions.size(); ++v) {
             const Vec3& p = coarse.positions[v];
             const Vec3 exact = Vec3(p.x(), p.y(), p.z() / 9).normalized();
-            largest = std::max(
-                largest, (Vec3(normals->number(v, 0), normals->number(v, 1), normals->number(v, 2)) - exact).norm());
+            largest = std::max(largest, (vertex_normal(result, v) - exact).norm());
         }
         return largest;
     };
     EXPECT_LT(worst(&scan), 0.1 * worst(nullptr));
-}
-
-TEST(APatch, SharpEdges_AreSmoothedWithAWarning) {
-    TriangleMesh mesh = cube();
-    Array<double> normals;
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 n = (mesh.positions[t[1]] - mesh.positions[t[0]])
-                           .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
-                           .normalized();
-        for (int i = 0; i < 3; ++i) normals.insert(normals.end(), n.data(), n.data() + 3);
-    }
-    mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(normals))));
-    mesh.sharp_edges = {make_edge(mesh.triangles[0][0], mesh.triangles[0][1])};
-    const PatchRun run = patched(mesh);
-    EXPECT_THAT(run.warnings, ElementsAre("sharp edges are smoothed: 8 vertices with several normals get their mean",
-                                          "the mesh's 1 sharp edge is smoothed"));
-    expect_sound(run);
 }
 
 TEST(APatch, ANormalThatOpposesATriangle_IsReplaced) {

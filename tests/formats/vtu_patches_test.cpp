@@ -13,26 +13,28 @@ TEST(VtuPatches, TheFieldThatVtkInterpolates_IsThePatchesFunction) {
     PatchComplex patches;
     patches.frame = {LengthUnit::millimetre, Vec3(0, 0, 8), "part"};
     patches.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.2, 0.3, 1), Vec3(0.1, 0.2, -1)};
-    patches.tets = {std::array<u32, 4>{0, 1, 2, 3}, std::array<u32, 4>{0, 1, 2, 4}};
+    patches.tets = {std::array<u32, 4>{0, 1, 2, 3}, std::array<u32, 4>{0, 1, 2, 4}, std::array<u32, 4>{3, 1, 2, 0}};
     PatchWeights one, other;
     for (std::size_t i = 0; i < one.size(); ++i) {
         one[i] = static_cast<double>(i * i % 7) - 3;
         other[i] = static_cast<double>(i * i * i % 11) - 5;
     }
-    patches.weights = {one, other};
-    patches.kinds = {PatchKind::face, PatchKind::edge};
-    patches.sides = {1, 0};
-    patches.triangles = {0, 4};
-    patches.edges = {PatchComplex::no_edge, 7};
+    patches.weights = {one, other, other};
+    patches.kinds = {PatchKind::face, PatchKind::edge, PatchKind::continuation};
+    patches.sides = {1, 0, 1};
+    patches.triangles = {0, 4, 0};
+    patches.edges = {PatchComplex::no_edge, 7, 7};
+    patches.combine = {Combine::min, Combine::none, Combine::min};
+    patches.partners = {2, PatchComplex::no_partner, 0};
 
     const TemporaryFolder folder;
     write_file(folder / "a.vtu", std::make_shared<const PatchComplex>(patches));
     const auto data = read_by_vtk<vtkXMLUnstructuredGridReader, vtkUnstructuredGrid>(folder / "a.vtu");
-    ASSERT_EQ(data->GetNumberOfCells(), 2);
-    EXPECT_EQ(data->GetNumberOfPoints(), 40);
+    ASSERT_EQ(data->GetNumberOfCells(), 3);
+    EXPECT_EQ(data->GetNumberOfPoints(), 60);
     vtkDataArray* weights = data->GetPointData()->GetArray("weights");
     ASSERT_TRUE(weights);
-    for (vtkIdType tet = 0; tet < 2; ++tet) {
+    for (vtkIdType tet = 0; tet < 3; ++tet) {
         vtkCell* cell = data->GetCell(tet);
         EXPECT_EQ(cell->GetCellType(), VTK_BEZIER_TETRAHEDRON);
         const PatchCell ours(patches, static_cast<std::size_t>(tet));
@@ -49,6 +51,9 @@ TEST(VtuPatches, TheFieldThatVtkInterpolates_IsThePatchesFunction) {
     EXPECT_EQ(data->GetCellData()->GetArray("patch")->GetComponent(1, 0), 4);
     EXPECT_EQ(data->GetCellData()->GetArray("side")->GetComponent(0, 0), 1);
     EXPECT_EQ(data->GetCellData()->GetArray("kind")->GetComponent(1, 0), 1);
+    EXPECT_EQ(data->GetCellData()->GetArray("combine")->GetComponent(0, 0), 2);
+    EXPECT_EQ(data->GetCellData()->GetArray("partner")->GetComponent(0, 0), 2);
+    EXPECT_EQ(data->GetCellData()->GetArray("partner")->GetComponent(1, 0), -1);
 }
 
 }  // namespace

@@ -4,7 +4,8 @@
 ///
 /// The tetrahedra stand on both sides of a triangle mesh. In barycentric coordinates a of its tetrahedron the function
 /// is F = sum of 6 / (i! j! k! l!) c_ijkl a0^i a1^j a2^k a3^l over i + j + k + l = 3, with the 20 weights c; it is
-/// negative inside the object and positive outside. Neighbours join with equal gradients. geometry/a_patch.hpp
+/// negative inside the object and positive outside. Neighbours join with equal gradients, except across sharp edges:
+/// beside those, two functions hold in a tetrahedron, and F is the larger or the smaller of them. geometry/a_patch.hpp
 /// evaluates it.
 
 #include <array>
@@ -19,12 +20,27 @@ using PatchWeights = std::array<double, 20>;
 
 enum class PatchKind : u8 {
     face,  ///< stands on a triangle, or on a third of it: base point w of the triangle, corners i and j, apex
-    edge   ///< fills the gap beside an edge: point x between the apexes of its two triangles, corners i and j, apex
+    edge,  ///< fills the gap beside an edge: point x between the apexes of its two triangles, corners i and j, apex
+    /// Fills the gap beside a sharp edge: apex of the other triangle, corners i and j, apex of its own triangle. Two
+    /// rows, partners of each other: the functions of both triangles.
+    sharp,
+    /// The corners of a `face` row at a curved sharp edge, with the function of the triangle beyond the edge. Partner
+    /// of that row.
+    continuation
+};
+
+/// What F is in a tetrahedron with two rows.
+enum class Combine : u8 {
+    none,  ///< one row
+    max,  ///< the larger function, at a convex edge
+    min  ///< the smaller function, at a concave edge
 };
 
 struct PatchComplex {
     /// In `edge`: the tetrahedron stands on a triangle.
     static constexpr u32 no_edge = ~u32(0);
+    /// In `partners`: the tetrahedron has one function.
+    static constexpr u32 no_partner = ~u32(0);
 
     Frame frame;
     /// #vertices, relative to frame.origin: those of the mesh in its order, then base points, apexes and edge points.
@@ -37,6 +53,9 @@ struct PatchComplex {
     Buffer<u8> sides;  ///< #tetrahedra: 1 outside the mesh, 0 inside it
     Buffer<u32> triangles;  ///< #tetrahedra: the row of the mesh's triangle whose apex is their last corner
     Buffer<u32> edges;  ///< #tetrahedra: the number of the mesh's edge, by its vertices; or no_edge
+    Buffer<Combine> combine;  ///< #tetrahedra; equal for partners
+    /// #tetrahedra: the other row with the same four points, whose partner is this one; or no_partner.
+    Buffer<u32> partners;
 };
 
 }  // namespace scanmill

@@ -4,12 +4,13 @@
 ///     {"scanmill": 1, "unit": "mm", "frame": "part",
 ///      "points": [[0, 0, 0], …],
 ///      "tets": [{"vertices": [12, 0, 1, 30], "weights": [-0.02, …], "kind": "face", "side": 1, "patch": 0,
-///                "edge": null, "combine": "none"}, …]}
+///                "edge": null, "combine": "none", "partner": null}, …]}
 ///
 /// Points are world coordinates. The 20 weights c_ijkl are ordered by (i, j, k, l) falling lexicographically: 3000,
-/// 2100, …, 0003. `kind` is face or edge; `side` is 1 outside the mesh and 0 inside; `patch` is the row of the mesh's
-/// triangle, and `edge` the number of its edge, or null. `combine` is none: the tetrahedron has one polynomial. `unit`
-/// and `frame` are null if unknown. Numbers are read back bit for bit.
+/// 2100, …, 0003. `kind` is face, edge, sharp or continuation; `side` is 1 outside the mesh and 0 inside; `patch` is
+/// the row of the mesh's triangle, and `edge` the number of its edge, or null. `combine` is none where the tetrahedron
+/// has one polynomial; where it has two, it is max or min, and `partner` is the row of `tets` with the same points and
+/// the other polynomial, else null. `unit` and `frame` are null if unknown. Numbers are read back bit for bit.
 #include "scanmill/data/patches.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +27,9 @@ namespace scanmill {
 
 namespace {
 
-constexpr std::array<std::string_view, 2> kind_names_of_tets{"face", "edge"};  // by PatchKind
+// By PatchKind and by Combine.
+constexpr std::array<std::string_view, 4> kind_names_of_tets{"face", "edge", "sharp", "continuation"};
+constexpr std::array<std::string_view, 3> combine_names{"none", "max", "min"};
 
 std::size_t number_of_patches(const PatchComplex& patches) {
     std::size_t most = 0;
@@ -34,27 +37,51 @@ std::size_t number_of_patches(const PatchComplex& patches) {
     return most;
 }
 
-/// Throws Error if arrays have different lengths or an index is out of range.
+/// Throws Error unless the partner of `row` has the same points and the same rule, and is another row whose partner is
+/// `row`; and unless there is one exactly where functions are combined.
+void require_partner(const PatchComplex& patches, std::size_t row) {
+    const u32 partner = patches.partners[row];
+    if ((partner == PatchComplex::no_partner) != (patches.combine[row] == Combine::none))
+        throw Error("tetrahedron {} has {}", row,
+                    partner == PatchComplex::no_partner ? "no partner to combine with" : "a partner without 'combine'");
+    if (partner == PatchComplex::no_partner) return;
+    if (partner >= patches.tets.size())
+        throw Error("tetrahedron {} has partner {}; there are {} tetrahedra", row, partner, patches.tets.size());
+    if (partner == row || patches.partners[partner] != row)
+        throw Error("tetrahedron {} has partner {}, which has another one", row, partner);
+    auto one = patches.tets[row], other = patches.tets[partner];
+    std::ranges::sort(one);
+    std::ranges::sort(other);
+    if (one != other || patches.combine[row] != patches.combine[partner] ||
+        patches.sides[row] != patches.sides[partner])
+        throw Error("tetrahedron {} and its partner {} differ in their points, 'side' or 'combine'", row, partner);
+}
+
+/// Throws Error if arrays have different lengths, an index is out of range, or partners do not match.
 void require_consistent(const PatchComplex& patches) {
     const std::size_t tets = patches.tets.size();
     if (patches.weights.size() != tets || patches.kinds.size() != tets || patches.sides.size() != tets ||
-        patches.triangles.size() != tets || patches.edges.size() != tets)
+        patches.triangles.size() != tets || patches.edges.size() != tets || patches.combine.size() != tets ||
+        patches.partners.size() != tets)
         throw Error("the patches' arrays do not have one row for each of the {} tetrahedra", tets);
-    for (std::size_t row = 0; row < tets; ++row)
+    for (std::size_t row = 0; row < tets; ++row) {
         for (const u32 vertex : patches.tets[row])
             if (vertex >= patches.positions.size())
                 throw Error("tetrahedron {} names point {}; there are {}", row, vertex, patches.positions.size());
+        require_partner(patches, row);
+    }
 }
 
 Json tet_json(const PatchComplex& patches, std::size_t row) {
-    const u32 edge = patches.edges[row];
+    const u32 edge = patches.edges[row], partner = patches.partners[row];
     return {{"vertices", patches.tets[row]},
             {"weights", patches.weights[row]},
             {"kind", kind_names_of_tets[static_cast<std::size_t>(patches.kinds[row])]},
             {"side", patches.sides[row]},
             {"patch", patches.triangles[row]},
             {"edge", edge == PatchComplex::no_edge ? Json(nullptr) : Json(edge)},
-            {"combine", "none"}};
+            {"combine", combine_names[static_cast<std::size_t>(patches.combine[row])]},
+            {"partner", partner == PatchComplex::no_partner ? Json(nullptr) : Json(partner)}};
 }
 
 u32 index_of(const Json& json, u64 below, const std::string& what) {
@@ -77,21 +104,25 @@ public:
         for (Vec3& p : positions) p -= patches.frame.origin;
         points_ = positions.size();
         patches.positions = std::move(positions);
-        for (const Json& tet : list_member(document, "tets", "the document"))
-            read_tet(tet, fmt::format("tetrahedron {}", tets_.size()));
+        const Json& tets = list_member(document, "tets", "the document");
+        count_ = tets.size();
+        for (const Json& tet : tets) read_tet(tet, fmt::format("tetrahedron {}", tets_.size()));
         patches.tets = std::move(tets_);
         patches.weights = std::move(weights_);
         patches.kinds = std::move(kinds_);
         patches.sides = std::move(sides_);
         patches.triangles = std::move(triangles_);
         patches.edges = std::move(edges_);
+        patches.combine = std::move(combine_);
+        patches.partners = std::move(partners_);
+        for (std::size_t row = 0; row < count_; ++row) require_partner(patches, row);
         return patches;
     }
 
 private:
     void read_tet(const Json& json, const std::string& place) {
         if (!json.is_object()) throw Error("{} is not an object", place);
-        require_keys(json, place, {"vertices", "weights", "kind", "side", "patch", "edge", "combine"});
+        require_keys(json, place, {"vertices", "weights", "kind", "side", "patch", "edge", "combine", "partner"});
         const Json& vertices = list_member(json, "vertices", place);
         std::array<u32, 4> tet;
         if (vertices.size() != tet.size()) throw Error("{} has {} vertices; 4 are needed", place, vertices.size());
@@ -100,27 +131,38 @@ private:
             numbers_of(member(json, "weights"), PatchWeights().size(), place + ": 'weights'");
         PatchWeights weights;
         std::ranges::copy(numbers, weights.begin());
-        const std::string kind = text_member(json, "kind", place);
-        const auto found = std::ranges::find(kind_names_of_tets, kind);
-        if (found == kind_names_of_tets.end()) throw Error("{}: unknown kind '{}'; expected face or edge", place, kind);
-        const std::string combine = text_member(json, "combine", place);
-        if (combine != "none" && !combine.empty()) throw Error("{}: 'combine' is '{}'; expected none", place, combine);
+        const auto kind = name_member<PatchKind>(json, "kind", kind_names_of_tets, place);
+        const auto combine = name_member<Combine>(json, "combine", combine_names, place);
         constexpr u64 most = PatchComplex::no_edge;
-        const Json& edge = member(json, "edge");
+        const Json &edge = member(json, "edge"), &partner = member(json, "partner");
         tets_.push_back(tet);
         weights_.push_back(weights);
-        kinds_.push_back(static_cast<PatchKind>(found - kind_names_of_tets.begin()));
+        kinds_.push_back(kind);
         sides_.push_back(static_cast<u8>(index_of(member(json, "side"), 2, place + ": 'side'")));
         triangles_.push_back(index_of(member(json, "patch"), most, place + ": 'patch'"));
         edges_.push_back(edge.is_null() ? PatchComplex::no_edge : index_of(edge, most, place + ": 'edge'"));
+        combine_.push_back(combine);
+        partners_.push_back(partner.is_null() ? PatchComplex::no_partner
+                                              : index_of(partner, count_, place + ": 'partner'"));
     }
 
-    std::size_t points_ = 0;
+    template <class Enum, std::size_t count>
+    static Enum name_member(const Json& json, const char* name, const std::array<std::string_view, count>& names,
+                            const std::string& place) {
+        const std::string text = text_member(json, name, place);
+        const auto found = std::ranges::find(names, text);
+        if (found == names.end())
+            throw Error("{}: unknown {} '{}'; expected {}", place, name, text, fmt::join(names, ", "));
+        return static_cast<Enum>(found - names.begin());
+    }
+
+    std::size_t points_ = 0, count_ = 0;
     Array<std::array<u32, 4>> tets_;
     Array<PatchWeights> weights_;
     Array<PatchKind> kinds_;
     Array<u8> sides_;
-    Array<u32> triangles_, edges_;
+    Array<u32> triangles_, edges_, partners_;
+    Array<Combine> combine_;
 };
 
 }  // namespace
@@ -143,6 +185,8 @@ struct KindTraits<PatchComplex> : FromPositions<PatchComplex> {
         visitor.plain("sides", patches.sides);
         visitor.plain("triangles", patches.triangles);
         visitor.plain("edges", patches.edges);
+        visitor.plain("combine", patches.combine);
+        visitor.plain("partners", patches.partners);
     }
     static std::vector<PropertySpec> property_specs() {
         return {{"tetrahedra", Unit::count, "Tetrahedra."}, {"patches", Unit::count, "Triangles of the mesh."}};

@@ -107,6 +107,8 @@ PatchComplex one_tet() {
     patches.sides = {1};
     patches.triangles = {0};
     patches.edges = {PatchComplex::no_edge};
+    patches.combine = {Combine::none};
+    patches.partners = {PatchComplex::no_partner};
     return patches;
 }
 

@@ -28,6 +28,19 @@ PatchComplex two_tets() {
     patches.sides = {1, 0};
     patches.triangles = {0, 4};
     patches.edges = {PatchComplex::no_edge, 7};
+    patches.combine = {Combine::none, Combine::none};
+    patches.partners = {PatchComplex::no_partner, PatchComplex::no_partner};
+    return patches;
+}
+
+/// Two functions in one tetrahedron, whose corners are in another order in the second row.
+PatchComplex two_functions(Combine combine = Combine::max) {
+    PatchComplex patches = two_tets();
+    patches.tets = {std::array<u32, 4>{0, 1, 2, 3}, std::array<u32, 4>{3, 2, 1, 0}};
+    patches.kinds = {PatchKind::face, PatchKind::continuation};
+    patches.sides = {1, 1};
+    patches.combine = {combine, combine};
+    patches.partners = {1, 0};
     return patches;
 }
 
@@ -49,10 +62,18 @@ void expect_equal(const PatchComplex& a, const PatchComplex& b) {
     EXPECT_TRUE(std::ranges::equal(a.sides, b.sides));
     EXPECT_TRUE(std::ranges::equal(a.triangles, b.triangles));
     EXPECT_TRUE(std::ranges::equal(a.edges, b.edges));
+    EXPECT_TRUE(std::ranges::equal(a.combine, b.combine));
+    EXPECT_TRUE(std::ranges::equal(a.partners, b.partners));
 }
 
 TEST(Patches, AsJsonText_AreReadBackBitForBit) {
     expect_equal(patches_of(parse_document(json_of(two_tets()).dump())), two_tets());
+    for (const Combine combine : {Combine::max, Combine::min}) {
+        PatchComplex patches = two_functions(combine);
+        expect_equal(patches_of(parse_document(json_of(patches).dump())), patches);
+        patches.kinds = {PatchKind::sharp, PatchKind::sharp};
+        expect_equal(patches_of(parse_document(json_of(patches).dump())), patches);
+    }
 }
 
 TEST(Patches, InAnotherUnit_HaveScaledWeights) {
@@ -91,6 +112,15 @@ TEST(PatchesRefuse, WhatIsNotUsable) {
     patches = two_tets();
     patches.tets = {std::array<u32, 4>{0, 1, 2, 3}, std::array<u32, 4>{0, 1, 2, 5}};
     EXPECT_THAT(refusal(patches), HasSubstr("tetrahedron 1 names point 5; there are 5"));
+    patches = two_functions();
+    EXPECT_NO_THROW(kind_of<PatchComplex>().info().require_usable(&patches));
+    patches.partners = {1, 1};
+    EXPECT_THAT(refusal(patches), HasSubstr("tetrahedron 0 has partner 1, which has another one"));
+    patches.partners = {1};
+    EXPECT_THAT(refusal(patches), HasSubstr("one row for each of the 2"));
+    patches = two_functions();
+    patches.combine = {Combine::max};
+    EXPECT_THAT(refusal(patches), HasSubstr("one row for each of the 2"));
 }
 
 TEST(PatchesRefuse, BrokenJson) {
@@ -103,10 +133,24 @@ TEST(PatchesRefuse, BrokenJson) {
     EXPECT_THAT(refusal([](Json& j) { j["tets"][0]["vertices"] = {1, 2}; }), HasSubstr("2 vertices; 4 are needed"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["weights"] = {1}; }), HasSubstr("not a list of 20 numbers"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["kind"] = "corner"; }), HasSubstr("unknown kind 'corner'"));
-    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["combine"] = "max"; }), HasSubstr("expected none"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["combine"] = "sum"; }), HasSubstr("expected none, max, min"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["combine"] = "max"; }), HasSubstr("1 has no partner to combine"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["partner"] = 0u; }), HasSubstr("1 has a partner without 'combine'"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["partner"] = 2u; }), HasSubstr("'partner' is not a whole number"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["side"] = 2; }), HasSubstr("'side' is not a whole number"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["patch"] = -1; }), HasSubstr("'patch' is not a whole number"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][0] = 1; }), HasSubstr("tetrahedron 0 is not an object"));
+    const auto refusal_of_two = [](auto&& change) {
+        Json json = json_of(two_functions());
+        change(json["tets"]);
+        return error_of([&] { patches_of(json); }).sentence();
+    };
+    EXPECT_THAT(refusal_of_two([](Json& tets) { tets[0]["partner"] = 0u; }), HasSubstr("has partner 0, which has"));
+    EXPECT_THAT(refusal_of_two([](Json& tets) { tets[1]["combine"] = "min"; }),
+                HasSubstr("0 and its partner 1 differ"));
+    EXPECT_THAT(refusal_of_two([](Json& tets) { tets[1]["side"] = 0u; }), HasSubstr("0 and its partner 1 differ"));
+    EXPECT_THAT(refusal_of_two([](Json& tets) { tets[1]["vertices"][0] = 4u; }),
+                HasSubstr("0 and its partner 1 differ"));
 }
 
 }  // namespace

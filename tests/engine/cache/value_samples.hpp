@@ -69,6 +69,8 @@ inline PatchComplex patches() {
     patches.sides = {1};
     patches.triangles = {7};
     patches.edges = {PatchComplex::no_edge};
+    patches.combine = {Combine::none};
+    patches.partners = {PatchComplex::no_partner};
     return patches;
 }
 
