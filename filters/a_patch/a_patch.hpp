@@ -14,9 +14,9 @@ namespace scanmill {
 struct APatchParams {
     enum class Normals {
         automatic,  ///< given if the mesh has them, else points if there are any, else mesh
-        given,      ///< the mesh's face column `corner-normals`; of several without a sharp edge between them the mean
-        points,     ///< of a quadric through the vertex, fitted to the 25 nearest points on its side of sharp edges
-        mesh        ///< the mean of the triangles' normals, exact for a mesh inscribed in a sphere
+        given,  ///< the mesh's face column `corner-normals`; of several without a sharp edge between them the mean
+        points,  ///< of a quadric through the vertex, fitted to the 25 nearest points on its side of sharp edges
+        mesh  ///< the mean of the triangles' normals, exact for a mesh inscribed in a sphere
     };
     Normals normals = Normals::automatic;
     a_patches::Split split = a_patches::Split::always;

@@ -60,7 +60,12 @@ Opening opening(const Hull& hull, const HullEdge& edge, Side side) {
     const Vec3 u = across(hull.apex(edge.first, side)), v = across(hull.apex(edge.second, side));
     const double length = std::sqrt(u.squaredNorm() * v.squaredNorm());
     const double sine = sign_of(side) * d.dot(u.cross(v)), cosine = u.dot(v);
-    if (sine <= 0) return cosine > 0 ? Opening::too_small : Opening::too_large;
+    if (sine <= 0) {
+        // The apexes lean towards each other, so only a gap that begins below 180 degrees can close.
+        const Vec3& base = hull.faces[edge.second].base;
+        const bool is_above = sign_of(side) * hull.faces[edge.first].normal.dot(base - a) > 0;
+        return is_above ? Opening::too_small : Opening::too_large;
+    }
     if (cosine >= cosine_of_4 * length) return Opening::too_small;
     return cosine <= cosine_of_172 * length ? Opening::too_large : Opening::sound;
 }

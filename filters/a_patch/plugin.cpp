@@ -45,8 +45,8 @@ SCANMILL_FILTER() {
         .metric("inverted", Unit::count, "Tetrahedra inside out: always 0.")
         .metric("c1-jump", Unit::number,
                 "Largest difference of the gradients where tetrahedra meet, except at sharp edges, as a share of the "
-                "gradient.", headline,
-                smaller_is_better)
+                "gradient.",
+                headline, smaller_is_better)
         .metric("sign-violations", Unit::count, "Weights whose sign allows a second sheet.", smaller_is_better)
         .metric("refined", Unit::count, "Edges bisected because tetrahedra were inside out or too large.")
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")

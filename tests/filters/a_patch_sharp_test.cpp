@@ -136,7 +136,9 @@ TriangleMesh cone(u32 sides) {
     const u32 apex = rings.out.vertex(Vec3(0, 0, 1));
     for (u32 k = 0; k < sides; ++k) {
         const u32 a = rim[k], b = rim[(k + 1) % sides];
-        const auto normal = [&](u32 v) -> Vec3 { return (outwards(rings.out.positions[v]) + Vec3::UnitZ()).normalized(); };
+        const auto normal = [&](u32 v) -> Vec3 {
+            return (outwards(rings.out.positions[v]) + Vec3::UnitZ()).normalized();
+        };
         rings.out.add({a, b, apex}, {normal(a), normal(b), Vec3::Zero()});
     }
     rings.disc(rim, -1);
@@ -176,17 +178,17 @@ TriangleMesh plate_with_boss(u32 sides) {
 }
 double boss_distance(const Vec3& p) {
     const double radius = std::hypot(p.x(), p.y());
-    return std::min({std::abs(radius - 1), std::abs(radius - 3), std::abs(p.z() - 1), std::abs(p.z()),
-                     std::abs(p.z() + 1)});
+    return std::min(
+        {std::abs(radius - 1), std::abs(radius - 3), std::abs(p.z() - 1), std::abs(p.z()), std::abs(p.z() + 1)});
 }
 
-/// Largest difference of F where tetrahedra meet, sampled: everywhere on triangles that exactly two tetrahedra share;
-/// where a tetrahedron has two functions, both count.
+/// Largest difference of F where tetrahedra with two functions meet, sampled. Thirds beside a curved edge meet others
+/// with one function, where the second one counts only away from the surface.
 double value_jump(const PatchComplex& patches) {
     std::map<std::array<u32, 3>, std::vector<std::pair<u32, std::size_t>>> tets_of;
     for (u32 tet = 0; tet < patches.tets.size(); ++tet)
         for (std::size_t without = 0; without < 4; ++without) {
-            if (patches.partners[tet] < tet) continue;  // one of the two rows
+            if (patches.partners[tet] == PatchComplex::no_partner || patches.partners[tet] < tet) continue;
             std::array<u32, 3> face;
             for (std::size_t i = 0, n = 0; i < 4; ++i)
                 if (i != without) face[n++] = patches.tets[tet][i];
@@ -210,7 +212,6 @@ double value_jump(const PatchComplex& patches) {
                     at[std::ranges::find(corners, face[i]) - corners.begin()] = share[i];
                 value[of] = combined_value(patches, tets[of].first, at);
             }
-            // Away from the surface the functions of a third and of its neighbours may differ.
             jump = std::max(jump, std::abs(value[0] - value[1]));
         }
     }
@@ -241,7 +242,8 @@ TEST(APatchSharp, ACube_IsExact) {
         const TriangleMesh back = turned(mesh, -angle, Vec3(1, 2, 3));
         const auto distance = [&](const Vec3& p) {
             const Vec3 q = Eigen::AngleAxisd(-angle, Vec3(1, 2, 3).normalized()) * p;
-            return std::max((Vec3::Constant(0.5) - q).cwiseAbs().maxCoeff() - 0.5, 0.5 - (Vec3::Constant(0.5) - q).cwiseAbs().maxCoeff());
+            return std::max((Vec3::Constant(0.5) - q).cwiseAbs().maxCoeff() - 0.5,
+                            0.5 - (Vec3::Constant(0.5) - q).cwiseAbs().maxCoeff());
         };
         EXPECT_LT(worst_distance(run.result.patches, distance), angle == 0 ? 3e-16 : 2e-15);
         EXPECT_LT(value_jump(run.result.patches), 1e-15);
@@ -249,14 +251,13 @@ TEST(APatchSharp, ACube_IsExact) {
 }
 
 TEST(APatchSharp, Cones_AreAccurateUpToTheirApex) {
-    const double most[] = {8.5e-5, 1.4e-6, 2.2e-8};
+    const double most[] = {8.6e-5, 1.3e-6, 2e-8};
     for (int i = 0; i < 3; ++i) {
         const PatchRun run = patched(cone(8u << i));
         expect_sound(run);
         const double worst = worst_distance(run.result.patches, [](const Vec3& p) {
             return std::min(std::abs(std::hypot(p.x(), p.y()) + p.z() - 1) / std::sqrt(2.0), std::abs(p.z()));
         });
-        std::printf("cone %d: %.3g flat %zu bisected %zu creased %zu\n", 8 << i, worst, run.result.flat, run.result.bisected, run.result.creased);
         EXPECT_LT(worst, most[i]);
     }
 }
@@ -268,7 +269,6 @@ TEST(APatchSharp, CylindersWithSharpRims_ConvergeWithTheFourthPower) {
         expect_sound(run);
         EXPECT_EQ(run.result.bisected + run.result.creased + run.result.flat, 0u);
         const double worst = worst_distance(run.result.patches, cylinder_distance);
-        std::printf("cylinder %d: %.3g flat %zu bisected %zu creased %zu jump %.3g\n", 8 << i, worst, run.result.flat, run.result.bisected, run.result.creased, value_jump(run.result.patches));
         EXPECT_LT(worst, most[i]);
     }
 }
@@ -282,10 +282,12 @@ TEST(APatchSharp, HolesAndBossesInPlates_HaveRoundRims) {
         expect_sound(boss);
         const double of_hole = worst_distance(hole.result.patches, hole_distance),
                      of_boss = worst_distance(boss.result.patches, boss_distance);
-        std::printf("%u: hole %.3g boss %.3g flat %zu %zu bisected %zu %zu jump %.3g %.3g\n", sides[i], of_hole, of_boss, hole.result.flat, boss.result.flat, hole.result.bisected, boss.result.bisected,
-            value_jump(hole.result.patches), value_jump(boss.result.patches));
         EXPECT_LT(of_hole, 3 * most[i]);  // the outer radius is 3
         EXPECT_LT(of_boss, 3 * most[i]);
+        for (const PatchRun* run : {&hole, &boss}) {
+            EXPECT_EQ(run->result.bisected + run->result.creased + run->result.flat, 0u);
+            EXPECT_LT(value_jump(run->result.patches), 1.3e-14);
+        }
     }
 }
 
