@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "a_patch/fit.hpp"
 #include "a_patch/normals.hpp"
 #include "a_patch/refinement.hpp"
 #include "scanmill/base/error.hpp"
@@ -24,6 +25,7 @@ constexpr double thinnest = 1e-9;  // height over longest edge of a triangle wit
 constexpr std::size_t most_bisections = 7;  // rounds
 constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
+constexpr double least_regularisation = 1e-6;
 
 std::string place(const TriangleMesh& mesh, u32 vertex) {
     const Vec3 p = mesh.frame.origin + mesh.positions[vertex];
@@ -74,7 +76,10 @@ void require_distinct_vertices(const TriangleMesh& mesh, const std::vector<bool>
 MeshTopology require_usable(const TriangleMesh& mesh, const std::vector<bool>& is_used, const APatchParams& params) {
     if (!(params.apex_factor >= least_factor && params.apex_factor <= most_factor))
         throw Error("apex-factor must be from {} to {}; it is {}", least_factor, most_factor, params.apex_factor);
-    if (params.fit) throw Error("fit is not possible yet").hint("leave it out: the surface interpolates the vertices");
+    if (!(params.fairing >= 0 && std::isfinite(params.fairing)))
+        throw Error("fairing must be at least 0; it is {}", params.fairing);
+    if (!(params.regularisation >= least_regularisation && params.regularisation <= 1))
+        throw Error("regularisation must be from {} to 1; it is {}", least_regularisation, params.regularisation);
     require_finite(mesh.positions.span(), "vertices");
     half_edges::opposites(mesh);
     require_areas(mesh);
@@ -224,7 +229,6 @@ CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points,
     const Sectors sectors = sectors_of(mesh);
     std::vector<Vec3> normals = mesh_normals(mesh, sectors);
     if (source == Normals::points) {
-        require_finite(points->positions.span());
         normals = point_normals(mesh, sectors, points->positions.span(), normals, context);
     } else if (source == Normals::given) {
         GivenNormals given = given_normals(mesh, sectors);
@@ -286,17 +290,7 @@ std::size_t inverted_tets(const PatchComplex& patches) {
 /// Of tetrahedra with one function, and of the functions of triangles.
 std::size_t sign_violations(const PatchComplex& patches) {
     std::size_t violations = 0;
-    for (std::size_t row = 0; row < patches.tets.size(); ++row) {
-        if (patches.kinds[row] == PatchKind::sharp || patches.kinds[row] == PatchKind::continuation) continue;
-        std::size_t number = 0;
-        for (int i = 3; i >= 0; --i)
-            for (int j = 3 - i; j >= 0; --j)
-                for (int k = 3 - i - j; k >= 0; --k, ++number) {
-                    const int layer = 3 - i - j - k + (patches.kinds[row] == PatchKind::edge ? i : 0);
-                    const double weight = patches.weights[row][number];
-                    if (layer > 0 && (patches.sides[row] == 1 ? weight < 0 : weight > 0)) ++violations;
-                }
-    }
+    for (std::size_t row = 0; row < patches.tets.size(); ++row) violations += wrong_signs(patches, row);
     return violations;
 }
 
@@ -429,7 +423,35 @@ double c1_jump(const PatchComplex& patches, Execution& execution) {
     return std::ranges::max(largest);
 }
 
-void warn_about(const APatchResult& result, const TriangleMesh& mesh, const MeshTopology& counts, Context& context) {
+/// Fits the slopes, and measures. `weights` are those of the hull as it is, without violations at creases.
+Weights fitted(Hull& hull, Weights weights, const PointCloud* points, const APatchParams& params, APatchResult& result,
+               Context& context) {
+    const std::span<const Vec3> positions = points ? points->positions.span() : std::span<const Vec3>();
+    const LocatedPoints located = locate(weights.patches, positions, context);
+    result.left_out = located.left_out;
+    result.unfairness_before = unfairness(hull, params.curvature);
+    const auto violating_edges = [](const PatchComplex& patches) {
+        CreaseCheck check(patches);
+        check.run();
+        return check.edges;
+    };
+    weights = fit(hull, std::move(weights), located, params.curvature,
+                  {params.fit, params.fairing, params.regularisation}, violating_edges, context);
+    result.unfairness_after = unfairness(hull, params.curvature);
+    context.progress(0.8);
+    if (located.points.empty()) return weights;
+    std::vector<double> found = distances(weights.patches, positions, located, context);
+    double squares = 0;
+    for (const double d : found) squares += d * d;
+    std::ranges::sort(found);
+    const auto count = static_cast<double>(found.size());
+    result.fit = {std::sqrt(squares / count), found[static_cast<std::size_t>(std::ceil(0.95 * count)) - 1],
+                  found.back()};
+    return weights;
+}
+
+void warn_about(const APatchResult& result, const TriangleMesh& mesh, const PointCloud* points,
+                const MeshTopology& counts, Context& context) {
     if (counts.boundary_edges > 0)
         context.warn(fmt::format("the mesh is open: the surface ends at {}",
                                  count_text(counts.boundary_edges, "boundary edge", "boundary edges")));
@@ -443,6 +465,11 @@ void warn_about(const APatchResult& result, const TriangleMesh& mesh, const Mesh
     if (result.bisected > 0)
         context.warn(fmt::format("{} bisected, because tetrahedra were inside out or too large there",
                                  count_text(result.bisected, "edge is", "edges are")));
+    if (points && result.left_out == points->size())
+        context.warn(points->size() == 0
+                         ? "there are no points: the surface is not fitted"
+                         : fmt::format("none of the {} is in a tetrahedron near the surface: it is not fitted",
+                                       count_text(points->size(), "point", "points")));
     if (result.sign_violations > 0)
         context.doubt(fmt::format("{} the wrong sign: the surface may have several sheets there",
                                   count_text(result.sign_violations, "weight has", "weights have")));
@@ -468,6 +495,14 @@ void report(const APatchResult& result, Context& context) {
     count("raised", result.raised);
     count("creased-edges", result.creased);
     count("flat-triangles", result.flat);
+    if (result.fit) {
+        context.metric("fit-rms", result.fit->rms, Unit::length);
+        context.metric("fit-p95", result.fit->p95, Unit::length);
+        context.metric("fit-max", result.fit->max, Unit::length);
+    }
+    count("left-out", result.left_out);
+    context.metric("fairness-before", result.unfairness_before, Unit::number);
+    context.metric("fairness-after", result.unfairness_after, Unit::number);
 }
 
 }  // namespace
@@ -476,6 +511,7 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     if (mesh.triangles.empty())
         throw Error("needs a mesh with triangles; it has {} vertices and none", mesh.positions.size());
     const MeshTopology counts = require_usable(mesh, used_vertices(mesh), params);
+    if (points) require_finite(points->positions.span());
     APatchResult result;
     PatchMesh work;
     work.mesh.frame = mesh.frame;
@@ -513,11 +549,12 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
         }
     }
     context.progress(0.5);
+    weights = fitted(hull, std::move(weights), points, params, result, context);
     result.raised = weights.raised;
     result.divided = static_cast<std::size_t>(std::ranges::count(hull.faces, true, &HullFace::is_divided));
     result.patches = std::move(weights.patches);
     result.patches.frame = mesh.frame;
-    context.progress(0.7);
+    context.progress(0.9);
     result.inverted = inverted_tets(result.patches);
     result.sign_violations = sign_violations(result.patches);
     result.c1_jump = c1_jump(result.patches, context);
@@ -526,7 +563,7 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     for (const auto& of_triangle : work.normals)
         for (const Vec3& n : of_triangle) components.insert(components.end(), n.data(), n.data() + 3);
     result.mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(components))));
-    warn_about(result, mesh, counts, context);
+    warn_about(result, mesh, points, counts, context);
     report(result, context);
     return result;
 }

@@ -5,6 +5,8 @@
 /// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 5, after Bajaj, Chen, Xu 1995, "Modeling with cubic
 /// A-patches". The weights are derived anew through polar forms.
 
+#include <optional>
+
 #include "a_patch/weights.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/filter/context.hpp"
@@ -20,8 +22,12 @@ struct APatchParams {
     };
     Normals normals = Normals::automatic;
     a_patches::Split split = a_patches::Split::always;
-    /// Only false: fitting is not possible yet.
-    bool fit = false;
+    /// Whether the free weights are fitted to the points; without points nothing is.
+    bool fit = true;
+    /// Weight of the fairness against that of the fit, at least 0: see fit.hpp.
+    double fairing = 0;
+    /// Weight of the changes of the free weights, 1e-6 to 1.
+    double regularisation = 1e-3;
     a_patches::Curvature curvature = a_patches::Curvature::distance;
     /// An apex is so many times as high above its triangle as it must be, and 0.15 inradii. 1.05 to 3.
     double apex_factor = 1.5;
@@ -45,6 +51,12 @@ struct APatchResult {
     double c1_jump = 0;
     /// Weights of the wrong sign beside or above a base triangle; 0: every line to an apex meets the surface once.
     std::size_t sign_violations = 0;
+    std::size_t left_out = 0;  ///< points in no tetrahedron
+    struct Distances {
+        double rms = 0, p95 = 0, max = 0;
+    };
+    std::optional<Distances> fit;  ///< of the points in tetrahedra, if there are any
+    double unfairness_before = 0, unfairness_after = 0;  ///< of the default, and of the result; see fit.hpp
 };
 
 /// The surface F = 0 through the mesh's vertices, with a gradient of length 1 there, along the normal. F is negative

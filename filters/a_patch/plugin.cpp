@@ -17,7 +17,10 @@ SCANMILL_FILTER() {
             "mesh",
             "A manifold, closed or open, oriented consistently. Its vertices lie on the surface, which has creases "
             "at its sharp edges; its face column `corner-normals` gives the normals there.")
-        .in<PointCloud>("points", "The scan, for normals at the vertices of a mesh without `corner-normals`.", optional)
+        .in<PointCloud>("points",
+                        "The scan: the surface is fitted to it, and it gives the normals at the vertices of a mesh "
+                        "without `corner-normals`.",
+                        optional)
         .out<PatchComplex>("patches", "Tetrahedra on both sides of the mesh, with the cubic's 20 weights each.")
         .choice("normals", &P::normals,
                 {{"auto", P::Normals::automatic,
@@ -31,7 +34,11 @@ SCANMILL_FILTER() {
                  {"where-needed", Split::where_needed,
                   "One, unless it cannot join its neighbours with equal gradients: up to a third fewer tetrahedra."}},
                 "Which triangles' tetrahedra are divided at a base point.")
-        .param("fit", &P::fit, "Whether free weights are fitted to the points. Not possible yet: only false.")
+        .param("fit", &P::fit, "Whether free weights are fitted to the points, if there are any.")
+        .param("fairing", &P::fairing,
+               "Weight of a fair surface against a near one: at 1 it weighs about as much as the points.", at_least(0))
+        .param("regularisation", &P::regularisation, "Weight of the changes of the free weights, likewise.",
+               at_least(1e-6), at_most(1))
         .choice("curvature", &P::curvature,
                 {{"distance", Curvature::distance, "None: F grows like a distance."},
                  {"mean", Curvature::mean, "The mean curvature of the triangle's quadric: exact for spheres."}},
@@ -55,6 +62,17 @@ SCANMILL_FILTER() {
         .metric("flat-triangles", Unit::count, "Triangles that are their own surface, at folds of the mesh.",
                 smaller_is_better)
         .metric("raised", Unit::count, "Weights changed so that every line to an apex meets the surface once.")
+        .metric("fit-rms", Unit::length, "Root of the mean squared distance of the points from the surface.", headline,
+                smaller_is_better)
+        .metric("fit-p95", Unit::length, "95 % quantile of these distances.", smaller_is_better)
+        .metric("fit-max", Unit::length, "Largest of these distances.", smaller_is_better)
+        .metric("left-out", Unit::count, "Points in no tetrahedron near the surface: not fitted, not measured.",
+                smaller_is_better)
+        .metric(
+            "fairness-before", Unit::number,
+            "Sum over the edges of the squared difference between the gradient and that of the triangles' quadrics, "
+            "before fitting and fairing.")
+        .metric("fairness-after", Unit::number, "The same of the result.", smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set(
                 "patches",

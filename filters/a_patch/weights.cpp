@@ -32,31 +32,6 @@ struct FaceSide {
     Eigen::Matrix3d curvature;
 };
 
-/// The quadric that interpolates a face's vertices and normals as well as it can: value and gradient come from the
-/// vertices, H from the differences of the normals.
-Eigen::Matrix3d face_curvature(const Hull& hull, std::size_t f, Curvature curvature) {
-    const Triangle& t = hull.triangles[f];
-    const Vec3& p = hull.positions[t[0]];
-    const Vec3 e1 = hull.positions[t[1]] - p, e2 = hull.positions[t[2]] - p;
-    const std::array<Vec3, 3>& normals = hull.normals[f];
-    const Vec3 d1 = normals[1] - normals[0], d2 = normals[2] - normals[0];
-    const Vec3& n = hull.faces[f].normal;
-    const Vec3 x = e1.normalized(), y = n.cross(x);
-    Eigen::Matrix2d edges;
-    edges << x.dot(e1), x.dot(e2), y.dot(e1), y.dot(e2);
-    Eigen::Matrix<double, 3, 2> differences;
-    differences << x.dot(d1), x.dot(d2), y.dot(d1), y.dot(d2), n.dot(d1), n.dot(d2);
-    const Eigen::Matrix<double, 3, 2> change = differences * edges.inverse();
-    Eigen::Matrix3d local;
-    local.topLeftCorner<2, 2>() = (change.topRows<2>() + change.topRows<2>().transpose()) / 2;
-    local.bottomLeftCorner<1, 2>() = change.row(2);
-    local.topRightCorner<2, 1>() = change.row(2).transpose();
-    local(2, 2) = curvature == Curvature::mean ? (local(0, 0) + local(1, 1)) / 2 : 0;
-    Eigen::Matrix3d axes;
-    axes << x, y, n;
-    return axes * local * axes.transpose();
-}
-
 class WeightsBuilder {
 public:
     WeightsBuilder(const Hull& hull, Curvature curvature, Execution& execution)
@@ -462,6 +437,44 @@ private:
 };
 
 }  // namespace
+
+/// The quadric that interpolates a face's vertices and normals as well as it can: value and gradient come from the
+/// vertices, H from the differences of the normals.
+Eigen::Matrix3d face_curvature(const Hull& hull, std::size_t face, Curvature curvature) {
+    const Triangle& t = hull.triangles[face];
+    const Vec3& p = hull.positions[t[0]];
+    const Vec3 e1 = hull.positions[t[1]] - p, e2 = hull.positions[t[2]] - p;
+    const std::array<Vec3, 3>& normals = hull.normals[face];
+    const Vec3 d1 = normals[1] - normals[0], d2 = normals[2] - normals[0];
+    const Vec3& n = hull.faces[face].normal;
+    const Vec3 x = e1.normalized(), y = n.cross(x);
+    Eigen::Matrix2d edges;
+    edges << x.dot(e1), x.dot(e2), y.dot(e1), y.dot(e2);
+    Eigen::Matrix<double, 3, 2> differences;
+    differences << x.dot(d1), x.dot(d2), y.dot(d1), y.dot(d2), n.dot(d1), n.dot(d2);
+    const Eigen::Matrix<double, 3, 2> change = differences * edges.inverse();
+    Eigen::Matrix3d local;
+    local.topLeftCorner<2, 2>() = (change.topRows<2>() + change.topRows<2>().transpose()) / 2;
+    local.bottomLeftCorner<1, 2>() = change.row(2);
+    local.topRightCorner<2, 1>() = change.row(2).transpose();
+    local(2, 2) = curvature == Curvature::mean ? (local(0, 0) + local(1, 1)) / 2 : 0;
+    Eigen::Matrix3d axes;
+    axes << x, y, n;
+    return axes * local * axes.transpose();
+}
+
+std::size_t wrong_signs(const PatchComplex& patches, std::size_t tet) {
+    if (patches.kinds[tet] == PatchKind::sharp || patches.kinds[tet] == PatchKind::continuation) return 0;
+    std::size_t wrong = 0, number = 0;
+    for (int i = 3; i >= 0; --i)
+        for (int j = 3 - i; j >= 0; --j)
+            for (int k = 3 - i - j; k >= 0; --k, ++number) {
+                const int layer = 3 - i - j - k + (patches.kinds[tet] == PatchKind::edge ? i : 0);
+                const double weight = patches.weights[tet][number];
+                if (layer > 0 && (patches.sides[tet] == 1 ? weight < 0 : weight > 0)) ++wrong;
+            }
+    return wrong;
+}
 
 Weights make_weights(const Hull& hull, Curvature curvature, Execution& execution) {
     return WeightsBuilder(hull, curvature, execution).weights();

@@ -19,6 +19,13 @@ struct Weights {
     std::size_t raised = 0;  ///< weights that were changed so that every line to an apex meets the surface once
 };
 
+/// The second derivatives of the quadric that fits a triangle's corners and normals.
+Eigen::Matrix3d face_curvature(const Hull& hull, std::size_t face, Curvature curvature);
+
+/// How many weights of a tetrahedron beside or above its base have the sign of the other side; 0 for `sharp` and
+/// `continuation`, whose weights decide nothing alone.
+std::size_t wrong_signs(const PatchComplex& patches, std::size_t tet);
+
 /// Cost: linear, about 2 us per triangle.
 Weights make_weights(const Hull& hull, Curvature curvature, Execution& execution);
 

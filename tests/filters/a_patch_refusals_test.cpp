@@ -96,13 +96,10 @@ TEST(APatchRefuses, NormalsOfPointsWithoutPoints) {
     EXPECT_FALSE(error.hint().empty());
 }
 
-TEST(APatchRefuses, AFactorOutOfRange_AndFitting) {
+TEST(APatchRefuses, AFactorOutOfRange) {
     APatchParams params;
     params.apex_factor = 1;
     EXPECT_THAT(refusal(icosahedron(), params).sentence(), HasSubstr("apex-factor must be from 1.05 to 3; it is 1"));
-    params = {};
-    params.fit = true;
-    EXPECT_THAT(refusal(icosahedron(), params).sentence(), HasSubstr("not possible yet"));
 }
 
 }  // namespace

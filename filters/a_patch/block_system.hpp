@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// A sparse symmetric system of equations with two unknowns per edge.
+
+#include <Eigen/Core>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "scanmill/base/execution.hpp"
+#include "scanmill/data/mesh.hpp"
+
+namespace scanmill::a_patches {
+
+/// A symmetric positive definite matrix of 2 × 2 blocks with a right-hand side.
+class BlockSystem {
+public:
+    using Vector = Eigen::Vector2d;
+    using Matrix = Eigen::Matrix2d;
+
+    /// `pairs`: the rows and columns of the blocks that may differ from 0, in any order, several times; both of (a, b)
+    /// and (b, a), and every (a, a).
+    BlockSystem(std::size_t size, std::vector<std::pair<u32, u32>> pairs);
+
+    void clear();
+    std::size_t size() const { return right_.size(); }
+    Matrix& block(u32 row, u32 column);
+    Vector& right(u32 row) { return right_[row]; }
+
+    /// By conjugate gradients, preconditioned by the diagonal blocks, from `x` on. Unknowns without a connection to a
+    /// right-hand side stay exactly 0 if they are. Cost: some hundred multiplications at most.
+    void solve(std::vector<Vector>& x, const Execution& execution) const;
+
+    /// What the row's equation leaves for its own unknowns, the others being `x`.
+    Vector remainder(u32 row, const std::vector<Vector>& x) const;
+
+private:
+    std::vector<Vector> times(const std::vector<Vector>& x) const;
+    std::size_t index(u32 row, u32 column) const;
+
+    std::vector<std::size_t> begin_;
+    std::vector<u32> columns_;
+    std::vector<Matrix> blocks_;
+    std::vector<Vector> right_;
+};
+
+}  // namespace scanmill::a_patches

@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "a_patch/fit.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "a_patch/block_system.hpp"
+#include "a_patch/slope_dependence.hpp"
+#include "scanmill/base/parallel.hpp"
+
+namespace scanmill::a_patches {
+
+namespace {
+
+using Vector2 = Eigen::Vector2d;
+using Matrix2 = Eigen::Matrix2d;
+
+constexpr std::size_t chunk = 1024;       // points
+constexpr std::size_t rows_at_once = 256;  // tetrahedra
+constexpr int rounds = 3;
+constexpr double outlier = 3;         // times the median distance
+constexpr double least_gradient = 0.5;  // a point where F is flatter is not near the surface
+constexpr double least_share = 0.1;   // of an edge's value at an apex, that is kept
+constexpr int most_sweeps = 200;
+constexpr double relaxation = 1.5;  // a third of the sweeps that 1 needs
+constexpr double enough = 1e-6;  // of the largest change in a sweep, as a share of the slopes' length
+constexpr double smaller = 0.6;
+constexpr int most_reductions = 20;
+
+constexpr std::size_t next(std::size_t i) { return (i + 1) % 3; }
+constexpr std::size_t previous(std::size_t i) { return (i + 2) % 3; }
+
+// Signs.
+
+/// along · x >= least.
+struct Limit {
+    Vector2 along;
+    double least;
+};
+using Limits = std::array<Limit, 4>;
+
+bool is_within(const Limits& limits, const Vector2& x) {
+    return std::ranges::all_of(limits, [&](const Limit& limit) {
+        const double value = limit.along.dot(x);
+        return value - limit.least >= -1e-12 * (std::abs(value) + std::abs(limit.least));
+    });
+}
+
+/// The least of x · matrix · x / 2 - right · x within the limits, which 0 satisfies.
+Vector2 least_within(const Matrix2& matrix, const Vector2& right, const Limits& limits) {
+    const Vector2 free = matrix.inverse() * right;
+    if (is_within(limits, free)) return free;
+    Vector2 best = Vector2::Zero();
+    double least = 0;
+    const auto offer = [&](const Vector2& x) {
+        const double value = x.dot(matrix * x) / 2 - right.dot(x);
+        if (value < least && is_within(limits, x)) {
+            least = value;
+            best = x;
+        }
+    };
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        const Limit& one = limits[i];
+        const Vector2 toward = matrix.inverse() * one.along;
+        const double length = one.along.dot(toward);
+        if (!(length > 0)) continue;
+        offer(free + toward * ((one.least - one.along.dot(free)) / length));
+        for (std::size_t j = 0; j < i; ++j) {
+            Matrix2 both;
+            both << one.along.transpose(), limits[j].along.transpose();
+            if (both.determinant() != 0) offer(both.inverse() * Vector2(one.least, limits[j].least));
+        }
+    }
+    return best;
+}
+
+// Fairness.
+
+/// A third of the mean gradient of the quadrics of an inner edge's two triangles, at the middle of the edge; by edge.
+std::vector<Vec3> fair_slopes(const Hull& hull, Curvature curvature) {
+    std::vector<Vec3> slopes(hull.edges.size(), Vec3::Zero());
+    for (u32 f = 0; f < hull.faces.size(); ++f) {
+        const Triangle& t = hull.triangles[f];
+        const Eigen::Matrix3d second = face_curvature(hull, f, curvature);
+        Vec3 normal = Vec3::Zero();
+        for (const Vec3& n : hull.normals[f]) normal += n / 3;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 &a = hull.positions[t[i]], &b = hull.positions[t[next(i)]], &c = hull.positions[t[previous(i)]];
+            const Vec3 to = (a + b) / 2 - (a + b + c) / 3;
+            slopes[hull.faces[f].edges[i]] += (normal + second * to) / 6;
+        }
+    }
+    return slopes;
+}
+
+bool is_smooth(const HullEdge& edge) { return edge.second != HullEdge::none && !edge.is_sharp; }
+
+/// The edges that a tetrahedron may depend on together.
+std::vector<std::pair<u32, u32>> pairs_of(const Hull& hull) {
+    std::vector<std::pair<u32, u32>> pairs;
+    const auto add = [&](std::span<const u32> edges) {
+        for (const u32 a : edges)
+            for (const u32 b : edges) pairs.emplace_back(a, b);
+    };
+    for (const HullFace& face : hull.faces) add(face.edges);
+    for (const HullEdge& edge : hull.edges) {
+        if (!is_smooth(edge)) continue;
+        std::array<u32, 6> both;
+        std::ranges::copy(hull.faces[edge.first].edges, both.begin());
+        std::ranges::copy(hull.faces[edge.second].edges, both.begin() + 3);
+        add(both);
+    }
+    return pairs;
+}
+
+class Fitter {
+public:
+    Fitter(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
+           const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution)
+        : hull_(hull),
+          weights_(std::move(weights)),
+          points_(points.points),
+          curvature_(curvature),
+          params_(params),
+          violating_edges_(violating_edges),
+          execution_(execution),
+          free_(free_directions(hull)),
+          system_(hull.edges.size(), pairs_of(hull)) {}
+
+    Weights fitted() {
+        for (const HullEdge& edge : hull_.edges) defaults_.push_back(edge.slopes[0]);
+        set_limits();
+        find_rows();
+        for (std::size_t row = 0; row < weights_.patches.tets.size(); ++row)
+            was_wrong_.push_back(wrong_signs(weights_.patches, row) > 0);
+        changes_.assign(hull_.edges.size(), Vector2::Zero());
+        const bool has_points = params_.to_points && !points_.empty();
+        if (!has_points && params_.fairing == 0) return std::move(weights_);
+        for (int round = 0; round < (has_points ? rounds : 1); ++round) {
+            system_.clear();
+            double scale = 1;
+            if (has_points) scale = add_points();
+            add_priors(scale);
+            solve();
+            set_slopes();
+        }
+        reduce_changes();
+        return std::move(weights_);
+    }
+
+private:
+    struct Row {
+        std::size_t tet, begin, end;  ///< points
+    };
+
+    void find_rows() {
+        for (std::size_t begin = 0, end; begin < points_.size(); begin = end) {
+            for (end = begin; end < points_.size() && points_[end].tet == points_[begin].tet;) ++end;
+            rows_.push_back({points_[begin].tet, begin, end});
+        }
+    }
+
+    /// The points' part of the system, and the mean of its diagonal elements.
+    double add_points() {
+        const double most = outlier * median_distance();
+        struct Part {
+            struct Local {
+                std::array<u32, 5> edges;
+                std::size_t count;
+                Eigen::Matrix<double, 10, 10> matrix;
+                Eigen::Matrix<double, 10, 1> right;
+            };
+            std::vector<Local> locals;
+        };
+        for_each_in_order<Part>(
+            execution_.threads(), (rows_.size() + rows_at_once - 1) / rows_at_once,
+            [&](std::size_t number, Part& part) {
+                execution_.check_cancelled();
+                part.locals.clear();
+                for (std::size_t r = number * rows_at_once; r < std::min(rows_.size(), (number + 1) * rows_at_once);
+                     ++r) {
+                    const Row& row = rows_[r];
+                    const PatchCell cell(weights_.patches, row.tet);
+                    const SlopeDependence dependence(hull_, free_, weights_.patches, row.tet);
+                    auto& local = part.locals.emplace_back();
+                    local.count = dependence.count();
+                    local.matrix.setZero();
+                    local.right.setZero();
+                    Eigen::Matrix<double, 10, 1> before = Eigen::Matrix<double, 10, 1>::Zero(), line = before;
+                    for (std::size_t n = 0; n < local.count; ++n) {
+                        local.edges[n] = dependence.edge(n);
+                        before.segment<2>(static_cast<Eigen::Index>(2 * n)) = changes_[local.edges[n]];
+                    }
+                    for (std::size_t p = row.begin; p < row.end; ++p) {
+                        const Barycentric& at = points_[p].at;
+                        const auto derivatives = dependence.derivatives(at);
+                        for (std::size_t n = 0; n < local.count; ++n)
+                            line.segment<2>(static_cast<Eigen::Index>(2 * n)) = derivatives[n];
+                        const double value = patch_value(weights_.patches.weights[row.tet], at);
+                        const double slope = std::max(least_gradient, cell.gradient(at).norm());
+                        const double distance = std::abs(value) / slope;
+                        const double weight = (distance > most ? most / distance : 1) / (slope * slope);
+                        local.matrix.noalias() += (weight * line) * line.transpose();
+                        local.right += (weight * (line.dot(before) - value)) * line;
+                    }
+                }
+            },
+            [&](std::size_t, const Part& part) {
+                for (const auto& local : part.locals)
+                    for (std::size_t a = 0; a < local.count; ++a) {
+                        const auto i = static_cast<Eigen::Index>(2 * a);
+                        system_.right(local.edges[a]) += local.right.segment<2>(i);
+                        for (std::size_t b = 0; b < local.count; ++b)
+                            system_.block(local.edges[a], local.edges[b]) +=
+                                local.matrix.block<2, 2>(i, static_cast<Eigen::Index>(2 * b));
+                    }
+            });
+        double trace = 0, count = 0;
+        for (u32 e = 0; e < system_.size(); ++e) {
+            trace += system_.block(e, e).trace();
+            count += free_[e].squaredNorm();
+        }
+        return trace > 0 ? trace / count : 1;
+    }
+
+    double median_distance() {
+        std::vector<double> found(points_.size());
+        for_each_chunk(execution_.threads(), rows_.size(), rows_at_once, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t r = begin; r < end; ++r) {
+                const PatchCell cell(weights_.patches, rows_[r].tet);
+                for (std::size_t p = rows_[r].begin; p < rows_[r].end; ++p)
+                    found[p] = std::abs(patch_value(weights_.patches.weights[rows_[r].tet], points_[p].at)) /
+                               std::max(least_gradient, cell.gradient(points_[p].at).norm());
+            }
+        });
+        const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
+        std::ranges::nth_element(found, middle);
+        return *middle;
+    }
+
+    void add_priors(double scale) {
+        const std::vector<Vec3> fair = params_.fairing > 0 ? fair_slopes(hull_, curvature_) : std::vector<Vec3>();
+        for (u32 e = 0; e < system_.size(); ++e) {
+            Matrix2& diagonal = system_.block(e, e);
+            diagonal.diagonal().array() += scale * params_.regularisation;
+            if (params_.fairing == 0 || !is_smooth(hull_.edges[e])) continue;
+            diagonal.diagonal().array() += scale * params_.fairing;
+            system_.right(e) += scale * params_.fairing * (free_[e].transpose() * (fair[e] - defaults_[e]));
+        }
+    }
+
+    /// An edge's function keeps its sign, and a share of its value, at the apexes of its triangles.
+    void set_limits() {
+        for (u32 e = 0; e < hull_.edges.size(); ++e) {
+            const HullEdge& edge = hull_.edges[e];
+            Limits limits;
+            limits.fill({Vector2::Zero(), 0});
+            std::size_t count = 0;
+            for (const u32 f : {edge.first, edge.second}) {
+                if (f == HullEdge::none) continue;
+                for (const Side side : both_sides) {
+                    const Vec3 apex = hull_.apex(f, side);
+                    const double value = sign_of(side) * hull_.at_edge(f, hull_.number_in(e, f), apex);
+                    limits[count++] = {sign_of(side) * (free_[e].transpose() * (apex - hull_.positions[edge.a])),
+                                       (least_share - 1) * std::max(0.0, value)};
+                }
+            }
+            limits_.push_back(limits);
+        }
+    }
+
+    /// The exact solution if all edges are within their limits, else that of sweeps over the edges, each of which gets
+    /// its best slope within its limits.
+    void solve() {
+        system_.solve(changes_, execution_);
+        bool is_sound = true;
+        for (u32 e = 0; e < system_.size(); ++e) {
+            if (is_within(limits_[e], changes_[e])) continue;
+            is_sound = false;
+            double share = 1;
+            for (const Limit& limit : limits_[e]) {
+                const double value = limit.along.dot(changes_[e]);
+                if (value < limit.least) share = std::min(share, limit.least / value);
+            }
+            changes_[e] *= share;
+        }
+        for (int sweep = 0; !is_sound && sweep < most_sweeps; ++sweep) {
+            execution_.check_cancelled();
+            double largest = 0;
+            for (u32 e = 0; e < system_.size(); ++e) {
+                const Matrix2& own = system_.block(e, e);
+                const Vector2 right =
+                    relaxation * system_.remainder(e, changes_) + (1 - relaxation) * (own * changes_[e]);
+                const Vector2 x = least_within(own, right, limits_[e]);
+                largest = std::max(largest, (x - changes_[e]).norm());
+                changes_[e] = x;
+            }
+            if (largest < enough) break;
+        }
+    }
+
+    void set_slopes() {
+        for (std::size_t e = 0; e < changes_.size(); ++e)
+            if (!hull_.edges[e].is_sharp) hull_.edges[e].slopes.fill(defaults_[e] + free_[e] * changes_[e]);
+        weights_ = make_weights(hull_, curvature_, execution_);
+    }
+
+    /// The edges with changes on which violations depend that the default slopes do not have.
+    std::vector<bool> wrong_edges() const {
+        std::vector<bool> is_wrong(changes_.size(), false);
+        const auto add = [&](u32 e) { is_wrong[e] = changes_[e] != Vector2::Zero(); };
+        for (std::size_t row = 0; row < was_wrong_.size(); ++row) {
+            if (was_wrong_[row] || wrong_signs(weights_.patches, row) == 0) continue;
+            const SlopeDependence dependence(hull_, free_, weights_.patches, row);
+            for (std::size_t n = 0; n < dependence.count(); ++n) add(dependence.edge(n));
+        }
+        for (const u32 sharp : violating_edges_(weights_.patches))
+            for (const u32 f : {hull_.edges[sharp].first, hull_.edges[sharp].second})
+                for (const u32 e : hull_.faces[f].edges) add(e);
+        return is_wrong;
+    }
+
+    void reduce_changes() {
+        for (int round = 0;; ++round) {
+            execution_.check_cancelled();
+            const std::vector<bool> is_wrong = wrong_edges();
+            if (std::ranges::find(is_wrong, true) == is_wrong.end()) return;
+            for (std::size_t e = 0; e < changes_.size(); ++e)
+                if (is_wrong[e]) changes_[e] *= round < most_reductions ? smaller : 0;
+            set_slopes();
+        }
+    }
+
+    Hull& hull_;
+    Weights weights_;
+    const std::vector<LocatedPoints::Point>& points_;
+    Curvature curvature_;
+    FitParams params_;
+    const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges_;
+    Execution& execution_;
+    std::vector<Directions> free_;
+    BlockSystem system_;
+    std::vector<Vec3> defaults_;
+    std::vector<Limits> limits_;
+    std::vector<Row> rows_;
+    std::vector<bool> was_wrong_;
+    std::vector<Vector2> changes_;
+};
+
+/// Of a tetrahedron's two functions the row of the one that is F at a point.
+std::size_t active(const PatchComplex& patches, std::size_t tet, const Vec3& point) {
+    const std::size_t partner = patches.partners[tet];
+    if (partner == PatchComplex::no_partner) return tet;
+    const double one = PatchCell(patches, tet).value(point), other = PatchCell(patches, partner).value(point);
+    return (patches.combine[tet] == Combine::max ? one >= other : one <= other) ? tet : partner;
+}
+
+/// The distance of a point from the surface, by steps to the point where the gradient points to or from it.
+double distance(const PatchComplex& patches, const PatchSurface& surface, const Vec3& point, std::size_t tet) {
+    constexpr int most_steps = 10;
+    constexpr double last = 1e-4;  // step, as a share of the distance
+    constexpr double outside_by = 1e-6;
+    Vec3 x = point;
+    for (int step = 0; step < most_steps; ++step) {
+        // Where there is no other tetrahedron the last one's cubic goes on.
+        if (PatchCell(patches, tet).coordinates(x).minCoeff() < -outside_by) tet = surface.locate(x).value_or(tet);
+        tet = active(patches, tet, x);
+        const PatchCell cell(patches, tet);
+        const Barycentric at = cell.coordinates(x);
+        const double value = patch_value(patches.weights[tet], at);
+        const Vec3 gradient = cell.gradient(at);
+        const double squared = gradient.squaredNorm();
+        if (!(squared > 0)) break;
+        const Vec3 to = point - x;
+        const Vec3 change = to - gradient * ((gradient.dot(to) + value) / squared);
+        x += change;
+        if (change.norm() <= last * (point - x).norm()) break;
+    }
+    return (point - x).norm();
+}
+
+}  // namespace
+
+LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, Execution& execution) {
+    const PatchSurface surface(patches, execution.threads());
+    constexpr u32 none = ~u32(0);
+    std::vector<u32> tets(points.size());
+    for_each_chunk(execution.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto tet = surface.locate(points[i]);
+            tets[i] = tet ? static_cast<u32>(active(patches, *tet, points[i])) : none;
+        }
+    });
+    std::vector<std::size_t> first(patches.tets.size() + 1, 0);
+    for (const u32 tet : tets)
+        if (tet != none) ++first[tet + 1];
+    for (std::size_t tet = 0; tet < patches.tets.size(); ++tet) first[tet + 1] += first[tet];
+    LocatedPoints located;
+    located.points.resize(first.back());
+    located.left_out = points.size() - located.points.size();
+    for (u32 i = 0; i < points.size(); ++i)
+        if (tets[i] != none) located.points[first[tets[i]]++] = {i, tets[i], Barycentric::Zero()};
+    for_each_chunk(execution.threads(), located.points.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            auto& point = located.points[i];
+            point.at = surface.cell(point.tet).coordinates(points[point.row]);
+        }
+    });
+    return located;
+}
+
+Weights fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
+            const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution) {
+    return Fitter(hull, std::move(weights), points, curvature, params, violating_edges, execution).fitted();
+}
+
+double unfairness(const Hull& hull, Curvature curvature) {
+    const std::vector<Vec3> fair = fair_slopes(hull, curvature);
+    double sum = 0;
+    for (std::size_t e = 0; e < hull.edges.size(); ++e) {
+        const HullEdge& edge = hull.edges[e];
+        if (!is_smooth(edge)) continue;
+        const Vec3 d = (hull.positions[edge.b] - hull.positions[edge.a]).normalized(), to = fair[e] - edge.slopes[0];
+        sum += (to - d * d.dot(to)).squaredNorm();
+    }
+    return sum;
+}
+
+std::vector<double> distances(const PatchComplex& patches, std::span<const Vec3> points, const LocatedPoints& located,
+                              Execution& execution) {
+    const PatchSurface surface(patches, execution.threads());
+    std::vector<double> result(located.points.size());
+    for_each_chunk(execution.threads(), result.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto& point = located.points[i];
+            result[i] = distance(patches, surface, points[point.row], point.tet);
+        }
+    });
+    return result;
+}
+
+}  // namespace scanmill::a_patches
