@@ -57,6 +57,17 @@ TriangleMesh irregular_torus(u32 around, u32 along, double share, std::uint64_t 
     return mesh;
 }
 
+/// A torus whose outermost circle is a crease: the normals on its sides are those of the mesh, and differ.
+TriangleMesh creased_torus(u32 around, u32 along) {
+    TriangleMesh mesh = exact_torus(around, along);
+    mesh.face_columns = {};
+    std::vector<Edge> rim;
+    for (u32 i = 0; i < around; ++i) rim.push_back(make_edge(i * along, (i + 1) % around * along));
+    std::ranges::sort(rim);
+    mesh.sharp_edges = Array<Edge>(rim.begin(), rim.end());
+    return mesh;
+}
+
 /// Normals of the mesh unless it has corner-normals: not of the points.
 APatchParams params_for(const TriangleMesh& mesh, double fairing = 0) {
     APatchParams params;
@@ -132,13 +143,13 @@ const auto no_violation = [](const PatchComplex&) { return std::vector<u32>(); }
 TEST(APatchFit, DerivativesBySlopes_AreTheDifferencesOfWeights) {
     for (const Split split : {Split::always, Split::where_needed})
         for (const TriangleMesh& mesh :
-             {exact_torus(12, 6), without_triangles(geodesic_sphere(1, 2), {0}), regular_tetrahedron()}) {
+             {exact_torus(12, 6), without_triangles(geodesic_sphere(1, 2), {0}), creased_torus(24, 12)}) {
             const auto base = default_patches(mesh, split);
             const std::vector<a_patches::Directions> free = free_directions(base->hull);
             Random random(3);
             Execution execution;
-            double largest = 0;
-            for (u32 e = 0; e < base->hull.edges.size(); e += 3)
+            std::array<double, 4> largest{};  // by kind
+            for (u32 e = 0; e < base->hull.edges.size(); e += 5)
                 for (const int component : {0, 1}) {
                     a_patches::Hull hull = base->hull;
                     const double change = 0.01;  // F is affine: any change is exact, unless a weight is raised
@@ -158,10 +169,16 @@ TEST(APatchFit, DerivativesBySlopes_AreTheDifferencesOfWeights) {
                         for (std::size_t n = 0; n < dependence.count(); ++n)
                             if (dependence.edge(n) == e) expected += derivatives[n][component];
                         ASSERT_NEAR(found, expected, 1e-12);
-                        largest = std::max(largest, std::abs(expected));
+                        double& most = largest[static_cast<std::size_t>(weights.patches.kinds[tet])];
+                        most = std::max(most, std::abs(expected));
                     }
                 }
-            EXPECT_GT(largest, 0.01);
+            EXPECT_GT(largest[0], 0.001);
+            EXPECT_GT(largest[1], 0.001);
+            if (!mesh.sharp_edges.empty()) {
+                EXPECT_GT(largest[2], 1e-4);
+            }
+            EXPECT_EQ(largest[3], 0);
         }
 }
 
@@ -346,8 +363,7 @@ TEST(APatchFit, AllPointsOnOneTriangle_ChangeItsSurroundingsOnly) {
     const Vec3 centre = (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3;
     std::size_t far = 0;
     for (u32 tet = 0; tet < before.tets.size(); ++tet)
-        if (std::ranges::all_of(before.tets[tet],
-                                [&](u32 v) { return (before.positions[v] - centre).norm() > 0.9; })) {
+        if (std::ranges::all_of(before.tets[tet], [&](u32 v) { return (before.positions[v] - centre).norm() > 0.9; })) {
             EXPECT_EQ(run.result.patches.weights[tet], before.weights[tet]);
             ++far;
         }
@@ -399,13 +415,71 @@ TEST(APatchFit, UndividedTriangles_AreFitted) {
 }
 
 TEST(APatchFit, AnOpenMesh_IsFitted) {
-    const TriangleMesh open = without_triangles(geodesic_sphere(1, 2), {0, 5, 6});
+    const TriangleMesh open = without_triangles(geodesic_sphere(1, 2), {0});
     const TriangleMesh mesh = with_normals(open, std::vector<Vec3>(open.positions.begin(), open.positions.end()));
     const PointCloud points = sphere_points(5000);
     const PatchRun run = fitted(mesh, points);
     expect_sound(run.result);
-    EXPECT_GT(run.result.left_out, 50u);
+    EXPECT_GT(run.result.left_out, 20u);
     EXPECT_LT(run.result.fit->rms, 0.2 * by_default(mesh, &points).result.fit->rms);
+}
+
+TEST(APatchFit, Creases_StaySoundAndThroughTheirVertices) {
+    const TriangleMesh mesh = creased_torus(24, 12);
+    const PointCloud points = torus_points(6000, 1e-3);
+    const PatchRun before = by_default(mesh, &points), after = fitted(mesh, points);
+    ASSERT_GT(std::ranges::count(after.result.patches.kinds, PatchKind::continuation), 24);
+    expect_sound(after.result);
+    EXPECT_GT(for_each_ray(after.result.patches, 10, [](u32, const Vec3&) {}), 1000u);
+    EXPECT_LT(after.result.fit->rms, before.result.fit->rms);
+    // The slopes of the crease are the default's, so where only they count the functions are.
+    for (u32 tet = 0; tet < after.result.patches.tets.size(); ++tet)
+        if (after.result.patches.kinds[tet] == PatchKind::continuation) {
+            EXPECT_EQ(after.result.patches.weights[tet], before.result.patches.weights[tet]);
+        }
+}
+
+TEST(APatchFit, SharpStraightEdges_StayExactlyStraight) {
+    TriangleMesh mesh = cube();
+    const auto normal = [&](const Triangle& t) -> Vec3 {
+        return (mesh.positions[t[1]] - mesh.positions[t[0]])
+            .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
+            .normalized();
+    };
+    std::vector<Edge> sharp;
+    for (const Triangle& one : mesh.triangles)
+        for (const Triangle& other : mesh.triangles)
+            for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t j = 0; j < 3; ++j)
+                    if (one[i] == other[(j + 1) % 3] && one[(i + 1) % 3] == other[j] && one[i] < other[j] &&
+                        normal(one).dot(normal(other)) < 0.5)
+                        sharp.push_back(make_edge(one[i], one[(i + 1) % 3]));
+    std::ranges::sort(sharp);
+    ASSERT_EQ(sharp.size(), 12u);
+    mesh.sharp_edges = Array<Edge>(sharp.begin(), sharp.end());
+    // Noise, so that the diagonals' slopes change.
+    Random random(3);
+    Array<Vec3> scan;
+    for (int i = 0; i < 6000; ++i) {
+        Vec3 p(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+        p[i % 3] = (i / 3 % 2) + random.uniform(-0.01, 0.01);
+        scan.push_back(p);
+    }
+    const PatchRun run = fitted(mesh, cloud(std::move(scan)));
+    expect_sound(run.result);
+    EXPECT_GT(run.result.unfairness_after, run.result.unfairness_before);
+    const PatchComplex& patches = run.result.patches;
+    for (u32 tet = 0; tet < patches.tets.size(); ++tet)
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                const u32 a = patches.tets[tet][i], b = patches.tets[tet][j];
+                if (a < 8 && b < 8 && std::ranges::binary_search(sharp, make_edge(a, b))) {
+                    Barycentric at = Barycentric::Zero();
+                    at[static_cast<Eigen::Index>(i)] = 0.3;
+                    at[static_cast<Eigen::Index>(j)] = 0.7;
+                    EXPECT_EQ(combined_value(patches, tet, at), 0);
+                }
+            }
 }
 
 // Fairing.
