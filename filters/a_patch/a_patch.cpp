@@ -424,8 +424,8 @@ double c1_jump(const PatchComplex& patches, Execution& execution) {
 }
 
 /// Fits the slopes, and measures. `weights` are those of the hull as it is, without violations at creases.
-Weights fitted(Hull& hull, Weights weights, const PointCloud* points, const APatchParams& params, APatchResult& result,
-               Context& context) {
+Weights fit_and_measure(Hull& hull, Weights weights, const PointCloud* points, const APatchParams& params,
+                        APatchResult& result, Context& context) {
     const std::span<const Vec3> positions = points ? points->positions.span() : std::span<const Vec3>();
     const LocatedPoints located = locate(weights.patches, positions, context);
     result.left_out = located.left_out;
@@ -435,8 +435,10 @@ Weights fitted(Hull& hull, Weights weights, const PointCloud* points, const APat
         check.run();
         return check.edges;
     };
-    weights = fit(hull, std::move(weights), located, params.curvature,
-                  {params.fit, params.fairing, params.regularisation}, violating_edges, context);
+    FitResult fitted = fit(hull, std::move(weights), located, params.curvature,
+                           {params.fit, params.fairing, params.regularisation}, violating_edges, context);
+    weights = std::move(fitted.weights);
+    result.regularisation = fitted.regularisation;
     result.unfairness_after = unfairness(hull, params.curvature);
     context.progress(0.8);
     if (located.points.empty()) return weights;
@@ -501,6 +503,7 @@ void report(const APatchResult& result, Context& context) {
         context.metric("fit-max", result.fit->max, Unit::length);
     }
     count("left-out", result.left_out);
+    if (result.fit) context.metric("regularisation", result.regularisation, Unit::number);
     context.metric("fairness-before", result.unfairness_before, Unit::number);
     context.metric("fairness-after", result.unfairness_after, Unit::number);
 }
@@ -549,7 +552,7 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
         }
     }
     context.progress(0.5);
-    weights = fitted(hull, std::move(weights), points, params, result, context);
+    weights = fit_and_measure(hull, std::move(weights), points, params, result, context);
     result.raised = weights.raised;
     result.divided = static_cast<std::size_t>(std::ranges::count(hull.faces, true, &HullFace::is_divided));
     result.patches = std::move(weights.patches);

@@ -26,7 +26,7 @@ struct APatchParams {
     bool fit = true;
     /// Weight of the fairness against that of the fit, at least 0: see fit.hpp.
     double fairing = 0;
-    /// Weight of the changes of the free weights, 1e-6 to 1.
+    /// Least weight of the changes of the free weights, 1e-6 to 1.
     double regularisation = 1e-3;
     a_patches::Curvature curvature = a_patches::Curvature::distance;
     /// An apex is so many times as high above its triangle as it must be, and 0.15 inradii. 1.05 to 3.
@@ -56,6 +56,7 @@ struct APatchResult {
         double rms = 0, p95 = 0, max = 0;
     };
     std::optional<Distances> fit;  ///< of the points in tetrahedra, if there are any
+    double regularisation = 0;  ///< the weight used
     double unfairness_before = 0, unfairness_after = 0;  ///< of the default, and of the result; see fit.hpp
 };
 

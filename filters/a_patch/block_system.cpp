@@ -31,6 +31,22 @@ void BlockSystem::clear() {
     std::ranges::fill(right_, Vector::Zero());
 }
 
+void BlockSystem::add(const BlockSystem& other) {
+    for (std::size_t n = 0; n < blocks_.size(); ++n) blocks_[n] += other.blocks_[n];
+    for (std::size_t row = 0; row < size(); ++row) right_[row] += other.right_[row];
+}
+
+void BlockSystem::add_to_diagonal(double value) {
+    for (u32 row = 0; row < size(); ++row) block(row, row).diagonal().array() += value;
+}
+
+double BlockSystem::energy(const std::vector<Vector>& x) const {
+    const std::vector<Vector> product = times(x);
+    double sum = 0;
+    for (std::size_t row = 0; row < size(); ++row) sum += x[row].dot(product[row]) - 2 * x[row].dot(right_[row]);
+    return sum;
+}
+
 std::size_t BlockSystem::index(u32 row, u32 column) const {
     const auto first = columns_.begin() + static_cast<std::ptrdiff_t>(begin_[row]),
                last = columns_.begin() + static_cast<std::ptrdiff_t>(begin_[row + 1]);

@@ -23,6 +23,9 @@ public:
     BlockSystem(std::size_t size, std::vector<std::pair<u32, u32>> pairs);
 
     void clear();
+    /// Pre: one pattern.
+    void add(const BlockSystem& other);
+    void add_to_diagonal(double value);
     std::size_t size() const { return right_.size(); }
     Matrix& block(u32 row, u32 column);
     Vector& right(u32 row) { return right_[row]; }
@@ -30,6 +33,9 @@ public:
     /// By conjugate gradients, preconditioned by the diagonal blocks, from `x` on. Unknowns without a connection to a
     /// right-hand side stay exactly 0 if they are. Cost: some hundred multiplications at most.
     void solve(std::vector<Vector>& x, const Execution& execution) const;
+
+    /// x · matrix · x - 2 right · x: what the solution minimises.
+    double energy(const std::vector<Vector>& x) const;
 
     /// What the row's equation leaves for its own unknowns, the others being `x`.
     Vector remainder(u32 row, const std::vector<Vector>& x) const;

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "a_patch/block_system.hpp"
 #include "a_patch/slope_dependence.hpp"
@@ -20,6 +21,8 @@ using Matrix2 = Eigen::Matrix2d;
 constexpr std::size_t chunk = 1024;       // points
 constexpr std::size_t rows_at_once = 256;  // tetrahedra
 constexpr int rounds = 3;
+constexpr double most_regularisation = 200;
+constexpr double at_vertex = 1e-9;  // barycentric
 constexpr double outlier = 3;         // times the median distance
 constexpr double least_gradient = 0.5;  // a point where F is flatter is not near the surface
 constexpr double least_share = 0.1;   // of an edge's value at an apex, that is kept
@@ -129,7 +132,7 @@ public:
           free_(free_directions(hull)),
           system_(hull.edges.size(), pairs_of(hull)) {}
 
-    Weights fitted() {
+    FitResult fitted() {
         for (const HullEdge& edge : hull_.edges) defaults_.push_back(edge.slopes[0]);
         set_limits();
         find_rows();
@@ -137,17 +140,21 @@ public:
             was_wrong_.push_back(wrong_signs(weights_.patches, row) > 0);
         changes_.assign(hull_.edges.size(), Vector2::Zero());
         const bool has_points = params_.to_points && !points_.empty();
-        if (!has_points && params_.fairing == 0) return std::move(weights_);
+        if (!has_points && params_.fairing == 0) return {std::move(weights_), params_.regularisation};
         for (int round = 0; round < (has_points ? rounds : 1); ++round) {
             system_.clear();
-            double scale = 1;
-            if (has_points) scale = add_points();
-            add_priors(scale);
+            if (has_points) {
+                std::array<BlockSystem, 2> halves{system_, system_};
+                add_points(halves);
+                for (const BlockSystem& half : halves) system_.add(half);
+                if (round == 0) regularisation_ = best_regularisation(halves);
+            }
+            add_priors();
             solve();
             set_slopes();
         }
         reduce_changes();
-        return std::move(weights_);
+        return {std::move(weights_), regularisation_};
     }
 
 private:
@@ -162,92 +169,136 @@ private:
         }
     }
 
-    /// The points' part of the system, and the mean of its diagonal elements.
-    double add_points() {
+    struct Sample {
+        double value;
+        double slope;  ///< |grad F|
+        double distance() const { return std::abs(value) / slope; }
+    };
+    Sample sample(const PatchCell& cell, std::size_t point) const {
+        const Barycentric& at = points_[point].at;
+        return {patch_value(weights_.patches.weights[points_[point].tet], at),
+                std::max(least_gradient, cell.gradient(at).norm())};
+    }
+
+    /// What points of one tetrahedron add to the system.
+    struct Part {
+        std::array<u32, SlopeDependence::most_edges> edges;
+        std::size_t count;
+        Eigen::Matrix<double, 10, 10> matrix;
+        Eigen::Matrix<double, 10, 1> right;
+
+        void add_to(BlockSystem& system) const {
+            for (std::size_t a = 0; a < count; ++a) {
+                const auto i = static_cast<Eigen::Index>(2 * a);
+                system.right(edges[a]) += right.segment<2>(i);
+                for (std::size_t b = 0; b < count; ++b)
+                    system.block(edges[a], edges[b]) += matrix.block<2, 2>(i, static_cast<Eigen::Index>(2 * b));
+            }
+        }
+    };
+
+    /// The points' sums; in every tetrahedron they go to both halves by turns.
+    void add_points(std::array<BlockSystem, 2>& halves) const {
         const double most = outlier * median_distance();
-        struct Part {
-            struct Local {
-                std::array<u32, 5> edges;
-                std::size_t count;
-                Eigen::Matrix<double, 10, 10> matrix;
-                Eigen::Matrix<double, 10, 1> right;
-            };
-            std::vector<Local> locals;
-        };
-        for_each_in_order<Part>(
+        using Parts = std::vector<std::array<Part, 2>>;
+        for_each_in_order<Parts>(
             execution_.threads(), (rows_.size() + rows_at_once - 1) / rows_at_once,
-            [&](std::size_t number, Part& part) {
+            [&](std::size_t number, Parts& parts) {
                 execution_.check_cancelled();
-                part.locals.clear();
+                parts.clear();
                 for (std::size_t r = number * rows_at_once; r < std::min(rows_.size(), (number + 1) * rows_at_once);
-                     ++r) {
-                    const Row& row = rows_[r];
-                    const PatchCell cell(weights_.patches, row.tet);
-                    const SlopeDependence dependence(hull_, free_, weights_.patches, row.tet);
-                    auto& local = part.locals.emplace_back();
-                    local.count = dependence.count();
-                    local.matrix.setZero();
-                    local.right.setZero();
-                    Eigen::Matrix<double, 10, 1> before = Eigen::Matrix<double, 10, 1>::Zero(), line = before;
-                    for (std::size_t n = 0; n < local.count; ++n) {
-                        local.edges[n] = dependence.edge(n);
-                        before.segment<2>(static_cast<Eigen::Index>(2 * n)) = changes_[local.edges[n]];
-                    }
-                    for (std::size_t p = row.begin; p < row.end; ++p) {
-                        const Barycentric& at = points_[p].at;
-                        const auto derivatives = dependence.derivatives(at);
-                        for (std::size_t n = 0; n < local.count; ++n)
-                            line.segment<2>(static_cast<Eigen::Index>(2 * n)) = derivatives[n];
-                        const double value = patch_value(weights_.patches.weights[row.tet], at);
-                        const double slope = std::max(least_gradient, cell.gradient(at).norm());
-                        const double distance = std::abs(value) / slope;
-                        const double weight = (distance > most ? most / distance : 1) / (slope * slope);
-                        local.matrix.noalias() += (weight * line) * line.transpose();
-                        local.right += (weight * (line.dot(before) - value)) * line;
-                    }
-                }
+                     ++r)
+                    parts.push_back(parts_of(rows_[r], most));
             },
-            [&](std::size_t, const Part& part) {
-                for (const auto& local : part.locals)
-                    for (std::size_t a = 0; a < local.count; ++a) {
-                        const auto i = static_cast<Eigen::Index>(2 * a);
-                        system_.right(local.edges[a]) += local.right.segment<2>(i);
-                        for (std::size_t b = 0; b < local.count; ++b)
-                            system_.block(local.edges[a], local.edges[b]) +=
-                                local.matrix.block<2, 2>(i, static_cast<Eigen::Index>(2 * b));
-                    }
+            [&](std::size_t, const Parts& parts) {
+                for (const auto& part : parts)
+                    for (std::size_t half = 0; half < 2; ++half) part[half].add_to(halves[half]);
             });
+    }
+
+    std::array<Part, 2> parts_of(const Row& row, double most) const {
+        const PatchCell cell(weights_.patches, row.tet);
+        const SlopeDependence dependence(hull_, free_, weights_.patches, row.tet);
+        Part none;
+        none.count = dependence.count();
+        none.matrix.setZero();
+        none.right.setZero();
+        Eigen::Matrix<double, 10, 1> before = Eigen::Matrix<double, 10, 1>::Zero(), line = before;
+        for (std::size_t n = 0; n < none.count; ++n) {
+            none.edges[n] = dependence.edge(n);
+            before.segment<2>(static_cast<Eigen::Index>(2 * n)) = changes_[none.edges[n]];
+        }
+        std::array<Part, 2> parts{none, none};
+        for (std::size_t p = row.begin; p < row.end; ++p) {
+            const auto derivatives = dependence.derivatives(points_[p].at);
+            for (std::size_t n = 0; n < none.count; ++n)
+                line.segment<2>(static_cast<Eigen::Index>(2 * n)) = derivatives[n];
+            const Sample here = sample(cell, p);
+            const double distance = here.distance();
+            const double weight = (distance > most ? most / distance : 1) / (here.slope * here.slope);
+            Part& part = parts[p % 2];
+            part.matrix.noalias() += (weight * line) * line.transpose();
+            part.right += (weight * (line.dot(before) - here.value)) * line;
+        }
+        return parts;
+    }
+
+    /// Of the weights from the given one on, each ten times the one before, the one with which each half of the points
+    /// predicts the other half best. Sets the scale.
+    double best_regularisation(std::array<BlockSystem, 2>& halves) {
         double trace = 0, count = 0;
         for (u32 e = 0; e < system_.size(); ++e) {
             trace += system_.block(e, e).trace();
             count += free_[e].squaredNorm();
         }
-        return trace > 0 ? trace / count : 1;
+        if (trace > 0) scale_ = trace / count;
+        double best = params_.regularisation, least = std::numeric_limits<double>::infinity();
+        for (double weight = params_.regularisation; weight < most_regularisation; weight *= 10) {
+            double error = 0;
+            for (std::size_t half = 0; half < 2; ++half) {
+                BlockSystem system = halves[half];
+                system.add_to_diagonal(scale_ * weight);
+                changes_.assign(changes_.size(), Vector2::Zero());
+                system.solve(changes_, execution_);
+                for (u32 e = 0; e < system_.size(); ++e) move_within_limits(e);
+                error += halves[1 - half].energy(changes_);
+            }
+            if (error < least) {
+                least = error;
+                best = weight;
+            }
+        }
+        changes_.assign(changes_.size(), Vector2::Zero());
+        return best;
     }
 
-    double median_distance() {
+    /// Of the points that are not at a vertex, through which the surface goes in any case.
+    double median_distance() const {
         std::vector<double> found(points_.size());
         for_each_chunk(execution_.threads(), rows_.size(), rows_at_once, [&](std::size_t begin, std::size_t end) {
             for (std::size_t r = begin; r < end; ++r) {
                 const PatchCell cell(weights_.patches, rows_[r].tet);
-                for (std::size_t p = rows_[r].begin; p < rows_[r].end; ++p)
-                    found[p] = std::abs(patch_value(weights_.patches.weights[rows_[r].tet], points_[p].at)) /
-                               std::max(least_gradient, cell.gradient(points_[p].at).norm());
+                for (std::size_t p = rows_[r].begin; p < rows_[r].end; ++p) {
+                    const bool is_vertex = points_[p].at.maxCoeff() > 1 - at_vertex;
+                    found[p] = is_vertex ? -1 : sample(cell, p).distance();
+                }
             }
         });
+        std::erase(found, -1);
+        if (found.empty()) return 0;
         const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
         std::ranges::nth_element(found, middle);
         return *middle;
     }
 
-    void add_priors(double scale) {
+    void add_priors() {
         const std::vector<Vec3> fair = params_.fairing > 0 ? fair_slopes(hull_, curvature_) : std::vector<Vec3>();
         for (u32 e = 0; e < system_.size(); ++e) {
             Matrix2& diagonal = system_.block(e, e);
-            diagonal.diagonal().array() += scale * params_.regularisation;
+            diagonal.diagonal().array() += scale_ * regularisation_;
             if (params_.fairing == 0 || !is_smooth(hull_.edges[e])) continue;
-            diagonal.diagonal().array() += scale * params_.fairing;
-            system_.right(e) += scale * params_.fairing * (free_[e].transpose() * (fair[e] - defaults_[e]));
+            diagonal.diagonal().array() += scale_ * params_.fairing;
+            system_.right(e) += scale_ * params_.fairing * (free_[e].transpose() * (fair[e] - defaults_[e]));
         }
     }
 
@@ -276,16 +327,7 @@ private:
     void solve() {
         system_.solve(changes_, execution_);
         bool is_sound = true;
-        for (u32 e = 0; e < system_.size(); ++e) {
-            if (is_within(limits_[e], changes_[e])) continue;
-            is_sound = false;
-            double share = 1;
-            for (const Limit& limit : limits_[e]) {
-                const double value = limit.along.dot(changes_[e]);
-                if (value < limit.least) share = std::min(share, limit.least / value);
-            }
-            changes_[e] *= share;
-        }
+        for (u32 e = 0; e < system_.size(); ++e) is_sound = move_within_limits(e) && is_sound;
         for (int sweep = 0; !is_sound && sweep < most_sweeps; ++sweep) {
             execution_.check_cancelled();
             double largest = 0;
@@ -299,6 +341,18 @@ private:
             }
             if (largest < enough) break;
         }
+    }
+
+    /// Shortens the change of an edge that is beyond its limits. Returns whether it was within.
+    bool move_within_limits(u32 e) {
+        if (is_within(limits_[e], changes_[e])) return true;
+        double share = 1;
+        for (const Limit& limit : limits_[e]) {
+            const double value = limit.along.dot(changes_[e]);
+            if (value < limit.least) share = std::min(share, limit.least / value);
+        }
+        changes_[e] *= share;
+        return false;
     }
 
     void set_slopes() {
@@ -338,6 +392,8 @@ private:
     const std::vector<LocatedPoints::Point>& points_;
     Curvature curvature_;
     FitParams params_;
+    double regularisation_ = params_.regularisation;
+    double scale_ = 1;
     const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges_;
     Execution& execution_;
     std::vector<Directions> free_;
@@ -412,8 +468,8 @@ LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, 
     return located;
 }
 
-Weights fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
-            const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution) {
+FitResult fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
+              const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution) {
     return Fitter(hull, std::move(weights), points, curvature, params, violating_edges, execution).fitted();
 }
 

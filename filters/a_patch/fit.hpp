@@ -32,7 +32,12 @@ struct FitParams {
     /// Whether the slopes follow the points; else they are only made fair.
     bool to_points = true;
     double fairing = 0;  ///< at least 0
-    double regularisation = 1e-3;  ///< above 0
+    double regularisation = 1e-3;  ///< the least weight, above 0
+};
+
+struct FitResult {
+    Weights weights;
+    double regularisation;  ///< the weight used
 };
 
 /// Minimises, over the components of the slopes that the vertices leave free,
@@ -42,13 +47,16 @@ struct FitParams {
 /// function f(a, b, .) of an edge keeps at least a tenth of its value at each apex; where other weights get a wrong
 /// sign that the default slopes did not give them, the changes of the edges around are reduced.
 ///
+/// `regularisation` is the given one times the power of 10, up to 1e5, with which each half of the points predicts the
+/// distances of the other half best: few or noisy points change the slopes less.
+///
 /// Sets the slopes of `hull` and returns its weights. `weights` are those of the hull as it is. Slopes without points
 /// near them and without fairing keep their bits. Bytes do not depend on the number of threads.
 /// Cost: about 1 us per point and 100 us per triangle.
 ///
 /// `violating_edges`: the sharp edges at which a surface is not sound; none with the slopes of `hull` as it is.
-Weights fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
-            const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution);
+FitResult fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvature curvature, const FitParams& params,
+              const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges, Execution& execution);
 
 /// Sum over the smooth inner edges of the squared difference between the edge's slope and the mean of the gradients of
 /// its two triangles' quadrics at the middle of the edge, without the component along the edge; gradients have

@@ -37,7 +37,9 @@ SCANMILL_FILTER() {
         .param("fit", &P::fit, "Whether free weights are fitted to the points, if there are any.")
         .param("fairing", &P::fairing,
                "Weight of a fair surface against a near one: at 1 it weighs about as much as the points.", at_least(0))
-        .param("regularisation", &P::regularisation, "Weight of the changes of the free weights, likewise.",
+        .param("regularisation", &P::regularisation,
+               "Least weight of the changes of the free weights, likewise; where each half of the points predicts the "
+               "other half better with a larger one, that is used.",
                at_least(1e-6), at_most(1))
         .choice("curvature", &P::curvature,
                 {{"distance", Curvature::distance, "None: F grows like a distance."},
@@ -68,6 +70,7 @@ SCANMILL_FILTER() {
         .metric("fit-max", Unit::length, "Largest of these distances.", smaller_is_better)
         .metric("left-out", Unit::count, "Points in no tetrahedron near the surface: not fitted, not measured.",
                 smaller_is_better)
+        .metric("regularisation", Unit::number, "The weight used.")
         .metric(
             "fairness-before", Unit::number,
             "Sum over the edges of the squared difference between the gradient and that of the triangles' quadrics, "

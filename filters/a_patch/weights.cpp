@@ -17,6 +17,7 @@ using Vector4 = Eigen::Vector4d;
 constexpr std::size_t chunk = 1024;  // faces or edges
 constexpr double least_share = 0.1;  // of a value at an apex, that is kept at the edge points
 constexpr double least_share_of_edge = 0.2;
+constexpr double rounding = 1e-15;  // of the largest weight: at singular points weights are 0
 
 constexpr std::size_t next(std::size_t i) { return (i + 1) % 3; }
 constexpr std::size_t previous(std::size_t i) { return (i + 2) % 3; }
@@ -465,13 +466,16 @@ Eigen::Matrix3d face_curvature(const Hull& hull, std::size_t face, Curvature cur
 
 std::size_t wrong_signs(const PatchComplex& patches, std::size_t tet) {
     if (patches.kinds[tet] == PatchKind::sharp || patches.kinds[tet] == PatchKind::continuation) return 0;
+    const PatchWeights& weights = patches.weights[tet];
+    double largest = 0;
+    for (const double weight : weights) largest = std::max(largest, std::abs(weight));
+    const double sign = patches.sides[tet] == 1 ? 1 : -1;
     std::size_t wrong = 0, number = 0;
     for (int i = 3; i >= 0; --i)
         for (int j = 3 - i; j >= 0; --j)
             for (int k = 3 - i - j; k >= 0; --k, ++number) {
                 const int layer = 3 - i - j - k + (patches.kinds[tet] == PatchKind::edge ? i : 0);
-                const double weight = patches.weights[tet][number];
-                if (layer > 0 && (patches.sides[tet] == 1 ? weight < 0 : weight > 0)) ++wrong;
+                if (layer > 0 && sign * weights[number] < -rounding * largest) ++wrong;
             }
     return wrong;
 }

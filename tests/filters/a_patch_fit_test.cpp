@@ -203,7 +203,7 @@ TEST(APatchFit, ASurfaceOfOtherSlopes_IsFoundAgainFromItsPoints) {
     EXPECT_EQ(located.left_out, 0u);
     a_patches::Hull found = base->hull;
     const a_patches::Weights weights =
-        fit(found, base->weights, located, Curvature::distance, {true, 0, 1e-9}, no_violation, execution);
+        fit(found, base->weights, located, Curvature::distance, {true, 0, 1e-9}, no_violation, execution).weights;
     double before = 0, after = 0;
     for (u32 tet = 0; tet < weights.patches.tets.size(); ++tet)
         for (std::size_t i = 0; i < 20; ++i) {
