@@ -1,68 +1,174 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tessellate/tessellate.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/data/bounds.hpp"
 #include "scanmill/geometry/a_patch.hpp"
+#include "tessellate/structure.hpp"
 
 namespace scanmill {
 
 namespace {
 
-constexpr u32 none = ~u32(0);
-constexpr std::size_t chunk = 256;  // edges or triangles
-constexpr unsigned uniform_fan = 4;  // segments of a fan
+using namespace tessellation;
+
+constexpr std::size_t chunk = 64;  // edges or triangles
+constexpr unsigned uniform_fan = 4, least_fan = 2;  // segments of a fan
 constexpr unsigned most_subdivision = 1024;
+constexpr unsigned length_steps = 8;
+constexpr double rounding = 1e-14;  // of the diagonal: below it a value at a point of the mesh is 0
+// The largest value of a quadratic function on a segment with zeros at its ends, over that at a third of it.
+constexpr double middle_over_third = 9. / 8;
+constexpr double share_along = 2. / 3;  // of max_error, for lines along rows
 
 /// A point of the surface.
 struct SurfacePoint {
-    Vec3 position, normal;
-    u8 side;
+    Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
+    u8 side = 1;
 };
 
-/// The tetrahedra of a mesh triangle: per side one, or three around the base point.
-struct TriangleTets {
-    std::array<std::array<u32, 3>, 2> rows{{{none, none, none}, {none, none, none}}};
-    u32 count = 0;                              ///< per side
-    std::array<u32, 3> corners{};               ///< vertices of the mesh
-    std::array<u32, 3> edges{none, none, none};  ///< edge i goes from corner i to the next; into Tessellation::edges_
+/// A point of an edge between its ends.
+struct Sample {
+    std::array<double, 2> share;  ///< of the edge, from a and from b
+    bool is_on_surface;
+    u8 side;  ///< where the surface is
 };
 
-/// The tetrahedra beside an edge a → b of its first triangle.
-struct EdgeTets {
-    u32 a = none, b = none;
-    std::array<u32, 2> triangles{none, none};
-    std::array<std::array<u32, 2>, 2> rows{{{none, none}, {none, none}}};  ///< by side and triangle
+/// The triangles beside an edge: a grid of points whose rows are the samples, and whose columns lead from the face of
+/// the first triangle to that of the second. At a border only the column of the first triangle; the ends of the edge
+/// and samples on the surface have one point.
+struct Strip {
     unsigned segments = 1, fan = 1;
-    /// The first vertex of inner samples 1 … segments - 1, and one more. A sample on the surface has one vertex, others
-    /// one per column.
-    std::vector<u32> first_of_sample{};
+    std::vector<Sample> samples;
+    std::vector<u32> first;  ///< of each sample's points, and one more
+    std::vector<SurfacePoint> points;
+    u32 first_vertex = 0;
+    double worst = 0;  ///< distance found between its triangles and the surface
 
-    bool is_border() const { return triangles[1] == none; }
-    unsigned columns() const { return is_border() ? 1 : fan + 1; }
-    bool is_collapsed(unsigned sample) const { return first_of_sample[sample] - first_of_sample[sample - 1] == 1; }
+    bool is_collapsed(std::size_t sample) const { return first[sample + 1] - first[sample] == 1; }
+    bool is_straight() const { return samples.empty(); }
 };
 
-struct HalfEdge {
-    Edge edge;
-    u32 triangle, corner;
-    auto operator<=>(const HalfEdge&) const = default;
+/// Vertices along an edge or inside a triangle, with their shares of the way.
+struct Row {
+    std::vector<u32> vertices;
+    std::vector<double> shares;
 };
 
-Barycentric corner(int i) {
+/// The points inside a triangle: on `rows` - 1 triangles around the base point, with the fewer segments the smaller
+/// these are.
+struct Grid {
+    unsigned segments = 1, rows = 1;
+    bool is_triangular = false;  ///< instead an undivided triangle has a triangular grid
+    std::vector<double> shares;  ///< of the rows, between the base point and the edges; and one for the edges
+    std::vector<SurfacePoint> points;
+    u32 first_vertex = 0;
+    double worst = 0;
+
+    /// Of row r on one third.
+    unsigned segments_of(unsigned r) const { return (segments * r + rows - 1) / rows; }
+};
+
+Barycentric corner(u32 i) {
     Barycentric at = Barycentric::Zero();
     at[i] = 1;
     return at;
 }
 
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const Vec3 d = b - a;
-    const double length = d.squaredNorm(), t = length > 0 ? std::clamp((p - a).dot(d) / length, 0.0, 1.0) : 0;
-    return (p - a - t * d).norm();
+/// Numbers of the points on triangles around a base point: the base point, those on the lines from there to the
+/// corners, those of the thirds.
+class ThirdsNumbers {
+public:
+    explicit ThirdsNumbers(const Grid& grid) : grid_(grid), before_(grid.rows + 1, 0) {
+        for (unsigned r = 1; r < grid.rows; ++r) before_[r + 1] = before_[r] + grid.segments_of(r) - 1;
+    }
+    u32 count() const { return 1 + 3 * (grid_.rows - 1) + 3 * before_.back(); }
+    /// Point k of row r = 0 … rows - 1; row 0 is the base point.
+    u32 operator()(u32 third, u32 r, u32 k) const {
+        if (r == 0) return 0;
+        if (k == 0) return 1 + third * (grid_.rows - 1) + r - 1;
+        if (k == grid_.segments_of(r)) return 1 + (third + 1) % 3 * (grid_.rows - 1) + r - 1;
+        return 1 + 3 * (grid_.rows - 1) + third * before_.back() + before_[r] + k - 1;
+    }
+
+private:
+    const Grid& grid_;
+    std::vector<u32> before_;  ///< inner points of a third in the rows before
+};
+
+/// The inner vertex of an undivided triangle of level n >= 3, with so many steps from corner 0 to corners 1 and 2.
+u32 grid_vertex(u32 i, u32 j) { return (i + j - 1) * (i + j - 2) / 2 + j - 1; }
+
+/// Triangles between a row on an edge and a row inside the triangle, both in the edge's direction: the row with the
+/// smaller next share goes on, the edge's if they are equal. Calls add(a, b, c) with a and b in one row.
+template <class Add>
+void join(const Row& edge, const Row& inner, Add&& add) {
+    std::size_t i = 0, j = 0;
+    const std::size_t edges = edge.vertices.size() - 1, inners = inner.vertices.size() - 1;
+    while (i < edges || j < inners)
+        if (i < edges && (j == inners || edge.shares[i + 1] <= inner.shares[j + 1])) {
+            add(edge.vertices[i], edge.vertices[i + 1], inner.vertices[j]);
+            ++i;
+        } else {
+            add(inner.vertices[j + 1], inner.vertices[j], edge.vertices[i]);
+            ++j;
+        }
+}
+
+/// `count` points at equal distances. A single one has no share.
+template <class VertexAt>
+Row inner_row(u32 count, VertexAt&& vertex_at) {
+    Row row;
+    for (u32 k = 0; k < count; ++k) {
+        row.vertices.push_back(vertex_at(k));
+        row.shares.push_back(count > 1 ? static_cast<double>(k) / (count - 1) : 0);
+    }
+    return row;
+}
+
+/// Calls add(third, a, b, c) for the triangles of a divided triangle, whose inner vertices begin at `first`; a and b
+/// are in one row, c is in the next or the one before.
+template <class Add>
+void connect_thirds(const Grid& grid, u32 first, const std::array<Row, 3>& edges, Add&& add) {
+    const ThirdsNumbers numbers(grid);
+    for (u32 third = 0; third < 3; ++third) {
+        Row inner{{first}, {0}};
+        for (u32 r = 1; r <= grid.rows; ++r) {
+            const Row outer = r == grid.rows ? edges[third] : inner_row(grid.segments_of(r) + 1, [&](u32 k) {
+                return first + numbers(third, r, k);
+            });
+            join(outer, inner, [&](u32 a, u32 b, u32 c) { add(third, a, b, c); });
+            inner = outer;
+        }
+    }
+}
+
+/// The same for a triangular grid.
+template <class Add>
+void connect_triangular(const Grid& grid, u32 first, const std::array<Row, 3>& edges, Add&& add) {
+    const u32 n = grid.segments;
+    if (n == 1) {
+        add(0, edges[0].vertices[0], edges[1].vertices[0], edges[2].vertices[0]);
+        return;
+    }
+    const auto at = [&](u32 i, u32 j) { return first + grid_vertex(i, j); };
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Row inner = inner_row(n <= 3 ? 1 : n - 2, [&](u32 k) {
+            if (n <= 3) return first;
+            return i == 0 ? at(k + 1, 1) : i == 1 ? at(n - 2 - k, k + 1) : at(1, n - 2 - k);
+        });
+        join(edges[i], inner, [&](u32 a, u32 b, u32 c) { add(0, a, b, c); });
+    }
+    for (u32 i = 1; i + 2 < n; ++i)
+        for (u32 j = 1; i + j + 1 < n; ++j) {
+            add(0, at(i, j), at(i + 1, j), at(i, j + 1));
+            if (i + j + 2 < n) add(0, at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+        }
 }
 
 class Tessellation {
@@ -71,6 +177,7 @@ public:
         : patches_(patches),
           subdivision_(params.subdivision),
           max_error_(params.max_error ? std::optional(params.max_error->value()) : std::nullopt),
+          segments_(params.segments),
           execution_(execution) {
         if (subdivision_ < 1 || subdivision_ > most_subdivision)
             throw Error("subdivision must be from 1 to {}; it is {}", most_subdivision, subdivision_);
@@ -78,404 +185,446 @@ public:
     }
 
     TriangleMesh mesh() {
-        collect();
-        max_error_ ? choose_levels() : set_levels();
-        number_vertices();
-        lift_edges();
-        lift_triangles();
+        structure_ = structure_of(patches_);
+        zero_ = rounding * bounding_box(patches_.positions.span()).diagonal();
+        number_corners();
+        max_error_ ? build_within_error() : static_cast<void>(build(subdivision_));
+        collect_points();
         connect();
         return finished();
     }
 
 private:
-    // The structure of the complex.
-
-    void collect() {
-        if (patches_.tets.empty()) throw Error("the patches have no tetrahedra");
-        const std::size_t rows = patches_.tets.size();
-        u32 triangles = 0;
-        for (std::size_t row = 0; row < rows; ++row) {
-            if (patches_.triangles[row] >= rows) throw_incomplete(patches_.triangles[row]);
-            triangles = std::max(triangles, patches_.triangles[row] + 1);
-        }
-        triangles_.resize(triangles);
-        for (u32 row = 0; row < rows; ++row) {
-            if (patches_.kinds[row] != PatchKind::face) continue;
-            auto& of_side = triangles_[patches_.triangles[row]].rows[patches_.sides[row]];
-            const auto free = std::ranges::find(of_side, none);
-            if (free == of_side.end()) throw_incomplete(patches_.triangles[row]);
-            *free = row;
-        }
-        for (u32 f = 0; f < triangles_.size(); ++f) {
-            TriangleTets& t = triangles_[f];
-            t.count = t.rows[1][1] == none ? 1 : 3;
-            for (const auto& of_side : t.rows)
-                if (std::ranges::count(of_side, none) != 3 - t.count) throw_incomplete(f);
-            for (std::size_t i = 0; i < 3; ++i)
-                t.corners[i] = t.count == 3 ? patches_.tets[t.rows[1][i]][1] : patches_.tets[t.rows[1][0]][i];
-        }
-        collect_edges();
-    }
-
-    [[noreturn]] static void throw_incomplete(u32 triangle) {
-        throw Error("the patches are not complete: tetrahedra of triangle {} are missing or too many", triangle)
-            .hint("'a-patch' makes complete ones");
-    }
-
-    void collect_edges() {
-        std::vector<HalfEdge> halves;
-        for (u32 f = 0; f < triangles_.size(); ++f)
-            for (u32 i = 0; i < 3; ++i)
-                halves.push_back({make_edge(triangles_[f].corners[i], triangles_[f].corners[(i + 1) % 3]), f, i});
-        std::ranges::sort(halves);
-        for (std::size_t h = 0; h < halves.size(); ++h) {
-            const bool is_second = h > 0 && halves[h - 1].edge == halves[h].edge;
-            if (h > 1 && halves[h - 2].edge == halves[h].edge) throw_incomplete(halves[h].triangle);
-            if (!is_second) edges_.emplace_back();
-            EdgeTets& edge = edges_.back();
-            edge.triangles[is_second] = halves[h].triangle;
-            triangles_[halves[h].triangle].edges[halves[h].corner] = static_cast<u32>(edges_.size() - 1);
-            if (is_second) continue;
-            edge.a = triangles_[halves[h].triangle].corners[halves[h].corner];
-            edge.b = triangles_[halves[h].triangle].corners[(halves[h].corner + 1) % 3];
-        }
-        for (u32 row = 0; row < patches_.tets.size(); ++row) {
-            if (patches_.kinds[row] != PatchKind::edge) continue;
-            const TriangleTets& t = triangles_[patches_.triangles[row]];
-            const auto i =
-                static_cast<std::size_t>(std::ranges::find(t.corners, patches_.tets[row][1]) - t.corners.begin());
-            if (i == t.corners.size()) throw_incomplete(patches_.triangles[row]);
-            EdgeTets& edge = edges_[t.edges[i]];
-            edge.rows[patches_.sides[row]][edge.triangles[1] == patches_.triangles[row]] = row;
-        }
-        for (const EdgeTets& edge : edges_)
-            for (const auto& of_side : edge.rows)
-                if (!edge.is_border() && std::ranges::find(of_side, none) != of_side.end())
-                    throw_incomplete(edge.triangles[0]);
-    }
-
     // Points of the surface.
 
-    SurfacePoint hit(u32 row, const Barycentric& from, const Barycentric& to) const {
-        const PatchWeights& weights = patches_.weights[row];
-        const std::optional<double> t = patch_hit(weights, from, to);
-        if (!t) throw Error("the patch of triangle {} has no surface above a point of it", patches_.triangles[row]);
+    PatchCell cell(u32 row) const { return PatchCell(patches_, row); }
+
+    /// Where the line from a point of the mesh to a point off it meets the surface.
+    SurfacePoint hit(const PatchCell& cell, u8 side, const Barycentric& from, const Barycentric& to) const {
+        std::optional<double> t = 0;
+        if (std::abs(patch_value(cell.weights(), from)) > zero_) t = patch_hit(cell.weights(), from, to);
+        if (!t) throw Error("the patches have no surface on a line from the mesh to an apex");
         const Barycentric at = (1 - *t) * from + *t * to;
-        const PatchCell cell(patches_, row);
-        return {cell.point(at), cell.gradient(at).normalized(), patches_.sides[row]};
+        return {cell.point(at), cell.gradient(at).normalized(), side};
     }
 
-    /// The side on which the surface is seen from a point of the mesh.
-    u8 side_at(u32 row, const Barycentric& base) const { return patch_value(patches_.weights[row], base) <= 0; }
+    /// The side of the mesh on which the surface is seen from a point of it.
+    u8 side_of(double value) const { return value <= zero_; }
 
-    /// Above the point with these coordinates in part `third` of a triangle: base point, corners i and j; of an
-    /// undivided triangle: its three corners.
-    SurfacePoint above(const TriangleTets& t, std::size_t third, const Vec3& base) const {
-        const Barycentric from(base[0], base[1], base[2], 0);
-        const u8 side = side_at(t.rows[1][third], from);
-        return hit(t.rows[side][third], from, corner(3));
+    /// The largest distances found between the surface and lines along rows, lines along columns, and triangles.
+    struct Errors {
+        double along = 0, across = 0, inside = 0;
+
+        double worst() const { return std::max({along, across, inside}); }
+    };
+
+    /// Doubles the numbers of segments of rows and of columns, up to `most` and `most_across`, where the errors demand
+    /// it. Returns whether one was doubled. More columns make the triangles lie along the lines along the rows, so
+    /// these get a smaller share of the error.
+    bool refine(unsigned& along, unsigned& across, const Errors& errors, unsigned most, unsigned most_across) const {
+        const double wanted = *max_error_;
+        const bool is_long = errors.along > share_along * wanted;
+        const bool widen =
+            2 * across <= most_across && (errors.across > wanted || (errors.inside > wanted && !is_long));
+        const bool lengthen = 2 * along <= most && (is_long || (errors.inside > wanted && !widen));
+        if (lengthen) along *= 2;
+        if (widen) across *= 2;
+        return lengthen || widen;
     }
 
-    /// Above the point at `share` of the edge, at `across` of the fan from the first triangle to the second.
-    SurfacePoint beside(const EdgeTets& edge, double share, double across) const {
-        const TriangleTets& first = triangles_[edge.triangles[0]];
-        const auto i = static_cast<std::size_t>(
-            std::ranges::find(first.edges, static_cast<u32>(&edge - edges_.data())) - first.edges.begin());
-        if (edge.is_border()) {
-            Vec3 base = Vec3::Zero();
-            if (first.count == 3) return above(first, i, {0, 1 - share, share});
-            base[static_cast<Eigen::Index>(i)] = 1 - share;
-            base[static_cast<Eigen::Index>((i + 1) % 3)] = share;
-            return above(first, 0, base);
+    // Strips.
+
+    /// The tetrahedra beside an edge by side and triangle; at a border those of its triangle.
+    std::array<std::array<PatchCell, 2>, 2> cells_of(const EdgeTets& edge) const {
+        const auto at = [&](std::size_t side, std::size_t of) {
+            if (!edge.is_border()) return cell(edge.rows[side][of]);
+            const TriangleTets& t = structure_.triangles[edge.triangles[0]];
+            return cell(t.rows[side][t.count == 3 ? edge.corner : 0]);
+        };
+        return {{{at(0, 0), at(0, 1)}, {at(1, 0), at(1, 1)}}};
+    }
+
+    /// Coordinates of a point of the edge in the tetrahedra of its first or second triangle.
+    Barycentric on_edge(const EdgeTets& edge, std::size_t of, double share) const {
+        if (of == 1) return {0, share, 1 - share, 0};
+        const bool is_whole = edge.is_border() && structure_.triangles[edge.triangles[0]].count == 1;
+        const u32 i = is_whole ? edge.corner : 1, j = (i + 1) % (is_whole ? 3 : 4);
+        return (1 - share) * corner(i) + share * corner(j);
+    }
+
+    /// Where the surface crosses the edge between its ends. On the edge the function is
+    /// 3 s (1 - s) ((1 - s) f(a, a, b) + s f(a, b, b)).
+    std::optional<double> crossing(const EdgeTets& edge, const PatchCell& cell) const {
+        const Barycentric a = on_edge(edge, 0, 0), b = on_edge(edge, 0, 1);
+        const double one = patch_blossom(cell.weights(), a, a, b), other = patch_blossom(cell.weights(), a, b, b);
+        if (!((one < 0 && other > 0) || (one > 0 && other < 0))) return std::nullopt;
+        const double share = one / (one - other);
+        // Before or after it the edge is on the surface up to rounding.
+        if (std::min(std::abs(one) * share, std::abs(other) * (1 - share)) <= zero_) return std::nullopt;
+        return share;
+    }
+
+    /// Equally spaced samples, and one where the surface crosses the edge: the nearest is moved there if it is nearer
+    /// than a quarter of the spacing.
+    std::vector<Sample> samples_of(const EdgeTets& edge, const PatchCell& cell, unsigned segments) const {
+        std::vector<std::array<double, 2>> shares;
+        for (unsigned k = 1; k < segments; ++k)
+            shares.push_back({static_cast<double>(k) / segments, static_cast<double>(segments - k) / segments});
+        const std::optional<double> zero = crossing(edge, cell);
+        if (zero) {
+            const double at = *zero * segments, nearest = std::floor(at + 0.5);
+            const std::array<double, 2> share{*zero, 1 - *zero};
+            if (nearest >= 1 && nearest < segments && std::abs(at - nearest) < 0.25)
+                shares[static_cast<std::size_t>(nearest) - 1] = share;
+            else
+                shares.insert(shares.begin() + static_cast<std::ptrdiff_t>(at), share);
         }
-        const u8 side = side_at(edge.rows[1][0], {0, 1 - share, share, 0});
-        const std::size_t of = across > 0.5;
-        const double u = of == 0 ? 2 * across : 2 * (1 - across);  // 0: the apex, 1: the edge point
-        const Barycentric from = of == 0 ? Barycentric(0, 1 - share, share, 0) : Barycentric(0, share, 1 - share, 0);
-        return hit(edge.rows[side][of], from, {u, 0, 0, 1 - u});
+        std::vector<Sample> samples;
+        for (const auto& share : shares) {
+            const double value = patch_value(cell.weights(), on_edge(edge, 0, share[0]));
+            samples.push_back({share, share[0] == zero || std::abs(value) <= zero_, side_of(value)});
+        }
+        return samples;
+    }
+
+    /// Lifts the samples' points.
+    void lift(Strip& strip, const EdgeTets& edge, const std::array<std::array<PatchCell, 2>, 2>& cells) const {
+        strip.first.assign(1, 0);
+        strip.points.clear();
+        for (const Sample& sample : strip.samples) {
+            const double share = sample.share[0];
+            if (edge.is_border() || sample.is_on_surface) {
+                strip.points.push_back(hit(cells[sample.side][0], sample.side, on_edge(edge, 0, share),
+                                           sample.is_on_surface ? on_edge(edge, 0, share) : corner(3)));
+            } else {
+                for (unsigned k = 0; k <= strip.fan; ++k) {
+                    const bool is_second = 2 * k > strip.fan;
+                    const double across = static_cast<double>(is_second ? strip.fan - k : k) / strip.fan;
+                    strip.points.push_back(hit(cells[sample.side][is_second], sample.side,
+                                               on_edge(edge, is_second, share), {2 * across, 0, 0, 1 - 2 * across}));
+                }
+            }
+            strip.first.push_back(static_cast<u32>(strip.points.size()));
+        }
+    }
+
+    Vec3 position(const Strip& strip, const EdgeTets& edge, std::size_t s, unsigned k) const {
+        if (s == 0) return patches_.positions[edge.a];
+        if (s > strip.samples.size()) return patches_.positions[edge.b];
+        return strip.points[strip.first[s - 1] + (strip.is_collapsed(s - 1) ? 0 : k)].position;
+    }
+
+    Errors errors_of(const Strip& strip, const EdgeTets& edge,
+                     const std::array<std::array<PatchCell, 2>, 2>& cells) const {
+        Errors errors;
+        const std::size_t last = strip.samples.size() + 1;
+        const unsigned columns = edge.is_border() ? 1 : strip.fan + 1;
+        for (std::size_t s = 0; s < last; ++s) {
+            const bool is_first_on_surface = s == 0 || strip.samples[s - 1].is_on_surface;
+            const std::size_t other = is_first_on_surface ? s + 1 : s;
+            const std::size_t side = other > 0 && other < last ? strip.samples[other - 1].side : 1;
+            const bool is_flat = is_first_on_surface && (s + 1 == last || strip.samples[s].is_on_surface);
+            for (unsigned k = 0; k < (is_flat ? 1 : columns); ++k) {
+                const PatchCell& here = cells[side][2 * k >= strip.fan && !edge.is_border()];
+                const Vec3 a = position(strip, edge, s, k), d = position(strip, edge, s + 1, k);
+                errors.along = std::max(errors.along, distance_of(here, a, d));
+                if (is_flat || k + 1 >= columns) continue;
+                const Vec3 b = position(strip, edge, s, k + 1), c = position(strip, edge, s + 1, k + 1);
+                errors.across = std::max(errors.across, distance_of(here, a, b));
+                errors.inside = std::max({errors.inside, distance_of(here, a, c),
+                                          std::abs(here.first_order_distance((a + b + c) / 3)),
+                                          std::abs(here.first_order_distance((a + c + d) / 3))});
+            }
+        }
+        return errors;
+    }
+
+    /// The largest distance between a segment and the surface through its ends, as in the middle of a parabola.
+    static double distance_of(const PatchCell& cell, const Vec3& a, const Vec3& b) {
+        return middle_over_third * std::max(std::abs(cell.first_order_distance((2 * a + b) / 3)),
+                                            std::abs(cell.first_order_distance((a + 2 * b) / 3)));
+    }
+
+    void build_strip(std::size_t e, unsigned most) {
+        const EdgeTets& edge = structure_.edges[e];
+        Strip& strip = strips_[e];
+        const auto cells = cells_of(edge);
+        const bool is_fixed = segments_ || !max_error_;
+        strip.segments = segments_    ? std::clamp(segments_(make_edge(edge.a, edge.b)), 1u, most_subdivision)
+                         : max_error_ ? 1
+                                      : most;
+        strip.fan = edge.is_border() ? 1 : is_fixed ? uniform_fan : least_fan;
+        for (;;) {
+            strip.samples = samples_of(edge, cells[1][0], strip.segments);
+            lift(strip, edge, cells);
+            if (is_fixed) return;
+            const Errors errors = errors_of(strip, edge, cells);
+            strip.worst = errors.worst();
+            if (!refine(strip.segments, strip.fan, errors, most, edge.is_border() ? 1 : most)) return;
+        }
+    }
+
+    // Grids.
+
+    u32 row_vertex(std::size_t e, std::size_t s, unsigned k) const {
+        const EdgeTets& edge = structure_.edges[e];
+        const Strip& strip = strips_[e];
+        if (s == 0) return number_of_corner_[edge.a];
+        if (s > strip.samples.size()) return number_of_corner_[edge.b];
+        return strip.first_vertex + strip.first[s - 1] + (strip.is_collapsed(s - 1) ? 0 : k);
+    }
+
+    /// The samples on the edges of triangle f, from corner i to the next.
+    std::array<Row, 3> rows_of(std::size_t f) const {
+        std::array<Row, 3> rows;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t e = structure_.triangles[f].edges[i];
+            const Strip& strip = strips_[e];
+            const bool is_first = structure_.edges[e].triangles[0] == f;
+            const std::size_t last = strip.samples.size() + 1;
+            for (std::size_t n = 0; n <= last; ++n) {
+                const std::size_t s = is_first ? n : last - n;
+                rows[i].vertices.push_back(row_vertex(e, s, is_first ? 0 : strip.fan));
+                rows[i].shares.push_back(n == 0 ? 0 : n == last ? 1 : strip.samples[s - 1].share[is_first ? 0 : 1]);
+            }
+        }
+        return rows;
+    }
+
+    void build_grid(std::size_t f, unsigned most) {
+        const TriangleTets& t = structure_.triangles[f];
+        Grid& grid = grids_[f];
+        std::vector<PatchCell> cells;  // the outer ones first
+        for (const std::size_t side : {1, 0})
+            for (u32 third = 0; third < t.count; ++third) cells.push_back(cell(t.rows[side][third]));
+        const std::array<Row, 3> edges = rows_of(f);
+        const bool is_fixed = segments_ || !max_error_;
+        bool is_straight = true;
+        grid.segments = is_fixed && !segments_ ? most : 1;
+        for (const u32 e : t.edges) {
+            grid.segments = std::max(grid.segments, strips_[e].segments);
+            is_straight = is_straight && strips_[e].is_straight();
+        }
+        // The triangle itself is possible between three segments only.
+        grid.is_triangular = t.count == 1 && (is_fixed || is_straight);
+        if (grid.is_triangular && !is_straight) grid.segments = std::max(grid.segments, 2u);
+        grid.rows = is_fixed ? grid.segments : 1;
+        std::vector<double> lengths;
+        if (!is_fixed) lengths = lengths_to_corners(t, cells);
+        for (;;) {
+            set_shares(grid, lengths);
+            lift(grid, t, cells);
+            if (is_fixed) return;
+            const Errors errors = errors_of(grid, t, cells, edges);
+            grid.worst = errors.worst();
+            if (grid.is_triangular) {
+                if (grid.worst <= *max_error_) return;
+                grid.is_triangular = false;
+            } else if (!refine(grid.segments, grid.rows, errors, most, most)) {
+                return;
+            }
+        }
+    }
+
+    /// Lengths on the surface above the lines from the base point to the corners, at equal steps, of the longest line
+    /// each. Towards the corners the lines to the apex make a small angle with the surface, so the steps grow.
+    std::vector<double> lengths_to_corners(const TriangleTets& t, const std::vector<PatchCell>& cells) const {
+        std::vector<double> lengths{0};
+        std::array<Vec3, 3> before;
+        for (unsigned step = 0; step <= length_steps; ++step) {
+            double longest = 0;
+            for (u32 third = 0; third < 3; ++third) {
+                const double share = static_cast<double>(step) / length_steps;
+                const Vec3 here = step < length_steps ? above(t, cells, third, share, 0).position
+                                                      : patches_.positions[t.corners[third]];
+                if (step > 0) longest = std::max(longest, (here - before[third]).norm());
+                before[third] = here;
+            }
+            if (step > 0) lengths.push_back(lengths.back() + longest);
+        }
+        return lengths;
+    }
+
+    /// Of the rows: equal steps of length, or of the triangle if lengths are not given.
+    static void set_shares(Grid& grid, const std::vector<double>& lengths) {
+        grid.shares.clear();
+        for (unsigned r = 0, step = 0; r <= grid.rows; ++r) {
+            const double share = static_cast<double>(r) / grid.rows;
+            grid.shares.push_back(share);
+            if (lengths.empty() || r == grid.rows || !(lengths.back() > 0)) continue;
+            const double wanted = share * lengths.back();
+            while (step + 2 < lengths.size() && lengths[step + 1] < wanted) ++step;
+            const double part = (wanted - lengths[step]) / (lengths[step + 1] - lengths[step]);
+            grid.shares.back() = (step + part) / static_cast<double>(lengths.size() - 1);
+        }
+    }
+
+    Errors errors_of(const Grid& grid, const TriangleTets& t, const std::vector<PatchCell>& cells,
+                     const std::array<Row, 3>& edges) const {
+        const auto position = [&](u32 vertex) -> const Vec3& {
+            return vertex < points_.size() ? points_[vertex].position : grid.points[vertex - points_.size()].position;
+        };
+        Errors errors;
+        connect_grid(grid, static_cast<u32>(points_.size()), edges, [&](u32 third, u32 a, u32 b, u32 c) {
+            if (a == b || b == c || c == a) return;
+            const Vec3 &p = position(a), &q = position(b), &r = position(c);
+            // The corners may be on both sides of the mesh.
+            const u32 part = t.count == 3 ? third : 0;
+            const auto at = [&](const Vec3& x) {
+                const bool is_outer = cells[part].coordinates(x)[3] >= 0;
+                return std::abs(cells[is_outer ? part : t.count + part].first_order_distance(x));
+            };
+            const auto on = [&](const Vec3& x, const Vec3& y) {
+                return middle_over_third * std::max(at((2 * x + y) / 3), at((x + 2 * y) / 3));
+            };
+            errors.along = std::max(errors.along, on(p, q));
+            errors.inside = std::max({errors.inside, on(q, r), on(r, p), at((p + q + r) / 3)});
+        });
+        return errors;
+    }
+
+    template <class Add>
+    static void connect_grid(const Grid& grid, u32 first, const std::array<Row, 3>& edges, Add&& add) {
+        grid.is_triangular ? connect_triangular(grid, first, edges, add) : connect_thirds(grid, first, edges, add);
+    }
+
+    /// Above a point of a triangle, given by its coordinates in a third: base point, corners i and j; or in an
+    /// undivided triangle.
+    SurfacePoint above(const std::vector<PatchCell>& cells, u32 third, const Vec3& base) const {
+        const Barycentric from(base[0], base[1], base[2], 0);
+        const u8 side = side_of(patch_value(cells[third].weights(), from));
+        return hit(cells[side == 1 ? third : cells.size() / 2 + third], side, from, corner(3));
+    }
+
+    /// Above the point of a third at `share` of the way from the base point, or the centre of an undivided triangle, to
+    /// the point at `along` of the edge.
+    SurfacePoint above(const TriangleTets& t, const std::vector<PatchCell>& cells, u32 third, double share,
+                       double along) const {
+        const double i = share * (1 - along), j = share * along;
+        if (t.count == 3) return above(cells, third, {1 - share, i, j});
+        Vec3 base = Vec3::Constant((1 - share) / 3);
+        base[third] += i;
+        base[(third + 1) % 3] += j;
+        return above(cells, 0, base);
+    }
+
+    void lift(Grid& grid, const TriangleTets& t, const std::vector<PatchCell>& cells) const {
+        const u32 n = grid.segments;
+        if (!grid.is_triangular) {
+            const ThirdsNumbers numbers(grid);
+            grid.points.resize(numbers.count());
+            for (u32 third = 0; third < 3; ++third)
+                for (u32 r = third == 0 ? 0 : 1; r < grid.rows; ++r) {
+                    const u32 count = std::max(grid.segments_of(r), 1u);
+                    for (u32 k = 0; k < count; ++k)
+                        grid.points[numbers(third, r, k)] =
+                            above(t, cells, third, grid.shares[r], static_cast<double>(k) / count);
+                }
+        } else if (n == 2) {
+            grid.points = {above(cells, 0, Vec3::Constant(1. / 3))};
+        } else {
+            grid.points.resize(n == 1 ? 0 : (n - 1) * (n - 2) / 2);
+            for (u32 i = 1; i < n; ++i)
+                for (u32 j = 1; i + j < n; ++j)
+                    grid.points[grid_vertex(i, j)] = above(cells, 0, Vec3(n - i - j, i, j) / n);
+        }
     }
 
     // Levels.
 
-    void set_levels() {
-        for (EdgeTets& edge : edges_) {
-            edge.segments = subdivision_;
-            edge.fan = uniform_fan;
+    /// Lifts all points with at most so many segments per edge. Returns the largest distance that is found between the
+    /// triangles and the surface.
+    double build(unsigned most) {
+        strips_.assign(structure_.edges.size(), {});
+        for_each_chunk(execution_.threads(), strips_.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            execution_.check_cancelled();
+            for (std::size_t e = begin; e < end; ++e) build_strip(e, most);
+        });
+        std::size_t next = corners_;
+        for (Strip& strip : strips_) {
+            strip.first_vertex = static_cast<u32>(next);
+            next += strip.points.size();
         }
-        levels_.assign(triangles_.size(), subdivision_);
+        require_countable(next);
+        points_.resize(corners_);
+        for (const Strip& strip : strips_) points_.insert(points_.end(), strip.points.begin(), strip.points.end());
+        grids_.assign(structure_.triangles.size(), {});
+        for_each_chunk(execution_.threads(), grids_.size(), chunk, [&](std::size_t begin, std::size_t end) {
+            execution_.check_cancelled();
+            for (std::size_t f = begin; f < end; ++f) build_grid(f, most);
+        });
+        double worst = 0;
+        for (const Strip& strip : strips_) worst = std::max(worst, strip.worst);
+        for (const Grid& grid : grids_) worst = std::max(worst, grid.worst);
+        return worst;
     }
 
-    void choose_levels() {
+    void build_within_error() {
         const unsigned most = std::bit_floor(subdivision_);
-        const double worst = choose_levels(most);
-        if (worst <= *max_error_) return;
+        const double worst = build(most);
+        if (worst <= *max_error_ || segments_) return;
         unsigned enough = 2 * most;
-        while (enough <= most_subdivision && choose_levels(enough) > *max_error_) enough *= 2;
+        while (enough <= most_subdivision && build(enough) > *max_error_) enough *= 2;
         Error error("with {} segments per edge the triangles are up to {:.3g} from the surface; max-error is {:.3g}",
                     most, worst, *max_error_);
         error.set_hint(enough <= most_subdivision ? fmt::format("subdivision {} suffices", enough)
-                                                  : fmt::format("not even subdivision {} suffices", most_subdivision));
+                                                  : "a larger max-error needs fewer segments");
         throw error;
     }
 
-    /// Returns the distance that is left.
-    double choose_levels(unsigned most) {
-        std::vector<double> left(edges_.size(), 0.0), left_above(triangles_.size(), 0.0);
-        for_each_chunk(execution_.threads(), edges_.size(), chunk, [&](std::size_t begin, std::size_t end) {
-            execution_.check_cancelled();
-            for (std::size_t e = begin; e < end; ++e) left[e] = choose_level(edges_[e], most);
-        });
-        levels_.assign(triangles_.size(), 1);
-        for_each_chunk(execution_.threads(), triangles_.size(), chunk, [&](std::size_t begin, std::size_t end) {
-            execution_.check_cancelled();
-            for (std::size_t f = begin; f < end; ++f) left_above[f] = choose_level(f, most);
-        });
-        return std::max(std::ranges::max(left), std::ranges::max(left_above));
+    static void require_countable(std::size_t vertices) {
+        if (vertices >= none)
+            throw Error("the mesh would have {} vertices; at most {} are possible", vertices, none - 1);
     }
 
-    /// Returns the distance that is left.
-    double choose_level(EdgeTets& edge, unsigned most) const {
-        const double wanted = *max_error_;
-        edge.segments = 1;
-        edge.fan = edge.is_border() ? 1 : 2;
-        for (;;) {
-            double along = 0, across = 0;
-            const auto at = [&](double s, double k) {
-                if (s == 0) return patches_.positions[edge.a];
-                if (s == edge.segments) return patches_.positions[edge.b];
-                return beside(edge, s / edge.segments, edge.is_border() ? 0 : k / edge.fan).position;
-            };
-            for (unsigned s = 0; s < edge.segments; ++s)
-                for (unsigned k = 0; k < edge.columns(); ++k) {
-                    const Vec3 here = at(s + 0.5, k);
-                    along = std::max(along, distance_to_segment(here, at(s, k), at(s + 1, k)));
-                    if (k + 1 < edge.columns())
-                        across = std::max(across, distance_to_segment(at(s + 0.5, k + 0.5), here, at(s + 0.5, k + 1)));
-                }
-            const bool is_long = along > wanted && edge.segments<most, is_wide = across> wanted && edge.fan < most;
-            if (!is_long && !is_wide) return std::max(along, across);
-            if (is_long) edge.segments *= 2;
-            if (is_wide) edge.fan *= 2;
-        }
-    }
+    // The mesh: vertices of the mesh below, then strip by strip, then grid by grid.
 
-    double choose_level(std::size_t f, unsigned most) {
-        const TriangleTets& t = triangles_[f];
-        unsigned& level = levels_[f];
-        for (const u32 e : t.edges) level = std::max(level, edges_[e].segments);
-        for (;; level *= 2) {
-            double worst = 0;
-            for (std::size_t third = 0; third < t.count; ++third) {
-                const auto at = [&](double i, double j) {
-                    return above(t, third, Vec3(level - i - j, i, j) / level).position;
-                };
-                const auto measure = [&](double i, double j, double step) {
-                    const Vec3 a = at(i, j), b = at(i + step, j), c = at(i, j + step);
-                    const double half = step / 2, part = step / 3;
-                    worst = std::max({worst, above_plane(at(i + part, j + part), a, b, c),
-                                      distance_to_segment(at(i + half, j), a, b),
-                                      distance_to_segment(at(i + half, j + half), b, c),
-                                      distance_to_segment(at(i, j + half), c, a)});
-                };
-                for (unsigned i = 0; i < level; ++i)
-                    for (unsigned j = 0; i + j < level; ++j) {
-                        measure(i, j, 1);
-                        if (i + j + 2 <= level) measure(i + 1, j + 1, -1);
-                    }
-            }
-            if (worst <= *max_error_ || 2 * level > most) return worst;
-        }
-    }
-
-    static double above_plane(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-        const Vec3 normal = (b - a).cross(c - a);
-        const double length = normal.norm();
-        return length > 0 ? std::abs(normal.dot(p - a)) / length : (p - a).norm();
-    }
-
-    // Vertices.
-
-    /// Inner vertices of a triangle: divided, the base point, the inner points of the three lines to the corners, and
-    /// those of the thirds; undivided, the inner points of its grid, or its middle if there are none.
-    u32 inner_vertices(std::size_t f) const {
-        const u32 n = levels_[f];
-        if (triangles_[f].count == 3) return 1 + 3 * (n - 1) + 3 * ((n - 1) * (n - 2) / 2);
-        return n == 1 ? 0 : n == 2 ? 1 : (n - 1) * (n - 2) / 2;
-    }
-
-    void number_vertices() {
-        number_of_vertex_.assign(patches_.positions.size(), none);
-        for (const TriangleTets& t : triangles_)
-            for (const u32 v : t.corners) number_of_vertex_[v] = 0;
-        u32 count = 0;
-        for (u32& number : number_of_vertex_)
-            if (number != none) number = count++;
-        std::size_t next = count;
-        for (EdgeTets& edge : edges_) {
-            edge.first_of_sample = {static_cast<u32>(next)};
-            for (unsigned s = 1; s < edge.segments; ++s) {
-                const double share = static_cast<double>(s) / edge.segments;
-                const bool is_on_surface =
-                    !edge.is_border() && patch_value(patches_.weights[edge.rows[1][0]], {0, 1 - share, share, 0}) == 0;
-                next += is_on_surface ? 1 : edge.columns();
-                edge.first_of_sample.push_back(static_cast<u32>(next));
-            }
-        }
-        for (std::size_t f = 0; f < triangles_.size(); ++f) {
-            first_inner_.push_back(static_cast<u32>(next));
-            next += inner_vertices(f);
-        }
-        if (next >= none) throw Error("the mesh would have {} vertices; at most {} are possible", next, none - 1);
-        points_.resize(next);
-        for (u32 f = 0; f < triangles_.size(); ++f)
+    void number_corners() {
+        number_of_corner_.assign(patches_.positions.size(), none);
+        for (const TriangleTets& t : structure_.triangles)
+            for (const u32 v : t.corners) number_of_corner_[v] = 0;
+        corners_ = 0;
+        for (u32& number : number_of_corner_)
+            if (number != none) number = corners_++;
+        points_.resize(corners_);
+        for (const TriangleTets& t : structure_.triangles)
             for (u32 i = 0; i < 3; ++i) {
-                const u32 v = triangles_[f].corners[i];
-                SurfacePoint& point = points_[number_of_vertex_[v]];
-                const u32 row = triangles_[f].rows[1][triangles_[f].count == 3 ? i : 0];
-                const int at = triangles_[f].count == 3 ? 1 : static_cast<int>(i);
-                point = {patches_.positions[v], PatchCell(patches_, row).gradient(corner(at)).normalized(), 1};
+                const PatchCell here = cell(t.rows[1][t.count == 3 ? i : 0]);
+                points_[number_of_corner_[t.corners[i]]] = {
+                    patches_.positions[t.corners[i]], here.gradient(corner(t.count == 3 ? 1 : i)).normalized(), 1};
             }
     }
 
-    /// The vertex at sample s and column k of the fan; column 0 belongs to the first triangle.
-    u32 vertex(const EdgeTets& edge, unsigned s, unsigned k) const {
-        if (s == 0) return number_of_vertex_[edge.a];
-        if (s == edge.segments) return number_of_vertex_[edge.b];
-        return edge.first_of_sample[s - 1] + (edge.is_collapsed(s) ? 0 : k);
+    void collect_points() {
+        std::size_t next = points_.size();
+        for (Grid& grid : grids_) {
+            grid.first_vertex = static_cast<u32>(next);
+            next += grid.points.size();
+        }
+        require_countable(next);
+        points_.reserve(next);
+        for (const Grid& grid : grids_) points_.insert(points_.end(), grid.points.begin(), grid.points.end());
     }
-
-    void lift_edges() {
-        for_each_chunk(execution_.threads(), edges_.size(), chunk, [&](std::size_t begin, std::size_t end) {
-            execution_.check_cancelled();
-            for (std::size_t e = begin; e < end; ++e)
-                for (unsigned s = 1; s < edges_[e].segments; ++s)
-                    for (unsigned k = 0; k < edges_[e].columns(); ++k)
-                        points_[vertex(edges_[e], s, k)] =
-                            beside(edges_[e], static_cast<double>(s) / edges_[e].segments,
-                                   edges_[e].is_border() ? 0 : static_cast<double>(k) / edges_[e].fan);
-        });
-    }
-
-    /// The inner vertex of third `third` in row r = 1 … n - 1 (0: the base point), at k = 0 … r between the lines to
-    /// its two corners.
-    u32 third_vertex(std::size_t f, u32 third, u32 r, u32 k) const {
-        const u32 n = levels_[f], first = first_inner_[f];
-        if (r == 0) return first;
-        if (k == 0) return first + 1 + third * (n - 1) + r - 1;
-        if (k == r) return first + 1 + (third + 1) % 3 * (n - 1) + r - 1;
-        return first + 1 + 3 * (n - 1) + third * ((n - 1) * (n - 2) / 2) + (r - 1) * (r - 2) / 2 + k - 1;
-    }
-
-    /// The inner vertex of an undivided triangle of level n >= 3, with so many steps from corner 0 to corners 1 and 2.
-    u32 grid_vertex(std::size_t f, u32 i, u32 j) const {
-        return first_inner_[f] + (i + j - 1) * (i + j - 2) / 2 + j - 1;
-    }
-
-    void lift_triangles() {
-        for_each_chunk(execution_.threads(), triangles_.size(), chunk, [&](std::size_t begin, std::size_t end) {
-            execution_.check_cancelled();
-            for (std::size_t f = begin; f < end; ++f) {
-                const TriangleTets& t = triangles_[f];
-                const u32 n = levels_[f];
-                if (t.count == 3) {
-                    for (u32 third = 0; third < 3; ++third)
-                        for (u32 r = third == 0 ? 0 : 1; r < n; ++r)
-                            for (u32 k = 0; k < std::max(r, 1u); ++k)
-                                points_[third_vertex(f, third, r, k)] = above(t, third, Vec3(n - r, r - k, k) / n);
-                } else if (n == 2) {
-                    points_[first_inner_[f]] = above(t, 0, Vec3::Constant(1. / 3));
-                } else {
-                    for (u32 i = 1; i < n; ++i)
-                        for (u32 j = 1; i + j < n; ++j)
-                            points_[grid_vertex(f, i, j)] = above(t, 0, Vec3(n - i - j, i, j) / n);
-                }
-            }
-        });
-    }
-
-    // Triangles.
 
     void connect() {
-        for (u32 f = 0; f < triangles_.size(); ++f) {
+        for (u32 f = 0; f < grids_.size(); ++f) {
             patch_ = f;
-            triangles_[f].count == 3 ? connect_thirds(f) : connect_whole(f);
+            connect_grid(grids_[f], grids_[f].first_vertex, rows_of(f),
+                         [&](u32, u32 a, u32 b, u32 c) { add(a, b, c); });
         }
-        for (const EdgeTets& edge : edges_) {
+        for (std::size_t e = 0; e < strips_.size(); ++e) {
+            const EdgeTets& edge = structure_.edges[e];
             if (edge.is_border()) continue;
-            for (unsigned s = 0; s < edge.segments; ++s)
-                for (unsigned k = 0; k < edge.fan; ++k) {
-                    patch_ = edge.triangles[2 * k >= edge.fan];
-                    const u32 a = vertex(edge, s, k), b = vertex(edge, s, k + 1), c = vertex(edge, s + 1, k + 1),
-                              d = vertex(edge, s + 1, k);
+            const unsigned fan = strips_[e].fan;
+            for (std::size_t s = 0; s <= strips_[e].samples.size(); ++s)
+                for (unsigned k = 0; k < fan; ++k) {
+                    patch_ = edge.triangles[2 * k >= fan];
+                    const u32 a = row_vertex(e, s, k), b = row_vertex(e, s, k + 1), c = row_vertex(e, s + 1, k + 1),
+                              d = row_vertex(e, s + 1, k);
                     add(a, b, c);
                     add(a, c, d);
                 }
         }
-    }
-
-    /// The samples on edge i of triangle f, from its corner i to the next.
-    std::vector<u32> row_of_edge(u32 f, std::size_t i) const {
-        const EdgeTets& edge = edges_[triangles_[f].edges[i]];
-        const bool is_first = edge.triangles[0] == f;
-        std::vector<u32> row;
-        for (unsigned s = 0; s <= edge.segments; ++s)
-            row.push_back(vertex(edge, is_first ? s : edge.segments - s, is_first ? 0 : edge.columns() - 1));
-        return row;
-    }
-
-    void connect_thirds(u32 f) {
-        const u32 n = levels_[f];
-        for (u32 third = 0; third < 3; ++third) {
-            const auto at = [&](u32 r, u32 k) { return third_vertex(f, third, r, k); };
-            std::vector<u32> row;
-            for (u32 r = 0; r + 1 < n; ++r)
-                for (u32 k = 0; k <= r; ++k) {
-                    add(at(r, k), at(r + 1, k), at(r + 1, k + 1));
-                    if (k < r) add(at(r, k), at(r + 1, k + 1), at(r, k + 1));
-                }
-            for (u32 k = 0; k < n; ++k) row.push_back(at(n - 1, k));
-            join(row_of_edge(f, third), row);
-        }
-    }
-
-    void connect_whole(u32 f) {
-        const u32 n = levels_[f];
-        if (n == 1) {
-            add(row_of_edge(f, 0)[0], row_of_edge(f, 1)[0], row_of_edge(f, 2)[0]);
-            return;
-        }
-        for (std::size_t i = 0; i < 3; ++i) {
-            std::vector<u32> row;  // of inner vertices, along edge i
-            if (n <= 3)
-                row.push_back(first_inner_[f]);
-            else
-                for (u32 k = 1; k + 1 < n; ++k)
-                    row.push_back(i == 0   ? grid_vertex(f, k, 1)
-                                  : i == 1 ? grid_vertex(f, n - 1 - k, k)
-                                           : grid_vertex(f, 1, n - 1 - k));
-            join(row_of_edge(f, i), row);
-        }
-        for (u32 i = 1; i + 2 < n; ++i)
-            for (u32 j = 1; i + j + 1 < n; ++j) {
-                add(grid_vertex(f, i, j), grid_vertex(f, i + 1, j), grid_vertex(f, i, j + 1));
-                if (i + j + 2 < n)
-                    add(grid_vertex(f, i + 1, j), grid_vertex(f, i + 1, j + 1), grid_vertex(f, i, j + 1));
-            }
-    }
-
-    /// Triangles between a row on an edge and a row inside the triangle, both in the edge's direction: the row with the
-    /// smaller next share goes on, the edge's if they are equal.
-    void join(const std::vector<u32>& edge, const std::vector<u32>& inner) {
-        std::size_t i = 0, j = 0;
-        const std::size_t edges = edge.size() - 1, inners = inner.size() - 1;
-        while (i < edges || j < inners)
-            if (i < edges && (j == inners || (i + 1) * inners <= (j + 1) * edges)) {
-                add(edge[i], edge[i + 1], inner[j]);
-                ++i;
-            } else {
-                add(edge[i], inner[j + 1], inner[j]);
-                ++j;
-            }
     }
 
     void add(u32 a, u32 b, u32 c) {
@@ -505,12 +654,15 @@ private:
     const PatchComplex& patches_;
     unsigned subdivision_;
     std::optional<double> max_error_;
+    const std::function<unsigned(Edge)>& segments_;
     Execution& execution_;
-    std::vector<TriangleTets> triangles_;
-    std::vector<EdgeTets> edges_;
-    std::vector<unsigned> levels_;  ///< of triangles
-    std::vector<u32> number_of_vertex_, first_inner_;
-    std::vector<SurfacePoint> points_;
+    PatchStructure structure_;
+    double zero_ = 0;  ///< values up to it are 0
+    std::vector<Strip> strips_;
+    std::vector<Grid> grids_;
+    std::vector<u32> number_of_corner_;  ///< by point of the complex
+    u32 corners_ = 0;
+    std::vector<SurfacePoint> points_;  ///< of the corners and strips; at last of the grids, too
     u32 patch_ = 0;  ///< of the triangles that are being added
     Array<Triangle> out_;
     Array<u32> out_patches_;

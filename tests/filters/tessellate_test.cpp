@@ -22,6 +22,18 @@ TriangleMesh tessellated(const PatchComplex& patches, u32 subdivision, std::opti
     return tessellated(patches, TessellateParams{subdivision, max_error});
 }
 
+/// A sphere with normals turned by about 15 degrees: its surface crosses many edges.
+TriangleMesh wavy_sphere() {
+    const TriangleMesh mesh = geodesic_sphere(1, 4);
+    Random random(4);
+    std::vector<Vec3> normals;
+    for (const Vec3& p : mesh.positions) {
+        const Vec3 side = p.cross(Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+        normals.push_back((p + 0.27 * side.normalized()).normalized());
+    }
+    return with_normals(mesh, normals);
+}
+
 /// |F| / |grad F| at the vertices, and the largest difference of their normals from the gradient.
 std::pair<double, double> errors_of(const TriangleMesh& mesh, const PatchComplex& patches) {
     const PatchSurface surface(patches);
@@ -57,7 +69,7 @@ void expect_sound(const TriangleMesh& result, const TriangleMesh& mesh, const Pa
 
 TEST(Tessellate, AnySubdivision_IsClosedAndOnTheSurface) {
     for (const Split split : {Split::always, Split::where_needed})
-        for (const TriangleMesh& mesh : {exact_sphere(1), exact_torus(12, 6)}) {
+        for (const TriangleMesh& mesh : {exact_sphere(1), exact_torus(12, 6), wavy_sphere()}) {
             const PatchComplex patches = patched(mesh, Curvature::distance, split).result.patches;
             for (const u32 subdivision : {1u, 2u, 3u, 4u, 5u, 8u})
                 expect_sound(tessellated(patches, subdivision), mesh, patches);
@@ -94,38 +106,115 @@ TEST(Tessellate, Patch_IsTheTriangleBelowAndSide_IsOutsideOfAConvexMesh) {
     EXPECT_EQ(found.size(), mesh.triangles.size());
 }
 
-TEST(Tessellate, MaxError_IsKeptAndLevelsFollowIt) {
+/// The largest distance from random points of up to 300 triangles to the surface.
+double worst_distance_to(const PatchComplex& patches, const TriangleMesh& mesh) {
+    const PatchSurface surface(patches);
+    Random random(1);
+    double worst = 0;
+    const std::size_t stride = mesh.triangles.size() / 300 + 1;
+    for (std::size_t row = 0; row < mesh.triangles.size(); row += stride)
+        for (int i = 0; i < 100; ++i) {
+            const Triangle& t = mesh.triangles[row];
+            double a = random.uniform(0, 1), b = random.uniform(0, 1);
+            if (a + b > 1) a = 1 - a, b = 1 - b;
+            const auto foot =
+                surface.foot(a * mesh.positions[t[0]] + b * mesh.positions[t[1]] + (1 - a - b) * mesh.positions[t[2]]);
+            EXPECT_TRUE(foot);
+            if (foot) worst = std::max(worst, std::abs(foot->distance));
+        }
+    return worst;
+}
+
+TEST(Tessellate, MaxError_IsKeptWithNotTooManyTriangles) {
     for (const Split split : {Split::always, Split::where_needed})
-        for (const TriangleMesh& mesh : {exact_sphere(1), exact_torus(12, 6)}) {
+        for (const bool is_torus : {false, true}) {
+            const TriangleMesh mesh = is_torus ? exact_torus(12, 6) : exact_sphere(1);
             const PatchComplex patches = patched(mesh, Curvature::distance, split).result.patches;
-            const PatchSurface surface(patches);
-            // The distance is sampled at fewer places, and beside undivided triangles at other ones than here.
-            const double share = split == Split::always ? 1.5 : 2.5;
-            const double error = 1e-2;
-            {
+            const double pi = std::numbers::pi, surface_area = is_torus ? 4 * pi * pi * 0.4 : 4 * pi;
+            for (const double error : {1e-2, 2e-3}) {
                 const TriangleMesh result = tessellated(patches, 256, Length(error));
                 expect_sound(result, mesh, patches);
-                Random random(1);
-                double worst = 0;
-                const std::size_t stride = result.triangles.size() / 300 + 1;
-                for (std::size_t row = 0; row < result.triangles.size(); row += stride)
-                    for (int i = 0; i < 10; ++i) {
-                        const Triangle& t = result.triangles[row];
-                        double a = random.uniform(0, 1), b = random.uniform(0, 1);
-                        if (a + b > 1) a = 1 - a, b = 1 - b;
-                        const auto foot = surface.foot(a * result.positions[t[0]] + b * result.positions[t[1]] +
-                                                       (1 - a - b) * result.positions[t[2]]);
-                        if (foot) worst = std::max(worst, std::abs(foot->distance));
-                    }
-                EXPECT_LT(worst, share * error) << mesh.triangles.size() << " triangles";
+                EXPECT_LT(worst_distance_to(patches, result), 1.5 * error);
+                // On a unit sphere equilateral triangles with circumscribed circles of radius sqrt(2 e) would do; a
+                // power of two of segments needs up to four times as many, a triangle's base point twice.
+                const double least = surface_area / (1.5 * std::sqrt(3.0) * error);
+                EXPECT_LT(static_cast<double>(result.triangles.size()), (is_torus ? 30 : 15) * least) << error;
             }
         }
-    // A quarter of the error doubles the segments, so triangles grow about fourfold.
+}
+
+TEST(Tessellate, AQuarterOfTheError_DoublesTheSegments) {
     const PatchComplex patches = patched(exact_sphere(1), Curvature::mean).result.patches;
-    const auto count = [&](double error) { return tessellated(patches, 256, Length(error)).triangles.size(); };
-    const double ratio = static_cast<double>(count(2.5e-4)) / static_cast<double>(count(1e-3));
-    EXPECT_GT(ratio, 2);
-    EXPECT_LT(ratio, 8);
+    const auto count = [&](double error) {
+        return static_cast<double>(tessellated(patches, 1024, Length(error)).triangles.size());
+    };
+    const double ratio = count(1e-2 / 64) / count(1e-2);
+    EXPECT_GT(ratio, 16);
+    EXPECT_LT(ratio, 256);
+}
+
+TEST(Tessellate, AnyMixtureOfSegments_FitsTogether) {
+    for (const Split split : {Split::always, Split::where_needed})
+        for (const TriangleMesh& mesh : {wavy_sphere(), exact_torus(12, 6), regular_tetrahedron()}) {
+            const APatchResult result = patched(mesh, Curvature::distance, split).result;
+            for (std::uint64_t seed = 0; seed < 4; ++seed) {
+                TessellateParams params;
+                std::map<Edge, unsigned> segments;
+                params.segments = [&](Edge edge) { return segments.at(edge); };
+                Random random(seed);
+                for (const Triangle& t : mesh.triangles)
+                    for (std::size_t i = 0; i < 3; ++i)
+                        segments.try_emplace(make_edge(t[i], t[(i + 1) % 3]), 1u << random.index(4));
+                expect_sound(tessellated(result.patches, params), mesh, result.patches);
+                params.max_error = Length(1e-3);
+                expect_sound(tessellated(result.patches, params), mesh, result.patches);
+            }
+        }
+}
+
+TEST(Tessellate, WhereTheSurfaceCrossesAnEdge_ThereIsAVertex) {
+    const TriangleMesh mesh = wavy_sphere();
+    const PatchComplex patches = patched(mesh).result.patches;
+    const PatchSurface surface(patches);
+    std::size_t crossings = 0;
+    for (const u32 subdivision : {1u, 2u, 3u, 7u}) {
+        const TriangleMesh result = tessellated(patches, subdivision);
+        for (const Triangle& t : mesh.triangles)
+            for (std::size_t i = 0; i < 3; ++i) {
+                const Vec3 &a = mesh.positions[t[i]], &b = mesh.positions[t[(i + 1) % 3]];
+                const auto value = [&](double s) { return *surface.value((1 - s) * a + s * b); };
+                double low = 1e-3, high = 1 - 1e-3;
+                if ((value(low) < 0) == (value(high) < 0)) continue;
+                const bool is_below = value(low) < 0;
+                for (int step = 0; step < 60; ++step)
+                    ((value((low + high) / 2) < 0) == is_below ? low : high) = (low + high) / 2;
+                const Vec3 crossing = (1 - low) * a + low * b;
+                double nearest = 1;
+                for (const Vec3& p : result.positions) nearest = std::min(nearest, (p - crossing).norm());
+                EXPECT_LT(nearest, 1e-12);
+                ++crossings;
+            }
+    }
+    EXPECT_GT(crossings, 100u);
+    // So many triangles suffice as for a smooth surface.
+    const TriangleMesh fine = tessellated(patches, 256, Length(1e-3));
+    expect_sound(fine, mesh, patches);
+    EXPECT_LT(worst_distance_to(patches, fine), 1.5e-3);
+    EXPECT_LT(fine.triangles.size(), 200'000u);
+}
+
+TEST(Tessellate, OfEqualShares_TheEdgesSampleComesFirst) {
+    // On a flat triangle with two segments per edge the row inside has one. Both next samples are at the end: the
+    // edge's comes first, so its middle is in two triangles, not in three.
+    const TriangleMesh mesh = soup({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}, {{0, 1, 2}});
+    const TriangleMesh result = tessellated(patched(mesh).result.patches, 2);
+    for (const Vec3& middle : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) {
+        std::size_t triangles = 0;
+        for (const Triangle& t : result.triangles)
+            triangles += static_cast<std::size_t>(
+                std::ranges::count_if(t, [&](u32 v) { return (result.positions[v] - middle).norm() < 1e-12; }));
+        EXPECT_EQ(triangles, 2u);
+    }
 }
 
 TEST(Tessellate, DifferentLevelsSideBySide_LeaveNoCracks) {

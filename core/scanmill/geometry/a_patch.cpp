@@ -106,6 +106,12 @@ Eigen::Matrix3d PatchCell::hessian(const Vec3& point) const {
     return gradients_ * second * gradients_.transpose();
 }
 
+double PatchCell::first_order_distance(const Vec3& point) const {
+    const Barycentric at = coordinates(point);
+    const Eigen::Vector4d linear = linear_part(*weights_, at, at);
+    return linear.dot(at) / (3 * (gradients_ * linear).norm());
+}
+
 std::optional<double> zero_of_cubic(const std::array<double, 4>& c) {
     if (c[0] == 0) return 0;
     if (c[3] == 0) return 1;

@@ -38,6 +38,10 @@ public:
     Vec3 gradient(const Barycentric& at) const { return gradients_ * patch_derivatives(*weights_, at); }
     Vec3 gradient(const Vec3& point) const { return gradient(coordinates(point)); }
     Eigen::Matrix3d hessian(const Vec3& point) const;
+    /// The value over the length of the gradient: to first order the signed distance to the surface (Taubin 1991).
+    /// Infinite or NaN where the gradient is 0.
+    double first_order_distance(const Vec3& point) const;
+    const PatchWeights& weights() const { return *weights_; }
 
 private:
     std::array<Vec3, 4> corners_;

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tessellate/structure.hpp"
+
+#include <algorithm>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/data/mesh.hpp"
+
+namespace scanmill::tessellation {
+
+namespace {
+
+struct HalfEdge {
+    Edge edge;
+    u32 triangle, corner;
+    auto operator<=>(const HalfEdge&) const = default;
+};
+
+[[noreturn]] void throw_incomplete(u32 triangle) {
+    throw Error("the patches are not complete: tetrahedra of triangle {} are missing or too many", triangle)
+        .hint("'a-patch' makes complete ones");
+}
+
+std::vector<TriangleTets> triangles_of(const PatchComplex& patches) {
+    const std::size_t rows = patches.tets.size();
+    u32 count = 0;
+    for (const u32 triangle : patches.triangles) {
+        if (triangle >= rows) throw_incomplete(triangle);
+        count = std::max(count, triangle + 1);
+    }
+    std::vector<TriangleTets> triangles(count);
+    for (u32 row = 0; row < rows; ++row) {
+        if (patches.kinds[row] != PatchKind::face) continue;
+        auto& of_side = triangles[patches.triangles[row]].rows[patches.sides[row]];
+        const auto free = std::ranges::find(of_side, none);
+        if (free == of_side.end()) throw_incomplete(patches.triangles[row]);
+        *free = row;
+    }
+    for (u32 f = 0; f < triangles.size(); ++f) {
+        TriangleTets& t = triangles[f];
+        t.count = t.rows[1][1] == none ? 1 : 3;
+        for (const auto& of_side : t.rows)
+            if (std::ranges::count(of_side, none) != 3 - t.count) throw_incomplete(f);
+        for (std::size_t i = 0; i < 3; ++i)
+            t.corners[i] = t.count == 3 ? patches.tets[t.rows[1][i]][1] : patches.tets[t.rows[1][0]][i];
+    }
+    return triangles;
+}
+
+/// Sets the edges of the triangles, too.
+std::vector<EdgeTets> edges_of(std::vector<TriangleTets>& triangles) {
+    std::vector<HalfEdge> halves;
+    for (u32 f = 0; f < triangles.size(); ++f)
+        for (u32 i = 0; i < 3; ++i)
+            halves.push_back({make_edge(triangles[f].corners[i], triangles[f].corners[(i + 1) % 3]), f, i});
+    std::ranges::sort(halves);
+    std::vector<EdgeTets> edges;
+    for (std::size_t h = 0; h < halves.size(); ++h) {
+        const bool is_second = h > 0 && halves[h - 1].edge == halves[h].edge;
+        if (h > 1 && halves[h - 2].edge == halves[h].edge) throw_incomplete(halves[h].triangle);
+        if (!is_second) edges.emplace_back();
+        EdgeTets& edge = edges.back();
+        TriangleTets& triangle = triangles[halves[h].triangle];
+        edge.triangles[is_second] = halves[h].triangle;
+        triangle.edges[halves[h].corner] = static_cast<u32>(edges.size() - 1);
+        if (is_second) continue;
+        edge.corner = halves[h].corner;
+        edge.a = triangle.corners[edge.corner];
+        edge.b = triangle.corners[(edge.corner + 1) % 3];
+    }
+    return edges;
+}
+
+}  // namespace
+
+PatchStructure structure_of(const PatchComplex& patches) {
+    if (patches.tets.empty()) throw Error("the patches have no tetrahedra");
+    PatchStructure structure;
+    structure.triangles = triangles_of(patches);
+    structure.edges = edges_of(structure.triangles);
+    for (u32 row = 0; row < patches.tets.size(); ++row) {
+        if (patches.kinds[row] != PatchKind::edge) continue;
+        const u32 f = patches.triangles[row];
+        const TriangleTets& t = structure.triangles[f];
+        const auto i = static_cast<std::size_t>(std::ranges::find(t.corners, patches.tets[row][1]) - t.corners.begin());
+        if (i == t.corners.size()) throw_incomplete(f);
+        EdgeTets& edge = structure.edges[t.edges[i]];
+        u32& of = edge.rows[patches.sides[row]][edge.triangles[1] == f];
+        if (of != none) throw_incomplete(f);
+        of = row;
+    }
+    for (const EdgeTets& edge : structure.edges)
+        for (const auto& of_side : edge.rows)
+            if (!edge.is_border() && std::ranges::find(of_side, none) != of_side.end())
+                throw_incomplete(edge.triangles[0]);
+    return structure;
+}
+
+}  // namespace scanmill::tessellation

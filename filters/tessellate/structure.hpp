@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The mesh under a complex of patches: which tetrahedra stand on its triangles and beside its edges.
+
+#include <array>
+#include <vector>
+
+#include "scanmill/data/patches.hpp"
+
+namespace scanmill::tessellation {
+
+inline constexpr u32 none = ~u32(0);
+
+/// The tetrahedra of a triangle: per side one, or three around the base point.
+struct TriangleTets {
+    std::array<std::array<u32, 3>, 2> rows{{{none, none, none}, {none, none, none}}};  ///< by side
+    u32 count = 0;                              ///< per side
+    std::array<u32, 3> corners{};               ///< vertices of the mesh
+    std::array<u32, 3> edges{none, none, none};  ///< edge i goes from corner i to the next; into PatchStructure::edges
+};
+
+/// The tetrahedra beside an edge a → b of its first triangle.
+struct EdgeTets {
+    u32 a = none, b = none;
+    std::array<u32, 2> triangles{none, none};
+    u32 corner = 0;  ///< a in the first triangle
+    std::array<std::array<u32, 2>, 2> rows{{{none, none}, {none, none}}};  ///< by side and triangle
+
+    bool is_border() const { return triangles[1] == none; }
+};
+
+struct PatchStructure {
+    std::vector<TriangleTets> triangles;
+    std::vector<EdgeTets> edges;  ///< sorted by their vertices
+};
+
+/// Throws Error if the complex is empty or tetrahedra are missing.
+PatchStructure structure_of(const PatchComplex& patches);
+
+}  // namespace scanmill::tessellation
