@@ -8,6 +8,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/a_patch.hpp"
+#include "tessellate/tessellate.hpp"
 
 namespace scanmill {
 
@@ -15,6 +16,8 @@ namespace {
 
 constexpr std::size_t chunk = 1024;
 constexpr const char* column_name = "distance-to-patches";
+constexpr u32 subdivision = 2;  // of the mesh on which the search begins
+constexpr double farthest = 0.1;  // of the diagonal
 
 }  // namespace
 
@@ -23,12 +26,20 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
     if (points.size() == 0) throw Error("needs points; there are none");
     require_finite(points.positions.span());
     const PatchSurface surface(patches, context.threads());
+    const TriangleMesh mesh = tessellate(patches, {subdivision, {}}, context);
+    const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
+    const double limit = farthest * surface_box(mesh).diagonal();
     Array<double> distances(points.size());
     for_each_chunk(context.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
+        u32 hint = NearestTriangle::none;
         for (std::size_t i = begin; i < end; ++i) {
-            const auto foot = surface.foot(points.positions[i]);
-            distances[i] = foot ? foot->distance : std::nan("");
+            const Vec3& p = points.positions[i];
+            distances[i] = std::nan("");
+            const NearestTriangle nearest = tree.nearest(p, hint);
+            hint = nearest.slot;
+            if (nearest.squared_distance > limit * limit) continue;
+            if (const auto foot = surface.foot(p, tree.nearest_point(p, hint))) distances[i] = foot->distance;
         }
     });
     PatchDistanceResult result;
@@ -40,7 +51,8 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
         squares += d * d;
     }
     if (found.empty())
-        throw Error("none of the {} points is within the tetrahedra around the surface", points.size())
+        throw Error("none of the {} points is within {:.3g}, a tenth of the surface's diagonal, of the surface",
+                    points.size(), limit)
             .hint("are points and patches in the same frame and unit?");
     std::ranges::sort(found);
     const auto count = static_cast<double>(found.size());
@@ -58,8 +70,8 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
     }
     result.points.columns.add(Column(column_name, 1, Buffer<double>(std::move(distances))).with_length_exponent(1));
     if (result.unlocated > 0)
-        context.warn(fmt::format("{} of {} points {} no distance: outside the tetrahedra around the surface",
-                                 result.unlocated, points.size(), by_count(result.unlocated, "has", "have")));
+        context.warn(fmt::format("{} of {} points {} no distance: farther than {:.3g} away, or nearest to the boundary",
+                                 result.unlocated, points.size(), by_count(result.unlocated, "has", "have"), limit));
     context.metric("rms", result.rms, Unit::length);
     context.metric("p95", result.p95, Unit::length);
     context.metric("max", result.max, Unit::length);

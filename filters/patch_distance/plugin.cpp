@@ -11,10 +11,12 @@ struct PatchDistanceParams {};
 }  // namespace
 
 SCANMILL_FILTER() {
-    return Declare<PatchDistanceParams>("patch-distance", 1)
+    return Declare<PatchDistanceParams>("patch-distance", 2)
         .summary("Signed distance of points to the surface of A-patches.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
-        .ties("None: of tetrahedra that share a point the first answers, with the same value.")
+        .ties(
+            "Of equally near parts of the surface, the one whose triangle in the tessellation is nearer, or has the "
+            "lower row.")
         .not_finite("Refused, with their number and the first of them.")
         .adds({"distance-to-patches"})
         .in<PatchComplex>("patches", "The surface.")
@@ -23,8 +25,8 @@ SCANMILL_FILTER() {
         .metric("rms", Unit::length, "Root of the mean squared distance.", headline, smaller_is_better)
         .metric("p95", Unit::length, "95 % quantile of the distances without sign.", smaller_is_better)
         .metric("max", Unit::length, "Largest distance without sign.", headline, smaller_is_better)
-        .metric("unlocated", Unit::count, "Points outside the tetrahedra around the surface: without a distance.",
-                smaller_is_better)
+        .metric("unlocated", Unit::count,
+                "Points without a distance: far from the surface, or nearest to its boundary.", smaller_is_better)
         .run([](const Inputs& inputs, const PatchDistanceParams&, Context& context) {
             return Outputs().set(
                 "points",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scanmill/geometry/a_patch.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -94,15 +96,11 @@ Vec3 PatchCell::point(const Barycentric& at) const {
 }
 
 Eigen::Matrix3d PatchCell::hessian(const Vec3& point) const {
+    // The polar form at the point and two corners is a weight of degree 2.
     const auto quadratic = lowered<10>(to_quadratic, *weights_, coordinates(point));
     Eigen::Matrix4d second;
-    for (int m = 0; m < 4; ++m)
-        for (int n = 0; n < 4; ++n) {
-            Barycentric a = Barycentric::Zero(), b = Barycentric::Zero();
-            a[m] = b[n] = 1;
-            const auto linear = lowered<4>(to_linear, quadratic, a);
-            second(m, n) = 6 * Eigen::Vector4d(linear[0], linear[1], linear[2], linear[3]).dot(b);
-        }
+    for (int m = 0, number = 0; m < 4; ++m)
+        for (int n = m; n < 4; ++n) second(m, n) = second(n, m) = 6 * quadratic[static_cast<std::size_t>(number++)];
     return gradients_ * second * gradients_.transpose();
 }
 
@@ -195,8 +193,11 @@ TriangleTree tree_of(const PatchComplex& patches, unsigned threads) {
 }
 
 constexpr double outside_by = 1e-9;  // a coordinate of a point on a face may be below 0 by rounding
-constexpr int pieces_per_diagonal = 64, most_steps = 50;
-constexpr double end_of_steps = 1e-14;  // of the diagonal
+constexpr int pieces_per_diagonal = 64, most_steps = 50, most_halvings = 20;
+// Shares of the diagonal.
+constexpr double on_surface = 1e-15, end_of_steps = 1e-13, nearly_end = 1e-7;
+constexpr double least_slope = 0.1;  // that Newton's method divides by
+constexpr double nearly_normal = 1e-3;  // sine, where the steps get no nearer
 
 }  // namespace
 
@@ -301,27 +302,83 @@ std::optional<PatchSurface::Hit> PatchSurface::first_hit(const Vec3& from, const
     return std::nullopt;
 }
 
-std::optional<PatchSurface::Foot> PatchSurface::foot(const Vec3& point) const {
-    Vec3 x = point;
-    double sign = 1;
-    const double enough = end_of_steps * box_.diagonal();
+std::optional<PatchSurface::Local> PatchSurface::local(const Vec3& point, std::optional<u32> hint) const {
+    const auto in = [&](u32 tet, bool is_certain) -> std::optional<Local> {
+        const PatchCell here = cell(tet);
+        const Barycentric at = here.coordinates(point);
+        if (!is_certain && !(at.minCoeff() >= 0)) return std::nullopt;
+        return Local{tet, patch_value(here.weights(), at), here.gradient(at)};
+    };
+    if (hint)
+        if (const auto found = in(*hint, false)) return found;
+    const auto tet = locate(point);
+    return tet ? in(*tet, true) : std::nullopt;
+}
+
+bool PatchSurface::retract(Vec3& point, Local& here) const {
+    const double enough = on_surface * box_.diagonal();
     for (int step = 0; step < most_steps; ++step) {
-        const auto tet = locate(x);
-        if (!tet) return std::nullopt;
-        const PatchCell here = cell(*tet);
-        const Barycentric at = here.coordinates(x);
-        const double value = patch_value(patches_.weights[*tet], at);
-        const Vec3 gradient = here.gradient(at);
-        const double squared = gradient.squaredNorm();
-        if (!(squared > 0)) return std::nullopt;
-        if (step == 0) sign = value < 0 ? -1 : 1;
-        const Vec3 to = point - x;
-        // Onto the surface, and below the point.
-        const Vec3 change = to - gradient * ((gradient.dot(to) + value) / squared);
-        x += change;
-        if (change.norm() <= enough) return Foot{x, sign * (point - x).norm()};
+        const double squared = here.gradient.squaredNorm();
+        if (!(squared > 0)) return false;
+        Vec3 change = here.gradient * (-here.value / squared);
+        if (change.norm() <= enough) return true;
+        // A step that is too long leaves the tetrahedra, or passes the surface.
+        int halvings = 0;
+        for (;; ++halvings, change /= 2) {
+            if (halvings == most_halvings) return change.norm() <= nearly_end * enough / on_surface;
+            const auto there = local(point + change, here.tet);
+            if (!there || std::abs(there->value) > std::abs(here.value)) continue;
+            point += change;
+            here = *there;
+            break;
+        }
     }
-    return std::nullopt;
+    return false;
+}
+
+std::optional<PatchSurface::Foot> PatchSurface::foot(const Vec3& point, const Vec3& start) const {
+    const double diagonal = box_.diagonal();
+    Vec3 x = start;
+    const auto first = local(x, std::nullopt);
+    if (!first) return std::nullopt;
+    Local here = *first;
+    if (!retract(x, here)) return std::nullopt;
+    for (int step = 0;; ++step) {
+        const double length = here.gradient.norm();
+        if (!(length > 0)) return std::nullopt;
+        const Vec3 normal = here.gradient / length, to = point - x;
+        const double distance = to.norm(), height = normal.dot(to);
+        const Vec3 aside = to - height * normal;
+        const Foot found{x, height < 0 ? -distance : distance};
+        if (aside.norm() <= end_of_steps * diagonal) return found;
+        // In the tangent plane the derivative of `aside` is -(I + height * second derivative / gradient). Near a centre
+        // of curvature a slope of it is almost 0, beyond it negative: there the distance is no minimum.
+        const Vec3 u = aside.normalized(), v = normal.cross(u);
+        const Eigen::Matrix3d second = cell(here.tet).hessian(x) * (height / length);
+        Eigen::Matrix2d slope;
+        slope << 1 + u.dot(second * u), u.dot(second * v), u.dot(second * v), 1 + v.dot(second * v);
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+        axes.computeDirect(slope);
+        const Eigen::Vector2d part = axes.eigenvectors().row(0).transpose();
+        const Eigen::Vector2d solution =
+            axes.eigenvectors() * part.cwiseQuotient(axes.eigenvalues().cwiseMax(least_slope)) * aside.norm();
+        Vec3 change = solution[0] * u + solution[1] * v;
+        bool is_nearer = false;
+        for (int halvings = 0; halvings < most_halvings && step < most_steps && !is_nearer; ++halvings, change /= 2) {
+            Vec3 next = x + change;
+            const auto there = local(next, here.tet);
+            if (!there) continue;
+            Local then = *there;
+            if (!retract(next, then)) continue;
+            is_nearer = (point - next).norm() < distance || aside.norm() <= nearly_end * diagonal;
+            if (!is_nearer) continue;
+            x = next;
+            here = then;
+        }
+        if (is_nearer) continue;
+        if (aside.norm() <= nearly_normal * distance) return found;
+        return std::nullopt;
+    }
 }
 
 }  // namespace scanmill

@@ -94,12 +94,24 @@ public:
     /// length over a 64th of the complex's diagonal.
     std::optional<Hit> first_hit(const Vec3& from, const Vec3& direction) const;
 
-    /// The point of the surface whose gradient points to or from `point`, by Newton's method from there: the nearest
-    /// one, if the point is nearer than the radius of curvature. Nothing if the way leaves the tetrahedra, or does not
-    /// end within 50 steps.
-    std::optional<Foot> foot(const Vec3& point) const;
+    /// The point of the surface whose distance to `point` is least among its neighbours, by Newton's method along the
+    /// surface from near `start`, always towards `point`. The nearest one of all, if `start` is on the same slope.
+    /// Nothing if `start` is outside the tetrahedra, or the way leads over the boundary of an open surface.
+    std::optional<Foot> foot(const Vec3& point, const Vec3& start) const;
+    /// From `point` itself: the nearest one, if the point is nearer than the radius of curvature.
+    std::optional<Foot> foot(const Vec3& point) const { return foot(point, point); }
 
 private:
+    /// The function near a point.
+    struct Local {
+        u32 tet;
+        double value;
+        Vec3 gradient;
+    };
+    /// Looks in tetrahedron `hint` first.
+    std::optional<Local> local(const Vec3& point, std::optional<u32> hint) const;
+    /// Moves a point onto the surface along gradients.
+    bool retract(Vec3& point, Local& here) const;
     std::optional<Hit> hit_in(u32 tet, const Vec3& from, const Vec3& direction) const;
 
     const PatchComplex& patches_;

@@ -136,7 +136,15 @@ TEST(PatchSurface, OfASphereInOneTetrahedron_AnswersEveryQuestion) {
     const auto from_inside = surface.foot(Vec3(0.45, 0.6, 0));
     ASSERT_TRUE(from_inside);
     EXPECT_NEAR(from_inside->distance, -0.25, 1e-12);
-    EXPECT_FALSE(surface.foot(Vec3(0.1, 0, 0))) << "the first step leaves the tetrahedron";
+    const auto from_near_the_centre = surface.foot(Vec3(0.1, 0, 0));
+    ASSERT_TRUE(from_near_the_centre) << "the first step would leave the tetrahedron";
+    EXPECT_NEAR(from_near_the_centre->distance, -0.9, 1e-12);
+    // From any start on the same hemisphere, for points outside the tetrahedron, too.
+    const auto from_afar = surface.foot(Vec3(0, 0, 50), Vec3(0.4, 0.3, 1));
+    ASSERT_TRUE(from_afar);
+    EXPECT_NEAR(from_afar->distance, 49, 1e-11);
+    EXPECT_LT((from_afar->point - Vec3(0, 0, 1)).norm(), 1e-11);
+    EXPECT_FALSE(surface.foot(Vec3(9, 0, 0))) << "outside the tetrahedron";
 }
 
 TEST(PatchSurface, TheExample_Works) {
