@@ -41,6 +41,10 @@ std::vector<TriangleTets> triangles_of(const PatchComplex& patches) {
         t.count = t.rows[1][1] == none ? 1 : 3;
         for (const auto& of_side : t.rows)
             if (std::ranges::count(of_side, none) != 3 - t.count) throw_incomplete(f);
+        // A second function holds in a third, not in a whole triangle.
+        if (t.count == 1)
+            for (const auto& of_side : t.rows)
+                if (patches.partners[of_side[0]] != PatchComplex::no_partner) throw_incomplete(f);
         for (std::size_t i = 0; i < 3; ++i)
             t.corners[i] = t.count == 3 ? patches.tets[t.rows[1][i]][1] : patches.tets[t.rows[1][0]][i];
     }
@@ -62,11 +66,11 @@ std::vector<EdgeTets> edges_of(std::vector<TriangleTets>& triangles) {
         EdgeTets& edge = edges.back();
         TriangleTets& triangle = triangles[halves[h].triangle];
         edge.triangles[is_second] = halves[h].triangle;
+        edge.numbers[is_second] = halves[h].corner;
         triangle.edges[halves[h].corner] = static_cast<u32>(edges.size() - 1);
         if (is_second) continue;
-        edge.corner = halves[h].corner;
-        edge.a = triangle.corners[edge.corner];
-        edge.b = triangle.corners[(edge.corner + 1) % 3];
+        edge.a = triangle.corners[halves[h].corner];
+        edge.b = triangle.corners[(halves[h].corner + 1) % 3];
     }
     return edges;
 }
@@ -79,20 +83,30 @@ PatchStructure structure_of(const PatchComplex& patches) {
     structure.triangles = triangles_of(patches);
     structure.edges = edges_of(structure.triangles);
     for (u32 row = 0; row < patches.tets.size(); ++row) {
-        if (patches.kinds[row] != PatchKind::edge) continue;
+        if (patches.kinds[row] != PatchKind::edge && patches.kinds[row] != PatchKind::sharp) continue;
         const u32 f = patches.triangles[row];
         const TriangleTets& t = structure.triangles[f];
         const auto i = static_cast<std::size_t>(std::ranges::find(t.corners, patches.tets[row][1]) - t.corners.begin());
         if (i == t.corners.size()) throw_incomplete(f);
         EdgeTets& edge = structure.edges[t.edges[i]];
         u32& of = edge.rows[patches.sides[row]][edge.triangles[1] == f];
-        if (of != none) throw_incomplete(f);
+        if (of != none || edge.is_border()) throw_incomplete(f);
         of = row;
+        edge.is_sharp = patches.kinds[row] == PatchKind::sharp;
+        edge.combine = patches.combine[row];
     }
-    for (const EdgeTets& edge : structure.edges)
-        for (const auto& of_side : edge.rows)
-            if (!edge.is_border() && std::ranges::find(of_side, none) != of_side.end())
-                throw_incomplete(edge.triangles[0]);
+    for (EdgeTets& edge : structure.edges) {
+        if (edge.is_border()) continue;
+        std::size_t sharp = 0, smooth = 0, sides = 0;
+        for (const auto& of_side : edge.rows) {
+            for (const u32 row : of_side)
+                if (row != none) ++(patches.kinds[row] == PatchKind::sharp ? sharp : smooth);
+            sides += of_side[0] != none && of_side[1] != none;
+        }
+        const bool is_smooth = smooth == 4 && sharp == 0, is_sharp = smooth == 0 && sharp == 2 * sides;
+        if (!is_smooth && !is_sharp) throw_incomplete(edge.triangles[0]);
+        edge.is_sharp = is_sharp;
+    }
     return structure;
 }
 

@@ -23,8 +23,11 @@ struct TriangleTets {
 struct EdgeTets {
     u32 a = none, b = none;
     std::array<u32, 2> triangles{none, none};
-    u32 corner = 0;  ///< a in the first triangle
-    std::array<std::array<u32, 2>, 2> rows{{{none, none}, {none, none}}};  ///< by side and triangle
+    std::array<u32, 2> numbers{none, none};  ///< of the edge in its triangles
+    /// By side and triangle. A sharp edge has none on a side where its surface is the segment itself.
+    std::array<std::array<u32, 2>, 2> rows{{{none, none}, {none, none}}};
+    bool is_sharp = false;
+    Combine combine = Combine::none;  ///< sharp, if it has tetrahedra
 
     bool is_border() const { return triangles[1] == none; }
 };

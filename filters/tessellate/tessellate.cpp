@@ -8,8 +8,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/bounds.hpp"
-#include "scanmill/geometry/a_patch.hpp"
-#include "tessellate/structure.hpp"
+#include "tessellate/strip.hpp"
 
 namespace scanmill {
 
@@ -22,42 +21,12 @@ constexpr unsigned uniform_fan = 4, least_fan = 2;  // segments of a fan
 constexpr unsigned most_subdivision = 1024;
 constexpr unsigned length_steps = 8;
 constexpr double rounding = 1e-14;  // of the diagonal: below it a value at a point of the mesh is 0
-// The largest value of a quadratic function on a segment with zeros at its ends, over that at a third of it.
-constexpr double middle_over_third = 9. / 8;
-constexpr double share_along = 2. / 3;  // of max_error, for lines along rows
-
-/// A point of the surface.
-struct SurfacePoint {
-    Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
-    u8 side = 1;
-};
-
-/// A point of an edge between its ends.
-struct Sample {
-    std::array<double, 2> share;  ///< of the edge, from a and from b
-    bool is_on_surface;
-    u8 side;  ///< where the surface is
-};
-
-/// The triangles beside an edge: a grid of points whose rows are the samples, and whose columns lead from the face of
-/// the first triangle to that of the second. At a border only the column of the first triangle; the ends of the edge
-/// and samples on the surface have one point.
-struct Strip {
-    unsigned segments = 1, fan = 1;
-    std::vector<Sample> samples;
-    std::vector<u32> first;  ///< of each sample's points, and one more
-    std::vector<SurfacePoint> points;
-    u32 first_vertex = 0;
-    double worst = 0;  ///< distance found between its triangles and the surface
-
-    bool is_collapsed(std::size_t sample) const { return first[sample + 1] - first[sample] == 1; }
-    bool is_straight() const { return samples.empty(); }
-};
 
 /// Vertices along an edge or inside a triangle, with their shares of the way.
 struct Row {
     std::vector<u32> vertices;
     std::vector<double> shares;
+    std::vector<double> insets{};  ///< on an edge: Sample::inset
 };
 
 /// The points inside a triangle: on `rows` - 1 triangles around the base point, with the fewer segments the smaller
@@ -171,6 +140,9 @@ void connect_triangular(const Grid& grid, u32 first, const std::array<Row, 3>& e
         }
 }
 
+/// By side, the outer one first, and third.
+using Cells = std::vector<TetFunctions>;
+
 class Tessellation {
 public:
     Tessellation(const PatchComplex& patches, const TessellateParams& params, Execution& execution)
@@ -195,173 +167,15 @@ public:
     }
 
 private:
-    // Points of the surface.
-
-    PatchCell cell(u32 row) const { return PatchCell(patches_, row); }
-
-    /// Where the line from a point of the mesh to a point off it meets the surface.
-    SurfacePoint hit(const PatchCell& cell, u8 side, const Barycentric& from, const Barycentric& to) const {
-        std::optional<double> t = 0;
-        if (std::abs(patch_value(cell.weights(), from)) > zero_) t = patch_hit(cell.weights(), from, to);
-        if (!t) throw Error("the patches have no surface on a line from the mesh to an apex");
-        const Barycentric at = (1 - *t) * from + *t * to;
-        return {cell.point(at), cell.gradient(at).normalized(), side};
-    }
-
-    /// The side of the mesh on which the surface is seen from a point of it.
-    u8 side_of(double value) const { return value <= zero_; }
-
-    /// The largest distances found between the surface and lines along rows, lines along columns, and triangles.
-    struct Errors {
-        double along = 0, across = 0, inside = 0;
-
-        double worst() const { return std::max({along, across, inside}); }
-    };
-
-    /// Doubles the numbers of segments of rows and of columns, up to `most` and `most_across`, where the errors demand
-    /// it. Returns whether one was doubled. More columns make the triangles lie along the lines along the rows, so
-    /// these get a smaller share of the error.
-    bool refine(unsigned& along, unsigned& across, const Errors& errors, unsigned most, unsigned most_across) const {
-        const double wanted = *max_error_;
-        const bool is_long = errors.along > share_along * wanted;
-        const bool widen =
-            2 * across <= most_across && (errors.across > wanted || (errors.inside > wanted && !is_long));
-        const bool lengthen = 2 * along <= most && (is_long || (errors.inside > wanted && !widen));
-        if (lengthen) along *= 2;
-        if (widen) across *= 2;
-        return lengthen || widen;
-    }
-
-    // Strips.
-
-    /// The tetrahedra beside an edge by side and triangle; at a border those of its triangle.
-    std::array<std::array<PatchCell, 2>, 2> cells_of(const EdgeTets& edge) const {
-        const auto at = [&](std::size_t side, std::size_t of) {
-            if (!edge.is_border()) return cell(edge.rows[side][of]);
-            const TriangleTets& t = structure_.triangles[edge.triangles[0]];
-            return cell(t.rows[side][t.count == 3 ? edge.corner : 0]);
-        };
-        return {{{at(0, 0), at(0, 1)}, {at(1, 0), at(1, 1)}}};
-    }
-
-    /// Coordinates of a point of the edge in the tetrahedra of its first or second triangle.
-    Barycentric on_edge(const EdgeTets& edge, std::size_t of, double share) const {
-        if (of == 1) return {0, share, 1 - share, 0};
-        const bool is_whole = edge.is_border() && structure_.triangles[edge.triangles[0]].count == 1;
-        const u32 i = is_whole ? edge.corner : 1, j = (i + 1) % (is_whole ? 3 : 4);
-        return (1 - share) * corner(i) + share * corner(j);
-    }
-
-    /// Where the surface crosses the edge between its ends. On the edge the function is
-    /// 3 s (1 - s) ((1 - s) f(a, a, b) + s f(a, b, b)).
-    std::optional<double> crossing(const EdgeTets& edge, const PatchCell& cell) const {
-        const Barycentric a = on_edge(edge, 0, 0), b = on_edge(edge, 0, 1);
-        const double one = patch_blossom(cell.weights(), a, a, b), other = patch_blossom(cell.weights(), a, b, b);
-        if (!((one < 0 && other > 0) || (one > 0 && other < 0))) return std::nullopt;
-        const double share = one / (one - other);
-        // Before or after it the edge is on the surface up to rounding.
-        if (std::min(std::abs(one) * share, std::abs(other) * (1 - share)) <= zero_) return std::nullopt;
-        return share;
-    }
-
-    /// Equally spaced samples, and one where the surface crosses the edge: the nearest is moved there if it is nearer
-    /// than a quarter of the spacing.
-    std::vector<Sample> samples_of(const EdgeTets& edge, const PatchCell& cell, unsigned segments) const {
-        std::vector<std::array<double, 2>> shares;
-        for (unsigned k = 1; k < segments; ++k)
-            shares.push_back({static_cast<double>(k) / segments, static_cast<double>(segments - k) / segments});
-        const std::optional<double> zero = crossing(edge, cell);
-        if (zero) {
-            const double at = *zero * segments, nearest = std::floor(at + 0.5);
-            const std::array<double, 2> share{*zero, 1 - *zero};
-            if (nearest >= 1 && nearest < segments && std::abs(at - nearest) < 0.25)
-                shares[static_cast<std::size_t>(nearest) - 1] = share;
-            else
-                shares.insert(shares.begin() + static_cast<std::ptrdiff_t>(at), share);
-        }
-        std::vector<Sample> samples;
-        for (const auto& share : shares) {
-            const double value = patch_value(cell.weights(), on_edge(edge, 0, share[0]));
-            samples.push_back({share, share[0] == zero || std::abs(value) <= zero_, side_of(value)});
-        }
-        return samples;
-    }
-
-    /// Lifts the samples' points.
-    void lift(Strip& strip, const EdgeTets& edge, const std::array<std::array<PatchCell, 2>, 2>& cells) const {
-        strip.first.assign(1, 0);
-        strip.points.clear();
-        for (const Sample& sample : strip.samples) {
-            const double share = sample.share[0];
-            if (edge.is_border() || sample.is_on_surface) {
-                strip.points.push_back(hit(cells[sample.side][0], sample.side, on_edge(edge, 0, share),
-                                           sample.is_on_surface ? on_edge(edge, 0, share) : corner(3)));
-            } else {
-                for (unsigned k = 0; k <= strip.fan; ++k) {
-                    const bool is_second = 2 * k > strip.fan;
-                    const double across = static_cast<double>(is_second ? strip.fan - k : k) / strip.fan;
-                    strip.points.push_back(hit(cells[sample.side][is_second], sample.side,
-                                               on_edge(edge, is_second, share), {2 * across, 0, 0, 1 - 2 * across}));
-                }
-            }
-            strip.first.push_back(static_cast<u32>(strip.points.size()));
-        }
-    }
-
-    Vec3 position(const Strip& strip, const EdgeTets& edge, std::size_t s, unsigned k) const {
-        if (s == 0) return patches_.positions[edge.a];
-        if (s > strip.samples.size()) return patches_.positions[edge.b];
-        return strip.points[strip.first[s - 1] + (strip.is_collapsed(s - 1) ? 0 : k)].position;
-    }
-
-    Errors errors_of(const Strip& strip, const EdgeTets& edge,
-                     const std::array<std::array<PatchCell, 2>, 2>& cells) const {
-        Errors errors;
-        const std::size_t last = strip.samples.size() + 1;
-        const unsigned columns = edge.is_border() ? 1 : strip.fan + 1;
-        for (std::size_t s = 0; s < last; ++s) {
-            const bool is_first_on_surface = s == 0 || strip.samples[s - 1].is_on_surface;
-            const std::size_t other = is_first_on_surface ? s + 1 : s;
-            const std::size_t side = other > 0 && other < last ? strip.samples[other - 1].side : 1;
-            const bool is_flat = is_first_on_surface && (s + 1 == last || strip.samples[s].is_on_surface);
-            for (unsigned k = 0; k < (is_flat ? 1 : columns); ++k) {
-                const PatchCell& here = cells[side][2 * k >= strip.fan && !edge.is_border()];
-                const Vec3 a = position(strip, edge, s, k), d = position(strip, edge, s + 1, k);
-                errors.along = std::max(errors.along, distance_of(here, a, d));
-                if (is_flat || k + 1 >= columns) continue;
-                const Vec3 b = position(strip, edge, s, k + 1), c = position(strip, edge, s + 1, k + 1);
-                errors.across = std::max(errors.across, distance_of(here, a, b));
-                errors.inside = std::max({errors.inside, distance_of(here, a, c),
-                                          std::abs(here.first_order_distance((a + b + c) / 3)),
-                                          std::abs(here.first_order_distance((a + c + d) / 3))});
-            }
-        }
-        return errors;
-    }
-
-    /// The largest distance between a segment and the surface through its ends, as in the middle of a parabola.
-    static double distance_of(const PatchCell& cell, const Vec3& a, const Vec3& b) {
-        return middle_over_third * std::max(std::abs(cell.first_order_distance((2 * a + b) / 3)),
-                                            std::abs(cell.first_order_distance((a + 2 * b) / 3)));
-    }
-
     void build_strip(std::size_t e, unsigned most) {
         const EdgeTets& edge = structure_.edges[e];
         Strip& strip = strips_[e];
-        const auto cells = cells_of(edge);
         const bool is_fixed = segments_ || !max_error_;
         strip.segments = segments_    ? std::clamp(segments_(make_edge(edge.a, edge.b)), 1u, most_subdivision)
                          : max_error_ ? 1
                                       : most;
-        strip.fan = edge.is_border() ? 1 : is_fixed ? uniform_fan : least_fan;
-        for (;;) {
-            strip.samples = samples_of(edge, cells[1][0], strip.segments);
-            lift(strip, edge, cells);
-            if (is_fixed) return;
-            const Errors errors = errors_of(strip, edge, cells);
-            strip.worst = errors.worst();
-            if (!refine(strip.segments, strip.fan, errors, most, edge.is_border() ? 1 : most)) return;
-        }
+        strip.fan = edge.is_border() ? 0 : is_fixed ? uniform_fan : least_fan;
+        tessellation::build(strip, patches_, structure_, edge, zero_, is_fixed ? std::nullopt : max_error_, most);
     }
 
     // Grids.
@@ -371,7 +185,7 @@ private:
         const Strip& strip = strips_[e];
         if (s == 0) return number_of_corner_[edge.a];
         if (s > strip.samples.size()) return number_of_corner_[edge.b];
-        return strip.first_vertex + strip.first[s - 1] + (strip.is_collapsed(s - 1) ? 0 : k);
+        return strip.first_vertex + strip.number(s - 1, k);
     }
 
     /// The samples on the edges of triangle f, from corner i to the next.
@@ -385,7 +199,9 @@ private:
             for (std::size_t n = 0; n <= last; ++n) {
                 const std::size_t s = is_first ? n : last - n;
                 rows[i].vertices.push_back(row_vertex(e, s, is_first ? 0 : strip.fan));
+                const bool is_end = n == 0 || n == last;
                 rows[i].shares.push_back(n == 0 ? 0 : n == last ? 1 : strip.samples[s - 1].share[is_first ? 0 : 1]);
+                rows[i].insets.push_back(is_end ? 0 : strip.samples[s - 1].inset[is_first ? 0 : 1]);
             }
         }
         return rows;
@@ -394,9 +210,9 @@ private:
     void build_grid(std::size_t f, unsigned most) {
         const TriangleTets& t = structure_.triangles[f];
         Grid& grid = grids_[f];
-        std::vector<PatchCell> cells;  // the outer ones first
+        Cells cells;  // the outer ones first
         for (const std::size_t side : {1, 0})
-            for (u32 third = 0; third < t.count; ++third) cells.push_back(cell(t.rows[side][third]));
+            for (u32 third = 0; third < t.count; ++third) cells.emplace_back(patches_, t.rows[side][third]);
         const std::array<Row, 3> edges = rows_of(f);
         const bool is_fixed = segments_ || !max_error_;
         bool is_straight = true;
@@ -413,14 +229,14 @@ private:
         if (!is_fixed) lengths = lengths_to_corners(t, cells);
         for (;;) {
             set_shares(grid, lengths);
-            lift(grid, t, cells);
+            lift(grid, t, cells, edges);
             if (is_fixed) return;
             const Errors errors = errors_of(grid, t, cells, edges);
             grid.worst = errors.worst();
             if (grid.is_triangular) {
                 if (grid.worst <= *max_error_) return;
                 grid.is_triangular = false;
-            } else if (!refine(grid.segments, grid.rows, errors, most, most)) {
+            } else if (!refine(grid.segments, grid.rows, errors, *max_error_, most, most)) {
                 return;
             }
         }
@@ -428,7 +244,7 @@ private:
 
     /// Lengths on the surface above the lines from the base point to the corners, at equal steps, of the longest line
     /// each. Towards the corners the lines to the apex make a small angle with the surface, so the steps grow.
-    std::vector<double> lengths_to_corners(const TriangleTets& t, const std::vector<PatchCell>& cells) const {
+    std::vector<double> lengths_to_corners(const TriangleTets& t, const Cells& cells) const {
         std::vector<double> lengths{0};
         std::array<Vec3, 3> before;
         for (unsigned step = 0; step <= length_steps; ++step) {
@@ -459,7 +275,7 @@ private:
         }
     }
 
-    Errors errors_of(const Grid& grid, const TriangleTets& t, const std::vector<PatchCell>& cells,
+    Errors errors_of(const Grid& grid, const TriangleTets& t, const Cells& cells,
                      const std::array<Row, 3>& edges) const {
         const auto position = [&](u32 vertex) -> const Vec3& {
             return vertex < points_.size() ? points_[vertex].position : grid.points[vertex - points_.size()].position;
@@ -471,14 +287,12 @@ private:
             // The corners may be on both sides of the mesh.
             const u32 part = t.count == 3 ? third : 0;
             const auto at = [&](const Vec3& x) {
-                const bool is_outer = cells[part].coordinates(x)[3] >= 0;
-                return std::abs(cells[is_outer ? part : t.count + part].first_order_distance(x));
+                const bool is_outer = cells[part].own().coordinates(x)[3] >= 0;
+                return std::abs(cells[is_outer ? part : t.count + part].own().first_order_distance(x));
             };
-            const auto on = [&](const Vec3& x, const Vec3& y) {
-                return middle_over_third * std::max(at((2 * x + y) / 3), at((x + 2 * y) / 3));
-            };
-            errors.along = std::max(errors.along, on(p, q));
-            errors.inside = std::max({errors.inside, on(q, r), on(r, p), at((p + q + r) / 3)});
+            errors.along = std::max(errors.along, distance_on_segment(p, q, at));
+            errors.inside = std::max(
+                {errors.inside, distance_on_segment(q, r, at), distance_on_segment(r, p, at), at((p + q + r) / 3)});
         });
         return errors;
     }
@@ -490,16 +304,15 @@ private:
 
     /// Above a point of a triangle, given by its coordinates in a third: base point, corners i and j; or in an
     /// undivided triangle.
-    SurfacePoint above(const std::vector<PatchCell>& cells, u32 third, const Vec3& base) const {
+    SurfacePoint above(const Cells& cells, u32 third, const Vec3& base) const {
         const Barycentric from(base[0], base[1], base[2], 0);
-        const u8 side = side_of(patch_value(cells[third].weights(), from));
-        return hit(cells[side == 1 ? third : cells.size() / 2 + third], side, from, corner(3));
+        const u8 side = cells[third].side_at(from, zero_);
+        return cells[side == 1 ? third : cells.size() / 2 + third].hit(side, from, corner(3), zero_).point;
     }
 
     /// Above the point of a third at `share` of the way from the base point, or the centre of an undivided triangle, to
     /// the point at `along` of the edge.
-    SurfacePoint above(const TriangleTets& t, const std::vector<PatchCell>& cells, u32 third, double share,
-                       double along) const {
+    SurfacePoint above(const TriangleTets& t, const Cells& cells, u32 third, double share, double along) const {
         const double i = share * (1 - along), j = share * along;
         if (t.count == 3) return above(cells, third, {1 - share, i, j});
         Vec3 base = Vec3::Constant((1 - share) / 3);
@@ -508,7 +321,16 @@ private:
         return above(cells, 0, base);
     }
 
-    void lift(Grid& grid, const TriangleTets& t, const std::vector<PatchCell>& cells) const {
+    /// How far the crease reaches into a triangle at this share of the edge.
+    static double inset_at(const Row& edge, double along) {
+        const auto next =
+            std::max<std::ptrdiff_t>(1, std::ranges::lower_bound(edge.shares, along) - edge.shares.begin());
+        const auto j = static_cast<std::size_t>(next), i = j - 1;
+        const double part = (along - edge.shares[i]) / (edge.shares[j] - edge.shares[i]);
+        return (1 - part) * edge.insets[i] + part * edge.insets[j];
+    }
+
+    void lift(Grid& grid, const TriangleTets& t, const Cells& cells, const std::array<Row, 3>& edges) const {
         const u32 n = grid.segments;
         if (!grid.is_triangular) {
             const ThirdsNumbers numbers(grid);
@@ -516,9 +338,11 @@ private:
             for (u32 third = 0; third < 3; ++third)
                 for (u32 r = third == 0 ? 0 : 1; r < grid.rows; ++r) {
                     const u32 count = std::max(grid.segments_of(r), 1u);
-                    for (u32 k = 0; k < count; ++k)
+                    for (u32 k = 0; k < count; ++k) {
+                        const double along = static_cast<double>(k) / count;
                         grid.points[numbers(third, r, k)] =
-                            above(t, cells, third, grid.shares[r], static_cast<double>(k) / count);
+                            above(t, cells, third, grid.shares[r] * (1 - inset_at(edges[third], along)), along);
+                    }
                 }
         } else if (n == 2) {
             grid.points = {above(cells, 0, Vec3::Constant(1. / 3))};
@@ -587,12 +411,18 @@ private:
         for (u32& number : number_of_corner_)
             if (number != none) number = corners_++;
         points_.resize(corners_);
-        for (const TriangleTets& t : structure_.triangles)
+        corner_normals_.resize(structure_.triangles.size());
+        for (std::size_t f = 0; f < structure_.triangles.size(); ++f) {
+            const TriangleTets& t = structure_.triangles[f];
             for (u32 i = 0; i < 3; ++i) {
-                const PatchCell here = cell(t.rows[1][t.count == 3 ? i : 0]);
-                points_[number_of_corner_[t.corners[i]]] = {
-                    patches_.positions[t.corners[i]], here.gradient(corner(t.count == 3 ? 1 : i)).normalized(), 1};
+                const PatchCell here(patches_, t.rows[1][t.count == 3 ? i : 0]);
+                const Vec3 normal = here.gradient(corner(t.count == 3 ? 1 : i)).normalized();
+                corner_normals_[f][i] = normal;
+                SurfacePoint& point = points_[number_of_corner_[t.corners[i]]];
+                point.position = patches_.positions[t.corners[i]];
+                point.normal = normal;
             }
+        }
     }
 
     void collect_points() {
@@ -607,6 +437,8 @@ private:
     }
 
     void connect() {
+        has_creases_ = std::ranges::any_of(structure_.edges, &EdgeTets::is_sharp);
+        if (has_creases_) collect_creases();
         for (u32 f = 0; f < grids_.size(); ++f) {
             patch_ = f;
             connect_grid(grids_[f], grids_[f].first_vertex, rows_of(f),
@@ -614,7 +446,6 @@ private:
         }
         for (std::size_t e = 0; e < strips_.size(); ++e) {
             const EdgeTets& edge = structure_.edges[e];
-            if (edge.is_border()) continue;
             const unsigned fan = strips_[e].fan;
             for (std::size_t s = 0; s <= strips_[e].samples.size(); ++s)
                 for (unsigned k = 0; k < fan; ++k) {
@@ -627,11 +458,54 @@ private:
         }
     }
 
+    /// The edges along creases, and the normals beyond them.
+    void collect_creases() {
+        beyond_.resize(points_.size());
+        std::vector<bool> is_sharp(corners_, false);
+        for (std::size_t e = 0; e < strips_.size(); ++e) {
+            const EdgeTets& edge = structure_.edges[e];
+            if (!edge.is_sharp) continue;
+            const Strip& strip = strips_[e];
+            for (std::size_t s = 0; s <= strip.samples.size(); ++s)
+                creases_.push_back(make_edge(row_vertex(e, s, strip.fan / 2), row_vertex(e, s + 1, strip.fan / 2)));
+            for (std::size_t i = 0; i < strip.points.size(); ++i)
+                beyond_[strip.first_vertex + i] = {edge.triangles[1], strip.second_normals[i]};
+            is_sharp[number_of_corner_[edge.a]] = is_sharp[number_of_corner_[edge.b]] = true;
+        }
+        std::ranges::sort(creases_);
+        // The mean of the normals of the triangles at a vertex.
+        for (u32 v = 0; v < corners_; ++v)
+            if (is_sharp[v]) points_[v].normal = Vec3::Zero();
+        for (std::size_t f = 0; f < structure_.triangles.size(); ++f)
+            for (std::size_t i = 0; i < 3; ++i) {
+                const u32 v = number_of_corner_[structure_.triangles[f].corners[i]];
+                if (is_sharp[v]) points_[v].normal += corner_normals_[f][i];
+            }
+        for (u32 v = 0; v < corners_; ++v)
+            if (is_sharp[v]) points_[v].normal.normalize();
+    }
+
     void add(u32 a, u32 b, u32 c) {
         if (a == b || b == c || c == a) return;
         out_.push_back({a, b, c});
         out_patches_.push_back(patch_);
         out_sides_.push_back(std::min({points_[a].side, points_[b].side, points_[c].side}));
+        if (!has_creases_) return;
+        for (const u32 v : {a, b, c}) {
+            const Vec3 normal = normal_at(v);
+            out_normals_.insert(out_normals_.end(), normal.data(), normal.data() + 3);
+        }
+    }
+
+    /// The normal at a vertex of a triangle that is being added, on its side of creases.
+    Vec3 normal_at(u32 vertex) const {
+        if (vertex < corners_) {
+            const auto& corners = structure_.triangles[patch_].corners;
+            for (std::size_t i = 0; i < 3; ++i)
+                if (number_of_corner_[corners[i]] == vertex) return corner_normals_[patch_][i];
+        }
+        const Beyond& beyond = beyond_[vertex];
+        return beyond.triangle == patch_ && !beyond.normal.isZero(0) ? beyond.normal : points_[vertex].normal;
     }
 
     TriangleMesh finished() {
@@ -641,13 +515,18 @@ private:
         Array<double> normals(3 * points_.size());
         for (std::size_t v = 0; v < points_.size(); ++v) {
             positions[v] = points_[v].position;
-            for (std::size_t i = 0; i < 3; ++i) normals[3 * v + i] = points_[v].normal[static_cast<Eigen::Index>(i)];
+            const Vec3 normal = has_creases_ && !beyond_[v].normal.isZero(0)
+                                    ? (points_[v].normal + beyond_[v].normal).normalized()
+                                    : points_[v].normal;
+            for (std::size_t i = 0; i < 3; ++i) normals[3 * v + i] = normal[static_cast<Eigen::Index>(i)];
         }
         mesh.positions = std::move(positions);
         mesh.triangles = std::move(out_);
+        mesh.sharp_edges = std::move(creases_);
         mesh.vertex_columns.add(Column("normal", 3, Buffer<double>(std::move(normals))));
         mesh.face_columns.add(Column("patch", 1, Buffer<u32>(std::move(out_patches_))));
         mesh.face_columns.add(Column("side", 1, Buffer<u8>(std::move(out_sides_))));
+        if (has_creases_) mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(out_normals_))));
         return mesh;
     }
 
@@ -663,7 +542,16 @@ private:
     std::vector<u32> number_of_corner_;  ///< by point of the complex
     u32 corners_ = 0;
     std::vector<SurfacePoint> points_;  ///< of the corners and strips; at last of the grids, too
+    std::vector<std::array<Vec3, 3>> corner_normals_;  ///< of the mesh's triangles
+    bool has_creases_ = false;
+    struct Beyond {
+        u32 triangle = none;  ///< the second triangle at a crease
+        Vec3 normal = Vec3::Zero();
+    };
+    std::vector<Beyond> beyond_;  ///< by point
+    Array<Edge> creases_;
     u32 patch_ = 0;  ///< of the triangles that are being added
+    Array<double> out_normals_;
     Array<Triangle> out_;
     Array<u32> out_patches_;
     Array<u8> out_sides_;

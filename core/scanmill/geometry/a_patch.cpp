@@ -131,41 +131,53 @@ std::optional<double> zero_of_cubic(const std::array<double, 4>& c) {
     return t;
 }
 
-std::optional<double> patch_hit(const PatchWeights& weights, const Barycentric& from, const Barycentric& to) {
+std::array<double, 4> patch_along(const PatchWeights& weights, const Barycentric& from, const Barycentric& to) {
     const Eigen::Vector4d first = linear_part(weights, from, from), last = linear_part(weights, to, to);
-    return zero_of_cubic({first.dot(from), first.dot(to), last.dot(from), last.dot(to)});
+    return {first.dot(from), first.dot(to), last.dot(from), last.dot(to)};
 }
 
-std::optional<double> first_zero_of_cubic(const std::array<double, 4>& c) {
-    // Halves the interval until the weights change sign at most once.
+std::optional<double> patch_hit(const PatchWeights& weights, const Barycentric& from, const Barycentric& to) {
+    return zero_of_cubic(patch_along(weights, from, to));
+}
+
+std::vector<double> zeros_of_cubic(const std::array<double, 4>& c) {
+    // Halves the interval until the weights change sign at most once. A zero at an end belongs to the part after it.
     struct Part {
         double begin, length;
         std::array<double, 4> c;
     };
     constexpr double shortest = 1e-15;
     std::vector<Part> parts{{0, 1, c}};
+    std::vector<double> zeros;
     while (!parts.empty()) {
         const Part part = parts.back();
         parts.pop_back();
         const auto& w = part.c;
-        if (w[0] == 0) return part.begin;
+        if (std::ranges::all_of(w, [](double weight) { return weight == 0; })) {
+            zeros.push_back(part.begin);
+            break;
+        }
         int changes = 0;
         for (std::size_t i = 1; i < 4; ++i) changes += (w[i] < 0) != (w[i - 1] < 0);
-        if (changes == 0) {
-            if (w[3] == 0) return part.begin + part.length;
+        const bool is_end = part.begin + part.length >= 1;
+        if (changes == 0 && w[0] != 0 && w[3] != 0) continue;
+        if (changes == 1 && w[0] != 0 && w[3] != 0) {
+            if (const auto zero = zero_of_cubic(w)) zeros.push_back(part.begin + part.length * *zero);
             continue;
         }
-        if (changes == 1) {
-            if (const auto zero = zero_of_cubic(w)) return part.begin + part.length * *zero;
+        if (part.length < shortest) {
+            if (w[0] == 0 || changes > 0)
+                zeros.push_back(part.begin);
+            else if (w[3] == 0 && is_end)
+                zeros.push_back(1);
             continue;
         }
-        if (part.length < shortest) return part.begin;
         const double a0 = (w[0] + w[1]) / 2, a1 = (w[1] + w[2]) / 2, a2 = (w[2] + w[3]) / 2;
         const double b0 = (a0 + a1) / 2, b1 = (a1 + a2) / 2, middle = (b0 + b1) / 2, half = part.length / 2;
         parts.push_back({part.begin + half, half, {middle, b1, a2, w[3]}});
         parts.push_back({part.begin, half, {w[0], a0, b0, middle}});
     }
-    return std::nullopt;
+    return zeros;
 }
 
 // PatchSurface.
@@ -214,8 +226,17 @@ std::optional<u32> PatchSurface::locate(const Vec3& point) const {
     std::ranges::sort(rows);
     for (const double least : {0.0, -outside_by})
         for (const u32 row : rows)
-            if (cell(row).coordinates(point).minCoeff() >= least) return row;
+            if (cell(row).coordinates(point).minCoeff() >= least) return active(row, point);
     return std::nullopt;
+}
+
+u32 PatchSurface::active(u32 tet, const Vec3& point) const {
+    const u32 partner = patches_.partners[tet];
+    if (partner == PatchComplex::no_partner) return tet;
+    // Of equal ones the first row.
+    const u32 first = std::min(tet, partner), second = std::max(tet, partner);
+    const double one = cell(first).value(point), other = cell(second).value(point);
+    return (patches_.combine[tet] == Combine::max ? other > one : other < one) ? second : first;
 }
 
 std::optional<double> PatchSurface::value(const Vec3& point) const {
@@ -254,14 +275,37 @@ std::optional<PatchSurface::Hit> PatchSurface::hit_in(u32 tet, const Vec3& from,
             return std::nullopt;
     }
     if (begin > end) return std::nullopt;
-    const Barycentric a = start + begin * change, b = start + end * change;
-    const PatchWeights& w = patches_.weights[tet];
-    const auto zero = first_zero_of_cubic(
-        {patch_blossom(w, a, a, a), patch_blossom(w, a, a, b), patch_blossom(w, a, b, b), patch_blossom(w, b, b, b)});
-    if (!zero) return std::nullopt;
-    const double share = begin + *zero * (end - begin);
-    const Vec3 point = from + share * direction;
-    return Hit{share, tet, point, here.gradient(point)};
+    const auto hit_at = [&](double zero, u32 row) {
+        const double share = begin + zero * (end - begin);
+        const Vec3 point = from + share * direction;
+        return Hit{share, row, point, cell(row).gradient(point)};
+    };
+    const auto along = [&](const Barycentric& first, const Barycentric& by, u32 row) {
+        return patch_along(patches_.weights[row], first + begin * by, first + end * by);
+    };
+    const std::vector<double> zeros = zeros_of_cubic(along(start, change, tet));
+    const u32 partner = patches_.partners[tet];
+    if (partner == PatchComplex::no_partner)
+        return zeros.empty() ? std::nullopt : std::optional(hit_at(zeros.front(), tet));
+    // The first zero of one function at which the other one does not hold.
+    if (partner < tet) return std::nullopt;  // found from there
+    const PatchCell there = cell(partner);
+    const Barycentric other_start = there.coordinates(from),
+                      other_change = there.coordinates(from + direction) - other_start;
+    std::optional<Hit> first;
+    const auto offer = [&](const std::vector<double>& zeros_of_one, u32 one, u32 other) {
+        for (const double zero : zeros_of_one) {
+            const Hit hit = hit_at(zero, one);
+            const PatchCell beside = cell(other);
+            const double value = beside.value(hit.point) * (patches_.combine[one] == Combine::max ? 1 : -1);
+            if (value > outside_by * beside.gradient(hit.point).norm() * box_.diagonal()) continue;
+            if (!first || hit.share < first->share) first = hit;
+            return;
+        }
+    };
+    offer(zeros, tet, partner);
+    offer(zeros_of_cubic(along(other_start, other_change, partner)), partner, tet);
+    return first;
 }
 
 std::optional<PatchSurface::Hit> PatchSurface::first_hit(const Vec3& from, const Vec3& direction) const {
@@ -303,16 +347,15 @@ std::optional<PatchSurface::Hit> PatchSurface::first_hit(const Vec3& from, const
 }
 
 std::optional<PatchSurface::Local> PatchSurface::local(const Vec3& point, std::optional<u32> hint) const {
-    const auto in = [&](u32 tet, bool is_certain) -> std::optional<Local> {
-        const PatchCell here = cell(tet);
-        const Barycentric at = here.coordinates(point);
-        if (!is_certain && !(at.minCoeff() >= 0)) return std::nullopt;
-        return Local{tet, patch_value(here.weights(), at), here.gradient(at)};
-    };
-    if (hint)
-        if (const auto found = in(*hint, false)) return found;
-    const auto tet = locate(point);
-    return tet ? in(*tet, true) : std::nullopt;
+    std::optional<u32> tet;
+    if (hint && cell(*hint).coordinates(point).minCoeff() >= 0)
+        tet = active(*hint, point);
+    else
+        tet = locate(point);
+    if (!tet) return std::nullopt;
+    const PatchCell here = cell(*tet);
+    const Barycentric at = here.coordinates(point);
+    return Local{*tet, patch_value(here.weights(), at), here.gradient(at)};
 }
 
 bool PatchSurface::retract(Vec3& point, Local& here) const {

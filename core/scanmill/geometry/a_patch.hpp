@@ -4,12 +4,16 @@
 /// PatchSurface the whole complex: value, gradient and second derivatives at a point, inside or outside, the first hit
 /// of a ray, the nearest point of the surface. tests/core/geometry/a_patch_example.hpp shows its use.
 ///
+/// Beside sharp edges two rows of the complex share a tetrahedron (PatchComplex::partners): there the function is the
+/// larger or the smaller of theirs, and its derivatives are those of that one.
+///
 /// Barycentric coordinates are four numbers whose sum is 1, or 0 for a direction. Functions of one tetrahedron cost a
 /// few hundred operations; none uses a libm function whose result depends on the processor. Everything is safe from
 /// several threads.
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "scanmill/data/patches.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
@@ -49,6 +53,9 @@ private:
     const PatchWeights* weights_;
 };
 
+/// The Bernstein weights at 0, 1/3, 2/3 and 1 of the function on the segment between two points.
+std::array<double, 4> patch_along(const PatchWeights& weights, const Barycentric& from, const Barycentric& to);
+
 /// The zero t in [0, 1] of the cubic with these Bernstein weights at 0, 1/3, 2/3 and 1, to the last bits; nothing if
 /// the first and the last weight have one sign and are not 0. Pre: at most one zero.
 std::optional<double> zero_of_cubic(const std::array<double, 4>& weights);
@@ -56,8 +63,8 @@ std::optional<double> zero_of_cubic(const std::array<double, 4>& weights);
 /// The point where the segment from `from` to `to` meets the surface, as its share t of the segment.
 std::optional<double> patch_hit(const PatchWeights& weights, const Barycentric& from, const Barycentric& to);
 
-/// The smallest zero t in [0, 1] of any cubic, to about 1e-15; nothing if there is none.
-std::optional<double> first_zero_of_cubic(const std::array<double, 4>& weights);
+/// The zeros t in [0, 1] of any cubic, ascending, to about 1e-15. Of one that is 0 everywhere: 0.
+std::vector<double> zeros_of_cubic(const std::array<double, 4>& weights);
 
 /// Finds the tetrahedra of a complex that a question is about. Points outside all of them have no value: the function
 /// is defined near the surface only.
@@ -78,7 +85,8 @@ public:
     /// tetrahedron.
     explicit PatchSurface(const PatchComplex& patches, unsigned threads = 1);
 
-    /// The tetrahedron that contains the point; of several the first row. Cost: O(log n).
+    /// The tetrahedron that contains the point, of several the first row; of two partners the one whose function holds
+    /// at the point. Cost: O(log n).
     std::optional<u32> locate(const Vec3& point) const;
     PatchCell cell(u32 tet) const { return PatchCell(patches_, tet); }
 
@@ -102,6 +110,8 @@ public:
     std::optional<Foot> foot(const Vec3& point) const { return foot(point, point); }
 
 private:
+    /// Of a tetrahedron and its partner, the one whose function holds at the point.
+    u32 active(u32 tet, const Vec3& point) const;
     /// The function near a point.
     struct Local {
         u32 tet;

@@ -79,7 +79,7 @@ TEST(ZeroOfCubic, IsFoundToTheLastBits) {
     EXPECT_NEAR(*zero_of_cubic({-0.125, -0.125, -0.125, 0.875}), 0.5, 1e-16);
 }
 
-TEST(FirstZeroOfCubic, OfSeveralZeros_IsTheFirst) {
+TEST(ZerosOfCubic, AreAllFoundInOrder) {
     // (t - 1/4)(t - 1/2)(t - 3/4) has the Bernstein weights -3/32, 13/96 …: computed from its polar form.
     const auto weights = [](double r, double s, double t) {
         const auto f = [&](double a, double b, double c) {
@@ -88,10 +88,19 @@ TEST(FirstZeroOfCubic, OfSeveralZeros_IsTheFirst) {
         };
         return std::array<double, 4>{f(0, 0, 0), f(0, 0, 1), f(0, 1, 1), f(1, 1, 1)};
     };
-    EXPECT_NEAR(*first_zero_of_cubic(weights(0.25, 0.5, 0.75)), 0.25, 1e-14);
-    EXPECT_NEAR(*first_zero_of_cubic(weights(0.7, 0.1, 0.2)), 0.1, 1e-14);
-    EXPECT_NEAR(*first_zero_of_cubic(weights(0.6, -1, 2)), 0.6, 1e-14);
-    EXPECT_EQ(first_zero_of_cubic(weights(-0.6, -1, 2)), std::nullopt);
+    const auto expect = [&](const std::array<double, 4>& cubic, const std::vector<double>& wanted) {
+        const std::vector<double> found = zeros_of_cubic(cubic);
+        ASSERT_EQ(found.size(), wanted.size());
+        for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-14);
+    };
+    expect(weights(0.25, 0.5, 0.75), {0.25, 0.5, 0.75});
+    expect(weights(0.7, 0.1, 0.2), {0.1, 0.2, 0.7});
+    expect(weights(0.6, -1, 2), {0.6});
+    expect(weights(-0.6, -1, 2), {});
+    expect(weights(0, 0.25, 1), {0, 0.25, 1});
+    expect({0, 1, 1, 1}, {0});
+    expect({1, 1, 1, 0}, {1});
+    expect({0, 0, 0, 0}, {0});
 }
 
 /// One tetrahedron with the unit sphere's function |x|² / 2 - 1 / 2.

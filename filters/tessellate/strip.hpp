@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// The triangles beside an edge of the mesh, between the faces of its two triangles.
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "tessellate/lines.hpp"
+#include "tessellate/structure.hpp"
+
+namespace scanmill::tessellation {
+
+/// A point of an edge between its ends.
+struct Sample {
+    std::array<double, 2> share;  ///< of the edge, from a and from b
+    u8 side = 1;  ///< where the surface is
+    bool is_on_surface = false;  ///< the strip has one point here
+    /// Beside a curved crease that is above one of the triangles: its share of the way to the base point there.
+    std::array<double, 2> inset{0, 0};
+};
+
+/// A grid of points whose rows are the samples and the two ends of the edge, and whose columns lead from the face of
+/// the first triangle to that of the second. At a sharp edge the middle column is the crease. At a border there is only
+/// the column of the first triangle. Several columns may share a point.
+struct Strip {
+    unsigned segments = 1;  ///< of the edge, but for samples where the surface crosses it
+    unsigned fan = 1;  ///< columns less one
+    std::vector<Sample> samples;
+    std::vector<u32> numbers;  ///< of points, by sample and column
+    std::vector<SurfacePoint> points;
+    /// At a sharp edge, by point: the normal of the second triangle's function on the crease; else zero.
+    std::vector<Vec3> second_normals;
+    u32 first_vertex = 0;
+    double worst = 0;  ///< distance found between its triangles and the surface
+
+    unsigned columns() const { return fan + 1; }
+    u32 number(std::size_t sample, unsigned column) const { return numbers[sample * columns() + column]; }
+    bool is_straight() const { return samples.empty(); }
+};
+
+/// The largest distances found between the surface and lines along rows, lines along columns, and triangles.
+struct Errors {
+    double along = 0, across = 0, inside = 0;
+
+    double worst() const { return std::max({along, across, inside}); }
+};
+
+/// Doubles the numbers of segments of rows and of columns, up to `most` and `most_across`, where the errors demand it.
+/// Returns whether one was doubled.
+bool refine(unsigned& along, unsigned& across, const Errors& errors, double max_error, unsigned most,
+            unsigned most_across);
+
+/// The largest distance between a segment and the surface through its ends, as in the middle of a parabola.
+/// `distance_at` is the distance at a point.
+template <class DistanceAt>
+double distance_on_segment(const Vec3& a, const Vec3& b, DistanceAt&& distance_at) {
+    constexpr double middle_over_third = 9. / 8;  // of a quadratic function with zeros at the ends
+    return middle_over_third * std::max(distance_at((2 * a + b) / 3), distance_at((a + 2 * b) / 3));
+}
+
+/// Sets everything but the first vertex. Begins with the strip's segments and fan; with `max_error` they grow up to
+/// `most` until the strip is within it. `zero`: values up to it are 0. Throws Error if tetrahedra are missing.
+void build(Strip& strip, const PatchComplex& patches, const PatchStructure& structure, const EdgeTets& edge,
+           double zero, std::optional<double> max_error, unsigned most);
+
+}  // namespace scanmill::tessellation
