@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tessellate/tessellate.hpp"
 
-#include <set>
-
-#include "filters/a_patch_cases.hpp"
+#include "filters/tessellate_cases.hpp"
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
 #include "support/temporary_folder.hpp"
@@ -13,14 +11,6 @@ namespace {
 
 using namespace test;
 using testing::HasSubstr;
-
-TriangleMesh tessellated(const PatchComplex& patches, const TessellateParams& params, unsigned threads = 1) {
-    Execution execution({threads, {}, {}});
-    return tessellate(patches, params, execution);
-}
-TriangleMesh tessellated(const PatchComplex& patches, u32 subdivision, std::optional<Length> max_error = {}) {
-    return tessellated(patches, TessellateParams{subdivision, max_error});
-}
 
 /// A sphere with normals turned by about 15 degrees: its surface crosses many edges.
 TriangleMesh wavy_sphere() {
@@ -51,17 +41,9 @@ std::pair<double, double> errors_of(const TriangleMesh& mesh, const PatchComplex
     return {off, turned};
 }
 
-/// Closed, with the topology of `mesh`, every directed edge once against its opposite, vertices on the surface.
+/// Closed, with the topology of `mesh`, vertices on the surface, normals those of the gradient.
 void expect_sound(const TriangleMesh& result, const TriangleMesh& mesh, const PatchComplex& patches) {
-    const MeshTopology found = topology(result), wanted = topology(mesh);
-    EXPECT_TRUE(found.closed);
-    EXPECT_EQ(found.euler, wanted.euler);
-    EXPECT_EQ(found.components, wanted.components);
-    EXPECT_EQ(found.unused_vertices, 0u);
-    std::set<std::array<u32, 2>> directed;
-    for (const Triangle& t : result.triangles)
-        for (std::size_t i = 0; i < 3; ++i) EXPECT_TRUE(directed.insert({t[i], t[(i + 1) % 3]}).second);
-    for (const auto& [a, b] : directed) EXPECT_TRUE(directed.contains({b, a}));
+    expect_closed(result, mesh);
     const auto [off, turned] = errors_of(result, patches);
     EXPECT_LT(off, 1e-12);
     EXPECT_LT(turned, 1e-9);
