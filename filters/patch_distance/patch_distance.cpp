@@ -8,6 +8,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
 #include "tessellate/tessellate.hpp"
 
 namespace scanmill {
@@ -18,6 +19,38 @@ constexpr std::size_t chunk = 1024;
 constexpr const char* column_name = "distance-to-patches";
 constexpr u32 subdivision = 2;  // of the mesh on which the search begins
 constexpr double farthest = 0.1;  // of the diagonal
+constexpr double rounding = 1e-12;
+
+/// The vertices and edges at which the surface ends.
+class Boundary {
+public:
+    explicit Boundary(const TriangleMesh& mesh)
+        : mesh_(mesh),
+          opposites_(half_edges::opposites(mesh)),
+          has_vertex_(mesh.positions.size(), false) {
+        for (u32 half = 0; half < opposites_.size(); ++half)
+            if (opposites_[half] == half_edges::boundary)
+                has_vertex_[half_edges::start(mesh, half)] = has_vertex_[half_edges::end(mesh, half)] = true;
+    }
+
+    /// Whether it contains a point of a triangle.
+    bool contains(u32 triangle, const Vec3& point, double rounded) const {
+        for (u32 half = 3 * triangle; half < 3 * triangle + 3; ++half) {
+            const u32 a = half_edges::start(mesh_, half), b = half_edges::end(mesh_, half);
+            const Vec3 to = point - mesh_.positions[a];
+            if (has_vertex_[a] && to.norm() <= rounded) return true;
+            if (opposites_[half] != half_edges::boundary) continue;
+            const Vec3 along = (mesh_.positions[b] - mesh_.positions[a]).normalized();
+            if ((to - along.dot(to) * along).norm() <= rounded) return true;
+        }
+        return false;
+    }
+
+private:
+    const TriangleMesh& mesh_;
+    Array<u32> opposites_;
+    std::vector<bool> has_vertex_;
+};
 
 }  // namespace
 
@@ -28,6 +61,7 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
     const PatchSurface surface(patches, context.threads());
     const TriangleMesh mesh = tessellate(patches, {subdivision, {}}, context);
     const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
+    const Boundary boundary(mesh);
     const double limit = farthest * surface_box(mesh).diagonal();
     Array<double> distances(points.size());
     for_each_chunk(context.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
@@ -39,7 +73,11 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
             const NearestTriangle nearest = tree.nearest(p, hint);
             hint = nearest.slot;
             if (nearest.squared_distance > limit * limit) continue;
-            if (const auto foot = surface.foot(p, tree.nearest_point(p, hint))) distances[i] = foot->distance;
+            const Vec3 start = tree.nearest_point(p, hint);
+            if (const auto foot = surface.foot(p, start)) distances[i] = foot->distance;
+            // At corners of creases, and between faces without tetrahedra between them.
+            else if (!boundary.contains(nearest.triangle, start, rounding * limit))
+                distances[i] = (surface.is_inside(p) ? -1 : 1) * (p - start).norm();
         }
     });
     PatchDistanceResult result;

@@ -20,7 +20,8 @@ struct PatchDistanceResult {
 
 /// The distance to the nearest point of the surface: of a tessellation with 2 segments per edge the nearest point is
 /// where Newton's method begins (PatchSurface::foot()). Exact to rounding. Where two parts of the surface are equally
-/// near within the error of that tessellation, it may be that of the other one.
+/// near within the error of that tessellation, it may be that of the other one. Near ends of creases, and between faces
+/// without tetrahedra between them, it is the distance to the tessellation.
 ///
 /// Pre:  finite points in the patches' frame. Throws Error if there are no points or tetrahedra, if the patches are not
 ///       complete, or if no point is near the surface.

@@ -4,19 +4,12 @@
 #include <cmath>
 #include <optional>
 
-#include "scanmill/base/error.hpp"
-
 namespace scanmill::tessellation {
 
 namespace {
 
 constexpr double share_along = 2. / 3;  // of max_error, for lines along rows
 constexpr int most_bisections = 60;
-
-[[noreturn]] void throw_incomplete(const EdgeTets& edge) {
-    throw Error("the patches are not complete: tetrahedra beside edge {}–{} are missing or too many", edge.a, edge.b)
-        .hint("'a-patch' makes complete ones");
-}
 
 /// The tetrahedra at an edge and the points of the surface there.
 class EdgeLines {
@@ -50,9 +43,7 @@ public:
         }
         const double other = value(1, share[0]);
         sample.is_on_surface = std::abs(one) <= zero_ && std::abs(other) <= zero_;
-        if (!sample.is_on_surface && !gaps_[0][0]) throw_incomplete(edge_);
         sample.side = side_of(one, other, edge_.combine, zero_);
-        if (!sample.is_on_surface && !gaps_[0][sample.side]) throw_incomplete(edge_);
         return sample;
     }
 
@@ -62,6 +53,8 @@ public:
             lift_on_surface(strip, sample);
         else if (edge_.is_border())
             add(strip, thirds_[0][sample.side]->hit(sample.side, on_edge(0, sample.share[0]), apex(), zero_).point);
+        else if (!gaps_[0][sample.side])
+            lift_open(strip, sample);
         else
             edge_.is_sharp ? lift_crease(strip, sample) : lift_fan(strip, sample);
     }
@@ -144,6 +137,25 @@ private:
         }
     }
 
+    /// A straight line between the points on the two faces, in one segment after the middle column.
+    void lift_open(Strip& strip, Sample& sample) const {
+        sample.is_open = true;
+        std::array<SurfacePoint, 2> points;
+        for (std::size_t of = 0; of < 2; ++of) {
+            const Barycentric base = on_edge(of, sample.share[0]);
+            const u8 side = thirds_[of][1]->side_at(base, zero_);
+            points[of] = thirds_[of][side]->hit(side, base, apex(), zero_).point;
+        }
+        const bool are_one = (points[0].position - points[1].position).norm() <= zero_;
+        add(strip, points[0], are_one && edge_.is_sharp ? points[1].normal : Vec3::Zero());
+        for (unsigned k = 1; k < strip.columns(); ++k) {
+            if (2 * k == strip.fan + 2 && !are_one)
+                add(strip, points[1]);
+            else
+                strip.numbers.push_back(strip.numbers.back());
+        }
+    }
+
     // Creases. From the inside of the first triangle to the inside of the second lead lines from points of the triangle
     // to its apex, lines from the edge to points between the apexes, and lines from points of the second triangle. On
     // this way the function that holds changes from the first triangle's to the second's.
@@ -172,8 +184,8 @@ private:
     }
 
     /// The place where the function changes, between one where the first triangle's holds and one where the second's
-    /// does: the nearest numbers on both sides of it.
-    std::array<Place, 2> change(const Sample& sample) const {
+    /// does: the nearest numbers on both sides of it. Nothing if the crease leaves the tetrahedra beside the edge.
+    std::optional<std::array<Place, 2>> change(const Sample& sample) const {
         Place low{1, 0}, high{1, 1};
         const bool is_whole = is_whole_[0] || is_whole_[1];
         if (found(sample, low).is_second) {
@@ -184,14 +196,13 @@ private:
             high = {2, 1};
         }
         if (low.zone != 1 && (is_whole || found(sample, low).is_second || !found(sample, high).is_second))
-            throw Error("the crease at edge {}–{} leaves the tetrahedra beside it", edge_.a, edge_.b)
-                .hint("'decimate' with a smaller max-error makes shorter sharp edges");
+            return std::nullopt;
         for (int step = 0; step < most_bisections; ++step) {
             const Place middle{low.zone, (low.at + high.at) / 2};
             if (middle.at == low.at || middle.at == high.at) break;
             (found(sample, middle).is_second ? high : low) = middle;
         }
-        return {low, high};
+        return std::array{low, high};
     }
 
     /// The function of one of the two triangles at a point near the crease.
@@ -212,10 +223,14 @@ private:
     }
 
     void lift_crease(Strip& strip, Sample& sample) const {
-        const std::array<Place, 2> change = this->change(sample);
-        const Place& crease = change[0];
+        const auto change = this->change(sample);
+        if (!change) {
+            lift_open(strip, sample);
+            return;
+        }
+        const Place& crease = (*change)[0];
         // Where a plane of the object contains the line, the surface leaps along it: one of the two is on the crease.
-        const std::array<Found, 2> ends{found(sample, change[0]), found(sample, change[1])};
+        const std::array<Found, 2> ends{found(sample, (*change)[0]), found(sample, (*change)[1])};
         const bool take_second =
             distance(sample, crease, ends[1].point.position) < distance(sample, crease, ends[0].point.position);
         SurfacePoint point = ends[take_second].point;
@@ -299,7 +314,10 @@ Errors errors_of(const Strip& strip, const PatchComplex& patches, const EdgeTets
         const u8 side = other > 0 && other < last ? strip.samples[other - 1].side : u8(1);
         // Between points on the edge all columns are one.
         const bool is_flat = is_first_on_surface && (s + 1 == last || strip.samples[s].is_on_surface);
+        // Only the faces' borders are on the surface.
+        const bool is_open = (s > 0 && strip.samples[s - 1].is_open) || (s + 1 < last && strip.samples[s].is_open);
         for (unsigned k = 0; k < (is_flat ? 1 : strip.columns()); ++k) {
+            if (is_open && k > 0 && k + 1 < strip.columns()) continue;
             const bool is_second = 2 * k >= strip.fan && !edge.is_border();
             const auto at = [&](const Vec3& p) { return lines.distance_at(p, is_second, side); };
             const Vec3 &a = position(s, k), &d = position(s + 1, k);
@@ -309,7 +327,7 @@ Errors errors_of(const Strip& strip, const PatchComplex& patches, const EdgeTets
                 errors.along =
                     std::max(errors.along,
                              distance_on_segment(a, d, [&](const Vec3& p) { return lines.distance_at(p, 0, side); }));
-            if (is_flat || k + 1 == strip.columns()) continue;
+            if (is_flat || is_open || k + 1 == strip.columns()) continue;
             const Vec3 &b = position(s, k + 1), &c = position(s + 1, k + 1);
             errors.across = std::max(errors.across, distance_on_segment(a, b, at));
             errors.inside =

@@ -16,6 +16,8 @@ struct Sample {
     std::array<double, 2> share;  ///< of the edge, from a and from b
     u8 side = 1;  ///< where the surface is
     bool is_on_surface = false;  ///< the strip has one point here
+    /// There are no tetrahedra on this side: a straight line leads from face to face.
+    bool is_open = false;
     /// Beside a curved crease that is above one of the triangles: its share of the way to the base point there.
     std::array<double, 2> inset{0, 0};
 };
@@ -60,7 +62,7 @@ double distance_on_segment(const Vec3& a, const Vec3& b, DistanceAt&& distance_a
 }
 
 /// Sets everything but the first vertex. Begins with the strip's segments and fan; with `max_error` they grow up to
-/// `most` until the strip is within it. `zero`: values up to it are 0. Throws Error if tetrahedra are missing.
+/// `most` until the strip is within it. `zero`: values up to it are 0.
 void build(Strip& strip, const PatchComplex& patches, const PatchStructure& structure, const EdgeTets& edge,
            double zero, std::optional<double> max_error, unsigned most);
 

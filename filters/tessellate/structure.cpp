@@ -5,10 +5,13 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/data/mesh.hpp"
+#include "scanmill/geometry/a_patch.hpp"
 
 namespace scanmill::tessellation {
 
 namespace {
+
+constexpr double equal_gradients = 1e-6;
 
 struct HalfEdge {
     Edge edge;
@@ -75,6 +78,18 @@ std::vector<EdgeTets> edges_of(std::vector<TriangleTets>& triangles) {
     return edges;
 }
 
+/// At an end of the edge, of the two triangles' functions.
+bool gradients_differ(const PatchComplex& patches, const PatchStructure& structure, const EdgeTets& edge) {
+    const auto gradient = [&](std::size_t of, u32 vertex) {
+        const TriangleTets& t = structure.triangles[edge.triangles[of]];
+        return PatchCell(patches, t.rows[1][t.count == 3 ? edge.numbers[of] : 0]).gradient(patches.positions[vertex]);
+    };
+    return std::ranges::any_of(std::array{edge.a, edge.b}, [&](u32 v) {
+        const Vec3 one = gradient(0, v), other = gradient(1, v);
+        return (one - other).norm() > equal_gradients * std::max(one.norm(), other.norm());
+    });
+}
+
 }  // namespace
 
 PatchStructure structure_of(const PatchComplex& patches) {
@@ -103,9 +118,8 @@ PatchStructure structure_of(const PatchComplex& patches) {
                 if (row != none) ++(patches.kinds[row] == PatchKind::sharp ? sharp : smooth);
             sides += of_side[0] != none && of_side[1] != none;
         }
-        const bool is_smooth = smooth == 4 && sharp == 0, is_sharp = smooth == 0 && sharp == 2 * sides;
-        if (!is_smooth && !is_sharp) throw_incomplete(edge.triangles[0]);
-        edge.is_sharp = is_sharp;
+        if ((smooth > 0 && sharp > 0) || smooth + sharp != 2 * sides) throw_incomplete(edge.triangles[0]);
+        edge.is_sharp = sharp > 0 || (smooth == 0 && gradients_differ(patches, structure, edge));
     }
     return structure;
 }

@@ -24,10 +24,10 @@ struct EdgeTets {
     u32 a = none, b = none;
     std::array<u32, 2> triangles{none, none};
     std::array<u32, 2> numbers{none, none};  ///< of the edge in its triangles
-    /// By side and triangle. A sharp edge has none on a side where its surface is the segment itself.
+    /// By side and triangle. On a side there may be none.
     std::array<std::array<u32, 2>, 2> rows{{{none, none}, {none, none}}};
-    bool is_sharp = false;
-    Combine combine = Combine::none;  ///< sharp, if it has tetrahedra
+    bool is_sharp = false;  ///< without tetrahedra: the gradients of the triangles' functions differ at its ends
+    Combine combine = Combine::none;
 
     bool is_border() const { return triangles[1] == none; }
 };

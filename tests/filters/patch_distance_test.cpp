@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patch_distance/patch_distance.hpp"
 
-#include "filters/a_patch_cases.hpp"
+#include "filters/a_patch_sharp_cases.hpp"
 #include "tessellate/tessellate.hpp"
 
 namespace scanmill {
@@ -98,6 +98,58 @@ TEST(PatchDistance, OfATorus_IsTheLeastDistanceFoundByBruteForce) {
         EXPECT_EQ(found < 0, surface.is_inside(positions[i]));
     }
     EXPECT_GT(located, 200u);
+}
+
+TEST(PatchDistance, OfACube_IsExactBesideItsEdgesAndCorners) {
+    const PatchComplex patches = patched(sharp_cube()).result.patches;
+    Random random(5);
+    Array<Vec3> positions;
+    for (int i = 0; i < 2000; ++i)
+        positions.emplace_back(random.uniform(-0.09, 1.09), random.uniform(-0.09, 1.09), random.uniform(-0.09, 1.09));
+    PointCloud points;
+    points.positions = positions;
+    Context context;
+    const PatchDistanceResult result = measured(patches, points, context);
+    const Column* column = result.points.columns.find("distance-to-patches");
+    std::size_t located = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const Vec3 beyond = (positions[i] - Vec3::Constant(0.5)).cwiseAbs() - Vec3::Constant(0.5);
+        const double wanted = beyond.maxCoeff() < 0 ? beyond.maxCoeff() : beyond.cwiseMax(0).norm();
+        EXPECT_EQ(std::isnan(column->number(i)), std::abs(wanted) > 0.1 * std::sqrt(3.0)) << wanted;
+        if (std::isnan(column->number(i))) continue;
+        EXPECT_NEAR(column->number(i), wanted, 1e-12);
+        ++located;
+    }
+    EXPECT_GT(located, 1000u);
+}
+
+TEST(PatchDistance, OfARoundRim_IsTheDistanceToTheCircle) {
+    const PatchComplex patches = patched(cylinder(32)).result.patches;
+    Random random(6);
+    Array<Vec3> positions;
+    for (int i = 0; i < 1000; ++i) {
+        const double angle = random.uniform(0, 2 * std::numbers::pi), radius = random.uniform(0.9, 1.15),
+                     z = random.uniform(0.9, 1.15);
+        positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    }
+    PointCloud points;
+    points.positions = positions;
+    Context context;
+    const PatchDistanceResult result = measured(patches, points, context);
+    const Column* column = result.points.columns.find("distance-to-patches");
+    std::size_t worse = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const double out = std::hypot(positions[i].x(), positions[i].y()) - 1, up = positions[i].z() - 1;
+        const double wanted =
+            std::max(out, up) < 0 ? std::max(out, up) : std::hypot(std::max(out, 0.), std::max(up, 0.));
+        const double error = std::abs(column->number(i) - wanted);
+        // Inside, wall and top may be equally near within the error of the first tessellation. Where the way to the
+        // rim's part beside the next edge leaves the tetrahedra, the distance is that to the tessellation.
+        EXPECT_LT(error, wanted < 0 && std::abs(out - up) < 5e-3 ? 5e-3 : 1.2e-3) << out << " " << up;
+        worse += error > 3e-5;
+    }
+    EXPECT_LE(worse, 10u);
+    EXPECT_EQ(result.unlocated, 0u);
 }
 
 TEST(PatchDistance, AboveTheHoleOfAnOpenSurface_ThereIsNone) {

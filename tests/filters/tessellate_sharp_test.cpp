@@ -186,12 +186,16 @@ TEST(TessellateSharp, PatchesReadFromJson_GiveTheSameBits) {
     EXPECT_TRUE(one.face_columns == other.face_columns);
 }
 
-TEST(TessellateSharp, AStraightEdgeWithoutTetrahedraBesideIt_IsTheSegmentItself) {
-    PatchComplex whole = patched(sharp_cube()).result.patches;
+/// The patches without the rows beside edges that are `removed` for their row.
+PatchComplex without_gaps(const PatchComplex& whole, const std::function<bool(u32)>& removed) {
     Array<u32> rows;
+    std::vector<u32> number(whole.tets.size(), PatchComplex::no_partner);
     for (u32 row = 0; row < whole.tets.size(); ++row)
-        if (whole.kinds[row] != PatchKind::sharp) rows.push_back(row);
-    ASSERT_LT(rows.size(), whole.tets.size());
+        if (whole.kinds[row] == PatchKind::face || whole.kinds[row] == PatchKind::continuation || !removed(row)) {
+            number[row] = static_cast<u32>(rows.size());
+            rows.push_back(row);
+        }
+    EXPECT_LT(rows.size(), whole.tets.size());
     PatchComplex part = whole;
     part.tets = gather(whole.tets, rows);
     part.weights = gather(whole.weights, rows);
@@ -200,28 +204,46 @@ TEST(TessellateSharp, AStraightEdgeWithoutTetrahedraBesideIt_IsTheSegmentItself)
     part.triangles = gather(whole.triangles, rows);
     part.edges = gather(whole.edges, rows);
     part.combine = gather(whole.combine, rows);
-    part.partners = Array<u32>(rows.size(), PatchComplex::no_partner);
+    Array<u32> partners;
+    for (const u32 row : rows)
+        partners.push_back(whole.partners[row] == PatchComplex::no_partner ? PatchComplex::no_partner
+                                                                           : number[whole.partners[row]]);
+    part.partners = std::move(partners);
+    return part;
+}
+
+TEST(TessellateSharp, AStraightEdgeWithoutTetrahedraBesideIt_IsTheSegmentItself) {
+    const PatchComplex whole = patched(sharp_cube()).result.patches;
+    const PatchComplex part = without_gaps(whole, [&](u32 row) { return whole.kinds[row] == PatchKind::sharp; });
     const TriangleMesh one = tessellated(whole, 4), other = tessellated(part, 4);
     EXPECT_TRUE(std::ranges::equal(one.positions, other.positions));
     EXPECT_TRUE(std::ranges::equal(one.triangles, other.triangles));
+    EXPECT_TRUE(std::ranges::equal(one.sharp_edges, other.sharp_edges));
     EXPECT_TRUE(one.face_columns == other.face_columns);
 }
 
-TEST(TessellateRefuses, ACurvedSharpEdgeWithoutTetrahedraBesideIt) {
-    PatchComplex whole = patched(cylinder(8)).result.patches;
-    Array<u32> rows;
-    for (u32 row = 0; row < whole.tets.size(); ++row)
-        if (whole.kinds[row] == PatchKind::face || whole.kinds[row] == PatchKind::edge) rows.push_back(row);
-    PatchComplex part = whole;
-    part.tets = gather(whole.tets, rows);
-    part.weights = gather(whole.weights, rows);
-    part.kinds = gather(whole.kinds, rows);
-    part.sides = gather(whole.sides, rows);
-    part.triangles = gather(whole.triangles, rows);
-    part.edges = gather(whole.edges, rows);
-    part.combine = Array<Combine>(rows.size(), Combine::none);
-    part.partners = Array<u32>(rows.size(), PatchComplex::no_partner);
-    const Error error = error_of([&] { tessellated(part, 4); });
+TEST(Tessellate, EdgesWithoutTetrahedraBesideThem_AreClosedByStraightLines) {
+    for (const TriangleMesh& mesh : {exact_sphere(2), exact_torus(12, 6), cylinder(12), plate_with_hole(12)}) {
+        const PatchComplex whole = patched(mesh).result.patches;
+        for (u32 modulus = 1; modulus <= 3; ++modulus)
+            for (const u8 side : {0, 1, 2}) {
+                const PatchComplex part = without_gaps(whole, [&](u32 row) {
+                    return whole.edges[row] % modulus == 0 && (side == 2 || whole.sides[row] == side);
+                });
+                for (const TriangleMesh& result : {tessellated(part, 1), tessellated(part, 3), tessellated(part, 4),
+                                                   tessellated(part, 64, Length(1e-2))}) {
+                    expect_closed(result, mesh);
+                    EXPECT_LT(off_surface(result, whole), 1e-12);
+                }
+            }
+    }
+}
+
+TEST(TessellateRefuses, ASideWithHalfOfItsTetrahedra) {
+    const PatchComplex whole = patched(cylinder(8)).result.patches;
+    u32 first = 0;
+    while (whole.kinds[first] != PatchKind::edge) ++first;
+    const Error error = error_of([&] { tessellated(without_gaps(whole, [&](u32 row) { return row == first; }), 4); });
     EXPECT_THAT(error.sentence(), HasSubstr("not complete"));
     EXPECT_FALSE(error.hint().empty());
 }

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace scanmill {
 
@@ -207,7 +208,7 @@ TriangleTree tree_of(const PatchComplex& patches, unsigned threads) {
 constexpr double outside_by = 1e-9;  // a coordinate of a point on a face may be below 0 by rounding
 constexpr int pieces_per_diagonal = 64, most_steps = 50, most_halvings = 20;
 // Shares of the diagonal.
-constexpr double on_surface = 1e-15, end_of_steps = 1e-13, nearly_end = 1e-7;
+constexpr double on_surface = 1e-15, end_of_steps = 1e-13, nearly_end = 1e-7, near_vertex = 1e-5;
 constexpr double least_slope = 0.1;  // that Newton's method divides by
 constexpr double nearly_normal = 1e-3;  // sine, where the steps get no nearer
 
@@ -420,8 +421,86 @@ std::optional<PatchSurface::Foot> PatchSurface::foot(const Vec3& point, const Ve
         }
         if (is_nearer) continue;
         if (aside.norm() <= nearly_normal * distance) return found;
-        return std::nullopt;
+        // Here two functions meet, or the surface ends.
+        const auto on_crease = foot_on_crease(point, x, here.tet);
+        return on_crease && std::abs(on_crease->distance) <= distance + nearly_end * diagonal ? on_crease
+                                                                                              : std::nullopt;
     }
+}
+
+std::vector<u32> PatchSurface::with_creases_at(const Vec3& point) const {
+    Array<u32> rows;
+    BoundingBox box;
+    box.add(point);
+    tree_.meeting(box, rows);
+    std::ranges::sort(rows);
+    std::vector<u32> found;
+    for (const u32 row : rows)
+        if (patches_.partners[row] != PatchComplex::no_partner && patches_.partners[row] > row &&
+            cell(row).coordinates(point).minCoeff() >= -outside_by)
+            found.push_back(row);
+    return found;
+}
+
+Vec3 PatchSurface::step_on_crease(const Vec3& point, const Vec3& x, u32 tet) const {
+    const PatchCell one = cell(tet), other = cell(patches_.partners[tet]);
+    const Vec3 a = one.gradient(x), b = other.gradient(x), along = a.cross(b);
+    if (!(along.squaredNorm() > 0)) return Vec3::Zero();
+    Eigen::Matrix3d rows;
+    rows << a.transpose(), b.transpose(), along.transpose();
+    return rows.inverse() * Vec3(-one.value(x), -other.value(x), along.dot(point - x));
+}
+
+std::optional<PatchSurface::Foot> PatchSurface::foot_on_crease(const Vec3& point, const Vec3& start, u32 tet) const {
+    if (patches_.partners[tet] == PatchComplex::no_partner) return std::nullopt;
+    const double diagonal = box_.diagonal();
+    Vec3 x = start;
+    const auto found = [&] { return Foot{x, (patches_.combine[tet] == Combine::max ? 1 : -1) * (point - x).norm()}; };
+    double before = std::numeric_limits<double>::infinity(), share = 1;
+    bool was_whole = false;
+    for (int step = 0; step < most_steps; ++step) {
+        Vec3 change = step_on_crease(point, x, tet);
+        if (change.norm() <= end_of_steps * diagonal) return found();
+        // More slowly where steps pass the nearest point: its distance from the centre of curvature is small.
+        if (was_whole && change.norm() >= before) share /= 2;
+        before = change.norm();
+        change *= share;
+        bool has_moved = false;
+        for (int halvings = 0; halvings < most_halvings && !has_moved; ++halvings, change /= 2) {
+            was_whole = halvings == 0;
+            const std::vector<u32> tets = with_creases_at(x + change);
+            if (tets.empty()) continue;
+            x += change;
+            tet = tets.front();
+            has_moved = true;
+        }
+        if (has_moved) continue;
+        // At the end of a crease others may begin.
+        const auto& corners = patches_.tets[tet];
+        const u32 end =
+            *std::ranges::min_element(corners, {}, [&](u32 v) { return (patches_.positions[v] - x).squaredNorm(); });
+        const Vec3& vertex = patches_.positions[end];
+        if ((vertex - x).norm() > near_vertex * diagonal) return std::nullopt;
+        x = vertex;
+        bool goes_on = false;
+        for (const u32 row : with_creases_at(vertex)) {
+            Vec3 next = step_on_crease(point, vertex, row);
+            for (int halvings = 0; halvings < most_halvings && !goes_on; ++halvings, next /= 2) {
+                const Vec3 there = vertex + next;
+                if (cell(row).coordinates(there).minCoeff() < 0 ||
+                    (point - there).norm() >= (point - vertex).norm() - nearly_end * next.norm())
+                    continue;
+                x = there;
+                tet = row;
+                goes_on = true;
+            }
+            if (goes_on) break;
+        }
+        if (!goes_on) return found();
+        was_whole = false;
+        share = 1;
+    }
+    return std::nullopt;
 }
 
 }  // namespace scanmill

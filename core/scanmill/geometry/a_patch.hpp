@@ -103,8 +103,9 @@ public:
     std::optional<Hit> first_hit(const Vec3& from, const Vec3& direction) const;
 
     /// The point of the surface whose distance to `point` is least among its neighbours, by Newton's method along the
-    /// surface from near `start`, always towards `point`. The nearest one of all, if `start` is on the same slope.
-    /// Nothing if `start` is outside the tetrahedra, or the way leads over the boundary of an open surface.
+    /// surface from near `start`, always towards `point`; or along a crease, where that leads there. The nearest one of
+    /// all, if `start` is on the same slope. Nothing if `start` is outside the tetrahedra, or the way leads over the
+    /// boundary of an open surface.
     std::optional<Foot> foot(const Vec3& point, const Vec3& start) const;
     /// From `point` itself: the nearest one, if the point is nearer than the radius of curvature.
     std::optional<Foot> foot(const Vec3& point) const { return foot(point, point); }
@@ -122,6 +123,12 @@ private:
     std::optional<Local> local(const Vec3& point, std::optional<u32> hint) const;
     /// Moves a point onto the surface along gradients.
     bool retract(Vec3& point, Local& here) const;
+    /// The tetrahedra with two functions that contain the point; of partners the lower row.
+    std::vector<u32> with_creases_at(const Vec3& point) const;
+    /// From x to the crease, and along its tangent to the point nearest to `point`.
+    Vec3 step_on_crease(const Vec3& point, const Vec3& x, u32 tet) const;
+    /// The same as foot() along the creases, from one in a tetrahedron.
+    std::optional<Foot> foot_on_crease(const Vec3& point, const Vec3& start, u32 tet) const;
     std::optional<Hit> hit_in(u32 tet, const Vec3& from, const Vec3& direction) const;
 
     const PatchComplex& patches_;

@@ -156,6 +156,76 @@ TEST(PatchSurface, OfASphereInOneTetrahedron_AnswersEveryQuestion) {
     EXPECT_FALSE(surface.foot(Vec3(9, 0, 0))) << "outside the tetrahedron";
 }
 
+/// In one tetrahedron, the larger or smaller of the sphere's function and of 2 z - 1.2, in the partner's own order of
+/// corners. The crease is the circle of radius 0.8 in z = 0.6.
+PatchComplex sphere_and_plane(Combine combine) {
+    PatchComplex patches = one_tet();
+    const std::array<u32, 4> order{3, 1, 0, 2};
+    std::array<Vec3, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) corners[i] = patches.positions[order[i]];
+    patches.tets = {patches.tets[0], order};
+    patches.weights = {patches.weights[0], weights_of(corners, [](const Vec3& a, const Vec3& b, const Vec3& c) {
+                           return 2 * (a.z() + b.z() + c.z()) / 3 - 1.2;
+                       })};
+    patches.kinds = {PatchKind::face, PatchKind::continuation};
+    patches.sides = {1, 1};
+    patches.triangles = {0, 0};
+    patches.edges = {PatchComplex::no_edge, 0};
+    patches.combine = {combine, combine};
+    patches.partners = {1, 0};
+    return patches;
+}
+
+TEST(PatchSurface, OfTwoFunctions_TakesTheLargerAndItsDerivatives) {
+    const PatchComplex patches = sphere_and_plane(Combine::max);
+    const PatchSurface surface(patches);
+    // A ball whose top is cut off. Inside the sphere, above the plane:
+    const Vec3 above(0.1, 0.2, 0.8);
+    EXPECT_EQ(surface.locate(above), 1u);
+    EXPECT_NEAR(*surface.value(above), 0.4, 1e-13);
+    EXPECT_LT((*surface.gradient(above) - Vec3(0, 0, 2)).norm(), 1e-13);
+    EXPECT_LT(surface.hessian(above)->norm(), 1e-12);
+    EXPECT_FALSE(surface.is_inside(above));
+    const Vec3 beside(1.2, 0, 0);
+    EXPECT_EQ(surface.locate(beside), 0u);
+    EXPECT_LT((*surface.gradient(beside) - beside).norm(), 1e-13);
+    EXPECT_TRUE(surface.is_inside(Vec3(0, 0, 0.5)));
+    // From above the plane is hit, not the sphere behind it nor before it; from the side the sphere.
+    const auto down = surface.first_hit(Vec3(0.1, 0.2, 2), Vec3(0, 0, -3));
+    ASSERT_TRUE(down);
+    EXPECT_NEAR(down->point.z(), 0.6, 1e-13);
+    EXPECT_LT((down->gradient - Vec3(0, 0, 2)).norm(), 1e-12);
+    const auto left = surface.first_hit(Vec3(1.5, 0, 0), Vec3(-3, 0, 0));
+    ASSERT_TRUE(left);
+    EXPECT_NEAR(left->point.x(), 1, 1e-13);
+    EXPECT_FALSE(surface.first_hit(Vec3(-1.5, 0, 0.7), Vec3(3, 0, 0))) << "it passes above the plane";
+    // The nearest point is in the plane, on the sphere, or on the crease.
+    EXPECT_NEAR(surface.foot(Vec3(0.3, 0, 0.9))->distance, 0.3, 1e-13);
+    EXPECT_NEAR(surface.foot(Vec3(1.3, 0, 0))->distance, 0.3, 1e-13);
+    const auto on_crease = surface.foot(Vec3(0.9, 0, 0.9));
+    ASSERT_TRUE(on_crease);
+    EXPECT_LT((on_crease->point - Vec3(0.8, 0, 0.6)).norm(), 1e-12);
+    EXPECT_NEAR(on_crease->distance, std::hypot(0.1, 0.3), 1e-12);
+}
+
+TEST(PatchSurface, OfTwoFunctions_TakesTheSmaller) {
+    const PatchComplex patches = sphere_and_plane(Combine::min);
+    const PatchSurface surface(patches);
+    // Everything below the plane, and the top of the ball.
+    EXPECT_TRUE(surface.is_inside(Vec3(1.2, 0, 0)));
+    EXPECT_TRUE(surface.is_inside(Vec3(0.1, 0.2, 0.8)));
+    const auto down = surface.first_hit(Vec3(0.1, 0.2, 2), Vec3(0, 0, -3));
+    ASSERT_TRUE(down);
+    EXPECT_NEAR(down->point.norm(), 1, 1e-13);
+    const auto aside = surface.first_hit(Vec3(0.9, 0.2, 1.2), Vec3(0, 0, -1));
+    ASSERT_TRUE(aside);
+    EXPECT_NEAR(aside->point.z(), 0.6, 1e-13);
+    const auto on_crease = surface.foot(Vec3(0.7, 0, 0.5));
+    ASSERT_TRUE(on_crease);
+    EXPECT_LT((on_crease->point - Vec3(0.8, 0, 0.6)).norm(), 1e-12);
+    EXPECT_NEAR(on_crease->distance, -std::hypot(0.1, 0.1), 1e-12);
+}
+
 TEST(PatchSurface, TheExample_Works) {
     const Answer answer = ask(one_tet(), Vec3(0, 0, 0.5));
     EXPECT_TRUE(answer.is_inside);
