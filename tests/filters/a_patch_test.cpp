@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The construction: interpolation, equal gradients, exact spheres, orders of convergence, counts, signs.
+#include <set>
+
 #include "a_patch/normals.hpp"
 #include "filters/a_patch_cases.hpp"
 
@@ -78,46 +80,55 @@ TEST(APatch, OfTori_TheErrorFallsWithAtLeastTheThirdPower) {
     }
 }
 
-/// The convex hull of random points of the unit sphere: a triple is a triangle if all others are on one side.
-TriangleMesh random_hull(std::size_t count) {
+/// The convex hull of random points of the unit sphere, point by point: each replaces the triangles that it sees.
+TriangleMesh random_hull(std::size_t count, std::uint64_t seed) {
     TriangleMesh mesh;
-    mesh.positions = random_sphere(count, 11).positions;
-    Array<Triangle> triangles;
-    for (u32 a = 0; a < count; ++a)
-        for (u32 b = a + 1; b < count; ++b)
-            for (u32 c = b + 1; c < count; ++c) {
-                const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
-                const Vec3 normal = (q - p).cross(r - p);
-                const double sign = normal.dot(p) > 0 ? 1 : -1;
-                const bool is_face = std::ranges::all_of(mesh.positions, [&](const Vec3& x) {
-                    return &x == &p || &x == &q || &x == &r || sign * normal.dot(x - p) < 0;
-                });
-                if (is_face) triangles.push_back(sign > 0 ? Triangle{a, b, c} : Triangle{a, c, b});
-            }
-    mesh.triangles = std::move(triangles);
+    mesh.positions = random_sphere(count, seed).positions;
+    const auto sees = [&](u32 v, const Triangle& t) {
+        const Vec3& p = mesh.positions[t[0]];
+        return (mesh.positions[t[1]] - p).cross(mesh.positions[t[2]] - p).dot(mesh.positions[v] - p) > 0;
+    };
+    Triangle first{0, 1, 2};
+    if (sees(3, first)) std::swap(first[1], first[2]);
+    const auto& [a, b, c] = first;
+    std::vector<Triangle> triangles{first, {a, c, 3}, {c, b, 3}, {b, a, 3}};
+    for (u32 v = 4; v < count; ++v) {
+        std::set<std::array<u32, 2>> border;
+        std::erase_if(triangles, [&](const Triangle& t) {
+            if (!sees(v, t)) return false;
+            for (std::size_t i = 0; i < 3; ++i)
+                if (border.erase({t[(i + 1) % 3], t[i]}) == 0) border.insert({t[i], t[(i + 1) % 3]});
+            return true;
+        });
+        for (const auto& [from, to] : border) triangles.push_back({from, to, v});
+    }
+    mesh.triangles = Array<Triangle>(triangles.begin(), triangles.end());
     return mesh;
 }
 
-std::vector<Vec3> mesh_vertex_normals(const TriangleMesh& mesh) {
-    const a_patches::Sectors sectors = a_patches::sectors_of(mesh);  // one per vertex
-    const std::vector<Vec3> of_sectors = a_patches::mesh_normals(mesh, sectors);
-    std::vector<Vec3> normals(mesh.positions.size());
-    for (std::size_t s = 0; s < sectors.size(); ++s) normals[sectors.vertex[s]] = of_sectors[s];
-    return normals;
-}
-
 TEST(APatch, HullsOfRandomPoints_WithNeedles_AreSound) {
-    const std::size_t counts[] = {60, 200};
-    const double most[] = {0.15, 1e-2};
-    for (int i = 0; i < 2; ++i) {
-        const TriangleMesh mesh = random_hull(counts[i]);
-        ASSERT_EQ(mesh.triangles.size(), 2 * counts[i] - 4);
-        const PatchRun exact =
-            patched(with_normals(mesh, std::vector<Vec3>(mesh.positions.begin(), mesh.positions.end())));
-        EXPECT_EQ(exact.result.inverted + exact.result.sign_violations + exact.result.bisected, 0u);
-        EXPECT_LT(joints_of(exact.result.patches).gradient, 1e-9);
-        EXPECT_LT(worst_distance(exact.result.patches, sphere_distance), most[i]);
-        EXPECT_LT(patched(with_normals(mesh, mesh_vertex_normals(mesh))).result.c1_jump, 1e-8);
+    // The error depends on the largest triangle: over 15 seeds it was 0.013 to 0.054, 2.1e-3 to 6.1e-3, 3.9e-4 to
+    // 1.8e-3.
+    const std::size_t counts[] = {60, 200, 500};
+    const double most_median[] = {2.5e-2, 3.6e-3, 7.5e-4}, most_least[] = {2e-2, 3e-3, 4.8e-4};
+    for (int i = 0; i < 3; ++i) {
+        std::vector<double> worst;
+        for (std::uint64_t seed = 100; seed < 109; ++seed) {
+            const TriangleMesh mesh = random_hull(counts[i], seed);
+            ASSERT_EQ(mesh.triangles.size(), 2 * counts[i] - 4);
+            const PatchRun exact =
+                patched(with_normals(mesh, std::vector<Vec3>(mesh.positions.begin(), mesh.positions.end())));
+            const auto [value, gradient] = errors_at_vertices(exact.result);
+            EXPECT_LT(value, 1e-13);
+            EXPECT_LT(gradient, 1e-12);
+            EXPECT_EQ(exact.result.inverted + exact.result.sign_violations + exact.result.bisected, 0u);
+            EXPECT_LT(joints_of(exact.result.patches).gradient, 5e-12);
+            worst.push_back(worst_distance(exact.result.patches, sphere_distance));
+            EXPECT_LT(patched(mesh).result.c1_jump, 9e-10);
+        }
+        std::ranges::sort(worst);
+        EXPECT_LT(worst.front(), most_least[i]);
+        EXPECT_LT(worst[worst.size() / 2], most_median[i]);
     }
 }
 
@@ -135,18 +146,19 @@ TEST(APatch, CountsFollowFromTheTriangles) {
 
 TEST(APatch, DisturbedNormals_KeepGradientsEqualAndSignsRight) {
     const TriangleMesh mesh = geodesic_sphere(1, 4);
-    const double degrees[] = {2, 5, 10}, most[] = {1e-2, 2e-2, 4e-2};
-    for (int i = 0; i < 3; ++i) {
-        Random random(5);
-        std::vector<Vec3> normals;
-        for (const Vec3& p : mesh.positions) {
-            const Vec3 side = p.cross(Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
-            normals.push_back(Eigen::AngleAxisd(degrees[i] * std::numbers::pi / 180, side.normalized()) * p);
+    const double degrees[] = {2, 5, 10}, most[] = {4.5e-3, 1.2e-2, 2.4e-2};
+    for (int i = 0; i < 3; ++i)
+        for (std::uint64_t seed = 0; seed < 5; ++seed) {
+            Random random(seed);
+            std::vector<Vec3> normals;
+            for (const Vec3& p : mesh.positions) {
+                const Vec3 side = p.cross(Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+                normals.push_back(Eigen::AngleAxisd(degrees[i] * std::numbers::pi / 180, side.normalized()) * p);
+            }
+            const PatchRun run = patched(with_normals(mesh, normals));
+            expect_sound(run);
+            EXPECT_LT(worst_distance(run.result.patches, sphere_distance), most[i]);
         }
-        const PatchRun run = patched(with_normals(mesh, normals));
-        expect_sound(run);
-        EXPECT_LT(worst_distance(run.result.patches, sphere_distance), most[i]);
-    }
 }
 
 TEST(APatch, WhereNeeded_SplitsNothingOnSpheresAndHalfOfATorus) {
