@@ -7,14 +7,14 @@ using namespace scanmill;
 SCANMILL_FILTER() {
     using P = TessellateParams;
     return Declare<P>("tessellate", 2)
-        .summary("Triangles on the surface of A-patches: watertight, with exact normals.")
+        .summary("Triangles on the surface of A-patches: watertight, with exact normals and creases.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties("Between an edge and the inside of a triangle, the edge's next sample comes first.")
         .not_finite("Patches have finite coordinates.")
         .in<PatchComplex>("patches", "The surface.")
         .out<TriangleMesh>("mesh",
-                           "Triangles with `patch`, the row of the mesh's triangle, and `side`, 1 outside the mesh; "
-                           "vertices with `normal`.")
+                           "Triangles with `patch`, the row of the mesh's triangle, `side`, 1 outside the mesh, and "
+                           "beside creases `corner-normals`; vertices with `normal`; the creases are sharp edges.")
         .param("subdivision", &P::subdivision,
                "Segments per edge of the mesh; with max-error the most, as a power of two.", at_least(1), at_most(1024))
         .param("max-error", &P::max_error,

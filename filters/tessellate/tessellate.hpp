@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 /// Triangles on the zero set of a patch complex, after Bernardini et al. 1997, section 5: watertight, without
-/// T-junctions, with the exact normals.
+/// T-junctions, with the exact normals and with vertices on creases.
 
 #include <functional>
 #include <optional>
@@ -24,14 +24,19 @@ struct TessellateParams {
 
 /// A grid over every triangle of the mesh is lifted to the surface along lines to the apex on its side; the gap beside
 /// an edge is spanned by fans of lines between the two apexes. The samples on an edge depend on the edge alone, so
-/// neighbours fit; one is where the surface crosses the edge.
+/// neighbours fit; one is where the surface crosses the edge. Beside a sharp edge the way from face to face has a
+/// vertex where the function that holds changes from one triangle's to the other's, to rounding: in the gap, or above
+/// one of the triangles, whose grid then begins there. Where the complex has no tetrahedra beside an edge, a straight
+/// line closes the gap between the two faces.
 ///
 /// Vertices: those of the mesh that are used, then edge by edge, then triangle by triangle. Columns: vertex `normal`
-/// (unit, of the gradient); face `patch` (u32, the row of the mesh's triangle) and `side` (u8, 1 where the surface is
-/// outside the mesh or on it).
+/// (unit, of the gradient; on creases the mean of both sides', of the triangles' at their ends; zero where the gradient
+/// is); face `patch` (u32, the row of the mesh's triangle; between edge and crease that whose function holds) and
+/// `side` (u8, 1 where the surface is outside the mesh or on it). With sharp edges: `sharp_edges` along the creases,
+/// and the face column `corner-normals` (9 numbers: three normals, each of the triangle's side).
 ///
 /// With max_error edges get 1, 2, 4, … segments, and triangles as many rows of points between their base point and
-/// their edges, until the triangles are as near to the surface as that: |F| / |grad F| is measured at three points of
+/// their edges, until the triangles are as near to the surface as that: |F| / |grad F| is measured at two points of
 /// each edge and at the centre of each triangle, not bounded. On spheres and tori random points reached 0.99
 /// max_error. A quarter of max_error doubles the segments. Spheres got 7 to 15 times, tori 10 to 40 times as many
 /// triangles as equilateral ones of the best size: the segments are powers of two, and lines to an apex make a small
