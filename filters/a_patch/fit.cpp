@@ -137,7 +137,7 @@ public:
         set_limits();
         find_rows();
         for (std::size_t row = 0; row < weights_.patches.tets.size(); ++row)
-            was_wrong_.push_back(wrong_signs(weights_.patches, row) > 0);
+            wrong_before_.push_back(wrong_signs(weights_.patches, row));
         changes_.assign(hull_.edges.size(), Vector2::Zero());
         const bool has_points = params_.to_points && !points_.empty();
         if (!has_points && params_.fairing == 0) return {std::move(weights_), params_.regularisation};
@@ -361,12 +361,12 @@ private:
         weights_ = make_weights(hull_, curvature_, execution_);
     }
 
-    /// The edges with changes on which violations depend that the default slopes do not have.
+    /// The edges with changes on which violations depend that the default slopes did not have.
     std::vector<bool> wrong_edges() const {
         std::vector<bool> is_wrong(changes_.size(), false);
         const auto add = [&](u32 e) { is_wrong[e] = changes_[e] != Vector2::Zero(); };
-        for (std::size_t row = 0; row < was_wrong_.size(); ++row) {
-            if (was_wrong_[row] || wrong_signs(weights_.patches, row) == 0) continue;
+        for (std::size_t row = 0; row < wrong_before_.size(); ++row) {
+            if (wrong_signs(weights_.patches, row) <= wrong_before_[row]) continue;
             const SlopeDependence dependence(hull_, free_, weights_.patches, row);
             for (std::size_t n = 0; n < dependence.count(); ++n) add(dependence.edge(n));
         }
@@ -401,7 +401,7 @@ private:
     std::vector<Vec3> defaults_;
     std::vector<Limits> limits_;
     std::vector<Row> rows_;
-    std::vector<bool> was_wrong_;
+    std::vector<std::size_t> wrong_before_;
     std::vector<Vector2> changes_;
 };
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// a-patch on scanned models, decimated.
+#include "alpha_solid/alpha_solid.hpp"
 #include "decimate/decimate.hpp"
+#include "delaunay/delaunay.hpp"
 #include "filters/a_patch_cases.hpp"
 #include "scanmill/formats/files.hpp"
+#include "scanmill/geometry/distance/nearest_distances.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
+#include "sculpt/sculpt.hpp"
 #include "support/real_data.hpp"
 #include "tessellate/tessellate.hpp"
 
@@ -39,6 +43,48 @@ TEST_P(APatchReal, DecimatedModel_HasOneClosedSmoothSheet) {
 INSTANTIATE_TEST_SUITE_P(Models, APatchReal,
                          testing::Values("meshes/bunny00.off", "meshes/bear.off", "meshes/eight.off",
                                          "meshes/knot1.off"));
+
+/// The model's mesh; that of a point file is reconstructed.
+TriangleMesh model(const std::filesystem::path& path) {
+    if (path.extension() != ".xyz") return *read_mesh(path);
+    Context context;
+    return sculpt(alpha_solid(delaunay(*read_points(path), {}, context).tets, {}, context).tets, {}, context).mesh;
+}
+
+class APatchRealFit : public testing::TestWithParam<const char*> {};
+
+TEST_P(APatchRealFit, DecimatedModel_IsAtMostHalfAsFarFromThePointsAsItsMesh) {
+    SCANMILL_REAL_SCAN(path, fetched_data, GetParam());
+    const TriangleMesh mesh = model(path);
+    PointCloud points;
+    points.frame = mesh.frame;
+    points.positions = mesh.positions;
+    for (const double share : {0.003, 0.001}) {
+        DecimateParams reduction;
+        reduction.max_error = share * surface_box(mesh).diagonal();
+        Context context;
+        TriangleMesh light = decimate(mesh, nullptr, reduction, context).mesh;
+        light.sharp_edges = {};  // smooth models
+        const TriangleTree tree(light.positions.span(), light.triangles.span(), 2);
+        double squares = 0;
+        for (const double d : nearest_distances(points.positions.span(), tree, 0, context).distances) squares += d * d;
+        const double to_mesh = std::sqrt(squares / static_cast<double>(points.size()));
+        APatchParams params;
+        params.fit = false;
+        const double unfitted = patched(light, params, &points, 2).result.fit->rms;
+        const PatchRun run = patched(light, {}, &points, 2);
+        EXPECT_LT(run.result.fit->rms, unfitted);
+        EXPECT_LT(run.result.fit->rms, 0.5 * to_mesh);
+        EXPECT_LT(run.result.left_out, points.size() / 100);
+        EXPECT_LT(run.result.c1_jump, 1e-9);
+        EXPECT_EQ(run.result.inverted, 0u);
+        const auto [value, gradient] = errors_at_vertices(run.result);
+        EXPECT_LT(value, 1e-13);
+        EXPECT_LT(gradient, 1e-9);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Models, APatchRealFit,
+                         testing::Values("points_3/kitten.xyz", "meshes/bunny00.off", "meshes/bear.off"));
 
 }  // namespace
 }  // namespace scanmill::test
