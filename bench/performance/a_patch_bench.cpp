@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// How the times of a-patch, tessellate and the evaluation of patches grow with the mesh: spheres of 9,680 and 98,000
-/// triangles. Linear time means equal rates.
+/// triangles. Linear time means equal rates. And the time to fit 350,000 points, with and without noise.
 ///
 /// usage: a_patch_bench [rounds = 3] [threads = 1]
 
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "a_patch/a_patch.hpp"
+#include "scanmill/base/random.hpp"
 #include "scanmill/geometry/a_patch.hpp"
 #include "support/shapes.hpp"
 #include "tessellate/tessellate.hpp"
@@ -52,6 +53,22 @@ int main(int argc, char** argv) {
             Execution execution(options);
             fine = tessellate(result.patches, {}, execution);
         });
+        for (const double noise : {0.0, 1e-3}) {
+            constexpr std::size_t count = 350'000;
+            PointCloud points = test::random_sphere(count, 1);
+            Random random(2);
+            Array<Vec3> positions(points.positions.begin(), points.positions.end());
+            for (Vec3& p : positions) p *= 1 + noise * random.uniform(-1, 1);
+            points.positions = std::move(positions);
+            APatchParams params;
+            params.normals = APatchParams::Normals::mesh;
+            const double fit = time_of(rounds, [&] {
+                Context context(options);
+                a_patch(mesh, &points, params, context);
+            });
+            fmt::print("{} points with noise {}: a-patch {:.3f} s, {:.1f} us per point for the fit\n", count, noise,
+                       fit, (fit - build) / count * 1e6);
+        }
         const PatchCell cell(result.patches, 0);
         const Vec3 corner = result.patches.positions[result.patches.tets[0][0]];
         constexpr int points = 1'000'000;

@@ -442,7 +442,7 @@ Weights fit_and_measure(Hull& hull, Weights weights, const PointCloud* points, c
     result.unfairness_after = unfairness(hull, params.curvature);
     context.progress(0.8);
     if (located.points.empty()) return weights;
-    std::vector<double> found = distances(weights.patches, positions, located, context);
+    std::vector<double> found = distances(hull, weights.patches, positions, located, context);
     double squares = 0;
     for (const double d : found) squares += d * d;
     std::ranges::sort(found);

@@ -10,6 +10,7 @@
 #include "a_patch/block_system.hpp"
 #include "a_patch/slope_dependence.hpp"
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill::a_patches {
 
@@ -405,38 +406,6 @@ private:
     std::vector<Vector2> changes_;
 };
 
-/// Of a tetrahedron's two functions the row of the one that is F at a point.
-std::size_t active(const PatchComplex& patches, std::size_t tet, const Vec3& point) {
-    const std::size_t partner = patches.partners[tet];
-    if (partner == PatchComplex::no_partner) return tet;
-    const double one = PatchCell(patches, tet).value(point), other = PatchCell(patches, partner).value(point);
-    return (patches.combine[tet] == Combine::max ? one >= other : one <= other) ? tet : partner;
-}
-
-/// The distance of a point from the surface, by steps to the point where the gradient points to or from it.
-double distance(const PatchComplex& patches, const PatchSurface& surface, const Vec3& point, std::size_t tet) {
-    constexpr int most_steps = 10;
-    constexpr double last = 1e-4;  // step, as a share of the distance
-    constexpr double outside_by = 1e-6;
-    Vec3 x = point;
-    for (int step = 0; step < most_steps; ++step) {
-        // Where there is no other tetrahedron the last one's cubic goes on.
-        if (PatchCell(patches, tet).coordinates(x).minCoeff() < -outside_by) tet = surface.locate(x).value_or(tet);
-        tet = active(patches, tet, x);
-        const PatchCell cell(patches, tet);
-        const Barycentric at = cell.coordinates(x);
-        const double value = patch_value(patches.weights[tet], at);
-        const Vec3 gradient = cell.gradient(at);
-        const double squared = gradient.squaredNorm();
-        if (!(squared > 0)) break;
-        const Vec3 to = point - x;
-        const Vec3 change = to - gradient * ((gradient.dot(to) + value) / squared);
-        x += change;
-        if (change.norm() <= last * (point - x).norm()) break;
-    }
-    return (point - x).norm();
-}
-
 }  // namespace
 
 LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, Execution& execution) {
@@ -445,10 +414,7 @@ LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, 
     std::vector<u32> tets(points.size());
     for_each_chunk(execution.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
         execution.check_cancelled();
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto tet = surface.locate(points[i]);
-            tets[i] = tet ? static_cast<u32>(active(patches, *tet, points[i])) : none;
-        }
+        for (std::size_t i = begin; i < end; ++i) tets[i] = surface.locate(points[i]).value_or(none);
     });
     std::vector<std::size_t> first(patches.tets.size() + 1, 0);
     for (const u32 tet : tets)
@@ -485,15 +451,25 @@ double unfairness(const Hull& hull, Curvature curvature) {
     return sum;
 }
 
-std::vector<double> distances(const PatchComplex& patches, std::span<const Vec3> points, const LocatedPoints& located,
-                              Execution& execution) {
+std::vector<double> distances(const Hull& hull, const PatchComplex& patches, std::span<const Vec3> points,
+                              const LocatedPoints& located, Execution& execution) {
     const PatchSurface surface(patches, execution.threads());
+    const TriangleTree mesh(hull.positions, hull.triangles, execution.threads());
     std::vector<double> result(located.points.size());
     for_each_chunk(execution.threads(), result.size(), chunk, [&](std::size_t begin, std::size_t end) {
         execution.check_cancelled();
+        u32 hint = NearestTriangle::none;
         for (std::size_t i = begin; i < end; ++i) {
             const auto& point = located.points[i];
-            result[i] = distance(patches, surface, points[point.row], point.tet);
+            const Vec3& p = points[point.row];
+            hint = mesh.nearest(p, hint).slot;
+            if (const auto foot = surface.foot(p, mesh.nearest_point(p, hint))) {
+                result[i] = std::abs(foot->distance);
+            } else {
+                // Near the boundary of an open surface.
+                const PatchCell cell = surface.cell(point.tet);
+                result[i] = std::abs(cell.value(p)) / std::max(least_gradient, cell.gradient(p).norm());
+            }
         }
     });
     return result;

@@ -25,7 +25,7 @@ struct LocatedPoints {
     std::size_t left_out = 0;  ///< in no tetrahedron
 };
 
-/// Cost: O(log n) per point, about 3 us.
+/// Cost: O(log n) per point, about 7 us.
 LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, Execution& execution);
 
 struct FitParams {
@@ -63,8 +63,9 @@ FitResult fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvatur
 /// length 1.
 double unfairness(const Hull& hull, Curvature curvature);
 
-/// The distances of the located points from the surface, without sign, in their order: Newton steps to the foot point.
-std::vector<double> distances(const PatchComplex& patches, std::span<const Vec3> points, const LocatedPoints& located,
-                              Execution& execution);
+/// The distances of the located points from the surface, without sign, in their order: to the foot point that is
+/// found from the nearest point of the mesh, or |F| / |grad F| where the way leads over the boundary of an open one.
+std::vector<double> distances(const Hull& hull, const PatchComplex& patches, std::span<const Vec3> points,
+                              const LocatedPoints& located, Execution& execution);
 
 }  // namespace scanmill::a_patches

@@ -212,7 +212,7 @@ TEST(APatchFit, ASurfaceOfOtherSlopes_IsFoundAgainFromItsPoints) {
         }
     EXPECT_GT(before, 1e-3);
     EXPECT_LT(after, 1e-2 * before);
-    EXPECT_LT(rms(distances(weights.patches, points, located, execution)), 1e-7);
+    EXPECT_LT(rms(distances(found, weights.patches, points, located, execution)), 1e-7);
 }
 
 TEST(APatchFit, OfASphere_TheErrorFallsToATenth) {
