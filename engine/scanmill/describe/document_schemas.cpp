@@ -6,6 +6,7 @@
 
 #include "scanmill/data/patches.hpp"
 #include "scanmill/describe/schema_parts.hpp"
+#include "scanmill/kinds/probes.hpp"
 
 namespace scanmill {
 
@@ -57,6 +58,46 @@ Json features_schema() {
                                         {"corners", list_of(vector())}}));
 }
 
+Json probes_schema() {
+    const auto or_null = [](Json schema) -> Json { return {{"anyOf", {std::move(schema), Json{{"type", "null"}}}}}; };
+    const Json angle_or_null = described("Radians; null: not defined.", {{"type", {"number", "null"}}});
+    const Json touch =
+        object({{"touch", count()},
+                {"feature", described("The line that it measures.", count())},
+                {"point", described("The reference point, in world coordinates.", vector())},
+                {"tangent", vector()},
+                {"left-normal", vector()},
+                {"right-normal", vector()},
+                {"interior-angle", angle_or_null},
+                {"assumed", described("Whether the right normal is an assumption.", flag())},
+                {"phi-min", angle_or_null},
+                {"phi-max", angle_or_null},
+                {"phi-known-min", angle_or_null},
+                {"phi-known-max", angle_or_null},
+                {"phi", angle_or_null},
+                {"approach", described("From the part to the probe; null: the touch is not made.", or_null(vector()))},
+                {"start", or_null(vector())},
+                {"centre", described("Of the ball at the contact, as predicted.", or_null(vector()))},
+                {"reason", names(ProbeReason::none, ProbeReason::obstructed)},
+                {"false-share", described("Of the admissible reference points.", {{"type", {"number", "null"}}})},
+                {"contact", names(ProbeContact::none, ProbeContact::missed)},
+                {"contact-distance", {{"type", {"number", "null"}}}},
+                {"order", {{"type", {"integer", "null"}}, {"minimum", 0}}}});
+    const Json move = object({{"type", names(ProbeMoveType::clearance, ProbeMoveType::retract)},
+                              {"touch", described("A row of the touches.", count())},
+                              {"points", described("World coordinates.", list_of(vector()))}});
+    return document("probes", object({{"unit", length_unit_or_null()},
+                                      {"frame", frame()},
+                                      {"radius", number()},
+                                      {"scanner-error", number()},
+                                      {"clearance", number()},
+                                      {"stylus-radius", number()},
+                                      {"stylus-length", number()},
+                                      {"machine-axis", vector()},
+                                      {"touches", list_of(touch)},
+                                      {"moves", list_of(move)}}));
+}
+
 Json transform_schema() {
     const Json pose =
         object({{"scan?", described("The name of the coordinate system, or of the scan, that it starts from.", text())},
@@ -74,9 +115,10 @@ Json metrics_schema() {
                     object({{"unit", length_unit_or_null()}, {"metrics", metrics()}, {"units", map_of(unit())}}));
 }
 
-constexpr std::array<std::pair<std::string_view, Json (*)()>, 4> documents{{{"features", features_schema},
+constexpr std::array<std::pair<std::string_view, Json (*)()>, 5> documents{{{"features", features_schema},
                                                                             {"metrics", metrics_schema},
                                                                             {"patches", patches_schema},
+                                                                            {"probes", probes_schema},
                                                                             {"transform", transform_schema}}};
 
 }  // namespace
