@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "a_patch/checks.hpp"
 #include "a_patch/fit.hpp"
 #include "a_patch/normals.hpp"
 #include "a_patch/refinement.hpp"
+#include "a_patch/repair.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
@@ -25,6 +27,7 @@ constexpr double thinnest = 1e-9;  // height over longest edge of a triangle wit
 constexpr std::size_t most_bisections = 7;  // rounds
 constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
+constexpr double most_open = 0.01;  // share of the edges, without a doubt
 constexpr double least_regularisation = 1e-6;
 
 std::string place(const TriangleMesh& mesh, u32 vertex) {
@@ -94,117 +97,6 @@ MeshTopology require_usable(const TriangleMesh& mesh, const std::vector<bool>& i
 
 // Normals.
 
-std::vector<Vec3> triangle_normals(const TriangleMesh& mesh) {
-    std::vector<Vec3> normals;
-    for (const Triangle& t : mesh.triangles)
-        normals.push_back((mesh.positions[t[1]] - mesh.positions[t[0]])
-                              .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
-                              .normalized());
-    return normals;
-}
-
-bool opposes(const Vec3& normal, std::span<const Vec3> around) {
-    return std::ranges::any_of(around, [&](const Vec3& n) { return !(n.dot(normal) >= least_cosine); });
-}
-
-std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3> of_triangles) {
-    std::vector<Vec3> around;
-    for (const u32 corner : corners) around.push_back(of_triangles[corner / 3]);
-    return around;
-}
-
-void set_normal(PatchMesh& mesh, std::span<const u32> corners, const Vec3& normal) {
-    for (const u32 corner : corners) mesh.normals[corner / 3][corner % 3] = normal;
-}
-
-/// Adds to the sharp edges. Returns how many are new.
-std::size_t add_sharp(TriangleMesh& mesh, std::vector<Edge> edges) {
-    const std::size_t before = mesh.sharp_edges.size();
-    edges.insert(edges.end(), mesh.sharp_edges.begin(), mesh.sharp_edges.end());
-    std::ranges::sort(edges);
-    edges.erase(std::ranges::unique(edges).begin(), edges.end());
-    mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
-    return mesh.sharp_edges.size() - before;
-}
-
-/// The edge within a sector between the triangles whose normals differ most; ties: its vertices.
-std::optional<Edge> most_acute_edge(const TriangleMesh& mesh, const Sectors& sectors, std::span<const u32> corners,
-                                    const Array<u32>& opposites, std::span<const Vec3> of_triangles) {
-    std::optional<std::pair<double, Edge>> best;
-    for (const u32 half : corners) {
-        const u32 other = opposites[half];
-        if (other == half_edges::boundary) continue;
-        const u32 beyond = half_edges::after(other);
-        if (sectors.of_corner[beyond / 3][beyond % 3] != sectors.of_corner[half / 3][half % 3]) continue;
-        const Edge edge = make_edge(half_edges::start(mesh, half), half_edges::end(mesh, half));
-        if (std::ranges::binary_search(mesh.sharp_edges, edge)) continue;
-        const std::pair found(of_triangles[half / 3].dot(of_triangles[other / 3]), edge);
-        if (!best || found < *best) best = found;
-    }
-    return best ? std::optional(best->second) : std::nullopt;
-}
-
-/// Replaces normals that oppose a triangle. Where no direction suits all triangles of a sector, its most acute edges
-/// become sharp, until one does.
-void replace_opposing(PatchMesh& mesh, APatchResult& result) {
-    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
-    const Array<u32> opposites = half_edges::opposites(mesh.mesh);
-    for (;;) {
-        const Sectors sectors = sectors_of(mesh.mesh);
-        const std::vector<std::vector<u32>> corners = corners_of(sectors);
-        std::vector<Vec3> of_mesh;
-        std::vector<Edge> sharp;
-        for (std::size_t s = 0; s < sectors.size(); ++s) {
-            const std::vector<Vec3> around = normals_at(corners[s], of_triangles);
-            const Vec3 normal = mesh.normals[corners[s][0] / 3][corners[s][0] % 3];
-            const bool is_singular = normal == Vec3::Zero();
-            if (!is_singular && !opposes(normal, around)) continue;
-            if (of_mesh.empty()) of_mesh = mesh_normals(mesh.mesh, sectors);
-            const Vec3 better = opposes(of_mesh[s], around) ? most_normal(around) : of_mesh[s];
-            if (opposes(better, around)) {
-                if (const auto edge = most_acute_edge(mesh.mesh, sectors, corners[s], opposites, of_triangles))
-                    sharp.push_back(*edge);
-            } else if (!is_singular) {
-                ++result.replaced_normals;
-                set_normal(mesh, corners[s], better);
-            }
-        }
-        if (sharp.empty()) return;
-        result.creased += add_sharp(mesh.mesh, std::move(sharp));
-    }
-}
-
-/// Gives the corners of the triangles the direction nearest to all their triangles' normals. Returns how many sectors
-/// there are.
-std::size_t turn_normals(PatchMesh& mesh, std::span<const u32> triangles) {
-    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
-    const Sectors sectors = sectors_of(mesh.mesh);
-    const std::vector<std::vector<u32>> corners = corners_of(sectors);
-    std::vector<u32> turned;
-    for (const u32 f : triangles) turned.insert(turned.end(), sectors.of_corner[f].begin(), sectors.of_corner[f].end());
-    std::ranges::sort(turned);
-    turned.erase(std::ranges::unique(turned).begin(), turned.end());
-    for (const u32 s : turned) set_normal(mesh, corners[s], most_normal(normals_at(corners[s], of_triangles)));
-    return turned.size();
-}
-
-/// Makes the surface equal to these triangles.
-void flatten(PatchMesh& mesh, std::span<const u32> triangles, APatchResult& result) {
-    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
-    const Array<u32> opposites = half_edges::opposites(mesh.mesh);
-    std::vector<Edge> sharp;
-    for (const u32 f : triangles) {
-        if (mesh.is_flat[f]) continue;
-        mesh.is_flat[f] = true;
-        ++result.flat;
-        mesh.normals[f].fill(of_triangles[f]);
-        for (u32 half = 3 * f; half < 3 * f + 3; ++half)
-            if (opposites[half] != half_edges::boundary)
-                sharp.push_back(make_edge(half_edges::start(mesh.mesh, half), half_edges::end(mesh.mesh, half)));
-    }
-    result.creased += add_sharp(mesh.mesh, std::move(sharp));
-}
-
 /// Throws if most given normals point inwards.
 void require_outward(std::span<const Vec3> normals, std::span<const Vec3> of_mesh) {
     std::size_t inward = 0, count = 0;
@@ -237,6 +129,16 @@ CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points,
             context.warn(fmt::format("{} no sharp edge separates get their mean",
                                      count_text(given.several, "group of different corner normals that",
                                                 "groups of different corner normals that")));
+        // A corner without a normal is the tip of a cone, unless the triangles are folded there.
+        const std::vector<std::vector<u32>> corners = corners_of(sectors);
+        const std::vector<Vec3> of_triangles = triangle_normals(mesh);
+        for (std::size_t s = 0; s < sectors.size(); ++s) {
+            if (given.normals[s] != Vec3::Zero()) continue;
+            std::vector<Vec3> around;
+            for (const u32 corner : corners[s]) around.push_back(of_triangles[corner / 3]);
+            const Vec3 direction = most_normal(around);
+            if (opposes(direction, around)) given.normals[s] = direction;
+        }
         normals = std::move(given.normals);
     }
     return at_corners(sectors, normals);
@@ -257,10 +159,9 @@ Array<Edge> inner_edges(const TriangleMesh& mesh) {
     return inner;
 }
 
-/// Those with a fault of their own, and those beside the edges.
+/// Those too near to the next sheet, and those beside the edges, ascending.
 std::vector<u32> triangles_at(const Hull& hull, std::span<const u32> edges) {
-    std::vector<u32> triangles = hull.faults.opposed;
-    triangles.insert(triangles.end(), hull.faults.thin.begin(), hull.faults.thin.end());
+    std::vector<u32> triangles = hull.faults.thin;
     for (const u32 e : edges) {
         triangles.push_back(hull.edges[e].first);
         triangles.push_back(hull.edges[e].second);
@@ -270,158 +171,86 @@ std::vector<u32> triangles_at(const Hull& hull, std::span<const u32> edges) {
     return triangles;
 }
 
-std::size_t inverted_tets(const PatchComplex& patches) {
-    std::size_t inverted = 0;
-    for (std::size_t row = 0; row < patches.tets.size(); ++row) {
-        const auto& t = patches.tets[row];
-        const Vec3& o = patches.positions[t[0]];
-        const double volume =
-            (patches.positions[t[1]] - o).cross(patches.positions[t[2]] - o).dot(patches.positions[t[3]] - o);
-        // From the base point corners i, j and the apex turn the other way than from an edge point, and inside the
-        // other way than outside.
-        const bool is_over_face =
-            patches.kinds[row] == PatchKind::face || patches.kinds[row] == PatchKind::continuation;
-        const bool is_positive = is_over_face == (patches.sides[row] == 1);
-        inverted += !((is_positive ? volume : -volume) > 0);
-    }
-    return inverted;
-}
-
-/// Of tetrahedra with one function, and of the functions of triangles.
-std::size_t sign_violations(const PatchComplex& patches) {
-    std::size_t violations = 0;
-    for (std::size_t row = 0; row < patches.tets.size(); ++row) violations += wrong_signs(patches, row);
-    return violations;
-}
-
-/// Tetrahedra with two functions, sampled: whether every line from the mesh to an apex, or to the line between two,
-/// meets the surface once, and whether the own function of a triangle alone sets the surface where it meets the
-/// triangle's other thirds.
-class CreaseCheck {
+/// Repairs the mesh until its hull carries a surface, as far as that is possible; edges where it is not remain open.
+class Construction {
 public:
-    explicit CreaseCheck(const PatchComplex& patches) : patches_(patches) {}
+    Construction(PatchMesh& mesh, const APatchParams& params, Context& context)
+        : mesh_(mesh),
+          params_(params),
+          context_(context) {}
 
-    /// Edges with a violation, ascending, and how many there are in all.
-    std::vector<u32> edges;
-    std::size_t violations = 0;
+    Hull hull;  ///< refers to the mesh
+    Weights weights;
+    Repairs repairs;
 
     void run() {
-        for (u32 row = 0; row < patches_.tets.size(); ++row) {
-            const std::size_t before = violations;
-            if (patches_.kinds[row] == PatchKind::continuation) check_continuation(row);
-            if (patches_.kinds[row] == PatchKind::sharp && patches_.partners[row] > row) check_gap(row);
-            if (violations > before) edges.push_back(patches_.edges[row]);
-        }
-        std::ranges::sort(edges);
-        edges.erase(std::ranges::unique(edges).begin(), edges.end());
+        do {
+            context_.check_cancelled();
+            replace_opposing(mesh_, repairs);
+            hull = make_hull(mesh_, params_.apex_factor, params_.split, context_);
+        } while (repair_hull() || repair_creases());
     }
 
 private:
-    static constexpr int steps = 8, grid = 5;
-    static constexpr double rounding = 1e-12;  // of the largest weight
-
-    double sign_of_side(u32 row) const { return patches_.sides[row] == 1 ? 1 : -1; }
-
-    double largest_weight(u32 row) const {
-        double largest = 0;
-        for (const u32 each : {row, patches_.partners[row]})
-            for (const double weight : patches_.weights[each]) largest = std::max(largest, std::abs(weight));
-        return largest;
-    }
-
-    double value(u32 row, const Barycentric& at) const {
-        const u32 partner = patches_.partners[row];
-        const Barycentric there = patches_.tets[partner] == patches_.tets[row] ? at : Barycentric(at.reverse());
-        const double one = patch_value(patches_.weights[row], at),
-                     other = patch_value(patches_.weights[partner], there);
-        return patches_.combine[row] == Combine::max ? std::max(one, other) : std::min(one, other);
-    }
-
-    /// Whether the function, seen outwards, rises once from below 0 to above 0 on the way; where it begins above, the
-    /// tetrahedron on the other side counts.
-    bool is_single(u32 row, const Barycentric& from, const Barycentric& to) const {
-        const double sign = sign_of_side(row), least = rounding * largest_weight(row);
-        bool is_above = false;
-        for (int step = 0; step <= steps; ++step) {
-            const double t = static_cast<double>(step) / steps, found = sign * value(row, (1 - t) * from + t * to);
-            if (is_above && found < -least) return false;
-            is_above = is_above || found > least;
+    /// Returns whether the mesh has changed.
+    bool repair_hull() {
+        std::vector<u32> smooth;
+        for (const u32 e : hull.faults.inverted)
+            if (!hull.edges[e].is_sharp) smooth.push_back(e);
+        const std::vector<u32> triangles = triangles_at(hull, smooth);
+        if (triangles.empty()) before_.reset();
+        if (triangles.empty() || is_done_) return false;
+        if (!is_turned_) {
+            turn_normals(mesh_, triangles, repairs);
+            is_turned_ = true;
+        } else if (rounds_ < most_bisections && (!before_ || triangles.size() <= 2 * faults_before_)) {
+            if (!before_) {
+                before_ = mesh_;
+                repairs_before_ = repairs;
+                faults_before_ = triangles.size();
+            }
+            repairs.bisected += bisect(mesh_, triangles);
+            ++rounds_;
+        } else {
+            is_done_ = true;
+            if (!before_ || 2 * triangles.size() <= faults_before_) return false;
+            mesh_ = std::move(*before_);  // bisecting did not help
+            repairs = repairs_before_;
         }
-        return is_above;
+        return true;
     }
 
-    void check_gap(u32 row) {
-        for (int s = 1; s < grid; ++s)
-            for (int u = 0; u <= grid; ++u) {
-                const double share = static_cast<double>(s) / grid, across = static_cast<double>(u) / grid;
-                violations += !is_single(row, {0, 1 - share, share, 0}, {across, 0, 0, 1 - across});
-            }
-    }
-
-    void check_continuation(u32 row) {
-        const Barycentric apex(0, 0, 0, 1);
-        for (int i = 0; i <= grid; ++i)
-            for (int j = 0; i + j <= grid; ++j) {
-                if (i == grid || j == grid) continue;
-                violations += !is_single(row, Barycentric(grid - i - j, i, j, 0) / grid, apex);
-            }
-        const u32 own = patches_.partners[row];
-        const double sign = patches_.combine[row] == Combine::max ? 1 : -1, least = rounding * largest_weight(row);
-        for (int corner = 1; corner <= 2; ++corner)
-            for (const double share : {0.0, 0.25, 0.5, 0.75, 0.95}) {
-                Barycentric from(1 - share, 0, 0, 0);
-                from[corner] = share;
-                if (sign_of_side(row) * patch_value(patches_.weights[own], from) > 0) continue;
-                const auto hit = patch_hit(patches_.weights[own], from, apex);
-                violations +=
-                    !hit || sign * patch_value(patches_.weights[row], (1 - *hit) * from + *hit * apex) > least;
-            }
-    }
-
-    const PatchComplex& patches_;
-};
-
-struct SharedFace {
-    std::array<u32, 3> vertices;  // ascending
-    u32 tet;
-    auto operator<=>(const SharedFace&) const = default;
-};
-
-double c1_jump(const PatchComplex& patches, Execution& execution) {
-    static const std::array<Vec3, 3> places{Vec3::Constant(1. / 3), {0.6, 0.3, 0.1}, {0.1, 0.2, 0.7}};
-    std::vector<SharedFace> faces;
-    faces.reserve(4 * patches.tets.size());
-    for (u32 row = 0; row < patches.tets.size(); ++row)
-        for (std::size_t without = 0; without < 4 && patches.kinds[row] != PatchKind::continuation; ++without) {
-            SharedFace face{{}, row};
-            for (std::size_t i = 0, n = 0; i < 4; ++i)
-                if (i != without) face.vertices[n++] = patches.tets[row][i];
-            std::ranges::sort(face.vertices);
-            faces.push_back(face);
+    /// The same. Without a change the weights are final.
+    bool repair_creases() {
+        weights = make_weights(hull, params_.curvature, context_);
+        std::vector<u32> doubtful = doubtful_edges(weights.patches, context_);
+        std::vector<Edge> creases;
+        for (const auto& edges : {doubtful, hull.faults.inverted})
+            for (const u32 e : edges)
+                if (hull.edges[e].is_sharp && !hull.edges[e].is_straight)
+                    creases.push_back(make_edge(hull.edges[e].a, hull.edges[e].b));
+        if (!creases.empty() && !is_aligned_) {
+            is_aligned_ = true;
+            align_normals(mesh_, creases, repairs);
+            return true;
         }
-    std::ranges::sort(faces);
-    execution.check_cancelled();
-    std::vector<double> largest(faces.size() / chunk + 1, 0.0);
-    for_each_chunk(execution.threads(), faces.size(), chunk, [&](std::size_t begin, std::size_t end) {
-        double& jump = largest[begin / chunk];
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::size_t j = i; j > 0 && faces[i].vertices == faces[j - 1].vertices; --j) {
-                const u32 here = faces[j - 1].tet, there = faces[i].tet;
-                const bool is_sharp =
-                    patches.kinds[here] == PatchKind::sharp || patches.kinds[there] == PatchKind::sharp;
-                if (is_sharp && patches.triangles[here] != patches.triangles[there]) continue;
-                const PatchCell one(patches, here), other(patches, there);
-                for (const Vec3& share : places) {
-                    Vec3 point = Vec3::Zero();
-                    for (std::size_t v = 0; v < 3; ++v)
-                        point += share[static_cast<Eigen::Index>(v)] * patches.positions[faces[i].vertices[v]];
-                    const Vec3 a = one.gradient(point), b = other.gradient(point);
-                    jump = std::max(jump, (a - b).norm() / std::max(a.norm(), b.norm()));
-                }
-            }
-    });
-    return std::ranges::max(largest);
-}
+        if (smooth_edges(mesh_, creases, repairs) > 0) return true;
+        while (!doubtful.empty()) {
+            for (const u32 e : doubtful) hull.edges[e].is_filled = {false, false};
+            weights = make_weights(hull, params_.curvature, context_);
+            doubtful = doubtful_edges(weights.patches, context_);
+        }
+        return false;
+    }
+
+    PatchMesh& mesh_;
+    const APatchParams& params_;
+    Context& context_;
+    bool is_turned_ = false, is_aligned_ = false, is_done_ = false;
+    std::size_t rounds_ = 0, faults_before_ = 0;
+    std::optional<PatchMesh> before_;  ///< the first bisection
+    Repairs repairs_before_;
+};
 
 /// Fits the slopes, and measures. `weights` are those of the hull as it is, without violations at creases.
 Weights fit_and_measure(Hull& hull, Weights weights, const PointCloud* points, const APatchParams& params,
@@ -430,11 +259,7 @@ Weights fit_and_measure(Hull& hull, Weights weights, const PointCloud* points, c
     const LocatedPoints located = locate(weights.patches, positions, context);
     result.left_out = located.left_out;
     result.unfairness_before = unfairness(hull, params.curvature);
-    const auto violating_edges = [](const PatchComplex& patches) {
-        CreaseCheck check(patches);
-        check.run();
-        return check.edges;
-    };
+    const auto violating_edges = [&](const PatchComplex& patches) { return doubtful_edges(patches, context); };
     FitResult fitted = fit(hull, std::move(weights), located, params.curvature,
                            {params.fit, params.fairing, params.regularisation}, violating_edges, context);
     weights = std::move(fitted.weights);
@@ -457,16 +282,33 @@ void warn_about(const APatchResult& result, const TriangleMesh& mesh, const Poin
     if (counts.boundary_edges > 0)
         context.warn(fmt::format("the mesh is open: the surface ends at {}",
                                  count_text(counts.boundary_edges, "boundary edge", "boundary edges")));
-    if (result.replaced_normals > 0)
-        context.warn(fmt::format("{} replaced, because tetrahedra are inside out with them, or a triangle opposes them",
-                                 count_text(result.replaced_normals, "normal is", "normals are")));
-    if (result.creased > 0)
-        context.warn(fmt::format("no smooth surface follows the mesh's folds: {} sharp, and {}",
-                                 count_text(result.creased, "edge becomes", "edges become"),
-                                 count_text(result.flat, "triangle remains flat", "triangles remain flat")));
-    if (result.bisected > 0)
+    const Repairs& repairs = result.repairs;
+    if (repairs.replaced > 0)
+        context.warn(
+            fmt::format("{} replaced, because tetrahedra are inside out with them, a triangle opposes them, or a "
+                        "crease leaves its edge",
+                        count_text(repairs.replaced, "normal is", "normals are")));
+    if (repairs.bisected > 0)
         context.warn(fmt::format("{} bisected, because tetrahedra were inside out or too large there",
-                                 count_text(result.bisected, "edge is", "edges are")));
+                                 count_text(repairs.bisected, "edge is", "edges are")));
+    if (repairs.creased > 0)
+        context.warn(fmt::format("{} sharp, because the mesh is folded there",
+                                 count_text(repairs.creased, "edge becomes", "edges become")));
+    if (repairs.smoothed > 0)
+        context.warn(fmt::format("{} smooth, because no crease follows them",
+                                 count_text(repairs.smoothed, "blunt sharp edge becomes", "blunt sharp edges become")));
+    if (result.thin > 0)
+        context.warn(fmt::format("{} too near to the next sheet: tetrahedra of both overlap",
+                                 count_text(result.thin, "triangle is", "triangles are")));
+    if (result.open > 0) {
+        const std::string text =
+            fmt::format("no tetrahedra fit beside {} of {} edges: a straight strip closes the surface there",
+                        result.open, result.edges);
+        if (static_cast<double>(result.open) > most_open * static_cast<double>(result.edges))
+            context.doubt(text);
+        else
+            context.warn(text);
+    }
     if (points && result.left_out == points->size())
         context.warn(points->size() == 0
                          ? "there are no points: the surface is not fitted"
@@ -492,11 +334,13 @@ void report(const APatchResult& result, Context& context) {
     count("inverted", result.inverted);
     context.metric("c1-jump", result.c1_jump, Unit::number);
     count("sign-violations", result.sign_violations);
-    count("refined", result.bisected);
+    count("refined", result.repairs.bisected);
     count("split-faces", result.divided);
     count("raised", result.raised);
-    count("creased-edges", result.creased);
-    count("flat-triangles", result.flat);
+    count("creased-edges", result.repairs.creased);
+    count("smoothed-edges", result.repairs.smoothed);
+    count("open-edges", result.open);
+    count("thin-triangles", result.thin);
     if (result.fit) {
         context.metric("fit-rms", result.fit->rms, Unit::length);
         context.metric("fit-p95", result.fit->p95, Unit::length);
@@ -521,45 +365,27 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     work.mesh.positions = mesh.positions;
     work.mesh.triangles = mesh.triangles;
     work.mesh.sharp_edges = inner_edges(mesh);
-    work.is_flat.resize(mesh.triangles.size(), false);
     TriangleMesh with_columns = work.mesh;
     with_columns.face_columns = mesh.face_columns;
     work.normals = corner_normals(with_columns, points, params, context);
     context.progress(0.2);
 
-    Hull hull;
-    Weights weights;
-    for (std::size_t round = 0;; ++round) {
-        context.check_cancelled();
-        replace_opposing(work, result);
-        hull = make_hull(work, params.apex_factor, params.split, context);
-        std::vector<u32> triangles = triangles_at(hull, hull.faults.inverted);
-        if (triangles.empty()) {
-            weights = make_weights(hull, params.curvature, context);
-            CreaseCheck check(weights.patches);
-            check.run();
-            if (check.edges.empty()) break;
-            triangles = triangles_at(hull, check.edges);
-        }
-        if (round == 0) {
-            result.replaced_normals += turn_normals(work, triangles);
-        } else if (round <= most_bisections) {
-            result.bisected += bisect(work, triangles);
-        } else {
-            const std::size_t before = result.flat;
-            flatten(work, triangles, result);
-            if (result.flat == before) throw Error("no surface fits at {}", place(work.mesh, triangles[0]));
-        }
-    }
+    Construction construction(work, params, context);
+    construction.run();
+    Hull& hull = construction.hull;
+    result.repairs = construction.repairs;
+    result.thin = hull.faults.thin.size();
+    result.open = static_cast<std::size_t>(std::ranges::count(hull.edges, true, &HullEdge::is_open));
+    result.edges = hull.edges.size();
     context.progress(0.5);
-    weights = fit_and_measure(hull, std::move(weights), points, params, result, context);
+    Weights weights = fit_and_measure(hull, std::move(construction.weights), points, params, result, context);
     result.raised = weights.raised;
     result.divided = static_cast<std::size_t>(std::ranges::count(hull.faces, true, &HullFace::is_divided));
     result.patches = std::move(weights.patches);
     result.patches.frame = mesh.frame;
     context.progress(0.9);
     result.inverted = inverted_tets(result.patches);
-    result.sign_violations = sign_violations(result.patches);
+    result.sign_violations = sign_violations(result.patches, context);
     result.c1_jump = c1_jump(result.patches, context);
     result.mesh = std::move(work.mesh);
     Array<double> components;

@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "a_patch/repair.hpp"
 #include "a_patch/weights.hpp"
 #include "scanmill/data/points.hpp"
 #include "scanmill/filter/context.hpp"
@@ -39,12 +40,12 @@ struct APatchResult {
     /// The input's triangles in their rows, some of them cut: the second parts follow, and the new vertices follow the
     /// input's. Its sharp edges, given and made; face column `corner-normals` as used, no other columns.
     TriangleMesh mesh;
-    std::size_t bisected = 0;  ///< edges
+    a_patches::Repairs repairs;
     std::size_t divided = 0;  ///< triangles with three tetrahedra per side
     std::size_t raised = 0;  ///< see Weights::raised
-    std::size_t replaced_normals = 0;  ///< that opposed a triangle, or had tetrahedra inside out
-    std::size_t creased = 0;  ///< edges made sharp
-    std::size_t flat = 0;  ///< triangles that are their own surface
+    std::size_t edges = 0;
+    std::size_t open = 0;  ///< edges that no tetrahedra fill on a side
+    std::size_t thin = 0;  ///< triangles whose tetrahedra overlap those of the next sheet
     std::size_t inverted = 0;  ///< tetrahedra inside out; always 0
     /// The largest difference between the gradients on the two sides of a shared triangle, as a share of the larger
     /// one, at three points each.

@@ -50,6 +50,27 @@ bool are_adjacent(const Triangle& one, const Triangle& other) {
     return std::ranges::any_of(one, [&](u32 v) { return std::ranges::find(other, v) != other.end(); });
 }
 
+/// Whether at an end of a curved crease the segment between the apexes passes under the line where the tangent planes
+/// meet. Then the surface would end there.
+bool passes_under(const Hull& hull, const HullEdge& edge, Side side) {
+    if (!edge.is_sharp || edge.is_straight || edge.is_convex != (side == outside)) return false;
+    const std::array<u32, 2> faces{edge.first, edge.second};
+    const std::array<Vec3, 2> apexes{hull.apex(edge.first, side), hull.apex(edge.second, side)};
+    for (const u32 v : {edge.a, edge.b}) {
+        std::array<std::array<double, 2>, 2> height;  // of apexes over tangent planes: by plane and apex
+        for (std::size_t of = 0; of < 2; ++of) {
+            const Triangle& t = hull.triangles[faces[of]];
+            const auto corner = static_cast<std::size_t>(std::ranges::find(t, v) - t.begin());
+            for (std::size_t i = 0; i < 2; ++i)
+                height[of][i] = sign_of(side) * hull.at_corner(faces[of], corner, apexes[i]);
+        }
+        // Where both are below on a part of the segment, their lines meet below.
+        if (height[0][1] < 0 && height[1][0] < 0 && height[0][0] * height[1][1] <= height[0][1] * height[1][0])
+            return true;
+    }
+    return false;
+}
+
 /// The opening between two apexes across an edge.
 enum class Opening { sound, too_small, too_large };
 
@@ -67,7 +88,7 @@ Opening opening(const Hull& hull, const HullEdge& edge, Side side) {
         return is_above ? Opening::too_small : Opening::too_large;
     }
     if (cosine >= cosine_of_4 * length) return Opening::too_small;
-    return cosine <= cosine_of_172 * length ? Opening::too_large : Opening::sound;
+    return cosine <= cosine_of_172 * length || passes_under(hull, edge, side) ? Opening::too_large : Opening::sound;
 }
 
 class HullBuilder {
@@ -86,8 +107,6 @@ public:
     Hull hull() {
         add_faces();
         add_edges();
-        find_opposed();
-        if (!hull_.faults.empty()) return std::move(hull_);
         if (split_ == Split::where_needed) undivide();
         execution_.check_cancelled();
         set_heights();
@@ -127,8 +146,19 @@ private:
             const Vec3 d = hull_.positions[edge.b] - hull_.positions[edge.a];
             edge.slopes.fill(default_slope(d, of_first[0], of_first[1]));
             if (edge.is_sharp) describe_sharp(edge, of_first, other);
+            set_slope_without_normals(edge);
             hull_.edges.push_back(edge);
         }
+    }
+
+    /// Between two singular vertices the triangles give the slope.
+    void set_slope_without_normals(HullEdge& edge) {
+        const Vec3& first = hull_.faces[edge.first].normal;
+        const Vec3& second = hull_.faces[edge.second == HullEdge::none ? edge.first : edge.second].normal;
+        const bool are_zero = edge.slopes[0] == Vec3::Zero() || edge.slopes[1] == Vec3::Zero();
+        if (are_zero && !edge.is_sharp) edge.slopes.fill((first + second) / 6);
+        if (edge.slopes[0] == Vec3::Zero()) edge.slopes[0] = first / 3;
+        if (edge.slopes[1] == Vec3::Zero()) edge.slopes[1] = second / 3;
     }
 
     void describe_sharp(HullEdge& edge, const std::array<Vec3, 2>& of_first, u32 other) {
@@ -136,11 +166,9 @@ private:
                                             hull_.normals[other / 3][other % 3]};
         const Vec3 d = hull_.positions[edge.b] - hull_.positions[edge.a];
         edge.slopes[1] = default_slope(d, of_second[0], of_second[1]);
-        edge.is_straight = mesh_.is_flat[edge.first] && mesh_.is_flat[edge.second];
-        if (!edge.is_straight)
-            edge.is_straight = std::ranges::all_of(
-                std::array{of_first[0], of_first[1], of_second[0], of_second[1]},
-                [&](const Vec3& n) { return std::abs(n.dot(d)) <= most_cosine_of_straight * d.norm(); });
+        edge.is_straight = std::ranges::all_of(
+            std::array{of_first[0], of_first[1], of_second[0], of_second[1]},
+            [&](const Vec3& n) { return std::abs(n.dot(d)) <= most_cosine_of_straight * d.norm(); });
         // The normals turn apart at a convex edge.
         const double turn = d.dot(of_first[0].cross(of_second[0]) + of_first[1].cross(of_second[1])) / d.norm();
         if (std::abs(turn) > least_turn) {
@@ -149,14 +177,6 @@ private:
             const Vec3& opposite = hull_.positions[hull_.triangles[other / 3][(other + 2) % 3]];
             edge.is_convex = (opposite - hull_.positions[edge.a]).dot(hull_.faces[edge.first].normal) <= 0;
         }
-    }
-
-    void find_opposed() {
-        for (u32 f = 0; f < hull_.faces.size(); ++f)
-            if (std::ranges::any_of(hull_.normals[f], [&](const Vec3& n) {
-                    return n != Vec3::Zero() && !(hull_.faces[f].normal.dot(n) >= least_cosine);
-                }))
-                hull_.faults.opposed.push_back(f);
     }
 
     // Undivided triangles.
@@ -280,7 +300,8 @@ private:
                         if (!are_adjacent(hull_.triangles[f], hull_.triangles[row]))
                             nearest = std::min(nearest, share_until(face.base, reach, row));
                     if (nearest == 1) continue;
-                    face.limit[side] = nearest * face.height[side];
+                    face.limit[side] = std::max(nearest * face.height[side], low_factor * face.least[side]);
+                    face.is_thin = face.is_thin || face.limit[side] > nearest * face.height[side];
                     face.height[side] = face.limit[side];
                 }
         });
@@ -306,19 +327,14 @@ private:
 
     void find_faults() {
         for (u32 f = 0; f < hull_.faces.size(); ++f)
-            if (std::ranges::any_of(both_sides, [&](Side side) {
-                    return hull_.faces[f].height[side] < low_factor * hull_.faces[f].least[side];
-                }))
-                hull_.faults.thin.push_back(f);
-        for (u32 e = 0; e < hull_.edges.size(); ++e)
-            for (const Side side : both_sides) {
-                HullEdge& edge = hull_.edges[e];
-                if (hull_.is_sound(edge, side)) continue;
-                if (edge.is_straight)
-                    edge.is_filled[side] = false;
-                else if (hull_.faults.inverted.empty() || hull_.faults.inverted.back() != e)
-                    hull_.faults.inverted.push_back(e);
-            }
+            if (hull_.faces[f].is_thin) hull_.faults.thin.push_back(f);
+        for (u32 e = 0; e < hull_.edges.size(); ++e) {
+            HullEdge& edge = hull_.edges[e];
+            for (const Side side : both_sides) edge.is_filled[side] = hull_.is_sound(edge, side);
+            if (!edge.is_open()) continue;
+            if (edge.is_sharp) edge.is_filled = {false, false};
+            hull_.faults.inverted.push_back(e);
+        }
     }
 
     /// Lowers apexes that collide across a concave edge, raises those whose connection passes under a convex edge.

@@ -27,6 +27,7 @@ struct HullFace {
     std::array<double, 2> height{};  ///< by Side
     /// By Side: the most that the next sheet of the mesh above the base point allows.
     std::array<double, 2> limit{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    bool is_thin = false;  ///< whether an apex must be higher than `limit` by the next sheet
     std::array<u32, 3> edges{};      ///< edge i goes from corner i to the next
     /// Whether a tetrahedron per side is divided at the base point into three (Clough-Tocher).
     bool is_divided = true;
@@ -47,8 +48,14 @@ struct HullEdge {
     bool is_straight = false;
     /// Sharp: outside is where the larger of the two triangles' functions is positive; else the smaller.
     bool is_convex = true;
-    /// By Side, sharp: whether tetrahedra connect the apexes of its two triangles. Only straight edges need none.
+    /// By Side: whether tetrahedra connect the apexes of its two triangles.
     std::array<bool, 2> is_filled{true, true};
+
+    bool is_smooth() const { return second != none && !is_sharp; }
+    /// Whether the functions continue into the thirds beyond the edge.
+    bool is_continued() const { return is_sharp && !is_straight && is_filled[0] && is_filled[1]; }
+    /// Whether the surfaces of the two triangles may end apart from each other. Straight edges need no tetrahedra.
+    bool is_open() const { return second != none && !is_straight && !(is_filled[0] && is_filled[1]); }
 };
 
 /// Which triangles are divided.
@@ -57,7 +64,7 @@ enum class Split {
     where_needed  ///< where one tetrahedron per side cannot join its neighbours with equal gradients
 };
 
-/// What keeps a hull from carrying a surface; numbers ascend.
+/// Where a hull is not as it should be; numbers ascend.
 struct HullFaults {
     std::vector<u32> opposed;  ///< triangles with a normal at a corner that is more than 84 degrees from their own
     std::vector<u32> thin;  ///< triangles too near to the next sheet
@@ -74,8 +81,6 @@ struct PatchMesh {
     TriangleMesh mesh;  ///< with its sharp edges; no columns
     /// Equal at a vertex in triangles that are connected there without crossing a sharp edge.
     CornerNormals normals;
-    /// By triangle: the surface is the triangle itself. Its edges are sharp, and its own normal is at its corners.
-    std::vector<bool> is_flat;
 };
 
 struct Hull {
@@ -84,7 +89,7 @@ struct Hull {
     std::span<const std::array<Vec3, 3>> normals;  ///< see PatchMesh
     std::vector<HullFace> faces;
     std::vector<HullEdge> edges;
-    HullFaults faults;  ///< with `opposed` there are no heights
+    HullFaults faults;
 
     Vec3 apex(std::size_t face, Side side) const {
         return faces[face].base + sign_of(side) * faces[face].height[side] * faces[face].normal;
@@ -117,8 +122,9 @@ struct Hull {
 inline constexpr double least_cosine = 0.1;
 
 /// `apex_factor`: the apex is so many times as high as it must be, and a bit more; but at most 0.45 of the distance to
-/// the next sheet of the mesh. Triangles with a sharp edge are divided. Pre: an oriented manifold without triangles of
-/// no area. The result refers to `mesh`.
+/// the next sheet of the mesh, unless it must be higher. Triangles with a sharp edge are divided. Pre: an oriented
+/// manifold without triangles of no area, whose normals are within least_cosine of their triangles', or zero. The
+/// result refers to `mesh`.
 Hull make_hull(const PatchMesh& mesh, double apex_factor, Split split, Execution& execution);
 
 }  // namespace scanmill::a_patches

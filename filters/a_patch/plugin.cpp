@@ -59,9 +59,12 @@ SCANMILL_FILTER() {
         .metric("sign-violations", Unit::count, "Weights whose sign allows a second sheet.", smaller_is_better)
         .metric("refined", Unit::count, "Edges bisected because tetrahedra were inside out or too large.")
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
-        .metric("creased-edges", Unit::count, "Edges made sharp, because no smooth surface follows the mesh there.",
+        .metric("creased-edges", Unit::count, "Edges made sharp, because the mesh is folded there.", smaller_is_better)
+        .metric("smoothed-edges", Unit::count, "Blunt sharp edges made smooth, because no crease follows them.",
                 smaller_is_better)
-        .metric("flat-triangles", Unit::count, "Triangles that are their own surface, at folds of the mesh.",
+        .metric("open-edges", Unit::count, "Edges beside which no tetrahedra fit: a straight strip closes the surface.",
+                smaller_is_better)
+        .metric("thin-triangles", Unit::count, "Triangles whose tetrahedra overlap those of the next sheet.",
                 smaller_is_better)
         .metric("raised", Unit::count, "Weights changed so that every line to an apex meets the surface once.")
         .metric("fit-rms", Unit::length, "Root of the mean squared distance of the points from the surface.", headline,

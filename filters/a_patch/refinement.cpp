@@ -114,7 +114,6 @@ std::size_t bisect(PatchMesh& patch_mesh, std::span<const u32> triangles) {
             first_normals[j] = second_normals[i] = new_normals[side];
             cut.push_back(second);
             normals.push_back(second_normals);
-            patch_mesh.is_flat.push_back(false);
         }
     }
     mesh.positions = std::move(positions);

@@ -58,10 +58,11 @@ public:
             execution_.check_cancelled();
             std::size_t raised = 0;
             for (std::size_t e = begin; e < end; ++e)
-                if (is_smooth(static_cast<u32>(e)))
-                    for (const Side side : both_sides) raised += write_edge(e, side);
-                else if (hull_.edges[e].is_sharp)
+                if (hull_.edges[e].is_sharp)
                     write_sharp(e);
+                else
+                    for (const Side side : both_sides)
+                        if (has_edge_point(e, side)) raised += write_edge(e, side);
             raised_ += raised;
         });
         Weights result;
@@ -80,7 +81,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t tets_per_edge = 4, none_of_ends = 2;
+    static constexpr std::size_t tets_per_side = 2, none_of_ends = 2;
 
     /// Vertices: those of the mesh, base points of divided triangles, apexes inside and outside, edge points inside and
     /// outside.
@@ -95,19 +96,18 @@ private:
         }
         first_apex_ = bases;
         first_edge_point_ = first_apex_ + 2 * faces;
-        inner_edge_.resize(hull_.edges.size());
-        std::size_t inner = 0, count = tets_of_faces_;
+        std::size_t points = 0, count = tets_of_faces_;
         for (std::size_t e = 0; e < hull_.edges.size(); ++e) {
             const HullEdge& edge = hull_.edges[e];
-            if (is_smooth(static_cast<u32>(e))) inner_edge_[e] = static_cast<u32>(inner++);
             row_of_edge_.push_back(count);
-            if (is_smooth(static_cast<u32>(e)))
-                count += tets_per_edge;
-            else if (edge.is_sharp)
-                count += 2 * static_cast<std::size_t>(std::ranges::count(edge.is_filled, true)) +
-                         (edge.is_straight ? 0 : tets_per_edge);
+            edge_point_.push_back({});
+            for (const Side side : both_sides) {
+                if (has_edge_point(e, side)) edge_point_[e][side] = static_cast<u32>(points++);
+                if (edge.second != HullEdge::none && edge.is_filled[side]) count += tets_per_side;
+                if (edge.is_continued()) count += tets_per_side;
+            }
         }
-        positions_.resize(first_edge_point_ + 2 * inner);
+        positions_.resize(first_edge_point_ + points);
         std::ranges::copy(hull_.positions, positions_.begin());
         tets_.resize(count);
         weights_.resize(count);
@@ -121,7 +121,7 @@ private:
 
     u32 apex_number(std::size_t f, Side side) const { return static_cast<u32>(first_apex_ + 2 * f + side); }
     u32 edge_point_number(std::size_t e, Side side) const {
-        return static_cast<u32>(first_edge_point_ + 2 * inner_edge_[e] + side);
+        return static_cast<u32>(first_edge_point_ + edge_point_[e][side]);
     }
 
     /// Sets the free weights of a face's side and what follows from them. Returns how many weights were raised.
@@ -140,6 +140,9 @@ private:
             at_apex[i] = hull_.at_corner(f, i, out.apex);
             along_edge[i] = hull_.at_edge(f, i, out.apex);
         }
+        // Without normals at some corners the quadric may be anything.
+        if (std::ranges::find(hull_.normals[f], Vec3(Vec3::Zero())) != hull_.normals[f].end())
+            quadric = sign * std::max(sign * quadric, least_share * face.height[side]);
         for (std::size_t i = 0; i < 3; ++i) free[i] = (quadric + 3 * at_apex[i]) / 3;
         double top = quadric;
 
@@ -155,6 +158,8 @@ private:
         }
 
         std::size_t raised = 0;
+        for (std::size_t v = 0; v < 3; ++v) raised += lift(free[v], least_share * at_apex[v], sign);
+        raised += lift(top, least_share * (free[0] + free[1] + free[2]) / 3, sign);
         for (std::size_t v = 0; v < 3; ++v) {
             Vector4& m = out.m[v];
             m[static_cast<Eigen::Index>(v)] = at_apex[v];
@@ -162,8 +167,10 @@ private:
             m[static_cast<Eigen::Index>(previous(v))] = along_edge[previous(v)];
             m[3] = free[v];
             for (const std::size_t i : {v, previous(v)}) {
-                if (!is_smooth(face.edges[i])) continue;
-                const double wanted = least_share * hull_.at_corner(f, v, out.edge_point[i]);
+                if (!has_edge_point(face.edges[i], side)) continue;
+                const double wanted =
+                    least_share * (hull_.normals[f][v] == Vec3::Zero() ? hull_.at_edge(f, i, out.edge_point[i])
+                                                                       : hull_.at_corner(f, v, out.edge_point[i]));
                 raised += raise(m, out.at_edge_point[i], wanted, sign);
             }
             free[v] = m[3];
@@ -171,8 +178,14 @@ private:
         out.n = {free[0], free[1], free[2], top};
         const double wanted = least_share * (free[0] + free[1] + free[2]) / 3;
         for (std::size_t i = 0; i < 3; ++i)
-            if (is_smooth(face.edges[i])) raised += raise(out.n, out.at_edge_point[i], wanted, sign);
+            if (has_edge_point(face.edges[i], side)) raised += raise(out.n, out.at_edge_point[i], wanted, sign);
         return raised;
+    }
+
+    static std::size_t lift(double& value, double wanted, double sign) {
+        if (sign * value >= sign * wanted) return 0;
+        value = wanted;
+        return 1;
     }
 
     /// Raises (on the inner side: lowers) the value at the apex until the function reaches `wanted` at the point.
@@ -183,7 +196,9 @@ private:
         return 1;
     }
 
-    bool is_smooth(u32 e) const { return hull_.edges[e].second != HullEdge::none && !hull_.edges[e].is_sharp; }
+    bool has_edge_point(std::size_t e, Side side) const {
+        return hull_.edges[e].is_smooth() && hull_.edges[e].is_filled[side];
+    }
 
     Vec3 edge_point(const HullEdge& edge, std::size_t f, Side side) const {
         if (edge.second == HullEdge::none) return hull_.apex(edge.first, side);
@@ -243,6 +258,7 @@ private:
     std::size_t write_edge(std::size_t e, Side side) {
         const HullEdge& edge = hull_.edges[e];
         const double sign = sign_of(side);
+        const std::size_t first = row_of_edge_[e] + (side == outside && has_edge_point(e, inside) ? tets_per_side : 0);
         const std::array<u32, 2> faces{edge.first, edge.second};
         std::array<std::size_t, 2> corner, number;  // of the face: of the edge's a, and of the edge
         for (std::size_t of = 0; of < 2; ++of) {
@@ -278,7 +294,7 @@ private:
             }
         }
         for (std::size_t of = 0; of < 2; ++of) {
-            const std::size_t f = faces[of], row = row_of_edge_[e] + 2 * side + of;
+            const std::size_t f = faces[of], row = first + of;
             // Corners i and j follow the face's own direction, as those of its other tetrahedra do.
             const std::size_t i = of == 0 ? 0 : 1, j = 1 - i;
             tets_[row] = {edge_point_number(e, side), ends[i], ends[j], apex_number(f, side)};
@@ -329,7 +345,7 @@ private:
                 make_partners(row, row + 1, edge);
                 row += 2;
             }
-            if (edge.is_straight) continue;
+            if (!edge.is_continued()) continue;
             for (std::size_t of = 0; of < 2; ++of, ++row) {
                 const std::size_t into = faces[1 - of];
                 const std::size_t whole = first_row_[into] + 3 * side + hull_.number_in(static_cast<u32>(e), into);
@@ -425,7 +441,8 @@ private:
     Execution& execution_;
     std::array<std::vector<FaceSide>, 2> sides_;  // by Side
     std::size_t first_apex_ = 0, first_edge_point_ = 0, tets_of_faces_ = 0;
-    std::vector<u32> base_, inner_edge_;
+    std::vector<u32> base_;
+    std::vector<std::array<u32, 2>> edge_point_;  ///< by edge and Side
     std::vector<std::size_t> first_row_, row_of_edge_;  ///< of a face's and of an edge's tetrahedra
     Array<Vec3> positions_;
     Array<std::array<u32, 4>> tets_;

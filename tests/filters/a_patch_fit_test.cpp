@@ -124,7 +124,6 @@ std::unique_ptr<DefaultPatches> default_patches(const TriangleMesh& mesh, Split 
     auto result = std::make_unique<DefaultPatches>();
     const APatchResult built = patched(mesh, Curvature::distance, split).result;
     result->mesh.mesh = built.mesh;
-    result->mesh.is_flat.resize(built.mesh.triangles.size(), false);
     const Column* normals = built.mesh.face_columns.find("corner-normals");
     for (std::size_t f = 0; f < built.mesh.triangles.size(); ++f) {
         auto& corners = result->mesh.normals.emplace_back();

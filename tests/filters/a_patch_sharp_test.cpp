@@ -6,7 +6,6 @@ namespace scanmill {
 namespace {
 
 using namespace test;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -66,7 +65,7 @@ TEST(APatchSharp, ACube_IsExact) {
         const PatchRun run = patched(mesh);
         expect_sound(run);
         EXPECT_THAT(run.warnings, IsEmpty());
-        EXPECT_EQ(run.result.bisected + run.result.creased + run.result.flat, 0u);
+        EXPECT_EQ(run.result.repairs.bisected + run.result.repairs.creased + run.result.open, 0u);
         const TriangleMesh back = turned(mesh, -angle, Vec3(1, 2, 3));
         const auto distance = [&](const Vec3& p) {
             const Vec3 q = Eigen::AngleAxisd(-angle, Vec3(1, 2, 3).normalized()) * p;
@@ -95,7 +94,7 @@ TEST(APatchSharp, CylindersWithSharpRims_ConvergeWithTheFourthPower) {
     for (int i = 0; i < 3; ++i) {
         const PatchRun run = patched(cylinder(8u << i));
         expect_sound(run);
-        EXPECT_EQ(run.result.bisected + run.result.creased + run.result.flat, 0u);
+        EXPECT_EQ(run.result.repairs.bisected + run.result.repairs.creased + run.result.open, 0u);
         const double worst = worst_distance(run.result.patches, cylinder_distance);
         EXPECT_LT(worst, most[i]);
     }
@@ -113,10 +112,111 @@ TEST(APatchSharp, HolesAndBossesInPlates_HaveRoundRims) {
         EXPECT_LT(of_hole, 3 * most[i]);  // the outer radius is 3
         EXPECT_LT(of_boss, 3 * most[i]);
         for (const PatchRun* run : {&hole, &boss}) {
-            EXPECT_EQ(run->result.bisected + run->result.creased + run->result.flat, 0u);
+            EXPECT_EQ(run->result.repairs.bisected + run->result.repairs.creased + run->result.open, 0u);
             EXPECT_LT(value_jump(run->result.patches), 1.3e-14);
         }
     }
+}
+
+TEST(APatchSharp, WhereNeeded_DividesTrianglesAtSharpEdges) {
+    APatchParams params;
+    params.split = Split::where_needed;
+    const PatchRun run = patched(cylinder(16), params);
+    expect_sound(run);
+    EXPECT_EQ(run.result.divided, run.result.mesh.triangles.size());
+    EXPECT_LT(worst_distance(run.result.patches, cylinder_distance), 2e-4);
+}
+
+TEST(APatchSharp, NormalsOfTheMesh_AreThoseOfTheSectors) {
+    APatchParams params;
+    params.normals = PatchNormals::mesh;
+    const PatchRun run = patched(sharp_cube(), params);
+    expect_sound(run);
+    EXPECT_LT(worst_distance(run.result.patches,
+                             [](const Vec3& p) { return (p - Vec3::Constant(0.5)).cwiseAbs().maxCoeff() - 0.5; }),
+              3e-16);
+}
+
+TEST(APatchSharp, NormalsOfPoints_DoNotMixTheSidesOfAnEdge) {
+    // Points on the faces of the cube; without sectors the normals at its corners would be the diagonals.
+    PointCloud scan;
+    Random random(2);
+    Array<Vec3> points;
+    for (int i = 0; i < 3000; ++i) {
+        Vec3 p(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+        p[i % 3] = i / 3 % 2;
+        points.push_back(p);
+    }
+    scan.positions = std::move(points);
+    APatchParams params;
+    params.normals = PatchNormals::points;
+    params.fit = false;
+    const PatchRun run = patched(sharp_cube(), params, &scan);
+    EXPECT_LT(worst_distance(run.result.patches,
+                             [](const Vec3& p) { return (p - Vec3::Constant(0.5)).cwiseAbs().maxCoeff() - 0.5; }),
+              1e-9);
+}
+
+/// Two cones, base to base, so low that no direction suits both sides of the rim.
+TriangleMesh lens(double height) {
+    Rings rings{{}, 12};
+    const auto rim = rings.ring(1, 0);
+    const u32 top = rings.out.vertex(Vec3(0, 0, height)), bottom = rings.out.vertex(Vec3(0, 0, -height));
+    for (u32 k = 0; k < 12; ++k) {
+        rings.out.triangles.push_back({rim[k], rim[(k + 1) % 12], top});
+        rings.out.triangles.push_back({rim[(k + 1) % 12], rim[k], bottom});
+    }
+    return soup({rings.out.positions.begin(), rings.out.positions.end()},
+                {rings.out.triangles.begin(), rings.out.triangles.end()});
+}
+
+TEST(APatchSharp, AFoldWithoutADirection_BecomesSharp) {
+    const PatchRun run = patched(lens(0.05));
+    EXPECT_EQ(run.result.repairs.creased, 12u);
+    EXPECT_EQ(run.result.mesh.sharp_edges.size(), 12u);
+    EXPECT_THAT(run.warnings, testing::Contains(HasSubstr("12 edges become sharp, because the mesh is folded there")));
+    EXPECT_EQ(run.result.inverted, 0u);
+    EXPECT_EQ(run.result.sign_violations, 0u);
+    EXPECT_GT(for_each_ray(run.result.patches, 5, [](u32, const Vec3&) {}), 100u);
+    EXPECT_EQ(patched(lens(0.5)).result.repairs.creased, 0u) << "the axis suits no vertex of the rim, the outside does";
+}
+
+TEST(APatchSharp, TrianglesFoldedOntoEachOther_ShareASharpEdge) {
+    const PatchRun run = patched(soup({{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 1.1, 1e-3}}, {{0, 1, 2}, {1, 0, 3}}));
+    ASSERT_EQ(run.result.mesh.sharp_edges.size(), 1u);
+    EXPECT_EQ(run.result.mesh.sharp_edges[0], make_edge(0, 1));
+    EXPECT_EQ(run.result.inverted, 0u);
+}
+
+TEST(APatchSharp, ABluntEdgeWhoseCreaseLeavesIt_BecomesSmooth) {
+    // One edge of a sphere, with normals that tear it open across, not along, the edge.
+    TriangleMesh mesh = geodesic_sphere(1, 2);
+    const Triangle first = mesh.triangles[0];
+    mesh.sharp_edges = {make_edge(first[0], first[1])};
+    Array<double> normals;
+    const Vec3 along = (mesh.positions[first[1]] - mesh.positions[first[0]]).normalized();
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
+        for (const u32 v : mesh.triangles[f]) {
+            Vec3 n = mesh.positions[v];
+            if (v == first[0] || v == first[1]) n = (n + 0.3 * along).normalized();
+            normals.insert(normals.end(), n.data(), n.data() + 3);
+        }
+    mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(normals))));
+    const PatchRun run = patched(mesh);
+    EXPECT_EQ(run.result.inverted, 0u);
+    EXPECT_EQ(run.result.sign_violations, 0u);
+    EXPECT_EQ(run.result.repairs.smoothed + run.result.mesh.sharp_edges.size(), 1u);
+}
+
+TEST(APatchSharp, EdgesWithoutRoomForTetrahedra_RemainOpen) {
+    // A slit whose walls touch almost: tetrahedra of one side would be inside out.
+    TriangleMesh mesh = cube();
+    const PatchRun run = patched(with_positions(mesh, [](const Vec3& p) { return Vec3(p.x(), p.y(), 1e-3 * p.z()); }));
+    EXPECT_EQ(run.result.inverted, 0u);
+    EXPECT_EQ(run.result.sign_violations, 0u);
+    EXPECT_EQ(metric_of(run, "open-edges"), static_cast<double>(run.result.open));
+    EXPECT_EQ(metric_of(run, "creased-edges"), static_cast<double>(run.result.repairs.creased));
+    EXPECT_GT(run.result.open + run.result.repairs.creased, 0u);
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ TEST(APatch, HullsOfRandomPoints_WithNeedles_AreSound) {
             const auto [value, gradient] = errors_at_vertices(exact.result);
             EXPECT_LT(value, 1e-13);
             EXPECT_LT(gradient, 1e-12);
-            EXPECT_EQ(exact.result.inverted + exact.result.sign_violations + exact.result.bisected, 0u);
+            EXPECT_EQ(exact.result.inverted + exact.result.sign_violations + exact.result.repairs.bisected, 0u);
             EXPECT_LT(joints_of(exact.result.patches).gradient, 5e-12);
             worst.push_back(worst_distance(exact.result.patches, sphere_distance));
             EXPECT_LT(patched(mesh).result.c1_jump, 9e-10);
@@ -242,7 +242,7 @@ TEST(APatch, ThinWalls_KeepTheSheetsApart) {
     }
     const PatchRun run = patched(soup(positions, triangles));
     expect_sound(run);
-    ASSERT_EQ(run.result.bisected, 0u);
+    ASSERT_EQ(run.result.repairs.bisected, 0u);
     for (u32 tet = 0; tet < run.result.patches.tets.size(); ++tet)
         for (const u32 v : run.result.patches.tets[tet]) {
             const double z = run.result.patches.positions[v].z();
@@ -274,10 +274,10 @@ TEST(APatch, WhereTetrahedraAreInsideOut_EdgesAreBisected) {
         const auto [value, gradient] = errors_at_vertices(run.result);
         EXPECT_LT(value, 1e-13);
         EXPECT_LT(gradient, 1e-10);  // beside needles
-        EXPECT_EQ(metric_of(run, "refined"), static_cast<double>(run.result.bisected));
-        EXPECT_EQ(run.result.mesh.triangles.size(), 576 + 2 * run.result.bisected);
+        EXPECT_EQ(metric_of(run, "refined"), static_cast<double>(run.result.repairs.bisected));
+        EXPECT_EQ(run.result.mesh.triangles.size(), 576 + 2 * run.result.repairs.bisected);
         EXPECT_TRUE(topology(run.result.mesh).closed);
-        bisected += run.result.bisected;
+        bisected += run.result.repairs.bisected;
     }
     EXPECT_GT(bisected, 0u);
 }
@@ -343,7 +343,7 @@ TEST(APatch, ANormalThatOpposesATriangle_IsReplaced) {
     std::vector<Vec3> normals(mesh.positions.begin(), mesh.positions.end());
     normals[7] = -normals[7];
     const PatchRun run = patched(with_normals(mesh, normals), Curvature::mean);
-    EXPECT_EQ(run.result.replaced_normals, 1u);
+    EXPECT_EQ(run.result.repairs.replaced, 1u);
     EXPECT_THAT(run.warnings, ElementsAre(HasSubstr("1 normal is replaced")));
     EXPECT_LT(worst_distance(run.result.patches, sphere_distance), 1e-14);
 }

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "a_patch/checks.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/geometry/a_patch.hpp"
+
+namespace scanmill::a_patches {
+
+namespace {
+
+constexpr std::size_t chunk = 1024;
+
+/// Samples tetrahedra with two functions: whether every line from the mesh to an apex, or to the segment between two,
+/// meets the surface once, and whether a triangle's own function alone sets the surface where the tetrahedron meets the
+/// triangle's other thirds.
+class CreaseCheck {
+public:
+    explicit CreaseCheck(const PatchComplex& patches) : patches_(patches) {}
+
+    /// Of a row and its partner.
+    bool is_sound(u32 row) const {
+        if (patches_.partners[row] == PatchComplex::no_partner || patches_.partners[row] > row) return true;
+        return patches_.kinds[row] == PatchKind::sharp ? is_sound_gap(row) : is_sound_third(row);
+    }
+
+private:
+    static constexpr int steps = 16;
+    static constexpr double rounding = 1e-12;  // of the largest weight
+
+    using Cubic = std::array<double, 4>;
+
+    static double value_of(const Cubic& c, double t) {
+        const double s = 1 - t;
+        return s * s * (s * c[0] + 3 * t * c[1]) + t * t * (3 * s * c[2] + t * c[3]);
+    }
+
+    Cubic along(u32 row, const Barycentric& from, const Barycentric& to) const {
+        const PatchWeights& w = patches_.weights[row];
+        return {patch_blossom(w, from, from, from), patch_blossom(w, from, from, to), patch_blossom(w, from, to, to),
+                patch_blossom(w, to, to, to)};
+    }
+
+    double largest_weight(u32 row) const {
+        double largest = 0;
+        for (const u32 each : {row, patches_.partners[row]})
+            for (const double weight : patches_.weights[each]) largest = std::max(largest, std::abs(weight));
+        return largest;
+    }
+
+    /// Whether the combined function, seen outwards, is above 0 in the end, and never below 0 after it was above.
+    bool is_single(u32 row, const Barycentric& from, const Barycentric& to, double least) const {
+        const u32 partner = patches_.partners[row];
+        const bool is_mirrored = patches_.tets[partner] != patches_.tets[row];
+        const auto there = [&](const Barycentric& at) { return is_mirrored ? Barycentric(at.reverse()) : at; };
+        const Cubic one = along(row, from, to), other = along(partner, there(from), there(to));
+        const double sign = patches_.sides[row] == 1 ? 1 : -1;
+        bool is_above = false;
+        for (int step = 0; step <= steps; ++step) {
+            const double t = static_cast<double>(step) / steps, a = value_of(one, t), b = value_of(other, t);
+            const double found = sign * (patches_.combine[row] == Combine::max ? std::max(a, b) : std::min(a, b));
+            if (is_above && found < -least) return false;
+            is_above = is_above || found > least;
+        }
+        return is_above;
+    }
+
+    bool is_sound_gap(u32 row) const {
+        const double least = rounding * largest_weight(row);
+        if (!is_sound_end(row, 1) || !is_sound_end(row, 2)) return false;
+        for (const double share : {0.02, 0.1, 0.25, 0.4, 0.6, 0.75, 0.9, 0.98})
+            for (const double across : {0.0, 0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9, 1.0})
+                if (!is_single(row, {0, 1 - share, share, 0}, {across, 0, 0, 1 - across}, least)) return false;
+        return true;
+    }
+
+    /// Near an end of a curved edge the function is the tangent planes': its sign must be the side's on the segment
+    /// between the apexes.
+    bool is_sound_end(u32 row, int corner) const {
+        const PatchWeights& w = patches_.weights[row];
+        const PatchWeights& partner = patches_.weights[patches_.partners[row]];
+        const Barycentric end = Barycentric::Unit(corner), mirrored = Barycentric::Unit(3 - corner);
+        const double sign = patches_.sides[row] == 1 ? 1 : -1, least = rounding * largest_weight(row);
+        constexpr int parts = 32;
+        for (int part = 0; part <= parts; ++part) {
+            const double across = static_cast<double>(part) / parts;
+            const Barycentric to(across, 0, 0, 1 - across);
+            const double one = patch_blossom(w, end, end, to),
+                         other = patch_blossom(partner, mirrored, mirrored, to.reverse());
+            if (sign * (patches_.combine[row] == Combine::max ? std::max(one, other) : std::min(one, other)) < -least)
+                return false;
+        }
+        return true;
+    }
+
+    /// Pre: of the row and its partner this one is the continuation.
+    bool is_sound_third(u32 row) const {
+        constexpr int grid = 6;
+        const double least = rounding * largest_weight(row);
+        const Barycentric apex(0, 0, 0, 1);
+        for (int i = 0; i < grid; ++i)
+            for (int j = 0; i + j <= grid && j < grid; ++j)
+                if (!is_single(row, Barycentric(grid - i - j, i, j, 0) / grid, apex, least)) return false;
+        const u32 own = patches_.partners[row];
+        const double side = patches_.sides[row] == 1 ? 1 : -1, sign = patches_.combine[row] == Combine::max ? 1 : -1;
+        for (const int corner : {1, 2})
+            for (const double share : {0.0, 0.25, 0.5, 0.75, 0.95}) {
+                Barycentric from(1 - share, 0, 0, 0);
+                from[corner] = share;
+                if (side * patch_value(patches_.weights[own], from) > 0) continue;  // seen from the other side
+                const auto hit = patch_hit(patches_.weights[own], from, apex);
+                if (!hit || sign * patch_value(patches_.weights[row], (1 - *hit) * from + *hit * apex) > least)
+                    return false;
+            }
+        return true;
+    }
+
+    const PatchComplex& patches_;
+};
+
+struct SharedFace {
+    std::array<u32, 3> vertices;  // ascending
+    u32 tet;
+    auto operator<=>(const SharedFace&) const = default;
+};
+
+}  // namespace
+
+std::size_t inverted_tets(const PatchComplex& patches) {
+    std::size_t inverted = 0;
+    for (std::size_t row = 0; row < patches.tets.size(); ++row) {
+        const auto& t = patches.tets[row];
+        const Vec3& o = patches.positions[t[0]];
+        const double volume =
+            (patches.positions[t[1]] - o).cross(patches.positions[t[2]] - o).dot(patches.positions[t[3]] - o);
+        // From the base point corners i, j and the apex turn the other way than from an edge point, and inside the
+        // other way than outside.
+        const bool is_over_face =
+            patches.kinds[row] == PatchKind::face || patches.kinds[row] == PatchKind::continuation;
+        const bool is_positive = is_over_face == (patches.sides[row] == 1);
+        inverted += !((is_positive ? volume : -volume) > 0);
+    }
+    return inverted;
+}
+
+std::vector<u32> doubtful_edges(const PatchComplex& patches, Execution& execution) {
+    const CreaseCheck check(patches);
+    std::vector<u8> is_doubtful(patches.tets.size());
+    for_each_chunk(execution.threads(), is_doubtful.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
+        for (std::size_t row = begin; row < end; ++row)
+            is_doubtful[row] = patches.edges[row] != PatchComplex::no_edge &&
+                               (wrong_signs(patches, row) > 0 || !check.is_sound(static_cast<u32>(row)));
+    });
+    std::vector<u32> edges;
+    for (std::size_t row = 0; row < is_doubtful.size(); ++row)
+        if (is_doubtful[row]) edges.push_back(patches.edges[row]);
+    std::ranges::sort(edges);
+    edges.erase(std::ranges::unique(edges).begin(), edges.end());
+    return edges;
+}
+
+std::size_t sign_violations(const PatchComplex& patches, Execution& execution) {
+    std::size_t violations = doubtful_edges(patches, execution).size();
+    for (std::size_t row = 0; row < patches.tets.size(); ++row)
+        if (patches.kinds[row] == PatchKind::face) violations += wrong_signs(patches, row);
+    return violations;
+}
+
+double c1_jump(const PatchComplex& patches, Execution& execution) {
+    static const std::array<Vec3, 3> places{Vec3::Constant(1. / 3), {0.6, 0.3, 0.1}, {0.1, 0.2, 0.7}};
+    std::vector<SharedFace> faces;
+    faces.reserve(4 * patches.tets.size());
+    for (u32 row = 0; row < patches.tets.size(); ++row)
+        for (std::size_t without = 0; without < 4 && patches.kinds[row] != PatchKind::continuation; ++without) {
+            SharedFace face{{}, row};
+            for (std::size_t i = 0, n = 0; i < 4; ++i)
+                if (i != without) face.vertices[n++] = patches.tets[row][i];
+            std::ranges::sort(face.vertices);
+            faces.push_back(face);
+        }
+    std::ranges::sort(faces);
+    execution.check_cancelled();
+    std::vector<double> largest(faces.size() / chunk + 1, 0.0);
+    for_each_chunk(execution.threads(), faces.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        double& jump = largest[begin / chunk];
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t j = i; j > 0 && faces[i].vertices == faces[j - 1].vertices; --j) {
+                const u32 here = faces[j - 1].tet, there = faces[i].tet;
+                const bool is_sharp =
+                    patches.kinds[here] == PatchKind::sharp || patches.kinds[there] == PatchKind::sharp;
+                if (is_sharp && patches.triangles[here] != patches.triangles[there]) continue;
+                const PatchCell one(patches, here), other(patches, there);
+                for (const Vec3& share : places) {
+                    Vec3 point = Vec3::Zero();
+                    for (std::size_t v = 0; v < 3; ++v)
+                        point += share[static_cast<Eigen::Index>(v)] * patches.positions[faces[i].vertices[v]];
+                    const Vec3 a = one.gradient(point), b = other.gradient(point);
+                    jump = std::max(jump, (a - b).norm() / std::max(a.norm(), b.norm()));
+                }
+            }
+    });
+    return std::ranges::max(largest);
+}
+
+}  // namespace scanmill::a_patches

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// What holds for patches, computed from the tetrahedra alone.
+
+#include "a_patch/weights.hpp"
+
+namespace scanmill::a_patches {
+
+/// Tetrahedra inside out.
+std::size_t inverted_tets(const PatchComplex& patches);
+
+/// Edges beside which the surface may have several sheets or a gap, ascending: those with a weight of the wrong sign;
+/// of the sharp ones, by samples, those where a line from the mesh to an apex, or to the segment between two, does not
+/// meet the surface once, or where the crease leaves the thirds beside the edge.
+std::vector<u32> doubtful_edges(const PatchComplex& patches, Execution& execution);
+
+/// Doubtful edges, and weights of the wrong sign over triangles.
+std::size_t sign_violations(const PatchComplex& patches, Execution& execution);
+
+/// The largest difference between the gradients on the two sides of a shared triangle, as a share of the larger one, at
+/// three points each; not across sharp edges.
+double c1_jump(const PatchComplex& patches, Execution& execution);
+
+}  // namespace scanmill::a_patches

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "a_patch/repair.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <optional>
+
+#include "a_patch/normals.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
+
+namespace scanmill::a_patches {
+
+namespace {
+
+constexpr double cosine_of_fold = 0.8660254037844386;  // of 30 degrees
+constexpr double least_length = 0.1;  // of a sum or product of unit vectors that gives a direction
+
+std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3> of_triangles) {
+    std::vector<Vec3> around;
+    for (const u32 corner : corners) around.push_back(of_triangles[corner / 3]);
+    return around;
+}
+
+void set_normal(PatchMesh& mesh, std::span<const u32> corners, const Vec3& normal) {
+    for (const u32 corner : corners) mesh.normals[corner / 3][corner % 3] = normal;
+}
+
+/// Adds to the sharp edges. Returns how many are new.
+std::size_t add_sharp(TriangleMesh& mesh, std::vector<Edge> edges) {
+    const std::size_t before = mesh.sharp_edges.size();
+    edges.insert(edges.end(), mesh.sharp_edges.begin(), mesh.sharp_edges.end());
+    std::ranges::sort(edges);
+    edges.erase(std::ranges::unique(edges).begin(), edges.end());
+    mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
+    return mesh.sharp_edges.size() - before;
+}
+
+/// The edge within a sector between the triangles whose normals differ most; ties: its vertices.
+std::optional<Edge> most_acute_edge(const TriangleMesh& mesh, const Sectors& sectors, std::span<const u32> corners,
+                                    const Array<u32>& opposites, std::span<const Vec3> of_triangles) {
+    std::optional<std::pair<double, Edge>> best;
+    for (const u32 half : corners) {
+        const u32 other = opposites[half];
+        if (other == half_edges::boundary) continue;
+        const u32 beyond = half_edges::after(other);
+        if (sectors.of_corner[beyond / 3][beyond % 3] != sectors.of_corner[half / 3][half % 3]) continue;
+        const Edge edge = make_edge(half_edges::start(mesh, half), half_edges::end(mesh, half));
+        if (std::ranges::binary_search(mesh.sharp_edges, edge)) continue;
+        const std::pair found(of_triangles[half / 3].dot(of_triangles[other / 3]), edge);
+        if (!best || found < *best) best = found;
+    }
+    return best ? std::optional(best->second) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Vec3> triangle_normals(const TriangleMesh& mesh) {
+    std::vector<Vec3> normals;
+    for (const Triangle& t : mesh.triangles)
+        normals.push_back((mesh.positions[t[1]] - mesh.positions[t[0]])
+                              .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
+                              .normalized());
+    return normals;
+}
+
+bool opposes(const Vec3& normal, std::span<const Vec3> around) {
+    return std::ranges::any_of(around, [&](const Vec3& n) { return !(n.dot(normal) >= least_cosine); });
+}
+
+void replace_opposing(PatchMesh& mesh, Repairs& repairs) {
+    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+    const Array<u32> opposites = half_edges::opposites(mesh.mesh);
+    for (;;) {
+        const Sectors sectors = sectors_of(mesh.mesh);
+        const std::vector<std::vector<u32>> corners = corners_of(sectors);
+        std::vector<Vec3> of_mesh;
+        std::vector<Edge> sharp;
+        for (std::size_t s = 0; s < sectors.size(); ++s) {
+            const std::vector<Vec3> around = normals_at(corners[s], of_triangles);
+            const Vec3 normal = mesh.normals[corners[s][0] / 3][corners[s][0] % 3];
+            if (normal == Vec3::Zero() || !opposes(normal, around)) continue;
+            if (of_mesh.empty()) of_mesh = mesh_normals(mesh.mesh, sectors);
+            const Vec3 better = opposes(of_mesh[s], around) ? most_normal(around) : of_mesh[s];
+            if (opposes(better, around)) {
+                if (const auto edge = most_acute_edge(mesh.mesh, sectors, corners[s], opposites, of_triangles))
+                    sharp.push_back(*edge);
+            } else {
+                ++repairs.replaced;
+                set_normal(mesh, corners[s], better);
+            }
+        }
+        if (sharp.empty()) return;
+        repairs.creased += add_sharp(mesh.mesh, std::move(sharp));
+    }
+}
+
+void turn_normals(PatchMesh& mesh, std::span<const u32> triangles, Repairs& repairs) {
+    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+    const Sectors sectors = sectors_of(mesh.mesh);
+    const std::vector<std::vector<u32>> corners = corners_of(sectors);
+    std::vector<u32> turned;
+    for (const u32 f : triangles) turned.insert(turned.end(), sectors.of_corner[f].begin(), sectors.of_corner[f].end());
+    std::ranges::sort(turned);
+    turned.erase(std::ranges::unique(turned).begin(), turned.end());
+    for (const u32 s : turned) set_normal(mesh, corners[s], most_normal(normals_at(corners[s], of_triangles)));
+    repairs.replaced += turned.size();
+}
+
+void align_normals(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs) {
+    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+    const Sectors sectors = sectors_of(mesh.mesh);
+    const std::vector<std::vector<u32>> corners = corners_of(sectors);
+    std::vector<int> sharp_at(mesh.mesh.positions.size(), 0);
+    std::vector<bool> is_end(mesh.mesh.positions.size(), false);
+    for (const Edge& edge : mesh.mesh.sharp_edges)
+        for (const u32 v : edge) ++sharp_at[v];
+    for (const Edge& edge : edges)
+        for (const u32 v : edge) is_end[v] = true;
+    for (std::size_t s = 0; s < sectors.size(); ++s) {
+        const u32 v = sectors.vertex[s];
+        Vec3 normal = mesh.normals[corners[s][0] / 3][corners[s][0] % 3];
+        if (!is_end[v] || normal == Vec3::Zero()) continue;
+        std::vector<u32> others;
+        for (const u32 corner : corners[s])
+            for (const u32 other :
+                 {half_edges::end(mesh.mesh, corner), half_edges::start(mesh.mesh, half_edges::before(corner))})
+                if (std::ranges::binary_search(mesh.mesh.sharp_edges, make_edge(v, other)) &&
+                    std::ranges::find(others, other) == others.end())
+                    others.push_back(other);
+        if (others.empty() || others.size() > 2) continue;
+        const auto direction = [&](std::size_t i) -> Vec3 {
+            return (mesh.mesh.positions[others[i]] - mesh.mesh.positions[v]).normalized();
+        };
+        if (others.size() == 2 && sharp_at[v] > 2) {
+            const Vec3 across = direction(0).cross(direction(1));
+            if (across.norm() < least_length) continue;
+            normal = across.dot(normal) < 0 ? Vec3(-across.normalized()) : Vec3(across.normalized());
+        } else {
+            const Vec3 along = others.size() == 1 ? direction(0) : Vec3(direction(0) - direction(1));
+            if (!(along.norm() > least_length)) continue;
+            normal = (normal - along * (along.dot(normal) / along.squaredNorm())).normalized();
+        }
+        if (opposes(normal, normals_at(corners[s], of_triangles))) continue;
+        set_normal(mesh, corners[s], normal);
+        ++repairs.replaced;
+    }
+}
+
+std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs) {
+    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+    const Array<u32> opposites = half_edges::opposites(mesh.mesh);
+    std::vector<Edge> blunt;
+    for (u32 half = 0; half < opposites.size(); ++half) {
+        if (opposites[half] == half_edges::boundary || opposites[half] < half) continue;
+        const Edge edge = make_edge(half_edges::start(mesh.mesh, half), half_edges::end(mesh.mesh, half));
+        if (std::ranges::find(edges, edge) == edges.end()) continue;
+        if (of_triangles[half / 3].dot(of_triangles[opposites[half] / 3]) > cosine_of_fold) blunt.push_back(edge);
+    }
+    if (blunt.empty()) return 0;
+    std::ranges::sort(blunt);
+    std::vector<bool> is_end(mesh.mesh.positions.size(), false);
+    for (const Edge& edge : blunt)
+        for (const u32 v : edge) is_end[v] = true;
+    Array<Edge> sharp;
+    std::ranges::set_difference(mesh.mesh.sharp_edges, blunt, std::back_inserter(sharp));
+    mesh.mesh.sharp_edges = std::move(sharp);
+    const Sectors sectors = sectors_of(mesh.mesh);
+    const std::vector<std::vector<u32>> corners = corners_of(sectors);
+    for (std::size_t s = 0; s < sectors.size(); ++s) {
+        if (!is_end[sectors.vertex[s]]) continue;
+        Vec3 sum = Vec3::Zero();
+        for (const u32 corner : corners[s]) sum += mesh.normals[corner / 3][corner % 3];
+        set_normal(mesh, corners[s], sum.norm() > least_length ? Vec3(sum.normalized()) : sum);
+    }
+    repairs.smoothed += blunt.size();
+    return blunt.size();
+}
+
+}  // namespace scanmill::a_patches

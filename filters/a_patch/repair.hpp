@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Changes normals and sharp edges of a mesh where no hull, or no crease, can follow it.
+
+#include "a_patch/hull.hpp"
+
+namespace scanmill::a_patches {
+
+struct Repairs {
+    std::size_t replaced = 0;  ///< normals
+    std::size_t bisected = 0;  ///< edges
+    std::size_t creased = 0;   ///< edges made sharp
+    std::size_t smoothed = 0;  ///< sharp edges made smooth
+};
+
+std::vector<Vec3> triangle_normals(const TriangleMesh& mesh);
+
+/// Whether the direction is more than 84 degrees from one of the normals.
+bool opposes(const Vec3& direction, std::span<const Vec3> normals);
+
+/// Replaces normals that oppose a triangle, by that of the mesh or the direction nearest to all triangles of the
+/// sector. Where no direction suits all, the sector's most acute edges become sharp, until one does (ties: by their
+/// vertices).
+void replace_opposing(PatchMesh& mesh, Repairs& repairs);
+
+/// Gives the corners of the triangles the direction nearest to all their triangles' normals.
+void turn_normals(PatchMesh& mesh, std::span<const u32> triangles, Repairs& repairs);
+
+/// Turns the normals at the ends of these sharp edges so that creases follow the edges: perpendicular to the chain of
+/// two sharp edges, to a last sharp edge, and at corners to the two edges of every sector, unless a triangle opposes
+/// that.
+void align_normals(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
+
+/// Makes those of the sharp edges smooth whose triangles' normals differ by less than 30 degrees; their ends get the
+/// mean of the normals. Returns how many.
+std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
+
+}  // namespace scanmill::a_patches
