@@ -15,8 +15,7 @@ constexpr int most_bisections = 60;
 class EdgeLines {
 public:
     EdgeLines(const PatchComplex& patches, const PatchStructure& structure, const EdgeTets& edge, double zero)
-        : patches_(patches),
-          edge_(edge),
+        : edge_(edge),
           zero_(zero) {
         for (std::size_t of = 0; of < (edge.is_border() ? 1 : 2); ++of) {
             const TriangleTets& t = structure.triangles[edge.triangles[of]];
@@ -271,7 +270,6 @@ private:
         return {crease.zone, (2 * share - 1) * crease.at};
     }
 
-    const PatchComplex& patches_;
     const EdgeTets& edge_;
     double zero_;
     std::array<bool, 2> is_whole_{};
