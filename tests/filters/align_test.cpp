@@ -107,7 +107,7 @@ TEST(Align, ErrorAtPart_IsTheLargestOfTheBoxsCorners) {
     const auto error = [&](const BoundingBox& box) {
         return *aligned(cloud(plate()), cloud(target), {}, AlignPart{box, ""}).error_at_part;
     };
-    const BoundingBox box{{-20, -10, 0}, {150, 30, 80}};
+    const BoundingBox box{{-150, -30, 0}, {20, 10, 80}};
     double largest = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 at((corner & 1 ? box.high : box.low).x(), (corner & 2 ? box.high : box.low).y(),

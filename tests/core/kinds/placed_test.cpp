@@ -97,6 +97,21 @@ TEST(Placed, Normals_TurnButDoNotMove) {
     EXPECT_EQ(*cloud(value).columns.find("axis"), *columns.find("axis")) << "only columns of directions are rotated";
 }
 
+TEST(Placed, ApproachesAndNormalsOfCorners_TurnLikeNormals) {
+    ColumnTable columns;
+    columns.add(Column("approach", 3, Buffer<double>{1, 0, 0}));
+    columns.add(Column("corner-normals", 9, Buffer<double>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+    columns.add(Column("corner-normals-of-another-shape", 3, Buffer<double>{1, 0, 0}));
+    const Value value = placed(points({{1, 2, 3}}, {}, columns), quarter_turn(Vec3(5, 5, 5)));
+    const auto numbers = [&](const char* name) {
+        const auto values = cloud(value).columns.find(name)->values<double>();
+        return std::vector<double>(values.begin(), values.end());
+    };
+    EXPECT_EQ(numbers("approach"), std::vector<double>({0, 1, 0}));
+    EXPECT_EQ(numbers("corner-normals"), std::vector<double>({0, 1, 0, -1, 0, 0, 0, 0, 1}));
+    EXPECT_EQ(numbers("corner-normals-of-another-shape"), std::vector<double>({1, 0, 0}));
+}
+
 TEST(Placed, NormalsOfIntegers_BecomeDoubles) {
     ColumnTable columns;
     columns.add(normals(Array<std::int8_t>{1, 0, 0}));
