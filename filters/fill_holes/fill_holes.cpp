@@ -3,7 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <unordered_map>
@@ -25,6 +27,8 @@ namespace scanmill {
 namespace {
 
 constexpr double doubtful_share = 0.05;  // of the whole area, filled
+/// With more edges, all triangulations of a loop take too long: 100 have 161,700 triangles, at about 1 µs each.
+constexpr std::size_t most_edges_to_avoid = 100;
 constexpr u32 nobody = ~u32(0);
 
 /// The boundary of a mesh as loops in which no vertex is repeated.
@@ -186,7 +190,7 @@ struct Hole {
     std::vector<Triangle> triangles;
 
     void demote() {
-        if (stage == FillingStage::triangulated)
+        if (stage == FillingStage::avoiding)
             open = true;
         else
             stage = static_cast<FillingStage>(static_cast<int>(stage) - 1);
@@ -194,24 +198,6 @@ struct Hole {
         triangles.clear();
     }
 };
-
-void fill(Hole& hole, const TriangleMesh& mesh, const Boundary& boundary, const Execution& execution) {
-    const Cutout cutout(mesh, boundary, hole.loop);
-    const u32 around = static_cast<u32>(cutout.vertices.size()), vertices = static_cast<u32>(mesh.positions.size());
-    while (!hole.open) {
-        LoopFilling filling = fill_loop(cutout.part, hole.stage, execution);
-        if (filling.triangles.empty()) {
-            hole.demote();
-            continue;
-        }
-        hole.positions = std::move(filling.positions);
-        for (Triangle& triangle : filling.triangles)
-            for (u32& vertex : triangle)
-                vertex = vertex < around ? cutout.vertices[vertex] : vertices + (vertex - around);
-        hole.triangles = std::move(filling.triangles);
-        return;
-    }
-}
 
 /// The mesh with all fillings.
 struct Assembly {
@@ -247,9 +233,11 @@ BoundingBox box_of(const Array<Vec3>& positions, const Triangle& triangle) {
 class Conflicts {
 public:
     Conflicts(const TriangleMesh& mesh, std::span<const Hole> holes, unsigned threads)
-        : vertices_(static_cast<u32>(mesh.positions.size())),
+        : mesh_(mesh),
+          vertices_(static_cast<u32>(mesh.positions.size())),
           count_(static_cast<u32>(mesh.triangles.size())),
-          tree_(mesh.positions.span(), mesh.triangles.span(), threads) {
+          tree_(mesh.positions.span(), mesh.triangles.span(), threads),
+          lowest_(lowest_at_position(mesh.positions.span())) {
         std::vector<bool> is_rim(mesh.positions.size(), false);
         for (const Hole& hole : holes)
             for (const u32 h : hole.loop) is_rim[half_edges::start(mesh, h)] = true;
@@ -263,10 +251,7 @@ public:
     bool resolve(const Assembly& all, std::vector<Hole>& holes, const Execution& execution) const {
         const u32 added = static_cast<u32>(all.owners.size());
         if (added == 0) return false;
-        const Array<u32> lowest = lowest_at_position(all.positions);
-        Array<Triangle> joined(all.triangles.begin(), all.triangles.end());
-        for (Triangle& triangle : joined)
-            for (u32& vertex : triangle) vertex = lowest[vertex];
+        const auto joined_row = [&](u32 row) { return joined(all.triangles[row]); };
         const TriangleTree fillings(all.positions, std::span(all.triangles).subspan(count_), execution.threads());
         std::vector<u32> begin{0};
         for (u32 i = 1; i <= added; ++i)
@@ -281,7 +266,8 @@ public:
                 if ((i & 255) == 0) execution.check_cancelled();
                 const BoundingBox box = box_of(all.positions, all.triangles[count_ + i]);
                 const auto meets = [&](u32 other) {
-                    return other != count_ + i && triangles_intersect(all.positions, joined[count_ + i], joined[other]);
+                    return other != count_ + i &&
+                           triangles_intersect(all.positions, joined_row(count_ + i), joined_row(other));
                 };
                 near.clear();
                 tree_.meeting(box, near);
@@ -311,7 +297,72 @@ public:
         return any;
     }
 
+    /// The triangles of least total area that close the loop, do not intersect the mesh and repeat none of its edges;
+    /// of equal ones those that join the first vertices. Empty if there are none, or too many to try.
+    std::vector<Triangle> least_triangulation(std::span<const u32> loop, const Execution& execution) const {
+        const std::size_t count = loop.size();
+        if (count > most_edges_to_avoid) return {};
+        constexpr double none = std::numeric_limits<double>::infinity();
+        std::vector<double> least(count * count, none);
+        std::vector<std::size_t> third(count * count, 0);
+        const auto vertex = [&](std::size_t i) { return half_edges::start(mesh_, loop[i]); };
+        const auto is_free = [&](std::size_t i, std::size_t j) {
+            return j == i + 1 || (i == 0 && j + 1 == count) || !rim_edges_.contains(key(vertex(i), vertex(j)));
+        };
+        for (std::size_t i = 0; i + 1 < count; ++i) least[i * count + i + 1] = 0;
+        for (std::size_t span = 2; span < count; ++span) {
+            execution.check_cancelled();
+            for (std::size_t i = 0; i + span < count; ++i) {
+                const std::size_t j = i + span;
+                if (!is_free(i, j)) continue;
+                double& best = least[i * count + j];
+                for (std::size_t k = i + 1; k < j; ++k) {
+                    const double parts = least[i * count + k] + least[k * count + j];
+                    if (!(parts < best)) continue;
+                    // The loop has the surface on its left, the filling the other way round.
+                    const Triangle triangle{vertex(j), vertex(k), vertex(i)};
+                    const Vec3 &a = mesh_.positions[triangle[0]], &b = mesh_.positions[triangle[1]],
+                               &c = mesh_.positions[triangle[2]];
+                    const double area = parts + (b - a).cross(c - a).norm();
+                    if (!(area < best) || meets_mesh(triangle)) continue;
+                    best = area;
+                    third[i * count + j] = k;
+                }
+            }
+        }
+        std::vector<Triangle> triangles;
+        if (least[count - 1] == none) return triangles;
+        std::vector<std::array<std::size_t, 2>> sections{{0, count - 1}};
+        while (!sections.empty()) {
+            const auto [i, j] = sections.back();
+            sections.pop_back();
+            if (j == i + 1) continue;
+            const std::size_t k = third[i * count + j];
+            triangles.push_back({vertex(j), vertex(k), vertex(i)});
+            sections.push_back({i, k});
+            sections.push_back({k, j});
+        }
+        return triangles;
+    }
+
 private:
+    /// Vertices of the mesh at one position are one corner.
+    Triangle joined(Triangle triangle) const {
+        for (u32& vertex : triangle)
+            if (vertex < vertices_) vertex = lowest_[vertex];
+        return triangle;
+    }
+
+    bool meets_mesh(const Triangle& triangle) const {
+        BoundingBox box;
+        for (const u32 vertex : triangle) box.add(mesh_.positions[vertex]);
+        Array<u32> near;
+        tree_.meeting(box, near);
+        return std::ranges::any_of(near, [&](u32 row) {
+            return triangles_intersect(mesh_.positions.span(), joined(triangle), joined(mesh_.triangles[row]));
+        });
+    }
+
     static u64 key(u32 a, u32 b) { return u64{std::min(a, b)} << 32 | std::max(a, b); }
     static u32 loser_of(u32 one, u32 other, std::span<const Hole> holes) {
         const std::size_t edges = holes[one].loop.size(), others = holes[other].loop.size();
@@ -343,11 +394,37 @@ private:
         return losers;
     }
 
+    const TriangleMesh& mesh_;
     u32 vertices_, count_;
     TriangleTree tree_;
+    Array<u32> lowest_;
     /// Of the mesh, between vertices of loops.
     std::unordered_set<u64> rim_edges_;
 };
+
+void fill(Hole& hole, const TriangleMesh& mesh, const Boundary& boundary, const Conflicts& conflicts,
+          const Execution& execution) {
+    const Cutout cutout(mesh, boundary, hole.loop);
+    const u32 around = static_cast<u32>(cutout.vertices.size()), vertices = static_cast<u32>(mesh.positions.size());
+    while (!hole.open) {
+        if (hole.stage == FillingStage::avoiding) {
+            hole.triangles = conflicts.least_triangulation(hole.loop, execution);
+            hole.open = hole.triangles.empty();
+            return;
+        }
+        LoopFilling filling = fill_loop(cutout.part, hole.stage, execution);
+        if (filling.triangles.empty()) {
+            hole.demote();
+            continue;
+        }
+        hole.positions = std::move(filling.positions);
+        for (Triangle& triangle : filling.triangles)
+            for (u32& vertex : triangle)
+                vertex = vertex < around ? cutout.vertices[vertex] : vertices + (vertex - around);
+        hole.triangles = std::move(filling.triangles);
+        return;
+    }
+}
 
 /// Where new vertices and triangles take their values from.
 struct Sources {
@@ -535,24 +612,20 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
             ++result.beyond_limits;
     }
 
-    std::atomic<std::size_t> done = 0;
-    const auto fill_all = [&] {
-        for_each_chunk(context.threads(), holes.size(), 1, [&](std::size_t i, std::size_t) {
-            context.check_cancelled();
-            if (!holes[i].open && holes[i].triangles.empty()) fill(holes[i], mesh, boundary, context);
-            context.progress(0.8 * static_cast<double>(++done) / static_cast<double>(holes.size()));
-        });
-    };
-    fill_all();
-    Assembly all(mesh, holes);
+    Assembly all(mesh, {});
     if (!holes.empty()) {
         const Conflicts conflicts(mesh, holes, context.threads());
-        while (conflicts.resolve(all, holes, context)) {
+        std::atomic<std::size_t> done = 0;
+        do {
             context.check_cancelled();
             done = 0;
-            fill_all();
+            for_each_chunk(context.threads(), holes.size(), 1, [&](std::size_t i, std::size_t) {
+                context.check_cancelled();
+                if (!holes[i].open && holes[i].triangles.empty()) fill(holes[i], mesh, boundary, conflicts, context);
+                context.progress(0.8 * static_cast<double>(++done) / static_cast<double>(holes.size()));
+            });
             all = Assembly(mesh, holes);
-        }
+        } while (conflicts.resolve(all, holes, context));
     }
 
     const double diagonal = surface_box(mesh).diagonal();

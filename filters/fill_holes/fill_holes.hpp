@@ -39,24 +39,27 @@ struct FillHolesResult {
 
 /// Fills every boundary loop within the limits, also the outer boundary of an open surface.
 ///
-/// Loops. A loop follows the boundary within one fan of triangles. Where it comes back to a vertex, the part between is
-/// a loop of its own: holes that touch in a vertex are separate holes. Limits include their bounds: a loop of exactly
-/// `max_edges` edges, or exactly `max_length` long, is filled.
+/// Loops. The boundary continues in the same fan of triangles; at a vertex with several fans it continues in the next
+/// one, in order of their half-edges. Where it comes back to a vertex, the part between is a loop of its own. So holes
+/// that touch in a vertex are separate holes. Limits include their bounds: a loop of exactly `max_edges` edges, or
+/// exactly `max_length` long, is filled.
 ///
 /// Filling. CGAL triangulates a loop: among the triangles of the Delaunay tetrahedralisation of its vertices (among all
 /// triangles if these do not suffice and the loop has at most 200 vertices) it minimises the largest angle to
 /// neighbours, then the area. Triangles are then divided until their edges are about as long as those around the loop,
 /// and with `fair` the new vertices are moved to continue the surface with equal tangents. No filling repeats an edge
-/// of the mesh. A filling that intersects the mesh, itself or another filling (see triangles_intersect.hpp; vertices at
-/// one position count as one) is replaced by the one before fairing, then by the one before division. If that
-/// intersects as well the loop stays open; of two fillings that intersect each other, the one with more edges, or the
-/// later one.
+/// of the mesh. A filling that intersects the mesh, itself or another filling (see triangles_intersect.hpp; vertices of
+/// the mesh at one position count as one), or repeats an edge of another filling, is replaced by the one before
+/// fairing, then by the one before division, then, for a loop of at most 100 edges, by the triangles of least total
+/// area among all that do not intersect the mesh. If that is in conflict as well the loop stays open. Of two fillings
+/// in conflict with each other only one is replaced: the one with more edges, or the later one.
 ///
-/// Columns. New vertices and triangles have the values of the loop's vertex nearest to them (of equally near ones the
-/// first along the loop), and of the triangle at the loop's edge that starts there; but the vertex column `normal` is
-/// their normal on the new surface, and the face column `corner-normals` repeats the triangle's own. The face column
-/// `filled` and the vertex column `filled` (uint8) are 1 for new ones; where the input has such a column, its marks
-/// stay. A column `filled` of another type is replaced, with a warning.
+/// Columns. A new vertex has the values of the loop's vertex from which it is reached over the fewest edges (of several
+/// the first along the loop). A new triangle has those of the triangle at the loop's edge that starts at the first such
+/// vertex of its corners. But the vertex column `normal` is
+/// the vertex's normal on the new surface, and the face column `corner-normals` repeats the triangle's own. The face
+/// column `filled` and the vertex column `filled` (uint8) are 1 for new ones; where the input has such a column, its
+/// marks stay. A column `filled` of another type is replaced, with a warning.
 ///
 /// Pre:  at least one triangle; finite vertices; at most two triangles at an edge, oriented consistently; no triangle
 ///       with a repeated vertex. Throws Error naming the first offender otherwise, and for parameters out of range.

@@ -21,8 +21,9 @@ struct LoopSurroundings {
     u32 loop = 0;
 };
 
-/// How far a filling is worked out.
-enum class FillingStage { triangulated, refined, faired };
+/// How far a filling is worked out. `avoiding`: the triangles of least area that do not intersect the mesh, see
+/// fill_holes.cpp.
+enum class FillingStage { avoiding, triangulated, refined, faired };
 
 struct LoopFilling {
     /// Inside the loop.
@@ -32,8 +33,8 @@ struct LoopFilling {
     std::vector<Triangle> triangles;
 };
 
-/// Pre: every vertex of the surroundings has one cycle of triangles and gaps. Throws Cancelled. If fairing fails, the
-/// filling is empty.
+/// Pre: every vertex of the surroundings has one cycle of triangles and gaps; stage is not `avoiding`. Throws
+/// Cancelled. If fairing fails, the filling is empty.
 LoopFilling fill_loop(const LoopSurroundings& surroundings, FillingStage stage, const Execution& execution);
 
 }  // namespace scanmill

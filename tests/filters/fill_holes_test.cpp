@@ -217,6 +217,31 @@ TEST(FillHoles, ARimThatCrossesItself_GetsNoFillingThatIntersects) {
     EXPECT_EQ(intersecting_fillings(mesh, result.mesh), 0u);
 }
 
+TEST(FillHoles, AnObstacleInTheHole_IsAvoided) {
+    // A tub whose rim rises and falls: a lid bends down along one diagonal, or up along the other. A speck pierces one
+    // of them, so only the other is a filling.
+    for (const double height : {0.0, 1.0}) {
+        const TriangleMesh tub = soup(
+            {{0, 0, 0}, {2, 0, 1}, {2, 2, 0}, {0, 2, 1}, {0, 0, -3}, {2, 0, -3}, {2, 2, -3}, {0, 2, -3}}, {{4, 7, 6},
+                                                                                                           {4, 6, 5},
+                                                                                                           {4, 5, 1},
+                                                                                                           {4, 1, 0},
+                                                                                                           {5, 6, 2},
+                                                                                                           {5, 2, 1},
+                                                                                                           {6, 7, 3},
+                                                                                                           {6, 3, 2},
+                                                                                                           {7, 4, 0},
+                                                                                                           {7, 0, 3}});
+        const TriangleMesh speck =
+            soup({{1, 1, height - 0.05}, {1.02, 1, height + 0.05}, {1, 1.02, height + 0.05}}, {{0, 1, 2}});
+        const TriangleMesh mesh = both(tub, speck);
+        const Filled result = filled(mesh);
+        EXPECT_EQ(result.filled, 1u) << height;
+        EXPECT_EQ(result.failed, 1u) << "the speck's own outline";
+        expect_laws(mesh, result);
+    }
+}
+
 TEST(FillHoles, TwoHolesOfAThinPlate_DoNotFillThroughEachOther) {
     // A sphere with two opposite caps removed: fair fillings of a tube may meet, plainer ones do not.
     const TriangleMesh whole = geodesic_sphere(1, 12);
