@@ -29,9 +29,9 @@ const std::vector<Sample> samples{
     {"pts/ok/pdal_autzen.pts", 10, "intensity colour", {636125.879990, 848971.060013, 428.050003}},
     {"pts/ok/pdal_site_56_8.pts", 8, "intensity", {6728.512429, 35.903329, -14.709473}},
     {"pts/ok/pdal_test.pts", 19, "intensity colour", {-19.501053, -24.533554, -1.533951}},
-    {"ptx/ok/pdal_1.2-with-color.ptx", 1065, "intensity colour", {637342.85, 853240.32, 423.92}},
-    {"ptx/ok/pdal_multiple-and-transform.ptx", 8, "intensity scan", {636699.38, 848991.01, 425.39}},
-    {"ptx/ok/pdal_no-color.ptx", 15, "intensity", {635795.24, 849310.43, 426.61}},
+    {"ptx/ok/pdal_1.2-with-color.ptx", 1065, "intensity colour approach", {637342.85, 853240.32, 423.92}},
+    {"ptx/ok/pdal_multiple-and-transform.ptx", 8, "intensity approach scan", {636699.38, 848991.01, 425.39}},
+    {"ptx/ok/pdal_no-color.ptx", 15, "intensity approach", {635795.24, 849310.43, 426.61}},
 };
 
 TEST(Samples_Text, HaveTheirPointsAndColumns) { check_samples(samples, {"xyz", "pts", "ptx"}); }
