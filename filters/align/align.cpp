@@ -114,7 +114,7 @@ double spread_about_line(const Points& centred) {
     for (std::size_t row = 0; row < centred.size(); ++row) columns.col(static_cast<Eigen::Index>(row)) = centred[row];
     // Of the points themselves, not of their moments, whose roots lose half of the digits.
     const Vec3 values = Eigen::JacobiSVD<Eigen::MatrixXd>(columns).singularValues();
-    return std::hypot(values[1], values[2]);
+    return std::sqrt(values[1] * values[1] + values[2] * values[2]);
 }
 
 double extent_of(const Points& centred) {
