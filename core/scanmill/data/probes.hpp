@@ -18,18 +18,18 @@ namespace scanmill {
 /// Why a touch is not made; `none` if it is.
 enum class ProbeReason : u8 {
     none,
-    concave,     ///< the interior angle is pi or more
+    concave,  ///< the interior angle is pi or more
     too_narrow,  ///< no direction meets the edge first for every position of T, or the ball does not pass the hole
     too_tilted,  ///< every such direction is farther from the machine's axis than allowed
-    obstructed   ///< ball or stylus would meet the part elsewhere
+    obstructed  ///< ball or stylus would meet the part elsewhere
 };
 
 /// What the ball meets first if it moves against the mesh.
 enum class ProbeContact : u8 {
-    none,       ///< not simulated: the touch is not made
-    edge,       ///< the part, near T
+    none,  ///< not simulated: the touch is not made
+    edge,  ///< the part, near T
     elsewhere,  ///< the part, too far from T
-    missed      ///< nothing
+    missed  ///< nothing
 };
 
 /// Radians. NaN where no direction is admissible, or none was sought.
@@ -42,7 +42,7 @@ struct ProbeTouch {
     static constexpr u32 no_order = ~u32(0);
     static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-    u32 touch = 0;    ///< number of the reference point, from 0; two touches of one point have the same
+    u32 touch = 0;  ///< number of the reference point, from 0; two touches of one point have the same
     u32 feature = 0;  ///< row of the polyline among the features, from 0
     /// T, relative to frame.origin.
     Vec3 position = Vec3::Zero();
