@@ -209,6 +209,18 @@ TEST(ProbePlannerMoves, AWallBetweenTwoParts_ForcesADetourOverThePlane) {
     }
 }
 
+TEST(ProbePlannerMoves, OrderOfTheLinesInTheFeatures_DoesNotChangeTheTravel) {
+    // Sheared, so that no two ways are equally long.
+    const TriangleMesh mesh = mapped(walled(9), [](const Vec3& p) {
+        return Vec3(p.x() + 0.031 * p.y() + 0.017 * p.z(), p.y() - 0.023 * p.x() + 0.0007 * p.x() * p.x(), p.z());
+    });
+    FeatureGraph features = lines_of(mesh);
+    const double before = planned(features, mesh, probe_of(0.5, 0.05, 2)).travel;
+    std::ranges::reverse(features.polylines);
+    std::ranges::rotate(features.polylines, features.polylines.begin() + 7);
+    EXPECT_NEAR(planned(features, mesh, probe_of(0.5, 0.05, 2)).travel, before, 1e-9 * before);
+}
+
 TEST(ProbePlannerMoves, AStartThatCannotBeLeft_IsMovedFartherOut) {
     // A beam above the rim on the right: the start with a retract of 1 is below it.
     const TriangleMesh mesh =
