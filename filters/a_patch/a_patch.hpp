@@ -69,10 +69,11 @@ struct APatchResult {
 ///
 /// A normal more than 84 degrees from that of one of its triangles is replaced by that of the mesh, or by the direction
 /// nearest to all its triangles' normals. Where no direction suits, the most acute edges become sharp. Where tetrahedra
-/// are inside out, apexes do not fit below 0.45 of the distance to the next sheet, or a crease leaves the tetrahedra
-/// beside its edge, normals get that direction, too; where that does not help, the longest edges of the triangles are
-/// bisected, by a cubic through their ends and tangent planes. What then remains becomes flat: the surface is the
-/// triangle itself, between three sharp edges.
+/// are inside out, or apexes do not fit below 0.45 of the distance to the next sheet, normals get that direction, too;
+/// then the longest edges of the triangles are bisected, by a cubic through their ends and tangent planes, up to 7
+/// times, unless less than half of the places are repaired so. Where a crease leaves the tetrahedra beside its edge,
+/// the normals at its ends are turned along the edges; then sharp edges below 30 degrees become smooth. Edges where
+/// that does not help are open: without tetrahedra beside them.
 ///
 /// Pre:  a manifold, closed or open, of any number of components, consistently oriented, finite, with area in every
 ///       triangle, without two vertices at one position. The surface ends at a boundary, with a warning. `points`, if

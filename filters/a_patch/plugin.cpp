@@ -11,7 +11,10 @@ SCANMILL_FILTER() {
     return Declare<P>("a-patch", 2)
         .summary("Spans an implicit surface over a mesh: cubic patches, smooth except at the mesh's sharp edges.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
-        .ties("Of equally long edges the one with the lower vertices is bisected first.")
+        .ties(
+            "Of equally long edges the one with the lower vertices is bisected first, and of equally acute ones "
+            "becomes "
+            "sharp.")
         .not_finite("Refused, with their number and the first of them.")
         .in<TriangleMesh>(
             "mesh",
