@@ -173,12 +173,16 @@ private:
     struct Sample {
         double value;
         double slope;  ///< |grad F|
+        Barycentric foot;  ///< about the nearest point of the surface; of an outlier a point on the way
         double distance() const { return std::abs(value) / slope; }
     };
-    Sample sample(const PatchCell& cell, std::size_t point) const {
+    Sample sample(const PatchCell& cell, std::size_t point, double most) const {
         const Barycentric& at = points_[point].at;
-        return {patch_value(weights_.patches.weights[points_[point].tet], at),
-                std::max(least_gradient, cell.gradient(at).norm())};
+        const double value = patch_value(weights_.patches.weights[points_[point].tet], at);
+        const Vec3 gradient = cell.gradient(at);
+        const double slope = std::max(least_gradient, gradient.norm());
+        const double way = std::clamp(value / slope, -most, most);
+        return {value, slope, cell.coordinates(cell.point(at) - way / slope * gradient)};
     }
 
     /// What points of one tetrahedron add to the system.
@@ -231,10 +235,12 @@ private:
         }
         std::array<Part, 2> parts{none, none};
         for (std::size_t p = row.begin; p < row.end; ++p) {
-            const auto derivatives = dependence.derivatives(points_[p].at);
+            // At the foot the derivative of F / |grad F| is that of F alone; at the point itself a flatter F would
+            // seem nearer.
+            const Sample here = sample(cell, p, most);
+            const auto derivatives = dependence.derivatives(here.foot);
             for (std::size_t n = 0; n < none.count; ++n)
                 line.segment<2>(static_cast<Eigen::Index>(2 * n)) = derivatives[n];
-            const Sample here = sample(cell, p);
             const double distance = here.distance();
             const double weight = (distance > most ? most / distance : 1) / (here.slope * here.slope);
             Part& part = parts[p % 2];
@@ -281,7 +287,7 @@ private:
                 const PatchCell cell(weights_.patches, rows_[r].tet);
                 for (std::size_t p = rows_[r].begin; p < rows_[r].end; ++p) {
                     const bool is_vertex = points_[p].at.maxCoeff() > 1 - at_vertex;
-                    found[p] = is_vertex ? -1 : sample(cell, p).distance();
+                    found[p] = is_vertex ? -1 : sample(cell, p, 0).distance();
                 }
             }
         });

@@ -43,9 +43,10 @@ struct FitResult {
 /// Minimises, over the components of the slopes that the vertices leave free,
 ///     sum of (F / |grad F|)² over the points + s · (regularisation · |change|² + fairing · unfairness),
 /// where s is the mean diagonal element of the first sum's matrix; 1 without points. Points whose distance is above 3
-/// times the median count less (Huber). The gradients and the points' weights follow the solution, 3 times. Every
-/// function f(a, b, .) of an edge keeps at least a tenth of its value at each apex; where more weights of a
-/// tetrahedron than by default get a wrong sign, the changes of the edges around are reduced.
+/// times the median count less (Huber). Derivatives are those at the foot points. Gradients, foot points and the
+/// points' weights follow the solution, 3 times. Every function f(a, b, .) of an edge keeps at least a tenth of its
+/// value at each apex; where more weights of a tetrahedron than by default get a wrong sign, the changes of the edges
+/// around are reduced.
 ///
 /// `regularisation` is the given one times a power of 10, below 200, that with which each half of the points predicts
 /// the distances of the other half best: few or noisy points change the slopes less.
