@@ -178,4 +178,18 @@ inline double boss_distance(const Vec3& p) {
         {std::abs(radius - 1), std::abs(radius - 3), std::abs(p.z() - 1), std::abs(p.z()), std::abs(p.z() + 1)});
 }
 
+/// A plate 3 in radius, z from -1 to 1, with a pocket of radius 1 down to z = 0; its distance is that of the boss.
+inline TriangleMesh plate_with_pocket(u32 sides) {
+    Rings rings{{}, sides};
+    const auto low = rings.ring(1, 0), high = rings.ring(1, 1);
+    const auto outer_low = rings.ring(3, -1, 0.5), outer_high = rings.ring(3, 1, 0.5);
+    rings.wall(low, high, -1);
+    rings.wall(outer_low, outer_high, 1);
+    rings.disc(low, 1);
+    rings.plate(high, outer_high, 1);
+    rings.disc(outer_low, -1);
+    for (const auto* ring : {&low, &high, &outer_low, &outer_high}) rings.sharp(*ring);
+    return rings.out.mesh();
+}
+
 }  // namespace scanmill::test

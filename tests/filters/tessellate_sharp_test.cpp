@@ -92,6 +92,7 @@ std::vector<Round> rounds() {
             {"cone of 16", cone(16), cone_distance, 1.3e-6, {{1, 0}}},
             {"hole of 16", plate_with_hole(16), hole_distance, 3 * 2e-4, {{1, -1}, {1, 1}, {3, -1}, {3, 1}}},
             {"hole of 24", plate_with_hole(24), hole_distance, 3 * 5e-5, {{1, -1}, {1, 1}, {3, -1}, {3, 1}}},
+            {"pocket of 16", plate_with_pocket(16), boss_distance, 3 * 2e-4, {{1, 0}, {1, 1}, {3, -1}, {3, 1}}},
             {"boss of 16", plate_with_boss(16), boss_distance, 3 * 2e-4, {{1, 0}, {1, 1}, {3, -1}, {3, 0}}},
             {"boss of 24", plate_with_boss(24), boss_distance, 3 * 5e-5, {{1, 0}, {1, 1}, {3, -1}, {3, 0}}}};
 }
@@ -107,6 +108,16 @@ TEST(TessellateSharp, RoundRims_AreClosedAndExact) {
             EXPECT_LT(off_surface(result, patches), 1e-12);
             for (const Vec3& p : result.positions) EXPECT_LT(round.distance(p), round.worst);
             EXPECT_GE(result.sharp_edges.size(), round.mesh.sharp_edges.size());
+            // No triangle is turned over, nor lies across a crease.
+            for (u32 f = 0; f < result.triangles.size(); ++f) {
+                const Triangle& t = result.triangles[f];
+                const Vec3 across = (result.positions[t[1]] - result.positions[t[0]])
+                                        .cross(result.positions[t[2]] - result.positions[t[0]]);
+                for (std::size_t i = 0; i < 3 && across.norm() > 1e-8; ++i)
+                    if (const Vec3 n = corner_normal(result, f, i); !n.isZero(0)) {
+                        EXPECT_GT(across.normalized().dot(n), 0.7);
+                    }
+            }
             for (const auto& [edge, sides] : sides_of_creases(result)) {
                 ASSERT_EQ(sides.size(), 2u);
                 for (std::size_t end = 0; end < 2; ++end) {
