@@ -184,6 +184,13 @@ TEST(Normals, OnTheOtherSideOfTheirNeighbours_AreDoubtful) {
     EXPECT_THAT(result.doubts, IsEmpty());
 }
 
+TEST(Normals, BesideALineWhereTheSidesChange_AreNotDoubtful) {
+    // Points beside the line have most neighbours on their own side of it.
+    const PointCloud cloud =
+        with_approach(sheet(21, 0), [](std::size_t row) { return Vec3(0, 0, row % 21 < 10 ? -1 : 1); });
+    EXPECT_LT(estimated(cloud).doubtful, 10u);
+}
+
 TEST(Normals, AColumnOfTheInput_IsReplaced) {
     PointCloud cloud = fibonacci_sphere(100);
     cloud.columns.add(Column("normal", 1, Buffer<float>(Array<float>(100, 1.f))));
