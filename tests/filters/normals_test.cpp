@@ -156,6 +156,25 @@ TEST(Normals, WithoutADirectionOrSeenEdgeOn_TheNeighboursDecide) {
     for (std::size_t row = 0; row < 64; ++row) EXPECT_EQ(result.normal(row), Vec3(0, 0, -1));
 }
 
+TEST(Normals, Tree_JoinsTheMostParallelNeighboursFirst) {
+    // Seven columns of points around a cylinder. The next column but one is a neighbour as well, and its outward normal
+    // is more than 90 degrees away; by way of the column between, every normal is outside.
+    Array<Vec3> positions;
+    for (int row = 0; row < 20; ++row)
+        for (int column = 0; column < 7; ++column)
+            positions.emplace_back(std::cos(column * 0.8975979), std::sin(column * 0.8975979), 0.87 * row);
+    PointCloud cylinder;
+    cylinder.positions = std::move(positions);
+    const auto outward = [&](std::size_t row) {
+        return Vec3(cylinder.positions[row].x(), cylinder.positions[row].y(), 0);
+    };
+    const PointCloud cloud =
+        with_approach(cylinder, [&](std::size_t row) { return row == 70 ? outward(row) : Vec3(Vec3::Zero()); });
+    const Estimated result = estimated(cloud, with(Orient::automatic, Method::pca, 12));
+    EXPECT_EQ(result.by_sensor, 1u);
+    for (std::size_t row = 21; row < 119; ++row) EXPECT_GT(result.normal(row).dot(outward(row)), 0.5) << row;
+}
+
 TEST(Normals, ComponentsApart_AreDoubtful) {
     const PointCloud cloud = joined(fibonacci_sphere(500), moved(fibonacci_sphere(400), 1, {9, 0, 0}));
     const Estimated result = estimated(cloud);

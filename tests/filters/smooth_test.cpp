@@ -68,6 +68,18 @@ TEST(Smooth, OnePointAboveAPlane_FallsByTheWeightOfItsFit) {
     EXPECT_EQ(result.points.positions[4].head<2>(), Eigen::Vector2d(0, 0));
 }
 
+TEST(Smooth, Mls_WeighsNearNeighboursMore) {
+    // The same points. By symmetry the polynomial is a + d (x² + y²); its weighted normal equations give a.
+    const double h = 0.09, reach = 2 + h * h;
+    const double beside = std::pow(1 + (1 + h * h) / (reach / 4), -2), corner = 1 / 25.0;
+    const double r = (beside + 2 * corner) / (beside + 4 * corner);
+    const double a = h / (1 + 4 * beside * (1 - r) + 4 * corner * (1 - 2 * r));
+    const PointCloud cloud = graph(1, [&](int x, int y) { return x == 0 && y == 0 ? h : 0.0; });
+    EXPECT_NEAR(smoothed(cloud, with(Method::mls, 8)).points.positions[4].z(), a, 1e-15);
+    EXPECT_NEAR(smoothed(cloud, with(Method::mls, 24, std::sqrt(reach) + 1e-12)).points.positions[4].z(), a, 1e-12);
+    EXPECT_GT(a, 5 * h / 9) << "it moves less than with equal weights";
+}
+
 TEST(Smooth, Quadrics_Stay) {
     const PointCloud cloud = graph(8, [](int x, int y) { return 0.002 * x * x - 0.001 * x * y; });
     for (const Method method : {Method::jet, Method::mls}) {
