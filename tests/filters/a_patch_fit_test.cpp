@@ -248,11 +248,11 @@ TEST(APatchFit, SlopesAtTheirLimits_AreTheBestTogether) {
     EXPECT_LT(fitted(mesh, points).result.fit->rms, 0.35 * by_default(mesh, &points).result.fit->rms);
 }
 
-TEST(APatchFit, WhereTheDefaultHasWrongSigns_FittingAddsNone) {
+TEST(APatchFit, OnAnIrregularMesh_FittingAddsNoWrongSigns) {
     const TriangleMesh mesh = irregular_torus(24, 12, 0.3);
     const PatchRun before = by_default(mesh), after = fitted(mesh, torus_points(50'000));
-    EXPECT_GT(before.result.sign_violations, 0u);
-    EXPECT_LE(after.result.sign_violations, before.result.sign_violations);
+    EXPECT_EQ(before.result.sign_violations, 0u);
+    EXPECT_EQ(after.result.sign_violations, 0u);
 }
 
 TEST(APatchFit, Distances_AreThoseOfFootPoints) {
