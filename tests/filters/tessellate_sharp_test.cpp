@@ -102,7 +102,7 @@ TEST(TessellateSharp, RoundRims_AreClosedAndExact) {
         SCOPED_TRACE(round.name);
         const PatchComplex patches = patched(round.mesh).result.patches;
         for (const TriangleMesh& result :
-             {tessellated(patches, 1), tessellated(patches, 3), tessellated(patches, 8),
+             {tessellated(patches, 1), tessellated(patches, 3), tessellated(patches, 16),
               tessellated(patches, 256, Length(1e-2)), tessellated(patches, 256, Length(1e-3))}) {
             expect_closed(result, round.mesh);
             EXPECT_LT(off_surface(result, patches), 1e-12);
