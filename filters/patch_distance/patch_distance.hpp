@@ -26,7 +26,7 @@ struct PatchDistanceResult {
 /// Pre:  finite points in the patches' frame. Throws Error if there are no points or tetrahedra, if the patches are not
 ///       complete, or if no point is near the surface.
 /// p95 is the smallest distance that at least 95 % of the located points do not exceed. Bytes do not depend on the
-/// number of threads. Cost: about 4 us per point near the surface, and 20 us per triangle of the mesh.
+/// number of threads. Cost: about 7 us per point near the surface, and 20 us per triangle of the mesh.
 /// Metrics: `rms`, `p95`, `max`, `unlocated`. Warns of unlocated points.
 PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud& points, Context& context);
 
