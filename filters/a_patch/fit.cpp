@@ -148,6 +148,7 @@ public:
                 std::array<BlockSystem, 2> halves{system_, system_};
                 add_points(halves);
                 for (const BlockSystem& half : halves) system_.add(half);
+                set_scale();
                 if (round == 0) regularisation_ = best_regularisation(halves);
             }
             add_priors();
@@ -250,15 +251,19 @@ private:
         return parts;
     }
 
-    /// Of the weights from the given one on, each ten times the one before, the one with which each half of the points
-    /// predicts the other half best. Sets the scale.
-    double best_regularisation(std::array<BlockSystem, 2>& halves) {
+    /// The mean diagonal element of the points' sums.
+    void set_scale() {
         double trace = 0, count = 0;
         for (u32 e = 0; e < system_.size(); ++e) {
             trace += system_.block(e, e).trace();
             count += free_[e].squaredNorm();
         }
-        if (trace > 0) scale_ = trace / count;
+        scale_ = trace > 0 ? trace / count : 1;
+    }
+
+    /// Of the weights from the given one on, each ten times the one before, the one with which each half of the points
+    /// predicts the other half best.
+    double best_regularisation(std::array<BlockSystem, 2>& halves) {
         double best = params_.regularisation, least = std::numeric_limits<double>::infinity();
         for (double weight = params_.regularisation; weight < most_regularisation; weight *= 10) {
             double error = 0;
