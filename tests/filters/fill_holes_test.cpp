@@ -242,6 +242,35 @@ TEST(FillHoles, AnObstacleInTheHole_IsAvoided) {
     }
 }
 
+TEST(FillHoles, OfFillingsThatMeet_OneGivesWay) {
+    // Two spheres without the caps that face each other: caps would meet, a flat lid of one of them does not.
+    const TriangleMesh lower = below(geodesic_sphere(1, 12), 0.8);
+    const TriangleMesh upper = shifted(turned(lower, std::numbers::pi, {1, 0, 0}), {0, 0, 1.9});
+    const TriangleMesh fewer =
+        shifted(turned(below(geodesic_sphere(1, 9), 0.8), std::numbers::pi, {1, 0, 0}), {0, 0, 1.9});
+    // Of the new vertices near the axis.
+    const auto heights = [](const TriangleMesh& mesh, const Filled& result) {
+        std::pair<double, double> ends{1e9, -1e9};
+        for (std::size_t v = mesh.positions.size(); v < result.mesh.positions.size(); ++v) {
+            const Vec3& p = result.mesh.positions[v];
+            if (p.head<2>().norm() < 0.25) ends = {std::min(ends.first, p.z()), std::max(ends.second, p.z())};
+        }
+        return ends;
+    };
+    const TriangleMesh equal = both(lower, upper), unequal = both(lower, fewer);
+    const Filled later = filled(equal), larger = filled(unequal);
+    for (const Filled* result : {&later, &larger}) {
+        EXPECT_EQ(result->filled, 2u);
+        EXPECT_EQ(result->plain, 1u);
+        EXPECT_TRUE(topology(result->mesh).closed);
+    }
+    // There the cap of the lower sphere is about 1 high, that of the upper one 0.9; lids are at 0.8 and 1.1.
+    EXPECT_GT(heights(equal, later).first, 0.93) << "of equally many edges the later one is flat";
+    EXPECT_GT(heights(equal, later).second, 1.03);
+    EXPECT_LT(heights(unequal, larger).first, 0.87) << "the one with more edges is flat";
+    EXPECT_LT(heights(unequal, larger).second, 0.97);
+}
+
 TEST(FillHoles, TwoHolesOfAThinPlate_DoNotFillThroughEachOther) {
     // A sphere with two opposite caps removed: fair fillings of a tube may meet, plainer ones do not.
     const TriangleMesh whole = geodesic_sphere(1, 12);
