@@ -341,7 +341,8 @@ TEST(RepairRefuses, TrianglesOnOneLine) {
     const TriangleMesh line = soup({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}}, {{0, 1, 2}, {1, 2, 3}});
     EXPECT_EQ(error_of([&] { repaired(line); }).sentence(), "the corners of every triangle are on one line");
     const TriangleMesh point = soup({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}});
-    EXPECT_EQ(error_of([&] { repaired(point); }).sentence(), "no triangle has three different corners; the mesh has 1 triangle");
+    EXPECT_EQ(error_of([&] { repaired(point); }).sentence(),
+              "no triangle has three different corners; the mesh has 1 triangle");
 }
 
 TEST(Repair, Cancelled_Ends) {
