@@ -59,10 +59,12 @@ TetFunctions::Hit TetFunctions::hit(u8 side, const Barycentric& base, const Bary
         is_other = (combine_ == Combine::max) == (side == 1) ? there < t : there > t;
         if (is_other) t = there;
     }
-    if (t == never) throw Error("the patches have no surface on a line from the mesh to an apex");
+    const bool is_missed = t == never;
+    if (is_missed && !other_) throw Error("the patches have no surface on a line from the mesh to an apex");
+    if (is_missed) t = 1;
     const Barycentric at = (1 - t) * base + t * to;
     const Vec3 gradient = is_other ? other_->gradient(in_other(at)) : own_.gradient(at);
-    return {{own_.point(at), gradient.normalized(), t == 0 ? u8(1) : side}, t == 0, is_other};
+    return {{own_.point(at), gradient.normalized(), t == 0 ? u8(1) : side}, t == 0, is_other, is_missed};
 }
 
 }  // namespace scanmill::tessellation

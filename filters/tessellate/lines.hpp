@@ -33,9 +33,10 @@ public:
         SurfacePoint point;
         bool is_at_base;
         bool is_other;  ///< the partner's function holds there
+        bool is_missed;  ///< two functions have no surface on the line; the point is its end
     };
-    /// The point of the surface on the line from a point of the mesh to one off it, on that side. Throws Error if there
-    /// is none.
+    /// The point of the surface on the line from a point of the mesh to one off it, on that side. Throws Error if one
+    /// function has none.
     Hit hit(u8 side, const Barycentric& base, const Barycentric& to, double zero) const;
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tessellate/strip.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -165,21 +166,21 @@ private:
     };
     struct Found {
         SurfacePoint point;
-        bool is_second, is_on_edge;
+        bool is_second, is_on_edge, is_missed;
     };
 
     Found found(const Sample& sample, const Place& place) const {
         if (place.zone == 1) {
             const auto hit = gaps_[0][sample.side]->hit(sample.side, in_gap(0, sample.share[0]),
                                                         {place.at, 0, 0, 1 - place.at}, zero_);
-            return {hit.point, hit.is_other, hit.is_at_base};
+            return {hit.point, hit.is_other, hit.is_at_base, hit.is_missed};
         }
         const std::size_t of = place.zone / 2;
         Barycentric base = (1 - place.at) * on_edge(of, sample.share[0]);
         base[0] += place.at;
         const u8 side = thirds_[of][1]->side_at(base, zero_);
         const auto hit = thirds_[of][side]->hit(side, base, apex(), zero_);
-        return {hit.point, hit.is_other != (of == 1), false};
+        return {hit.point, hit.is_other != (of == 1), false, hit.is_missed};
     }
 
     /// The place where the function changes, between one where the first triangle's holds and one where the second's
@@ -230,6 +231,16 @@ private:
         const Place& crease = (*change)[0];
         // Where a plane of the object contains the line, the surface leaps along it: one of the two is on the crease.
         const std::array<Found, 2> ends{found(sample, (*change)[0]), found(sample, (*change)[1])};
+        const unsigned half = strip.fan / 2;
+        std::vector<Found> way;
+        for (unsigned k = 0; k < strip.columns(); ++k) {
+            const double share = static_cast<double>(k < half ? k : strip.fan - k) / half;  // from the face
+            way.push_back(k == half ? ends[0] : found(sample, on_way(crease, share, k < half)));
+        }
+        if (ends[1].is_missed || std::ranges::any_of(way, &Found::is_missed)) {
+            lift_open(strip, sample);
+            return;
+        }
         const bool take_second =
             distance(sample, crease, ends[1].point.position) < distance(sample, crease, ends[0].point.position);
         SurfacePoint point = ends[take_second].point;
@@ -238,7 +249,6 @@ private:
         point.normal = normals[0];
         if (crease.zone != 1) sample.inset[crease.zone / 2] = crease.at;
 
-        const unsigned half = strip.fan / 2;
         u32 on_crease = none, on_edge = none;
         for (unsigned k = 0; k < strip.columns(); ++k) {
             const bool is_before = k < half;
@@ -250,8 +260,7 @@ private:
                     strip.numbers.push_back(on_crease);
                 continue;
             }
-            const double share = static_cast<double>(is_before ? k : strip.fan - k) / half;  // from the face
-            const Found here = found(sample, on_way(crease, share, is_before));
+            const Found& here = way[k];
             if (here.is_on_edge && on_edge != none) {
                 strip.numbers.push_back(on_edge);
                 continue;

@@ -250,6 +250,22 @@ TEST(Tessellate, EdgesWithoutTetrahedraBesideThem_AreClosedByStraightLines) {
     }
 }
 
+TEST(TessellateSharp, GapsWhoseFunctionsHaveNoSurfaceBetweenTheApexes_AreClosedByStraightLines) {
+    const TriangleMesh mesh = cylinder(16);
+    PatchComplex patches = patched(mesh).result.patches;
+    Array<PatchWeights> weights(patches.weights.begin(), patches.weights.end());
+    std::size_t changed = 0;
+    for (std::size_t row = 0; row < weights.size(); ++row)
+        if (patches.kinds[row] == PatchKind::sharp && patches.sides[row] == 1) {
+            // Those of the other triangle's apex: outside, both functions become negative between the apexes.
+            std::fill_n(weights[row].begin(), 10, -1.0);
+            ++changed;
+        }
+    ASSERT_GT(changed, 0u);
+    patches.weights = std::move(weights);
+    for (const unsigned subdivision : {1u, 3u, 4u}) expect_closed(tessellated(patches, subdivision), mesh);
+}
+
 TEST(TessellateRefuses, ASideWithHalfOfItsTetrahedra) {
     const PatchComplex whole = patched(cylinder(8)).result.patches;
     u32 first = 0;

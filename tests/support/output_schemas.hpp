@@ -8,8 +8,8 @@
 
 namespace scanmill::test {
 
-/// The errors of a document against schemas/output/NAME.schema.json or schemas/documents/NAME.schema.json, one per line;
-/// empty if it is valid.
+/// The errors of a document against NAME.schema.json in schemas/output or schemas/documents, one per line; empty if it
+/// is valid.
 std::string schema_errors(const std::string& name, const nlohmann::json& document);
 
 /// A document with the name of its schema.
