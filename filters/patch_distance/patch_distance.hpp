@@ -14,7 +14,7 @@ struct PatchDistanceResult {
     PointCloud points;
     /// Of the points with a distance.
     double rms = 0, p95 = 0, max = 0;
-    /// Points farther away than a tenth of the surface's diagonal, and those nearest to the boundary of an open surface.
+    /// Points farther away than a tenth of the surface's diagonal, and those nearest to an open surface's boundary.
     std::size_t unlocated = 0;
 };
 
