@@ -236,4 +236,18 @@ inline double metric_of(const PatchRun& run, std::string_view name) {
     return std::nan("");
 }
 
+/// Interpolates, joins with equal gradients, has no tetrahedron inside out and no weight of a wrong sign.
+inline void expect_sound(const PatchRun& run, double jump = 1e-11) {
+    const APatchResult& result = run.result;
+    const auto [value, gradient] = errors_at_vertices(result);
+    EXPECT_LT(value, 1e-13);
+    EXPECT_LT(gradient, 1e-12);
+    const Joints joints = joints_of(result.patches);
+    EXPECT_LT(joints.gradient, jump);
+    EXPECT_LT(joints.value, 1e-13);
+    EXPECT_LT(result.c1_jump, jump);
+    EXPECT_EQ(result.inverted, 0u);
+    EXPECT_EQ(result.sign_violations, 0u);
+}
+
 }  // namespace scanmill::test

@@ -45,19 +45,6 @@ double value_jump(const PatchComplex& patches) {
     return jump;
 }
 
-void expect_sound(const PatchRun& run, double jump = 1e-11) {
-    const APatchResult& result = run.result;
-    const auto [value, gradient] = errors_at_vertices(result);
-    EXPECT_LT(value, 1e-13);
-    EXPECT_LT(gradient, 1e-12);
-    const Joints joints = joints_of(result.patches);
-    EXPECT_LT(joints.gradient, jump);
-    EXPECT_LT(joints.value, 1e-13);
-    EXPECT_LT(result.c1_jump, jump);
-    EXPECT_EQ(result.inverted, 0u);
-    EXPECT_EQ(result.sign_violations, 0u);
-}
-
 TEST(APatchSharp, ACube_IsExact) {
     for (const double angle : {0.0, 1.0}) {
         const TriangleMesh mesh = sharp_cube(angle);
