@@ -19,8 +19,8 @@ TOWARDS, UP = (0.45, 0.25, 0.85), (0, 1, 0)
 TEXTS = {
     "points": ("The scan", "{points:,} points, without normals and without order."),
     "surface": ("The solid", "`delaunay` makes {cells:,} tetrahedra of the points, `alpha-solid` keeps {kept:,} of them "
-                "with alpha {alpha:.3g} ({alpha_share:.2g} % of the diagonal), and `sculpt` removes {carved:,} that "
-                "bridge concave places. The boundary has {triangles:,} triangles and passes through all points."),
+                "with alpha {alpha:.3g} ({alpha_share:.2g} % of the diagonal), and `sculpt` removes {carved:,} of "
+                "them, where they bridge concave places. The boundary has {triangles:,} triangles and passes through all points."),
     "light": ("The light mesh", "`decimate` keeps {light:,} triangles. No point of either mesh, and no point of the scan, "
               "is farther than {error:.3g} ({error_share:.2g} % of the diagonal) from the other: proven, not sampled."),
     "hull": ("The support of the patches", "`a-patch` erects {tets:,} tetrahedra on both sides of the light mesh; the "
