@@ -116,8 +116,8 @@ CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points,
     if (source == Normals::automatic)
         source = mesh.face_columns.find("corner-normals") ? Normals::given : points ? Normals::points : Normals::mesh;
     if (source == Normals::points && !points)
-        throw Error("normals is points, but there are no points")
-            .hint("wire the scan: 'in: {points: scan}'; 'normals: mesh' needs none");
+        throw Error("`normals: points` needs points, and the input `points` is not wired")
+            .hint("wire the scan: 'in: {points: scan}', or choose 'normals: mesh'");
     const Sectors sectors = sectors_of(mesh);
     std::vector<Vec3> normals = mesh_normals(mesh, sectors);
     if (source == Normals::points) {
@@ -171,7 +171,7 @@ std::vector<u32> triangles_at(const Hull& hull, std::span<const u32> edges) {
     return triangles;
 }
 
-/// Repairs the mesh until its hull carries a surface, as far as that is possible; edges where it is not remain open.
+/// Repairs the mesh until its hull carries a surface. Edges that it cannot repair remain open.
 class Construction {
 public:
     Construction(PatchMesh& mesh, const APatchParams& params, Context& context)
@@ -311,7 +311,7 @@ void warn_about(const APatchResult& result, const TriangleMesh& mesh, const Poin
     }
     if (points && result.left_out == points->size())
         context.warn(points->size() == 0
-                         ? "there are no points: the surface is not fitted"
+                         ? "the input `points` is empty: the surface is not fitted"
                          : fmt::format("none of the {} is in a tetrahedron near the surface: it is not fitted",
                                        count_text(points->size(), "point", "points")));
     if (result.sign_violations > 0)

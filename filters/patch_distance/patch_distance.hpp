@@ -23,8 +23,9 @@ struct PatchDistanceResult {
 /// near within the error of that tessellation, it may be that of the other one. Near ends of creases, and between faces
 /// without tetrahedra between them, it is the distance to the tessellation.
 ///
-/// Pre:  finite points in the patches' frame. Throws Error if there are no points or tetrahedra, if the patches are not
-///       complete, or if no point is near the surface.
+/// Pre:  finite points in the patches' frame. Throws Error if `points` or `patches` is empty, if tetrahedra of a
+/// triangle
+///       are missing, or if every point is far from the surface.
 /// p95 is the smallest distance that at least 95 % of the located points do not exceed. Bytes do not depend on the
 /// number of threads. Cost: about 7 us per point near the surface, and 20 us per triangle of the mesh.
 /// Metrics: `rms`, `p95`, `max`, `unlocated`. Warns of unlocated points.

@@ -346,7 +346,7 @@ TEST(APatchFit, WithoutPointsInReach_TheBitsAreTheDefaults) {
                 ElementsAre("none of the 3 points is in a tetrahedron near the surface: it is not fitted"));
     const PatchRun empty = fitted(mesh, PointCloud{});
     expect_same_bits(empty.result.patches, by_default(mesh).result.patches);
-    EXPECT_THAT(empty.warnings, ElementsAre("there are no points: the surface is not fitted"));
+    EXPECT_THAT(empty.warnings, ElementsAre("the input `points` is empty: the surface is not fitted"));
 }
 
 TEST(APatchFit, EdgesAwayFromAllPoints_KeepTheirBits) {

@@ -92,7 +92,7 @@ TEST(APatchRefuses, NormalsOfPointsWithoutPoints) {
     APatchParams params;
     params.normals = PatchNormals::points;
     const Error error = refusal(icosahedron(), params);
-    EXPECT_THAT(error.sentence(), HasSubstr("there are no points"));
+    EXPECT_THAT(error.sentence(), HasSubstr("the input `points` is not wired"));
     EXPECT_FALSE(error.hint().empty());
 }
 

@@ -212,6 +212,16 @@ constexpr double on_surface = 1e-15, end_of_steps = 1e-13, nearly_end = 1e-7, ne
 constexpr double least_slope = 0.1;  // that Newton's method divides by
 constexpr double nearly_normal = 1e-3;  // sine, where the steps get no nearer
 
+/// Rows, ascending, of the tetrahedra whose boxes contain the point.
+Array<u32> rows_near(const TriangleTree& boxes, const Vec3& point) {
+    Array<u32> rows;
+    BoundingBox box;
+    box.add(point);
+    boxes.meeting(box, rows);
+    std::ranges::sort(rows);
+    return rows;
+}
+
 }  // namespace
 
 PatchSurface::PatchSurface(const PatchComplex& patches, unsigned threads)
@@ -220,11 +230,7 @@ PatchSurface::PatchSurface(const PatchComplex& patches, unsigned threads)
       tree_(tree_of(patches, threads)) {}
 
 std::optional<u32> PatchSurface::locate(const Vec3& point) const {
-    Array<u32> rows;
-    BoundingBox box;
-    box.add(point);
-    tree_.meeting(box, rows);
-    std::ranges::sort(rows);
+    const Array<u32> rows = rows_near(tree_, point);
     for (const double least : {0.0, -outside_by})
         for (const u32 row : rows)
             if (cell(row).coordinates(point).minCoeff() >= least) return active(row, point);
@@ -395,8 +401,9 @@ std::optional<PatchSurface::Foot> PatchSurface::foot(const Vec3& point, const Ve
         const Vec3 aside = to - height * normal;
         const Foot found{x, height < 0 ? -distance : distance};
         if (aside.norm() <= end_of_steps * diagonal) return found;
-        // In the tangent plane the derivative of `aside` is -(I + height * second derivative / gradient). Near a centre
-        // of curvature a slope of it is almost 0, beyond it negative: there the distance is no minimum.
+        // In the tangent plane the derivative of `aside` is -(I + height * second derivative / gradient). An eigenvalue
+        // of the matrix in brackets is almost 0 near a centre of curvature. Beyond the centre it is negative, and x is
+        // not the nearest point.
         const Vec3 u = aside.normalized(), v = normal.cross(u);
         const Eigen::Matrix3d second = cell(here.tet).hessian(x) * (height / length);
         Eigen::Matrix2d slope;
@@ -429,13 +436,8 @@ std::optional<PatchSurface::Foot> PatchSurface::foot(const Vec3& point, const Ve
 }
 
 std::vector<u32> PatchSurface::with_creases_at(const Vec3& point) const {
-    Array<u32> rows;
-    BoundingBox box;
-    box.add(point);
-    tree_.meeting(box, rows);
-    std::ranges::sort(rows);
     std::vector<u32> found;
-    for (const u32 row : rows)
+    for (const u32 row : rows_near(tree_, point))
         if (patches_.partners[row] != PatchComplex::no_partner && patches_.partners[row] > row &&
             cell(row).coordinates(point).minCoeff() >= -outside_by)
             found.push_back(row);
