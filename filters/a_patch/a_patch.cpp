@@ -28,6 +28,7 @@ constexpr std::size_t most_bisections = 7;  // rounds
 constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
 constexpr double most_open = 0.01;  // share of the edges, without a doubt
+constexpr double most_loosened = 0.1;  // share of the vertices, likewise
 constexpr double least_regularisation = 1e-6;
 
 std::string place(const TriangleMesh& mesh, u32 vertex) {
@@ -188,7 +189,7 @@ public:
             context_.check_cancelled();
             replace_opposing(mesh_, repairs);
             hull = make_hull(mesh_, params_.apex_factor, params_.split, context_);
-        } while (repair_hull() || repair_creases());
+        } while (repair_hull() || repair_creases() || loosen_rest());
     }
 
 private:
@@ -198,6 +199,7 @@ private:
         for (const u32 e : hull.faults.inverted)
             if (!hull.edges[e].is_sharp) smooth.push_back(e);
         const std::vector<u32> triangles = triangles_at(hull, smooth);
+        if (is_loosening_) return false;
         if (triangles.empty()) before_.reset();
         if (triangles.empty() || is_done_) return false;
         if (!is_turned_) {
@@ -223,9 +225,10 @@ private:
     /// The same. Without a change the weights are final.
     bool repair_creases() {
         weights = make_weights(hull, params_.curvature, context_);
-        std::vector<u32> doubtful = doubtful_edges(weights.patches, context_);
+        doubtful_ = doubtful_edges(weights.patches, context_);
+        if (is_loosening_) return false;
         std::vector<Edge> creases;
-        for (const auto& edges : {doubtful, hull.faults.inverted})
+        for (const auto& edges : {doubtful_, hull.faults.inverted})
             for (const u32 e : edges)
                 if (hull.edges[e].is_sharp && !hull.edges[e].is_straight)
                     creases.push_back(make_edge(hull.edges[e].a, hull.edges[e].b));
@@ -234,22 +237,99 @@ private:
             align_normals(mesh_, creases, repairs);
             return true;
         }
-        if (smooth_edges(mesh_, creases, repairs) > 0) return true;
-        while (!doubtful.empty()) {
-            for (const u32 e : doubtful) hull.edges[e].is_filled = {false, false};
+        return smooth_edges(mesh_, creases, repairs) > 0;
+    }
+
+    /// The same: where nothing else helps the surface follows the mesh.
+    bool loosen_rest() {
+        is_loosening_ = true;
+        std::vector<u32> vertices;
+        for (const auto& edges : {doubtful_, hull.faults.inverted})
+            for (const u32 e : edges)
+                if (!hull.edges[e].is_straight) vertices.insert(vertices.end(), {hull.edges[e].a, hull.edges[e].b});
+        const auto add = [&](std::span<const u32> triangles) {
+            for (const u32 f : triangles)
+                vertices.insert(vertices.end(), mesh_.mesh.triangles[f].begin(), mesh_.mesh.triangles[f].end());
+        };
+        add(hull.faults.thin);
+        if (loosen(mesh_, vertices, repairs)) return true;
+        open_doubtful();
+        if (repairs.pointed + repairs.faceted == 0) return false;
+        add(crossing_triangles(weights.patches, context_));
+        return loosen(mesh_, vertices, repairs);
+    }
+
+    void open_doubtful() {
+        while (!doubtful_.empty()) {
+            for (const u32 e : doubtful_) hull.edges[e].is_filled = {false, false};
             weights = make_weights(hull, params_.curvature, context_);
-            doubtful = doubtful_edges(weights.patches, context_);
+            doubtful_ = doubtful_edges(weights.patches, context_);
         }
-        return false;
     }
 
     PatchMesh& mesh_;
     const APatchParams& params_;
     Context& context_;
-    bool is_turned_ = false, is_aligned_ = false, is_done_ = false;
+    bool is_turned_ = false, is_aligned_ = false, is_done_ = false, is_loosening_ = false;
+    std::vector<u32> doubtful_;  ///< edges
     std::size_t rounds_ = 0, faults_before_ = 0;
     std::optional<PatchMesh> before_;  ///< the first bisection
     Repairs repairs_before_;
+};
+
+/// Takes the changes of a fit back where parts of the surface meet others since, or weights got a wrong sign by that.
+class Uncrossing {
+public:
+    Uncrossing(Hull& hull, const Weights& before, Curvature curvature, Context& context)
+        : hull_(hull),
+          curvature_(curvature),
+          context_(context),
+          edges_before_(hull.edges),
+          is_taken_back_(hull.faces.size(), false) {
+        for (std::size_t row = 0; row < before.patches.tets.size(); ++row)
+            wrong_before_.push_back(wrong_signs(before.patches, row));
+    }
+
+    void run(Weights& weights) {
+        for (;;) {
+            context_.check_cancelled();
+            const std::vector<u32> faulty = faulty_triangles(weights.patches);
+            if (faulty.empty()) return;
+            const std::vector<bool> before = is_taken_back_;
+            for (const u32 f : faulty) is_taken_back_[f] = true;
+            if (is_taken_back_ == before) widen();
+            for (std::size_t f = 0; f < hull_.faces.size(); ++f)
+                for (const u32 e : hull_.faces[f].edges)
+                    if (is_taken_back_[f]) hull_.edges[e].slopes = edges_before_[e].slopes;
+            if (is_taken_back_ == before) return;
+            weights = make_weights(hull_, curvature_, context_);
+        }
+    }
+
+private:
+    std::vector<u32> faulty_triangles(const PatchComplex& patches) const {
+        std::vector<u32> faulty;
+        for (std::size_t row = 0; row < patches.tets.size(); ++row)
+            if (wrong_signs(patches, row) > wrong_before_[row]) faulty.push_back(patches.triangles[row]);
+        for (const u32 e : doubtful_edges(patches, context_))
+            faulty.insert(faulty.end(), {hull_.edges[e].first, hull_.edges[e].second});
+        return faulty.empty() ? crossing_triangles(patches, context_) : faulty;
+    }
+
+    /// By the neighbours.
+    void widen() {
+        const std::vector<bool> before = is_taken_back_;
+        for (const HullEdge& edge : hull_.edges)
+            if (edge.second != HullEdge::none && before[edge.first] != before[edge.second])
+                is_taken_back_[edge.first] = is_taken_back_[edge.second] = true;
+    }
+
+    Hull& hull_;
+    Curvature curvature_;
+    Context& context_;
+    std::vector<HullEdge> edges_before_;
+    std::vector<bool> is_taken_back_;
+    std::vector<std::size_t> wrong_before_;
 };
 
 /// Fits the slopes, and measures. `weights` are those of the hull as it is, without violations at creases.
@@ -260,9 +340,13 @@ Weights fit_and_measure(Hull& hull, Weights weights, const PointCloud* points, c
     result.left_out = located.left_out;
     result.unfairness_before = unfairness(hull, params.curvature);
     const auto violating_edges = [&](const PatchComplex& patches) { return doubtful_edges(patches, context); };
+    std::optional<Uncrossing> uncrossing;
+    if (result.repairs.pointed + result.repairs.faceted > 0)
+        uncrossing.emplace(hull, weights, params.curvature, context);
     FitResult fitted = fit(hull, std::move(weights), located, params.curvature,
                            {params.fit, params.fairing, params.regularisation}, violating_edges, context);
     weights = std::move(fitted.weights);
+    if (uncrossing && (params.fairing > 0 || (params.fit && !located.points.empty()))) uncrossing->run(weights);
     result.regularisation = fitted.regularisation;
     result.unfairness_after = unfairness(hull, params.curvature);
     context.progress(0.8);
@@ -297,6 +381,15 @@ void warn_about(const APatchResult& result, const TriangleMesh& mesh, const Poin
     if (repairs.smoothed > 0)
         context.warn(fmt::format("{} smooth, because no crease follows them",
                                  count_text(repairs.smoothed, "blunt sharp edge becomes", "blunt sharp edges become")));
+    if (const std::size_t loosened = repairs.pointed + repairs.faceted; loosened > 0) {
+        const std::string text = fmt::format(
+            "at {} of {} vertices no smooth surface fits: it has a tip at {}, and the mesh's triangles at {}", loosened,
+            counts.vertices + repairs.bisected, repairs.pointed, repairs.faceted);
+        if (static_cast<double>(loosened) > most_loosened * static_cast<double>(counts.vertices + repairs.bisected))
+            context.doubt(text);
+        else
+            context.warn(text);
+    }
     if (result.thin > 0)
         context.warn(fmt::format("{} too near to the next sheet: tetrahedra of both overlap",
                                  count_text(result.thin, "triangle is", "triangles are")));
@@ -339,6 +432,8 @@ void report(const APatchResult& result, Context& context) {
     count("raised", result.raised);
     count("creased-edges", result.repairs.creased);
     count("smoothed-edges", result.repairs.smoothed);
+    count("pointed-vertices", result.repairs.pointed);
+    count("faceted-vertices", result.repairs.faceted);
     count("open-edges", result.open);
     count("thin-triangles", result.thin);
     if (result.fit) {
@@ -387,6 +482,7 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     result.inverted = inverted_tets(result.patches);
     result.sign_violations = sign_violations(result.patches, context);
     result.c1_jump = c1_jump(result.patches, context);
+    result.kinds = std::move(work.kinds);
     result.mesh = std::move(work.mesh);
     Array<double> components;
     for (const auto& of_triangle : work.normals)

@@ -42,6 +42,7 @@ struct APatchResult {
     TriangleMesh mesh;
     a_patches::Repairs repairs;
     std::size_t divided = 0;  ///< triangles with three tetrahedra per side
+    std::vector<a_patches::VertexKind> kinds;  ///< by vertex of `mesh`; of those beyond its end: regular
     std::size_t raised = 0;  ///< see Weights::raised
     std::size_t edges = 0;
     std::size_t open = 0;  ///< edges that no tetrahedra fill on a side
@@ -72,8 +73,11 @@ struct APatchResult {
 /// are inside out, or apexes do not fit below 0.45 of the distance to the next sheet, normals get that direction, too;
 /// then the longest edges of the triangles are bisected, by a cubic through their ends and tangent planes, up to 7
 /// times, unless less than half of the places are repaired so. Where a crease leaves the tetrahedra beside its edge,
-/// the normals at its ends are turned along the edges; then sharp edges below 30 degrees become smooth. Edges where
-/// that does not help are open: without tetrahedra beside them.
+/// the normals at its ends are turned along the edges; then sharp edges become smooth that are below 30 degrees or
+/// between normals that differ by less. Vertices where that does not help get a gradient of 0: the surface has a tip
+/// there. Where that does not help either, the surface follows the mesh: all edges at a vertex become sharp and
+/// straight, and those around it get tips. The same where a tessellation of a surface with tips intersects itself; a
+/// fit is taken back where it makes it do so.
 ///
 /// Pre:  a manifold, closed or open, of any number of components, consistently oriented, finite, with area in every
 ///       triangle, without two vertices at one position. The surface ends at a boundary, with a warning. `points`, if

@@ -7,6 +7,8 @@
 
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
+#include "tessellate/tessellate.hpp"
 
 namespace scanmill::a_patches {
 
@@ -127,6 +129,16 @@ struct SharedFace {
     auto operator<=>(const SharedFace&) const = default;
 };
 
+/// Coordinates in a tetrahedron of a point of one of its faces. A position would be off the face by rounding, which
+/// matters in flat tetrahedra.
+Barycentric coordinates_on(const std::array<u32, 4>& tet, const std::array<u32, 3>& face, const Vec3& share) {
+    Barycentric at = Barycentric::Zero();
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t v = 0; v < 3; ++v)
+            if (tet[i] == face[v]) at[static_cast<Eigen::Index>(i)] = share[static_cast<Eigen::Index>(v)];
+    return at;
+}
+
 }  // namespace
 
 std::size_t inverted_tets(const PatchComplex& patches) {
@@ -195,15 +207,29 @@ double c1_jump(const PatchComplex& patches, Execution& execution) {
                 if (is_sharp && patches.triangles[here] != patches.triangles[there]) continue;
                 const PatchCell one(patches, here), other(patches, there);
                 for (const Vec3& share : places) {
-                    Vec3 point = Vec3::Zero();
-                    for (std::size_t v = 0; v < 3; ++v)
-                        point += share[static_cast<Eigen::Index>(v)] * patches.positions[faces[i].vertices[v]];
-                    const Vec3 a = one.gradient(point), b = other.gradient(point);
+                    const Vec3 a = one.gradient(coordinates_on(patches.tets[here], faces[i].vertices, share)),
+                               b = other.gradient(coordinates_on(patches.tets[there], faces[i].vertices, share));
                     jump = std::max(jump, (a - b).norm() / std::max(a.norm(), b.norm()));
                 }
             }
     });
     return std::ranges::max(largest);
+}
+
+std::vector<u32> crossing_triangles(const PatchComplex& patches, Execution& execution) {
+    TessellateParams params;
+    params.subdivision = 4;
+    const TriangleMesh surface = tessellate(patches, params, execution);
+    const TriangleTree tree(surface.positions.span(), surface.triangles.span(), execution.threads());
+    const SelfIntersections found =
+        self_intersections(surface.positions.span(), surface.triangles.span(), tree, execution);
+    const Column& patch = *surface.face_columns.find("patch");
+    std::vector<u32> triangles;
+    for (const auto& pair : found.pairs)
+        for (const u32 row : pair) triangles.push_back(static_cast<u32>(patch.number(row, 0)));
+    std::ranges::sort(triangles);
+    triangles.erase(std::ranges::unique(triangles).begin(), triangles.end());
+    return triangles;
 }
 
 }  // namespace scanmill::a_patches

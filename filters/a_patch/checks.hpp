@@ -21,4 +21,8 @@ std::size_t sign_violations(const PatchComplex& patches, Execution& execution);
 /// three points each; not across sharp edges.
 double c1_jump(const PatchComplex& patches, Execution& execution);
 
+/// Triangles of the mesh whose parts of the surface meet others than along their borders, as far as a tessellation with
+/// 4 segments per edge shows; ascending. Cost: about 0.2 ms per triangle.
+std::vector<u32> crossing_triangles(const PatchComplex& patches, Execution& execution);
+
 }  // namespace scanmill::a_patches

@@ -22,6 +22,7 @@ constexpr double least_sine = 0.1;  // between two undivided triangles
 constexpr double most_change = 0.1;  // of an edge's gradient, whose length is 1
 constexpr double most_cosine_of_straight = 1e-12;  // rounding: between an edge and normals perpendicular to it
 constexpr double cosine_of_acute = -0.5;  // between the triangles' normals
+constexpr double least_sine_of_opening = 0.0175;  // 1 degree; tetrahedra that are flatter count as inside out
 constexpr double least_turn = 1e-9;  // sines of angles between normals
 constexpr std::size_t chunk = 256;  // triangles
 // Cosine and sine of the limits 4 and 172 degrees of the angle between two apexes, seen along their edge.
@@ -161,14 +162,19 @@ private:
         if (edge.slopes[1] == Vec3::Zero()) edge.slopes[1] = second / 3;
     }
 
+    bool is_regular(u32 vertex) const {
+        return vertex >= mesh_.kinds.size() || mesh_.kinds[vertex] == VertexKind::regular;
+    }
+
     void describe_sharp(HullEdge& edge, const std::array<Vec3, 2>& of_first, u32 other) {
         const std::array<Vec3, 2> of_second{hull_.normals[other / 3][(other + 1) % 3],
                                             hull_.normals[other / 3][other % 3]};
         const Vec3 d = hull_.positions[edge.b] - hull_.positions[edge.a];
         edge.slopes[1] = default_slope(d, of_second[0], of_second[1]);
-        edge.is_straight = std::ranges::all_of(
-            std::array{of_first[0], of_first[1], of_second[0], of_second[1]},
-            [&](const Vec3& n) { return std::abs(n.dot(d)) <= most_cosine_of_straight * d.norm(); });
+        edge.is_straight = (!is_regular(edge.a) && !is_regular(edge.b)) ||
+                           std::ranges::all_of(
+                               std::array{of_first[0], of_first[1], of_second[0], of_second[1]},
+                               [&](const Vec3& n) { return std::abs(n.dot(d)) <= most_cosine_of_straight * d.norm(); });
         // The normals turn apart at a convex edge.
         const double turn = d.dot(of_first[0].cross(of_second[0]) + of_first[1].cross(of_second[1])) / d.norm();
         if (std::abs(turn) > least_turn) {
@@ -345,7 +351,8 @@ private:
                 if (edge.second == HullEdge::none) continue;
                 for (const Side side : both_sides) {
                     const Opening found = opening(hull_, edge, side);
-                    if (found == Opening::sound || (edge.is_straight && is_acute(edge))) continue;
+                    if (found == Opening::sound) continue;
+                    if (found == Opening::too_large && edge.is_straight && is_acute(edge)) continue;
                     has_changed = true;
                     for (const u32 f : {edge.first, edge.second}) change(hull_.faces[f], side, found);
                 }
@@ -380,9 +387,10 @@ private:
 
 bool Hull::is_sound(const HullEdge& edge, Side side) const {
     if (edge.second == HullEdge::none) return true;
-    const Vec3 d = positions[edge.b] - positions[edge.a];
-    const Vec3 u = apex(edge.first, side) - positions[edge.a], v = apex(edge.second, side) - positions[edge.a];
-    return sign_of(side) * d.dot(u.cross(v)) > 0;
+    const Vec3 d = (positions[edge.b] - positions[edge.a]).normalized();
+    const Vec3 u = d.cross(apex(edge.first, side) - positions[edge.a]),
+               v = d.cross(apex(edge.second, side) - positions[edge.a]);
+    return sign_of(side) * d.dot(u.cross(v)) > least_sine_of_opening * u.norm() * v.norm();
 }
 
 Hull make_hull(const PatchMesh& mesh, double apex_factor, Split split, Execution& execution) {

@@ -76,11 +76,19 @@ struct HullFaults {
 /// The gradients at the corners of every triangle: unit length, or zero where the surface has a singular point.
 using CornerNormals = std::vector<std::array<Vec3, 3>>;
 
+/// What the surface does at a vertex.
+enum class VertexKind : u8 {
+    regular,
+    pointed,  ///< the gradient is 0: the surface has a tip
+    faceted  ///< all edges are sharp, and the normals are those of the triangles
+};
+
 /// A mesh whose surface is sought.
 struct PatchMesh {
     TriangleMesh mesh;  ///< with its sharp edges; no columns
     /// Equal at a vertex in triangles that are connected there without crossing a sharp edge.
     CornerNormals normals;
+    std::vector<VertexKind> kinds{};  ///< by vertex; of those beyond its end: regular
 };
 
 struct Hull {

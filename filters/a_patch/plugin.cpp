@@ -8,7 +8,7 @@ SCANMILL_FILTER() {
     using P = APatchParams;
     using a_patches::Curvature;
     using a_patches::Split;
-    return Declare<P>("a-patch", 2)
+    return Declare<P>("a-patch", 3)
         .summary("Spans an implicit surface over a mesh: cubic patches, smooth except at the mesh's sharp edges.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(
@@ -64,6 +64,11 @@ SCANMILL_FILTER() {
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
         .metric("creased-edges", Unit::count, "Edges made sharp, because the mesh is folded there.", smaller_is_better)
         .metric("smoothed-edges", Unit::count, "Blunt sharp edges made smooth, because no crease follows them.",
+                smaller_is_better)
+        .metric("pointed-vertices", Unit::count,
+                "Vertices where the surface has a tip, because no smooth surface fits there.", smaller_is_better)
+        .metric("faceted-vertices", Unit::count,
+                "Vertices where the surface follows the mesh's triangles, because nothing else fits.",
                 smaller_is_better)
         .metric("open-edges", Unit::count, "Edges beside which no tetrahedra fit: a straight strip closes the surface.",
                 smaller_is_better)

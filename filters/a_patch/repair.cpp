@@ -154,7 +154,12 @@ std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& 
         if (opposites[half] == half_edges::boundary || opposites[half] < half) continue;
         const Edge edge = make_edge(half_edges::start(mesh.mesh, half), half_edges::end(mesh.mesh, half));
         if (std::ranges::find(edges, edge) == edges.end()) continue;
-        if (of_triangles[half / 3].dot(of_triangles[opposites[half] / 3]) > cosine_of_fold) blunt.push_back(edge);
+        const u32 other = opposites[half];
+        const auto normal = [&](u32 corner) -> const Vec3& { return mesh.normals[corner / 3][corner % 3]; };
+        // Within a chain of creases the normals differ at both ends.
+        const bool is_crease = normal(half).dot(normal(half_edges::after(other))) < cosine_of_fold ||
+                               normal(half_edges::after(half)).dot(normal(other)) < cosine_of_fold;
+        if (!is_crease || of_triangles[half / 3].dot(of_triangles[other / 3]) > cosine_of_fold) blunt.push_back(edge);
     }
     if (blunt.empty()) return 0;
     std::ranges::sort(blunt);
@@ -174,6 +179,34 @@ std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& 
     }
     repairs.smoothed += blunt.size();
     return blunt.size();
+}
+
+bool loosen(PatchMesh& mesh, std::span<const u32> vertices, Repairs& repairs) {
+    std::vector<VertexKind>& kinds = mesh.kinds;
+    kinds.resize(mesh.mesh.positions.size(), VertexKind::regular);
+    std::vector<VertexKind> before = kinds;
+    for (const u32 v : vertices)
+        kinds[v] = before[v] == VertexKind::regular ? VertexKind::pointed : VertexKind::faceted;
+    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+    std::vector<Edge> sharp;
+    for (const Triangle& t : mesh.mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (kinds[t[i]] != VertexKind::faceted) continue;
+            for (const u32 other : {t[(i + 1) % 3], t[(i + 2) % 3]}) {
+                sharp.push_back(make_edge(t[i], other));
+                if (kinds[other] == VertexKind::regular) kinds[other] = VertexKind::pointed;
+            }
+        }
+    for (std::size_t f = 0; f < mesh.mesh.triangles.size(); ++f)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const VertexKind kind = kinds[mesh.mesh.triangles[f][i]];
+            if (kind == VertexKind::pointed) mesh.normals[f][i] = Vec3::Zero();
+            if (kind == VertexKind::faceted) mesh.normals[f][i] = of_triangles[f];
+        }
+    add_sharp(mesh.mesh, std::move(sharp));
+    repairs.pointed = static_cast<std::size_t>(std::ranges::count(kinds, VertexKind::pointed));
+    repairs.faceted = static_cast<std::size_t>(std::ranges::count(kinds, VertexKind::faceted));
+    return kinds != before;
 }
 
 }  // namespace scanmill::a_patches

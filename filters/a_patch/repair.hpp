@@ -11,6 +11,7 @@ struct Repairs {
     std::size_t bisected = 0;  ///< edges
     std::size_t creased = 0;   ///< edges made sharp
     std::size_t smoothed = 0;  ///< sharp edges made smooth
+    std::size_t pointed = 0, faceted = 0;  ///< vertices
 };
 
 std::vector<Vec3> triangle_normals(const TriangleMesh& mesh);
@@ -31,8 +32,12 @@ void turn_normals(PatchMesh& mesh, std::span<const u32> triangles, Repairs& repa
 /// that.
 void align_normals(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
 
-/// Makes those of the sharp edges smooth whose triangles' normals differ by less than 30 degrees; their ends get the
-/// mean of the normals. Returns how many.
+/// Makes those of the sharp edges smooth whose triangles' normals differ by less than 30 degrees, or the normals on
+/// both sides at both ends; their ends get the mean of the normals. Returns how many.
 std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
+
+/// Makes the vertices pointed, and those that are so faceted, with pointed ones around them. Edges between two such
+/// vertices follow the mesh, if they are sharp. Returns whether one has changed.
+bool loosen(PatchMesh& mesh, std::span<const u32> vertices, Repairs& repairs);
 
 }  // namespace scanmill::a_patches

@@ -200,14 +200,15 @@ inline std::optional<Vec3> point_on_ray(const PatchComplex& patches, u32 tet, co
     return PatchCell(patches, tet).point((1 - low) * from + low * to);
 }
 
-/// Points of the surface above random points of the triangles, on the lines to the apexes, and beside sharp edges on
-/// the lines to the segment between two apexes.
+/// Points of the surface above random points of the triangles, on the lines to the apexes, and beside edges on the
+/// lines to the segment between two apexes.
 template <class Action>
-std::size_t for_each_ray(const PatchComplex& patches, int per_tet, Action&& action) {
+std::size_t for_each_ray(const PatchComplex& patches, int per_tet, Action&& action, bool beside_all_edges = false) {
     Random random(3);
     std::size_t rays = 0;
     for (u32 tet = 0; tet < patches.tets.size(); ++tet) {
-        const bool is_gap = patches.kinds[tet] == PatchKind::sharp && patches.partners[tet] > tet;
+        const bool is_gap = (beside_all_edges && patches.kinds[tet] == PatchKind::edge) ||
+                            (patches.kinds[tet] == PatchKind::sharp && patches.partners[tet] > tet);
         if (patches.kinds[tet] != PatchKind::face && !is_gap) continue;
         for (int i = 0; i < per_tet; ++i) {
             double a = random.uniform(0, 1), b = random.uniform(0, 1);

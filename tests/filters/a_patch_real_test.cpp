@@ -44,6 +44,60 @@ INSTANTIATE_TEST_SUITE_P(Models, APatchReal,
                          testing::Values("meshes/bunny00.off", "meshes/bear.off", "meshes/eight.off",
                                          "meshes/knot1.off"));
 
+struct SolidCase {
+    std::optional<std::filesystem::path> (*source)(std::string_view);
+    const char* name;
+    double error;  ///< of decimation, as a share of the diagonal
+};
+
+class APatchSolid : public testing::TestWithParam<SolidCase> {};
+
+/// Through all points of a scan, with folds where it has noise.
+TriangleMesh solid_of(const PointCloud& points, double error) {
+    Context context;
+    const TriangleMesh mesh =
+        sculpt(alpha_solid(delaunay(points, {}, context).tets, {}, context).tets, {}, context).mesh;
+    DecimateParams reduction;
+    reduction.max_error = error * surface_box(mesh).diagonal();
+    return decimate(mesh, &points, reduction, context).mesh;
+}
+
+TEST_P(APatchSolid, OfAScan_HasOneClosedSheetWithoutIntersections) {
+    const auto path = GetParam().source(GetParam().name);
+    if (!path) GTEST_SKIP() << "skipped: no collection for " << GetParam().name;
+    const auto points = read_points(*path);
+    const TriangleMesh light = solid_of(*points, GetParam().error);
+    for (const bool is_fitted : {false, true}) {
+        APatchParams params;
+        params.fit = is_fitted;
+        const PatchRun run = patched(light, params, points.get(), 2);
+        EXPECT_EQ(run.result.inverted, 0u);
+        EXPECT_EQ(run.result.sign_violations, 0u);
+        EXPECT_EQ(run.result.open, 0u);
+        EXPECT_EQ(run.result.thin, 0u);
+        EXPECT_LT(run.result.c1_jump, 1e-10);
+        const PatchComplex& patches = run.result.patches;
+        const int per_tet = static_cast<int>(500'000 / patches.tets.size()) + 1;
+        EXPECT_GT(for_each_ray(
+                      patches, per_tet, [](u32, const Vec3&) {}, true),
+                  100'000u);
+        Execution execution;
+        const TriangleMesh fine = tessellate(patches, {4, {}}, execution);
+        const MeshTopology found = topology(fine);
+        EXPECT_TRUE(found.closed);
+        EXPECT_EQ(found.euler, topology(light).euler);
+        const TriangleTree tree(fine.positions.span(), fine.triangles.span(), 2);
+        EXPECT_EQ(self_intersections(fine.positions.span(), fine.triangles.span(), tree, execution).count, 0u);
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Scans, APatchSolid,
+                         testing::Values(SolidCase{fetched_data, "points_3/kitten.xyz", 0.003},
+                                         SolidCase{fetched_data, "points_3/kitten.xyz", 0.001},
+                                         SolidCase{fetched_data, "meshes/hand.off", 0.003},
+                                         SolidCase{shared_data, "1-bunny/bun_zipper.ply", 0.003},
+                                         SolidCase{shared_data, "7-seed-like/femur_gfxmorph.stl", 0.003},
+                                         SolidCase{shared_data, "7-seed-like/femur_gfxmorph.stl", 0.001}));
+
 /// The model's mesh; that of a point file is reconstructed.
 TriangleMesh model(const std::filesystem::path& path) {
     if (path.extension() != ".xyz") return *read_mesh(path);

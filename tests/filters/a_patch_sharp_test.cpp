@@ -195,20 +195,59 @@ TEST(APatchSharp, ABluntEdgeWhoseCreaseLeavesIt_BecomesSmooth) {
     EXPECT_EQ(run.result.repairs.smoothed + run.result.mesh.sharp_edges.size(), 1u);
 }
 
-TEST(APatchSharp, EdgesWithoutRoomForTetrahedra_RemainOpen) {
-    // Vertices moved along the torus by almost the spacing fold it.
+/// Vertices moved along the torus by almost the spacing fold it.
+PatchRun folded_torus() {
     Random random(1);
-    const TriangleMesh mesh = with_positions(torus(1, 0.4, 24, 12), [&](const Vec3& p) -> Vec3 {
+    return patched(with_positions(torus(1, 0.4, 24, 12), [&](const Vec3& p) -> Vec3 {
         return p + 0.2 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    });
-    const PatchRun run = patched(mesh);
+    }));
+}
+
+TEST(APatchSharp, WhereNoSmoothSurfaceFits_ItHasTipsOrFollowsTheMesh) {
+    const PatchRun run = folded_torus();
+    const a_patches::Repairs& repairs = run.result.repairs;
     EXPECT_EQ(run.result.inverted, 0u);
     EXPECT_EQ(run.result.sign_violations, 0u);
-    EXPECT_EQ(metric_of(run, "open-edges"), static_cast<double>(run.result.open));
-    EXPECT_EQ(metric_of(run, "creased-edges"), static_cast<double>(run.result.repairs.creased));
-    EXPECT_GT(run.result.open, 0u);
-    EXPECT_GT(run.result.repairs.creased, 0u);
-    EXPECT_THAT(run.warnings, testing::Contains(HasSubstr("no tetrahedra fit beside")));
+    EXPECT_LT(run.result.c1_jump, 1e-9);
+    EXPECT_EQ(run.result.open, 0u);
+    EXPECT_EQ(run.result.thin, 0u);
+    EXPECT_EQ(metric_of(run, "open-edges"), 0);
+    EXPECT_EQ(metric_of(run, "creased-edges"), static_cast<double>(repairs.creased));
+    EXPECT_EQ(metric_of(run, "pointed-vertices"), static_cast<double>(repairs.pointed));
+    EXPECT_EQ(metric_of(run, "faceted-vertices"), static_cast<double>(repairs.faceted));
+    EXPECT_GT(repairs.creased, 0u);
+    EXPECT_GT(repairs.pointed, 0u);
+    EXPECT_GT(repairs.faceted, 0u);
+    EXPECT_THAT(run.warnings, testing::Contains(HasSubstr("vertices no smooth surface fits: it has a tip at")));
+}
+
+TEST(APatchSharp, AtFacetedVertices_TheSurfaceIsTheMesh) {
+    const PatchRun run = folded_torus();
+    const TriangleMesh& mesh = run.result.mesh;
+    using a_patches::VertexKind;
+    const auto kind = [&](u32 v) { return v < run.result.kinds.size() ? run.result.kinds[v] : VertexKind::regular; };
+    std::vector<bool> is_flat;
+    for (u32 f = 0; f < mesh.triangles.size(); ++f) {
+        const Triangle& t = mesh.triangles[f];
+        const Vec3 normal = (mesh.positions[t[1]] - mesh.positions[t[0]])
+                                .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
+                                .normalized();
+        for (const u32 v : t) {
+            const Vec3 found = corner_normal(run.result, f, v);
+            EXPECT_TRUE(kind(v) != VertexKind::pointed || found == Vec3::Zero());
+            EXPECT_TRUE(kind(v) != VertexKind::faceted || (found - normal).norm() < 1e-12);
+        }
+        is_flat.push_back(std::ranges::all_of(t, [&](u32 v) { return kind(v) == VertexKind::faceted; }));
+    }
+    EXPECT_GT(std::ranges::count(is_flat, true), 0);
+    const PatchComplex& patches = run.result.patches;
+    for (u32 row = 0; row < patches.tets.size(); ++row) {
+        if (patches.kinds[row] != PatchKind::face || !is_flat[patches.triangles[row]]) continue;
+        EXPECT_LT(std::abs(patch_value(patches.weights[row], Barycentric(1, 1, 1, 0) / 3)), 1e-12);
+    }
+    for (const Edge& edge : mesh.sharp_edges)
+        for (const auto& [one, other] : {std::pair(edge[0], edge[1]), std::pair(edge[1], edge[0])})
+            EXPECT_TRUE(kind(one) != VertexKind::faceted || kind(other) != VertexKind::regular);
 }
 
 }  // namespace
