@@ -90,3 +90,20 @@ def smooth():
         picture.dot(noisy, INK, 3, hollow=True)
         picture.dot(near, BRIGHT, 2.5)
     return picture
+
+
+def poisson():
+    """Part of the profile has no points; there, the surface is invented."""
+    picture = Picture(8, 4.2)
+    source = random.Random(3)
+    curve = profile(180)
+    missing = range(20, 44)
+    for i, ((p, _), (q, _)) in enumerate(zip(curve, curve[1:] + curve[:1])):
+        picture.line(p, q, BRIGHT if i in missing else SOLID, 3 if i in missing else 4)
+    for i, (p, n) in enumerate(curve):
+        if i % 4 == 0 and i not in missing:
+            off = source.gauss(0, 0.05)
+            at = (p[0] + off * n[0], p[1] + off * n[1])
+            picture.arrow(at, (at[0] + 0.35 * n[0], at[1] + 0.35 * n[1]), INK)
+            picture.dot(at, INK, 3)
+    return picture

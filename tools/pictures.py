@@ -31,6 +31,7 @@ def main():
         ("outlier_removal", clouds.outlier_removal),
         ("patch_distance", patches.patch_distance),
         ("plate_corners", frames.plate_corners),
+        ("poisson", cleanups.poisson),
         ("probe_planner", probes.probe_planner),
         ("region_grow", surfaces.region_grow),
         ("repair", cleanups.repair),

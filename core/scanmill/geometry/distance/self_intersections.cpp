@@ -2,7 +2,7 @@
 #include "scanmill/geometry/distance/self_intersections.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <bit>
 #include <vector>
 
 #include "scanmill/base/parallel.hpp"
@@ -11,17 +11,25 @@
 namespace scanmill {
 
 Array<u32> lowest_at_position(std::span<const Vec3> positions) {
-    Array<u32> order(positions.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::sort(order, [&](u32 a, u32 b) {
-        for (int axis = 0; axis < 3; ++axis)
-            if (positions[a][axis] != positions[b][axis]) return positions[a][axis] < positions[b][axis];
-        return a < b;
-    });
-    Array<u32> merged(positions.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        merged[order[i]] = i > 0 && positions[order[i]] == positions[order[i - 1]] ? merged[order[i - 1]] : order[i];
-    return merged;
+    constexpr u32 nobody = ~u32(0);
+    const std::size_t mask = std::bit_ceil(2 * positions.size() + 1) - 1;
+    std::vector<u32> slots(mask + 1, nobody);  // a hash table with linear probing
+    const auto hash = [](const Vec3& position) {
+        u64 mixed = 0;
+        for (const double coordinate : position) {
+            mixed = (mixed ^ std::bit_cast<u64>(coordinate + 0.0)) * 0x9e3779b97f4a7c15u;  // -0 + 0 is 0
+            mixed ^= mixed >> 32;
+        }
+        return static_cast<std::size_t>(mixed);
+    };
+    Array<u32> lowest(positions.size());
+    for (u32 row = 0; row < positions.size(); ++row) {
+        std::size_t slot = hash(positions[row]) & mask;
+        while (slots[slot] != nobody && positions[slots[slot]] != positions[row]) slot = (slot + 1) & mask;
+        if (slots[slot] == nobody) slots[slot] = row;
+        lowest[row] = slots[slot];
+    }
+    return lowest;
 }
 
 namespace {

@@ -72,6 +72,15 @@ public:
     /// The leaf that contains points()[slot].
     u64 leaf_of(std::size_t slot) const { return leaves() + (((u64(slot) + 1) << depth_) - 1) / points_.size(); }
 
+    /// The leaf that is reached by going to the child whose box is nearer to `point`, or to the left one.
+    u64 leaf_near(const Vec3& point) const {
+        const BoundingBox at{point, point};
+        u64 node = 1;
+        while (node < leaves())
+            node = 2 * node + (squared_distance(boxes_[2 * node], at) > squared_distance(boxes_[2 * node + 1], at));
+        return node;
+    }
+
     /// The smallest node around `node` with at least `count` points; the root if there are fewer.
     u64 ancestor_with(std::size_t count, u64 node) const {
         while (node > 1 && points_of(node).size() < count) node /= 2;
@@ -138,7 +147,7 @@ struct ComesBefore {
 /// (count + 1)-th point in a node around them.
 class NeighbourSearch {
 public:
-    /// Pre: 1 ≤ count < number of points.
+    /// Pre: 1 ≤ count < number of points; at most that number for nearest_to().
     NeighbourSearch(const BoxTree& tree, std::size_t count, NeighbourBuffer& buffer)
         : tree_(tree),
           count_(count),
@@ -147,9 +156,17 @@ public:
     /// Writes the #count neighbours of points()[slot] to `out`.
     void nearest(std::size_t slot, Neighbour* out) {
         const BoxTree::Point& from = tree_.points()[slot];
-        const double squared = enough_around(from.position, tree_.leaf_of(slot));
+        const double squared = enough_around(from.position, tree_.leaf_of(slot), count_ + 1);
         collect({from.position, from.position}, squared);
         [[maybe_unused]] const bool enough = choose(from, squared, out);
+        assert(enough);
+    }
+
+    /// Writes the #count points nearest to `point` to `out`.
+    void nearest_to(const Vec3& point, Neighbour* out) {
+        const double squared = enough_around(point, tree_.leaf_near(point), count_);
+        collect({point, point}, squared);
+        [[maybe_unused]] const bool enough = choose({point, nobody}, squared, out);
         assert(enough);
     }
 
@@ -177,23 +194,25 @@ public:
     }
 
 private:
+    static constexpr u32 nobody = ~u32(0);  // not an index: a tree has fewer points
+
     /// The square of a radius that contains enough points around every point of the leaf, or around most of them.
     double radius_for_leaf(u64 leaf) {
         constexpr double widening = 1.25;  // wider costs candidates, narrower second searches
         const BoundingBox& box = tree_.box(leaf);
         // From the middle of the box to count + 1 points, and from every point to the middle.
         const double around =
-            std::sqrt(enough_around((box.low + box.high) / 2, leaf)) + (box.high - box.low).norm() / 2;
+            std::sqrt(enough_around((box.low + box.high) / 2, leaf, count_ + 1)) + (box.high - box.low).norm() / 2;
         return std::min(around * around, last_squared_ * widening);
     }
 
-    /// A squared radius around `position` that contains at least count + 1 points, including one at `position`.
-    double enough_around(const Vec3& position, u64 leaf) {
-        const std::span<const BoxTree::Point> points = tree_.points_of(tree_.ancestor_with(count_ + 1, leaf));
+    /// A squared radius around `position` that contains at least `count` points, one at `position` included.
+    double enough_around(const Vec3& position, u64 leaf, std::size_t count) {
+        const std::span<const BoxTree::Point> points = tree_.points_of(tree_.ancestor_with(count, leaf));
         if (points.size() > buffer_.x.size()) buffer_.reserve(2 * points.size());
         const std::span<double> squares = std::span(buffer_.squares).first(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) squares[i] = squared_distance(points[i].position, position);
-        const auto last = squares.begin() + static_cast<std::ptrdiff_t>(count_);
+        const auto last = squares.begin() + static_cast<std::ptrdiff_t>(count - 1);
         std::nth_element(squares.begin(), last, squares.end());
         return *last;
     }
@@ -342,6 +361,13 @@ std::span<const Neighbour> PointTree::nearest(u32 index, std::size_t count, Neig
     if (!buffer.neighbours.empty())
         NeighbourSearch(tree_->boxes, buffer.neighbours.size(), buffer)
             .nearest(tree_->slot_of_index[index], buffer.neighbours.data());
+    return buffer.neighbours;
+}
+
+std::span<const Neighbour> PointTree::nearest_to(const Vec3& point, std::size_t count, NeighbourBuffer& buffer) const {
+    buffer.neighbours.resize(std::min(count, tree_->positions.size()));
+    if (!buffer.neighbours.empty())
+        NeighbourSearch(tree_->boxes, buffer.neighbours.size(), buffer).nearest_to(point, buffer.neighbours.data());
     return buffer.neighbours;
 }
 

@@ -57,7 +57,9 @@ public:
     /// The `count` nearest of the other positions, or all of them if there are fewer. The result is in `buffer` and is
     /// valid until the next search. Safe from several threads, as are the functions below.
     std::span<const Neighbour> nearest(u32 index, std::size_t count, NeighbourBuffer& buffer) const;
-    /// The same for every position; several times as fast as one call each. `action` is called from up to `threads`
+    /// The `count` positions nearest to any finite point, or all of them if there are fewer; one at the point counts.
+    std::span<const Neighbour> nearest_to(const Vec3& point, std::size_t count, NeighbourBuffer& buffer) const;
+    /// As nearest() for every position; several times as fast as one call each. `action` is called from up to `threads`
     /// threads and in any order; which positions share a batch depends on the positions alone.
     void for_each_nearest(std::size_t count, unsigned threads,
                           const std::function<void(const NeighbourBatch& batch)>& action) const;

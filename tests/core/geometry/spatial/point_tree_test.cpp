@@ -44,6 +44,32 @@ TEST(PointTree, Nearest_CountsOtherPositionsOnly_AndAllWhenThereAreFewer) {
     EXPECT_THAT(PointTree(std::span(&one, 1)).nearest(0, 3, buffer), ElementsAre());
 }
 
+TEST(PointTree, NearestToAnyPoint_CountsAPositionThere_AndAllWhenThereAreFewer) {
+    NeighbourBuffer buffer;
+    const PointTree tree(on_a_line.positions.span());
+    EXPECT_THAT(squares(tree.nearest_to({3, 0, 0}, 3, buffer)), ElementsAre(0, 4, 4));
+    EXPECT_THAT(indices(tree.nearest_to({3, 0, 0}, 3, buffer)), ElementsAre(2, 1, 3)) << "ties by index";
+    EXPECT_THAT(squares(tree.nearest_to({3, 2, 0}, 1, buffer)), ElementsAre(4));
+    EXPECT_THAT(squares(tree.nearest_to({0, 0, 0}, 9, buffer)), ElementsAre(0, 1, 9, 25));
+    EXPECT_THAT(squares(tree.nearest_to({0, 0, 0}, 0, buffer)), ElementsAre());
+}
+
+TEST(PointTree, NearestToAnyPoint_AreThoseOfAllPoints) {
+    const PointCloud cloud = test::random_cube(2000, 7), queries = test::random_cube(200, 8, 3);
+    const PointTree tree(cloud.positions.span());
+    NeighbourBuffer buffer;
+    for (const Vec3& query : queries.positions) {
+        std::vector<double> all;
+        for (const Vec3& p : tree.positions()) {
+            const Vec3 d = p - query;
+            all.push_back((d.x() * d.x() + d.y() * d.y()) + d.z() * d.z());
+        }
+        std::ranges::sort(all);
+        all.resize(9);
+        EXPECT_EQ(squares(tree.nearest_to(query, 9, buffer)), all);
+    }
+}
+
 TEST(PointTree, Within_IsOpenAtItsBorder) {
     NeighbourBuffer buffer;
     const PointTree tree(on_a_line.positions.span());

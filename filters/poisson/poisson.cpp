@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "poisson/poisson.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "fill_holes/fill_holes.hpp"
+#include "poisson/octree_surface.hpp"
+#include "scanmill/base/error.hpp"
+#include "scanmill/base/parallel.hpp"
+#include "scanmill/base/text.hpp"
+#include "scanmill/geometry/fit/covariance.hpp"
+#include "scanmill/geometry/mesh/boundary_loops.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/spatial/point_tree.hpp"
+
+namespace scanmill {
+
+namespace {
+
+constexpr u32 least_depth = 3, most_depth = 12;
+constexpr std::size_t neighbours = 8;
+constexpr double far_factor = 2;  // of the distance to the 8th neighbour
+constexpr double doubtful_share = 0.05;
+constexpr double least_flatness = 1e-12;  // of points that are not on one line
+constexpr u32 most_crack_edges = 12;
+constexpr std::size_t chunk = 1 << 10;
+
+void require_usable(const PointCloud& cloud, const PoissonParams& params) {
+    if (params.depth < least_depth || params.depth > most_depth)
+        throw Error("depth must be from {} to {}; it is {}", least_depth, most_depth, params.depth)
+            .hint("9 suits most scans; time and memory grow up to fourfold with every step");
+    if (const double trim = params.trim.value(); !(trim >= 0 && trim < 1))
+        throw Error("trim must be from 0 to below 100 %; it is {:g} %", 100 * trim)
+            .hint("`0 %` keeps the whole surface; `2 %` removes the 2 % of the vertices that have the fewest points");
+    if (params.max_distance && !(params.max_distance->value() > 0 && std::isfinite(params.max_distance->value())))
+        throw Error("max-distance must be above 0; it is {:g} u", params.max_distance->value())
+            .hint("`5 spacing` suits most scans; leave max-distance out to keep every distance");
+    if (cloud.size() == 0)
+        throw Error("the cloud has 0 points; poisson needs at least 4 with normals")
+            .hint("`scanmill info` shows what a file contains");
+    if (cloud.size() > ~u32(0))
+        throw Error("the cloud has {} points; at most {} are supported", cloud.size(), ~u32(0)).hint("split the scan");
+    require_finite(cloud.positions.span());
+    const Column* normal = cloud.columns.find("normal");
+    if (!normal)
+        throw Error("the scan has no column 'normal'; poisson needs a normal at every point")
+            .hint("put the filter `normals` before it");
+    if (normal->components() != 3)
+        throw Error("the column 'normal' has {} per point; 3 are needed",
+                    normal->is_list() ? "a list" : count_text(normal->components(), "number", "numbers"))
+            .hint("put the filter `normals` before it, which replaces the column");
+}
+
+/// The points that have a normal.
+struct Oriented {
+    Array<Vec3> positions, normals;
+};
+
+Oriented oriented_points(const PointCloud& cloud) {
+    const Column& column = *cloud.columns.find("normal");
+    Oriented points;
+    points.positions.reserve(cloud.size());
+    points.normals.reserve(cloud.size());
+    for (std::size_t row = 0; row < cloud.size(); ++row) {
+        const Vec3 normal(column.number(row, 0), column.number(row, 1), column.number(row, 2));
+        const double length = normal.stableNorm();
+        if (!(length > 0) || !std::isfinite(length)) continue;
+        points.positions.push_back(cloud.positions[row]);
+        points.normals.push_back(normal / length);
+    }
+    if (points.positions.empty())
+        throw Error("none of the {} has a normal: all are 0, NaN or infinite",
+                    count_text(cloud.size(), "point", "points"))
+            .hint("put the filter `normals` before it, which replaces the column");
+    return points;
+}
+
+void require_extent(const PointTree& tree) {
+    const std::span<const Vec3> positions = tree.positions();
+    if (positions.size() < 4)
+        throw Error("the points with normals have {}; poisson needs at least 4",
+                    count_text(positions.size(), "distinct position", "distinct positions"))
+            .hint("`scanmill info` shows what a file contains");
+    const BoundingBox box = bounding_box(positions);
+    Array<Vec3> offsets(positions.begin(), positions.end());
+    for (Vec3& offset : offsets) offset = (offset - (box.low + box.high) / 2) / box.diagonal();
+    if (scatter_of(offsets).flatness < least_flatness)
+        throw Error("the {} distinct positions with normals lie on one line; poisson needs a surface", positions.size())
+            .hint("a scan of one line has no surface");
+}
+
+TriangleMesh surface_of(const Oriented& points, const Frame& frame, u32 depth, double& cell, Context& context) {
+    const BoundingBox box = bounding_box(points.positions);
+    const Vec3 centre = (box.low + box.high) / 2;
+    const double size = (box.high - box.low).maxCoeff();
+    Array<OrientedPoint> scaled(points.positions.size());
+    for (std::size_t i = 0; i < scaled.size(); ++i) {
+        const Eigen::Vector3f at = ((points.positions[i] - centre) / size).cast<float>();
+        const Eigen::Vector3f normal = points.normals[i].cast<float>();
+        scaled[i] = {at.x(), at.y(), at.z(), normal.x(), normal.y(), normal.z()};
+    }
+    OctreeSurface surface = octree_surface(scaled, static_cast<int>(depth), [&](double share) {
+        context.check_cancelled();
+        context.progress(0.02 + 0.78 * share);
+    });
+    if (surface.triangles.empty())
+        throw Error("no surface separates the {} points: their normals cancel out, or the octree is too coarse",
+                    points.positions.size())
+            .hint("check the sides of the normals, or raise depth");
+    cell = surface.cell * size;
+    for (Vec3& position : surface.positions) position = centre + size * position;
+    require_finite(surface.positions, "vertices of the surface");
+    TriangleMesh mesh;
+    mesh.frame = frame;
+    mesh.positions = std::move(surface.positions);
+    mesh.triangles = std::move(surface.triangles);
+    return mesh;
+}
+
+std::size_t fill_cracks(TriangleMesh& mesh, Context& context) {
+    ContextOptions options;
+    options.threads = context.threads();
+    options.is_cancelled = [&] { return context.cancelled(); };
+    Context own(options);
+    FillHolesParams params;
+    params.max_edges = most_crack_edges;
+    params.fair = false;
+    FillHolesResult filled = fill_holes(mesh, params, own);
+    mesh.positions = filled.mesh.positions;
+    mesh.triangles = filled.mesh.triangles;
+    return filled.filled;
+}
+
+Array<Vec3> vertex_normals(const TriangleMesh& mesh) {
+    Array<Vec3> normals(mesh.positions.size(), Vec3::Zero());
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3& a = mesh.positions[t[0]];
+        const Vec3 normal = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
+        for (const u32 vertex : t) normals[vertex] += normal;
+    }
+    return normals;
+}
+
+/// By vertex: how the points support it.
+struct Support {
+    Array<double> nearest, last;  ///< distances to the nearest and to the 8th nearest position
+    std::vector<u8> far, against;
+    double usual = 0;  ///< median distance from a position to the 8th nearest other one
+};
+
+Support support_of(const TriangleMesh& mesh, const Oriented& points, const PointTree& tree, Context& context) {
+    const std::span<const Vec3> positions = tree.positions();
+    Array<Vec3> normals(positions.size(), Vec3::Zero());
+    for (std::size_t row = 0; row < points.normals.size(); ++row)
+        normals[tree.index_of_row()[row]] += points.normals[row];
+    Array<double> spread(positions.size());
+    tree.for_each_nearest(neighbours, context.threads(), [&](const NeighbourBatch& batch) {
+        context.check_cancelled();
+        for (std::size_t i = 0; i < batch.indices.size(); ++i)
+            spread[batch.indices[i]] = std::sqrt(batch.of(i).back().squared);
+    });
+
+    const std::size_t count = mesh.positions.size();
+    const Array<Vec3> outward = vertex_normals(mesh);
+    Support support{Array<double>(count), Array<double>(count), std::vector<u8>(count), std::vector<u8>(count), 0};
+    std::atomic<std::size_t> done = 0;
+    for_each_chunk(context.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
+        context.check_cancelled();
+        NeighbourBuffer buffer;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::span<const Neighbour> near = tree.nearest_to(mesh.positions[i], neighbours, buffer);
+            Vec3 sum = Vec3::Zero();
+            for (const Neighbour& neighbour : near) sum += normals[neighbour.index];
+            support.nearest[i] = std::sqrt(near.front().squared);
+            support.last[i] = std::sqrt(near.back().squared);
+            support.far[i] = support.nearest[i] > far_factor * spread[near.front().index];
+            support.against[i] = sum.dot(outward[i]) < 0;
+        }
+        context.progress(0.85 + 0.1 * static_cast<double>(done += end - begin) / static_cast<double>(count));
+    });
+    const auto middle = spread.begin() + static_cast<std::ptrdiff_t>(spread.size() / 2);
+    std::nth_element(spread.begin(), middle, spread.end());
+    support.usual = *middle;
+    return support;
+}
+
+/// By vertex: 1 for those that trimming removes.
+std::vector<u8> removed_vertices(const Support& support, const PoissonParams& params) {
+    const std::size_t count = support.last.size();
+    std::vector<u8> removed(count, 0);
+    Array<u32> order(count);
+    std::iota(order.begin(), order.end(), 0);
+    const auto least = static_cast<std::ptrdiff_t>(params.trim.value() * static_cast<double>(count));
+    std::nth_element(order.begin(), order.begin() + least, order.end(), [&](u32 a, u32 b) {
+        return support.last[a] != support.last[b] ? support.last[a] > support.last[b] : a < b;
+    });
+    for (std::ptrdiff_t i = 0; i < least; ++i) removed[order[static_cast<std::size_t>(i)]] = 1;
+    if (params.max_distance)
+        for (std::size_t i = 0; i < count; ++i)
+            if (support.nearest[i] > params.max_distance->value()) removed[i] = 1;
+    return removed;
+}
+
+double twice_area(const TriangleMesh& mesh, const Triangle& t) {
+    const Vec3& a = mesh.positions[t[0]];
+    return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).norm();
+}
+
+double volume_of(const TriangleMesh& mesh) {
+    const Vec3& apex = mesh.positions[0];
+    double sum = 0;
+    for (const Triangle& t : mesh.triangles)
+        sum += (mesh.positions[t[0]] - apex).dot((mesh.positions[t[1]] - apex).cross(mesh.positions[t[2]] - apex));
+    return sum / 6;
+}
+
+/// The mesh without the removed vertices, with densities.
+TriangleMesh trimmed(TriangleMesh mesh, const Support& support, const std::vector<u8>& removed,
+                     const PoissonParams& params) {
+    Array<Triangle> kept;
+    kept.reserve(mesh.triangles.size());
+    for (const Triangle& t : mesh.triangles)
+        if (!removed[t[0]] && !removed[t[1]] && !removed[t[2]]) kept.push_back(t);
+    if (kept.empty())
+        throw Error("trimming leaves none of the {} triangles: trim is {:g} %{}", mesh.triangles.size(),
+                    100 * params.trim.value(),
+                    params.max_distance ? fmt::format(", max-distance {:g} u", params.max_distance->value()) : "")
+            .hint("lower trim, or raise max-distance; `trim: 0 %` keeps the whole surface");
+    Array<float> density(mesh.positions.size());
+    for (std::size_t i = 0; i < density.size(); ++i) {
+        const double ratio = support.usual / support.last[i];
+        density[i] = static_cast<float>(ratio * ratio);
+    }
+    mesh.triangles = std::move(kept);
+    mesh.vertex_columns.add(Column("density", 1, Buffer<float>(std::move(density))));
+    return without_unused_vertices(mesh);
+}
+
+void report_doubts(const PoissonResult& result, bool inside_out, Context& context) {
+    if (result.without_normal > 0)
+        context.warn(fmt::format("{} not used: their normals are 0, NaN or infinite",
+                                 count_text(result.without_normal, "point is", "points are")));
+    if (inside_out)
+        context.warn("the normals point into the volume that the surface encloses; the surface is turned like them");
+    if (result.invented > doubtful_share)
+        context.doubt(
+            fmt::format("{:.1f} % of the area is far from all points, and so invented; a higher trim, or "
+                        "max-distance, removes it",
+                        100 * result.invented));
+    if (result.against > doubtful_share)
+        context.doubt(
+            fmt::format("at {:.1f} % of the vertices the surface faces away from the normals of the nearest "
+                        "points: normals are not on the same side everywhere, or depth is too low",
+                        100 * result.against));
+}
+
+}  // namespace
+
+PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Context& context) {
+    require_usable(cloud, params);
+    context.check_cancelled();
+    const Oriented points = oriented_points(cloud);
+    const PointTree tree(points.positions, context.threads());
+    require_extent(tree);
+    context.check_cancelled();
+    context.progress(0.02);
+
+    PoissonResult result;
+    result.without_normal = cloud.size() - points.positions.size();
+    TriangleMesh whole = surface_of(points, cloud.frame, params.depth, result.cell, context);
+    result.cracks = fill_cracks(whole, context);
+    context.progress(0.85);
+    const Support support = support_of(whole, points, tree, context);
+    const std::size_t vertices = whole.positions.size();
+    result.against = static_cast<double>(std::ranges::count(support.against, u8(1))) / static_cast<double>(vertices);
+    const bool inside_out =
+        std::ranges::count(half_edges::opposites(whole), half_edges::boundary) == 0 && volume_of(whole) < 0;
+
+    const std::vector<u8> removed = removed_vertices(support, params);
+    double area = 0, invented = 0;
+    for (const Triangle& t : whole.triangles) {
+        if (removed[t[0]] || removed[t[1]] || removed[t[2]]) continue;
+        const double its = twice_area(whole, t);
+        area += its;
+        invented += its * (support.far[t[0]] + support.far[t[1]] + support.far[t[2]]) / 3;
+    }
+    result.invented = area > 0 ? invented / area : 0;
+    result.mesh = trimmed(std::move(whole), support, removed, params);
+    result.trimmed = vertices - result.mesh.positions.size();
+    result.loops = boundary_loops(result.mesh, half_edges::opposites(result.mesh)).size();
+    report_doubts(result, inside_out, context);
+
+    context.metric("triangles", static_cast<double>(result.mesh.triangles.size()));
+    context.metric("trimmed", static_cast<double>(result.trimmed));
+    context.metric("invented", result.invented, Unit::ratio);
+    context.metric("against", result.against, Unit::ratio);
+    context.metric("without-normal", static_cast<double>(result.without_normal));
+    context.metric("cracks", static_cast<double>(result.cracks));
+    context.metric("loops", static_cast<double>(result.loops));
+    context.metric("cell", result.cell, Unit::length);
+    context.progress(1);
+    return result;
+}
+
+}  // namespace scanmill
