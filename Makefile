@@ -72,6 +72,7 @@ bench-quality: deps ## compare our results with trimesh, Open3D, three papers an
 	python3 bench/quality/sangveraphunsiri_table_1.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/decimate.py build/bench $(if $(LARGE),--large)
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/smooth_surface.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/creases.py build/bench/bin/scanmill
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench

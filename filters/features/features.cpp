@@ -36,6 +36,8 @@ FeatureLines features(const TriangleMesh& mesh, const FeatureParams& params, Con
     metric("ambiguous", lines.counts.ambiguous);
     metric("dropped", lines.counts.dropped);
     metric("without-area", lines.counts.without_area);
+    metric("unreliable", lines.counts.unreliable);
+    context.metric("noise", lines.noise, Unit::length);
     context.progress(1);
     return lines;
 }

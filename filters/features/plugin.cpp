@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = FeatureParams;
-    return Declare<P>("features", 1)
+    return Declare<P>("features", 2)
         .summary("Finds the boundaries and sharp edges of a mesh, and the corners where such lines meet or turn.")
         .source("Wang 2006, chapter 4, for loops, holes and sharp edges")
         .ties(
@@ -22,6 +22,11 @@ SCANMILL_FILTER() {
                at_most(180))
         .param("min-length", &P::min_length, "Creases shorter than this, from corner to corner, are left out.",
                at_least(0))
+        .param(
+            "noise", &P::noise,
+            "Standard deviation of the vertices' distances from the surface. Normals of triangles that are too small "
+            "for it are replaced by those of neighbourhoods; `auto` estimates it, 0 replaces none.",
+            at_least(0), word("auto"))
         .metric("creases", Unit::count, "Lines of sharp edges, from corner to corner or closed.", headline)
         .metric("holes", Unit::count, "Boundary loops around a hole in the mesh.", headline)
         .metric("boundaries", Unit::count, "Boundary loops around a component of the mesh.", headline)
@@ -31,6 +36,9 @@ SCANMILL_FILTER() {
         .metric("dropped", Unit::count, "Creases left out because they are shorter than min-length.")
         .metric("without-area", Unit::count, "Triangles without area; they take the normal of a neighbour.",
                 smaller_is_better)
+        .metric("noise", Unit::length, "Standard deviation of the vertices' distances from the surface.")
+        .metric("unreliable", Unit::count,
+                "Triangles too small for the noise; they take the normal of a neighbourhood.")
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("features", features(inputs.get<TriangleMesh>("mesh"), params, context).graph);
         });

@@ -4,39 +4,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <utility>
-
-#include "scanmill/geometry/mesh/facet_normals.hpp"
-#include "scanmill/geometry/spatial/angle.hpp"
 
 namespace scanmill::growing {
 
 namespace {
-
-/// The third corner of the triangle beyond the edge. Triangles may have been reversed since they were added to the
-/// fans.
-u32 opposite(const Surface& surface, u32 from, u32 to, u32 third) {
-    const u32 left = surface.fans.left_of(from, to), right = surface.fans.right_of(from, to);
-    return left == third ? right : left;
-}
-
-/// By point numbers. Each edge is considered from its triangle with the lower third corner.
-std::vector<Edge> sharp_edges(const Surface& surface, Angle sharp_angle) {
-    const double limit = sharp_angle.in_radians() + angle_tie;
-    const double surely_below = std::cos(limit) + 1e-6;
-    std::vector<Edge> edges;
-    for (const Triangle& triangle : surface.triangles)
-        for (std::size_t i = 0; i < 3; ++i) {
-            const u32 from = triangle[i], to = triangle[(i + 1) % 3], third = triangle[(i + 2) % 3];
-            const u32 other = opposite(surface, from, to, third);
-            if (other == invalid_index || other < third) continue;
-            const Vec3 one = surface.facet_normal(from, to, third), two = surface.facet_normal(to, from, other);
-            if (one.dot(two) < surely_below && angle_between(one, two) > limit) edges.push_back(make_edge(from, to));
-        }
-    return edges;
-}
 
 using Coordinates = std::array<double, 3>;
 
@@ -78,11 +51,17 @@ std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& ch
     return edges;
 }
 
-void add_sharp_edges(FinishedMesh& finished, const Surface& surface, std::span<const PatchEdge> patch_edges,
-                     Angle sharp_angle) {
-    const auto& vertex = finished.vertex_of_point;
+void set_sharp_edges(FinishedMesh& finished, const FeatureLines& lines, std::span<const PatchEdge> patch_edges) {
+    const FeatureGraph& graph = lines.graph;
+    const auto vertex_at = [&](u32 row) { return lines.mesh_vertices[graph.vertices[row]]; };
     Array<Edge> sharp;
-    for (const auto& [a, b] : sharp_edges(surface, sharp_angle)) sharp.push_back(make_edge(vertex[a], vertex[b]));
+    for (const FeaturePolyline& line : graph.polylines) {
+        if (line.type != FeatureType::crease) continue;
+        for (u32 row = line.begin; row + 1 < line.end; ++row)
+            sharp.push_back(make_edge(vertex_at(row), vertex_at(row + 1)));
+        if (line.closed) sharp.push_back(make_edge(vertex_at(line.end - 1), vertex_at(line.begin)));
+    }
+    const auto& vertex = finished.vertex_of_point;
     for (const PatchEdge& edge : patch_edges) sharp.push_back(make_edge(vertex[edge.from], vertex[edge.to]));
     std::ranges::sort(sharp);
     finished.mesh.sharp_edges = std::move(sharp);

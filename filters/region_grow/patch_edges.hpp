@@ -3,10 +3,9 @@
 /// The edges of patches, where a sharp edge ends the growth; the sharp edges of the mesh, and the normals beyond them.
 
 #include "region_grow/suitable_point.hpp"
-#include "scanmill/data/features.hpp"
-#include "scanmill/data/quantity.hpp"
 #include "scanmill/filter/context.hpp"
 #include "scanmill/geometry/growing/finished_mesh.hpp"
+#include "scanmill/geometry/mesh/feature_lines.hpp"
 
 namespace scanmill::growing {
 
@@ -23,9 +22,9 @@ struct PatchEdge {
 std::vector<PatchEdge> find_patch_edges(const Surface& surface, PointChooser& chooser, const Limits& limits,
                                         const Context& context);
 
-/// Sets the mesh's sharp edges: edges with a dihedral deviation above `sharp_angle`, and patch edges. Cost: linear.
-void add_sharp_edges(FinishedMesh& finished, const Surface& surface, std::span<const PatchEdge> patch_edges,
-                     Angle sharp_angle);
+/// Sets the mesh's sharp edges: the creases of `lines`, and patch edges. Pre: `lines` of `finished`. Cost: linear, and
+/// a sort of the sharp edges.
+void set_sharp_edges(FinishedMesh& finished, const FeatureLines& lines, std::span<const PatchEdge> patch_edges);
 
 /// Sets the right normal of every boundary segment that is a patch edge to the normal of the other patch: the mean over
 /// its triangles at the point beyond. Pre: `features` of `finished`. Cost: linear, and a search per segment.

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = RegionGrowParams;
-    return Declare<P>("region-grow", 5)
+    return Declare<P>("region-grow", 6)
         .summary("Grows a surface over thinned points from a seed triangle; finds boundaries, holes and sharp edges.")
         .source("Wang 2006, chapter 4, made robust; points chosen by empty circles after Delaunay")
         .ties(
@@ -32,6 +32,10 @@ SCANMILL_FILTER() {
             above(0), word("auto"))
         .param("sharp-angle", &P::sharp_angle, "Edges between triangles whose normals differ by more are creases.",
                at_least(0), at_most(180))
+        .param("noise", &P::noise,
+               "Standard deviation of the points' distances from the surface. Creases are found by normals of "
+               "neighbourhoods where triangles are too small for it; `auto` estimates it.",
+               at_least(0), word("auto"))
         .param(
             "close-holes", &P::close_holes,
             "Loops of at most this many edges are closed, and longer ones, up to 100 edges, that are too narrow for a "
@@ -59,6 +63,7 @@ SCANMILL_FILTER() {
                 smaller_is_better)
         .metric("creases", Unit::count, "Chains of sharp edges.")
         .metric("corners", Unit::count, "Vertices where feature lines meet or turn.")
+        .metric("noise", Unit::length, "Standard deviation of the points' distances from the surface.")
         .metric("closed-holes", Unit::count, "Small and narrow loops that were closed.")
         .metric("removed-triangles", Unit::count,
                 "Triangles removed again, where a vertex had several fans or to close a hole.")

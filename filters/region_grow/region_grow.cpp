@@ -38,6 +38,10 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
         const double radius = params.search_radius->value();
         if (!(radius > 0 && std::isfinite(radius))) throw Error("search-radius is {}; it must be above 0", radius);
     }
+    if (params.noise) {
+        const double noise = params.noise->value();
+        if (!(noise >= 0 && std::isfinite(noise))) throw Error("noise is {}; it must be at least 0", noise);
+    }
     if (params.close_holes > 100) throw Error("close-holes is {}; at most 100 edges are closed", params.close_holes);
     if (params.start && *params.start >= points)
         throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points);
@@ -132,6 +136,7 @@ void report_metrics(const RegionGrowResult& result, Context& context) {
     count("removed-triangles", result.removed_triangles);
     count("ambiguous", result.ambiguous_loops);
     count("without-area", result.triangles_without_area);
+    context.metric("noise", result.noise, Unit::length);
     count("relaxed-triangles", static_cast<std::size_t>(std::ranges::count_if(
                                    result.passes, [](u8 pass) { return pass > 0 && pass < closing_pass; })));
 }
@@ -148,18 +153,27 @@ void report_unused(const RegionGrowResult& result, const Surface& surface, Conte
         context.warn(std::move(text));
 }
 
-/// Creases of an object are long polylines: on the clean scans of the tests there is at most one per 80 edges. Noise
-/// makes creases of one or two edges everywhere: one per 11 edges at a noise of 0.05 % of the diagonal. A curved object
-/// with few points looks the same: 89 creases on the 951 edges of a figure eight of 317 points.
-void doubt_roughness(const RegionGrowResult& result, Context& context) {
+/// Creases that the triangles make by themselves, whatever the noise. Pre: `mesh` has no declared sharp edges.
+std::size_t creases_of_triangles(const TriangleMesh& mesh, FeatureParams params, const FeatureLines& lines,
+                                 const Context& context) {
+    if (lines.counts.unreliable == 0) return lines.counts.creases;
+    params.noise = 0;
+    return find_features(mesh, params, context.threads()).counts.creases;
+}
+
+/// Creases of an object are long polylines: on the clean scans of the tests there is at most one per 80 edges. Where
+/// triangles are judged by themselves, noise makes creases of one or two edges everywhere: one per 11 edges at a noise
+/// of 0.05 % of the diagonal. A curved object with few points looks the same: 89 creases on the 951 edges of a figure
+/// eight of 317 points.
+void doubt_roughness(const RegionGrowResult& result, std::size_t creases, Context& context) {
     constexpr std::size_t edges_per_crease = 20;
     const std::size_t edges = 3 * result.mesh.triangles.size() / 2;
     constexpr std::size_t few_edges = 10'000;
-    if (edges > few_edges && edges_per_crease * result.creases > edges)
+    if (edges > few_edges && edges_per_crease * creases > edges)
         context.doubt(fmt::format(
-            "{} creases on {} edges: the surface is rough at the distance of its points, as that of a noisy scan is; "
-            "thin the scan with larger voxels, or smooth it first",
-            result.creases, edges));
+            "the triangles by themselves make {} creases on {} edges: the surface is rough at the distance of its "
+            "points, as that of a noisy scan is; thin the scan with larger voxels, or smooth it first",
+            creases, edges));
 }
 
 void doubt_seams(const Surface& surface, Context& context) {
@@ -233,10 +247,12 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     if (!given.doubtful.empty()) orient_like_normals(surface, components, given.doubtful);
 
     FinishedMesh finished = finish_mesh(cloud, surface);
-    add_sharp_edges(finished, surface, patch_edges, params.sharp_angle);
     FeatureParams feature_params;
     feature_params.sharp_angle = params.sharp_angle;
+    feature_params.noise = params.noise;
     FeatureLines lines = find_features(finished.mesh, feature_params, context.threads());
+    const std::size_t by_themselves = creases_of_triangles(finished.mesh, feature_params, lines, context);
+    set_sharp_edges(finished, lines, patch_edges);
     set_normals_beyond(lines.graph, finished, patch_edges);
     result.mesh = std::move(finished.mesh);
     result.rows = std::move(finished.rows);
@@ -247,6 +263,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     const ThinParts thin = params.search_radius ? ThinParts() : find_thin_parts(surface, components, context);
     result.thin_loops = thin.loops;
     result.creases = lines.counts.creases;
+    result.noise = lines.noise;
     result.corners = lines.counts.corners;
     result.ambiguous_loops = lines.counts.ambiguous;
     result.triangles_without_area = lines.counts.without_area;
@@ -256,7 +273,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     result.unused_points = points.size() - result.rows.size();
     report_metrics(result, context);
     report_unused(result, surface, context);
-    doubt_roughness(result, context);
+    doubt_roughness(result, by_themselves, context);
     for (std::string& sentence : doubts(lines.counts)) context.warn(std::move(sentence));
     doubt_seams(surface, context);
     doubt_thin_parts(result, thin, context);

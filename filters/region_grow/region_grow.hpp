@@ -53,6 +53,9 @@ struct RegionGrowParams {
     std::optional<Length> search_radius;
     /// Edges whose triangles' normals differ by more are creases. 0 to 180 degrees.
     Angle sharp_angle = Angle::degrees(40);
+    /// Standard deviation of the points' distances from the surface, for the creases; 0 or more. Absent: estimated, see
+    /// noisy_normals.hpp.
+    std::optional<Length> noise;
     /// Loops of at most this many edges are closed, and longer ones (up to 100 edges) without an empty circle as large
     /// as a hole, unless `max_normal_angle` is below 90 degrees and their dihedral deviations exceed 4/3 of it. 0 (and
     /// 1 and 2) closes none; at most 100.
@@ -83,6 +86,8 @@ struct RegionGrowResult {
     /// Boundary edges that would have chosen a boundary point if it were not for the angle to their triangle.
     std::size_t patch_edges = 0;
     std::size_t creases = 0, corners = 0, closed_holes = 0;
+    /// Standard deviation of the points' distances from the surface, given or estimated.
+    double noise = 0;
     /// Triangles removed again, where a vertex had several fans or to close a hole.
     std::size_t removed_triangles = 0;
     /// Loops whose area does not decide whether they are holes, and triangles without area, as counted by
@@ -120,8 +125,8 @@ struct RegionGrowResult {
 ///
 /// Metrics: see plugin.cpp. Warns when more than half a percent of the points stay unused, when most points are too
 /// dense for their `bin-size`, about normals with mixed signs, and about what find_features() could not decide. Doubts:
-/// more than 2 % of the points unused, more than one crease per 20 of more than 10,000 edges, normals that end the
-/// surface, loops at thin parts.
+/// more than 2 % of the points unused, triangles that by themselves make more than one crease per 20 of more than 10,000
+/// edges, normals that end the surface, loops at thin parts.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill

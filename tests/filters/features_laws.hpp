@@ -76,6 +76,7 @@ inline void expect_counted(const TriangleMesh& mesh, double sharp_degrees, doubl
     FeatureParams params;
     params.sharp_angle = Angle::degrees(sharp_degrees);
     params.corner_angle = Angle::degrees(corner_degrees);
+    params.noise = 0;  // the count judges every triangle
     const FeatureLines lines = features_of(mesh, params);
     const IndependentCount count = independent_count(mesh, sharp_degrees, corner_degrees);
     std::size_t sharp = 0, boundary = 0;

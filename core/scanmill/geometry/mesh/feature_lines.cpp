@@ -14,6 +14,7 @@
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/mesh/noisy_normals.hpp"
 #include "scanmill/geometry/mesh/sharp_edges.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
 
@@ -179,6 +180,9 @@ void require_sound(const FeatureParams& params) {
     require_angle("corner-angle", params.corner_angle);
     const double length = params.min_length.value();
     if (!(length >= 0 && std::isfinite(length))) throw Error("min-length must be 0 or more; it is {} u", length);
+    if (!params.noise) return;
+    const double noise = params.noise->value();
+    if (!(noise >= 0 && std::isfinite(noise))) throw Error("noise must be 0 or more; it is {} u", noise);
 }
 
 void require_measurable(const TriangleMesh& mesh) {
@@ -264,13 +268,19 @@ FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params
     require_sound(params);
     const Array<u32> opposite = half_edges::opposites(mesh);
     require_measurable(mesh);
-    const FacetNormals normals = facet_normals(mesh, opposite, threads);
+    FacetNormals normals = facet_normals(mesh, opposite, threads);
+    const double noise = params.noise ? params.noise->value() : vertex_noise(mesh, opposite, threads);
+    NoisyNormals reliable =
+        noisy_normals(mesh, opposite, normals.unit, noise, params.sharp_angle.in_radians(), threads);
+    normals.unit = std::move(reliable.unit);
     const double corner_angle = params.corner_angle.in_radians() + angle_tie;
     std::vector<bool> sharp =
         sharp_half_edges(mesh, opposite, normals.unit, params.sharp_angle.in_radians() + angle_tie, threads);
 
     FeatureLines result;
+    result.noise = noise;
     FeatureCounts& counts = result.counts;
+    counts.unreliable = reliable.unreliable;
     counts.without_area = normals.without_area;
     std::optional<FeatureNet> net(std::in_place, mesh, opposite, sharp, corner_angle);
     std::vector<FeatureLine> lines = net->lines();
@@ -281,6 +291,7 @@ FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params
     }
     counts.ambiguous = classify_loops(mesh, opposite, normals.unit, lines);
     result.graph = graph_of(mesh, opposite, normals.unit, *net, lines);
+    result.mesh_vertices.assign(net->vertices().begin(), net->vertices().end());
 
     const auto count = [&](FeatureType type) {
         return static_cast<std::size_t>(std::ranges::count(lines, type, &FeatureLine::type));

@@ -3,13 +3,17 @@
 /// The feature lines of a mesh: boundary loops, sharp edges, and the corners where such lines meet or turn.
 ///
 /// An edge is *sharp* if the normals of its two triangles differ by more than `sharp_angle`, or if it is one of the
-/// mesh's declared sharp edges. A vertex of feature lines is a *corner* if the number of sharp and boundary edges at it
-/// is not two, or if the line turns there by more than `corner_angle`. Angles that exceed a limit by at most 1e-9 rad
-/// count as equal to it: a prism with 36 sides has no crease at 10 degrees, whatever the rounding.
+/// mesh's declared sharp edges. Where the vertices have so much noise that the normal of a triangle is not reliable, it
+/// is replaced by that of a neighbourhood, see noisy_normals.hpp. A vertex of feature lines is a *corner* if the number
+/// of sharp and boundary edges at it is not two, or if the line turns there by more than `corner_angle`. Angles that
+/// exceed a limit by at most 1e-9 rad count as equal to it: a prism with 36 sides has no crease at 10 degrees, whatever
+/// the rounding.
 ///
 /// Sharp edges are chained into creases from corner to corner. Boundary edges are chained into whole loops, across
 /// corners, with the surface on their left seen from outside. Every loop is an outer boundary or a hole, by
 /// outer_loops() in boundary_loops.hpp.
+
+#include <optional>
 
 #include "scanmill/data/features.hpp"
 #include "scanmill/data/mesh.hpp"
@@ -24,6 +28,8 @@ struct FeatureParams {
     Angle corner_angle = Angle::degrees(35);
     /// Shorter creases are omitted; 0 or more, resolved.
     Length min_length;
+    /// Standard deviation of the vertices' distances from the surface; 0 or more, resolved. Absent: vertex_noise().
+    std::optional<Length> noise;
 };
 
 struct FeatureCounts {
@@ -34,11 +40,16 @@ struct FeatureCounts {
     std::size_t ambiguous = 0;  ///< boundary loops whose projected area does not decide their type
     std::size_t dropped = 0;  ///< creases omitted because of their length
     std::size_t without_area = 0;  ///< triangles, see FacetNormals
+    std::size_t unreliable = 0;  ///< triangles, see noisy_normals.hpp
 };
 
 struct FeatureLines {
     FeatureGraph graph;
     FeatureCounts counts;
+    /// Per position of the graph its vertex in the mesh.
+    Array<u32> mesh_vertices;
+    /// Standard deviation, given or estimated.
+    double noise = 0;
 };
 
 /// Pre: indices in range. Throws Error for a position of a triangle that is not finite, for an edge in three or more
