@@ -14,6 +14,7 @@
 
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/direction.hpp"
 
 namespace scanmill {
 
@@ -40,8 +41,8 @@ Vec3 mean_of(const Points& points) {
 }
 
 Points about(const Points& points, const Vec3& centre) {
-    Points result;
-    for (const Vec3& p : points) result.push_back(p - centre);
+    Points result(points);
+    for (Vec3& p : result) p -= centre;
     return result;
 }
 
@@ -110,11 +111,13 @@ Matrix3 inertia_of(const Points& centred) {
 /// Root of the sum of the squared distances from the line that fits the points best: the root of the least moment of
 /// inertia.
 double spread_about_line(const Points& centred) {
-    Eigen::Matrix3Xd columns(3, static_cast<Eigen::Index>(centred.size()));
-    for (std::size_t row = 0; row < centred.size(); ++row) columns.col(static_cast<Eigen::Index>(row)) = centred[row];
-    // Of the points themselves, not of their moments, whose roots lose half of the digits.
-    const Vec3 values = Eigen::JacobiSVD<Eigen::MatrixXd>(columns).singularValues();
-    return std::sqrt(values[1] * values[1] + values[2] * values[2]);
+    Matrix3 scatter = Matrix3::Zero();
+    for (const Vec3& c : centred) scatter += c * c.transpose();
+    const Vec3 line = Eigen::JacobiSVD<Matrix3>(scatter, Eigen::ComputeFullU).matrixU().col(0);
+    // Of the distances, not of the moments, whose roots lose half of the digits.
+    double sum = 0;
+    for (const Vec3& c : centred) sum += (c - c.dot(line) * line).squaredNorm();
+    return std::sqrt(sum);
 }
 
 double extent_of(const Points& centred) {
@@ -306,15 +309,6 @@ std::size_t corner_near(const Points& corners, const std::array<u32, 4>& order, 
     return nearest;
 }
 
-void require_direction(std::span<const double> up) {
-    if (up.size() != 3)
-        throw Error("`up` has {}; it needs 3", count_text(up.size(), "number", "numbers")).hint("give x, y, z");
-    const Vec3 direction(up[0], up[1], up[2]);
-    if (!direction.allFinite() || !(direction.norm() > 0))
-        throw Error("`up` is ({}, {}, {}); it must have a length", up[0], up[1], up[2])
-            .hint("give a direction, as 0, 0, 1");
-}
-
 Points points_of(const PointCloud& cloud) { return {cloud.positions.begin(), cloud.positions.end()}; }
 
 /// The source row of every target row.
@@ -322,11 +316,10 @@ std::vector<u32> partners_in_rectangle(const PointCloud& source, const PointClou
     if (source.size() != 4)
         throw Error("the source and the target have {} points each; a rectangle has 4 corners", source.size())
             .hint("`correspondence: rows` aligns any number of pairs");
-    require_direction(params.up);
+    const Vec3 given_up = direction_of(params.up, "`up`");
     const std::string_view unit = symbol(source.frame.unit);
     const Points from = points_of(source), to = points_of(target);
     const Points from_centre = about(from, mean_of(from)), to_centre = about(to, mean_of(to));
-    const Vec3 given_up(params.up[0], params.up[1], params.up[2]);
     const Vec3 by_order = area_of(from_centre);
     const Vec3 source_up = up_of(source, from_centre, by_order.norm() > 0 ? by_order : given_up, "source");
     const Vec3 target_up = up_of(target, to_centre, given_up, "target");
@@ -406,6 +399,7 @@ AlignResult align(const PointCloud& source, const PointCloud& target, const std:
                          ? partners_in_rectangle(source, target, params)
                          : partners_by_row(source, params);
     Points paired;
+    paired.reserve(result.partner.size());
     for (const u32 row : result.partner) paired.push_back(source.positions[row]);
     const Fit fit = fit_of(paired, points_of(target));
     require_not_mirrored(fit, unit);
@@ -423,6 +417,7 @@ AlignResult align(const PointCloud& source, const PointCloud& target, const std:
     result.transform.unit = source.frame.unit;
     result.transform.from = source.frame.name;
     result.transform.to = target.frame.name;
+    result.residuals.reserve(result.partner.size());
     for (std::size_t row = 0; row < result.partner.size(); ++row) {
         result.residuals.push_back(fit.residual(row));
         result.largest_residual = std::max(result.largest_residual, result.residuals.back().norm());

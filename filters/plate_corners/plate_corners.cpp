@@ -11,6 +11,7 @@
 #include "plate_corners/rectangle.hpp"
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/direction.hpp"
 #include "scanmill/geometry/fit/covariance.hpp"
 #include "scanmill/geometry/spatial/spacing.hpp"
 
@@ -135,16 +136,6 @@ std::optional<std::array<double, 2>> sides_of(const PlateCornersParams& params) 
                       positive((*params.sides)[1], "a length of `sides`")};
 }
 
-Vec3 direction_of(std::span<const double> up) {
-    if (up.size() != 3)
-        throw Error("`up` has {}; it needs 3", count_text(up.size(), "number", "numbers")).hint("give x, y, z");
-    const Vec3 direction(up[0], up[1], up[2]);
-    if (!direction.allFinite() || !(direction.norm() > 0))
-        throw Error("`up` is ({}, {}, {}); it must have a length", up[0], up[1], up[2])
-            .hint("give a direction, as 0, 0, 1");
-    return direction.normalized();
-}
-
 /// Sum of the normals at the rows; zero without a column of normals.
 Vec3 mean_normal(const PointCloud& cloud, std::span<const u32> rows) {
     const Column* column = cloud.columns.find("normal");
@@ -220,7 +211,7 @@ PlateCornersResult plate_corners(const PointCloud& cloud, const PlateCornersPara
     require_finite(cloud.positions.span());
     const double tolerance = positive(params.tolerance, "`tolerance`");
     const std::optional<std::array<double, 2>> sides = sides_of(params);
-    const Vec3 up = direction_of(params.up);
+    const Vec3 up = direction_of(params.up, "`up`");
     const double spacing = point_spacing(cloud.positions.span());
     context.progress(0.3);
 
