@@ -46,6 +46,7 @@ public:
     /// Above the middle of the part's box, on the plane.
     Vec3 home() const { return home_; }
     double diagonal() const { return diagonal_; }
+    const TriangleTree& mesh() const { return tree_; }
 
 private:
     bool stylus_meets(const Vec3& from, const Vec3& to, double clearance) const;

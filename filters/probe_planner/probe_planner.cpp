@@ -16,6 +16,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
+#include "scanmill/data/direction.hpp"
 
 namespace scanmill {
 
@@ -78,13 +79,7 @@ Settings settings_of(const ProbePlannerParams& params) {
     if (!(tilt >= 0 && tilt <= pi + rounding))
         throw Error("max-tilt must be from 0 to 180 deg; it is {}", params.max_tilt.text());
     settings.least_cosine = turn_of(std::min(tilt, pi)).cosine - rounding;
-    if (params.machine_axis.size() != 3)
-        throw Error("machine-axis has {} numbers; 3 are needed", params.machine_axis.size());
-    probe.axis = Vec3(params.machine_axis.data()).stableNormalized();
-    if (!(std::abs(probe.axis.norm() - 1) < 1e-6))
-        throw Error("machine-axis is ({}, {}, {}), which is not a direction", params.machine_axis[0],
-                    params.machine_axis[1], params.machine_axis[2])
-            .hint("it points from the ball along the stylus; the default is 0 0 1");
+    probe.axis = direction_of(params.machine_axis, "machine-axis");
     if (params.directions != 1 && params.directions != 2)
         throw Error("directions must be 1 or 2; it is {}", params.directions);
     settings.two_directions = params.directions == 2;
@@ -331,8 +326,9 @@ ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMes
     const Settings settings = settings_of(params);
     require_same_frame(features.frame, mesh.frame);
     const TriangleMesh part = mesh_beside(mesh, features.frame);
-    const ReferencePoints references = find_reference_points(features, settings.lines, settings.spacing, context);
     const Machine machine(part, settings.probe, context.threads());
+    const ReferencePoints references =
+        find_reference_points(features, settings.lines, settings.spacing, machine.mesh(), settings.error, context);
 
     std::vector<std::vector<ProbeTouch>> planned(references.points.size());
     constexpr std::size_t chunk = 16;

@@ -13,8 +13,9 @@
 
 #include <vector>
 
-#include "scanmill/data/features.hpp"
+#include "probe_planner/lines.hpp"
 #include "scanmill/filter/context.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill::probing {
 
@@ -49,10 +50,6 @@ struct ReferencePoints {
     double edge_roughness = 0;
 };
 
-struct LineChoice {
-    bool creases = true, holes = true, boundaries = true;
-};
-
 /// Reference points at about `spacing`: on a closed line max(3, round(length / spacing)) at equal arc lengths, on an
 /// open one max(1, round(length / spacing)), half a spacing from its ends.
 ///
@@ -62,10 +59,17 @@ struct LineChoice {
 /// Runs of segments that match along half of the shorter run are paired: the one of the earlier line gets points on the
 /// intersection of the planes of both faces, the matching part of the other one none.
 ///
+/// Where the mesh within `error` and two segment lengths of a point shows other faces than the line does, and both of
+/// them are known, the faces, the tangent and the point on the edge are the mesh's: see edge_fit.hpp.
+///
+/// Then points are left out that are nearer than half a spacing to a point of a longer line (ties: of an earlier one)
+/// on the same edge: at most `error` and 1.5 segment lengths beside its tangent, both normals within 30 degrees. So
+/// the many short creases of a blunted edge are one edge.
+///
 /// Throws Error: no line of the choice, an open boundary, a line with too few vertices or with arrays that do not fit,
 /// a segment of length 0, a coordinate or normal that is not finite, a left normal that is missing, a normal that is
 /// not a unit vector, equal normals on both sides, more than 10^6 points. Cost: O(n log n) in the segments and points.
 ReferencePoints find_reference_points(const FeatureGraph& features, const LineChoice& choice, double spacing,
-                                      const Context& context);
+                                      const TriangleTree& mesh, double error, const Context& context);
 
 }  // namespace scanmill::probing

@@ -51,11 +51,11 @@ TEST(ProbePlannerRefusals, Parameters) {
               "approach must be from -90 to 90 deg; it is 91 deg");
     EXPECT_EQ(refusal_of_params([](P& p) { p.max_tilt = Angle::degrees(-1); }),
               "max-tilt must be from 0 to 180 deg; it is -1 deg");
-    EXPECT_EQ(refusal_of_params([](P& p) { p.machine_axis = {0, 1}; }), "machine-axis has 2 numbers; 3 are needed");
+    EXPECT_EQ(refusal_of_params([](P& p) { p.machine_axis = {0, 1}; }), "machine-axis has 2 numbers; it needs 3");
     EXPECT_EQ(refusal_of_params([](P& p) {
                   p.machine_axis = {0, 0, 0};
               }),
-              "machine-axis is (0, 0, 0), which is not a direction");
+              "machine-axis is (0, 0, 0); it must have a length");
     EXPECT_EQ(refusal_of_params([](P& p) { p.directions = 3; }), "directions must be 1 or 2; it is 3");
     EXPECT_EQ(refusal_of_params([](P& p) {
                   p.directions = 2;

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "probe_planner/lines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "scanmill/base/error.hpp"
+#include "scanmill/geometry/spatial/angle.hpp"
+
+namespace scanmill::probing {
+
+namespace {
+
+constexpr u32 reach = 2;  ///< segments of a window on either side
+
+std::string_view name_of(FeatureType type) {
+    return type == FeatureType::crease ? "crease" : type == FeatureType::hole ? "hole" : "outer boundary";
+}
+
+void require_unit(const Vec3& normal, u32 line, u32 segment, const char* side) {
+    constexpr double most = 1e-3;
+    if (!normal.allFinite())
+        throw Error("the {} normal of segment {} of line {} is not finite", side, segment, line)
+            .hint("make the features again from a mesh without NaN: `features`, or region-grow's port `features`");
+    if (std::abs(normal.norm() - 1) > most)
+        throw Error("the {} normal of segment {} of line {} has the length {:.6g}; a unit normal has 1", side, segment,
+                    line, normal.norm())
+            .hint("make the features again: `features`, or region-grow's port `features`");
+}
+
+Line read_line(const FeatureGraph& graph, u32 row) {
+    const FeaturePolyline& polyline = graph.polylines[row];
+    Line line;
+    line.row = row;
+    line.type = polyline.type;
+    line.closed = polyline.closed;
+    if (line.is_boundary() && !line.closed)
+        throw Error("line {} is an open {} with {} vertices; boundaries of a mesh are closed", row, name_of(line.type),
+                    polyline.end - polyline.begin)
+            .hint("make the features again from a mesh, or probe creases alone: features: creases");
+    const u32 least = line.closed ? 3 : 2;
+    if (polyline.begin > polyline.end || polyline.end > graph.vertices.size() || polyline.end - polyline.begin < least)
+        throw Error("line {} names the vertices {} to {} of {}; a line needs at least {}", row, polyline.begin,
+                    polyline.end, graph.vertices.size(), least)
+            .hint(damaged);
+    for (u32 i = polyline.begin; i < polyline.end; ++i) {
+        const u32 vertex = graph.vertices[i];
+        if (vertex >= graph.positions.size())
+            throw Error("line {} names the point {}; there are {}", row, vertex, graph.positions.size()).hint(damaged);
+        if (!graph.positions[vertex].allFinite())
+            throw Error("vertex {} of line {} is not finite", i - polyline.begin, row)
+                .hint("make the features again from a mesh without NaN");
+        line.points.push_back(graph.positions[vertex]);
+    }
+    const u32 segments = line.vertices() - (line.closed ? 0 : 1);
+    line.arcs.push_back(0);
+    for (u32 segment = 0; segment < segments; ++segment) {
+        const Vec3 along = line.end_of(segment) - line.points[segment];
+        const double length = along.norm();
+        if (!(length > 0))
+            throw Error("segment {} of line {} has the length 0: both ends are at ({:.6g}, {:.6g}, {:.6g})", segment,
+                        row, line.points[segment].x(), line.points[segment].y(), line.points[segment].z())
+                .hint("remove repeated points from the scan, or repeated vertices from the mesh");
+        line.directions.push_back(along / length);
+        line.lengths.push_back(length);
+        line.arcs.push_back(line.arcs.back() + length);
+        const Vec3 &left = graph.left_normals[polyline.begin + segment],
+                   &right = graph.right_normals[polyline.begin + segment];
+        if (left == Vec3::Zero())
+            throw Error("segment {} of line {} has no normal on its left", segment, row)
+                .hint("the surface is on the left of a line: make the features again from a mesh");
+        require_unit(left, row, segment, "left");
+        line.left.push_back(left);
+        line.right.push_back(Vec3::Zero());
+        if (right == Vec3::Zero()) continue;
+        require_unit(right, row, segment, "right");
+        constexpr double least_angle = 1e-6;
+        if (angle_between(left, right) < least_angle)
+            throw Error(
+                "the normals on both sides of segment {} of line {} are equal (0 deg between them): there is no "
+                "edge",
+                segment, row)
+                .hint("find the features with a sharp-angle above 0");
+        if (std::abs(right.dot(line.directions.back())) < sqrt_half) line.right.back() = right;
+    }
+    return line;
+}
+
+/// The vertex `steps` segments before (negative) or after a vertex, at most to the ends of an open line.
+Vec3 beside(const Line& line, u32 vertex, int steps) {
+    const auto count = static_cast<int>(line.vertices());
+    const int at = static_cast<int>(vertex) + steps;
+    if (line.closed) return line.points[static_cast<std::size_t>((at % count + count) % count)];
+    return line.points[static_cast<std::size_t>(std::clamp(at, 0, count - 1))];
+}
+
+/// Whether the line turns by more than 45 degrees between two chords.
+bool is_turn(const Vec3& before, const Vec3& after) {
+    return before.dot(after) < sqrt_half * before.norm() * after.norm();
+}
+
+void find_stops(const FeatureGraph& graph, std::vector<Line>& lines) {
+    std::vector<u32> uses(graph.positions.size());
+    for (const FeaturePolyline& polyline : graph.polylines)
+        for (u32 i = polyline.begin; i < polyline.end; ++i) ++uses[graph.vertices[i]];
+    std::vector<bool> is_corner(graph.positions.size());
+    for (const u32 corner : graph.corners)
+        if (corner < is_corner.size()) is_corner[corner] = true;
+    for (Line& line : lines) {
+        line.stops.assign(line.vertices(), false);
+        const FeaturePolyline& polyline = graph.polylines[line.row];
+        for (u32 i = 0; i < line.vertices(); ++i) {
+            const u32 vertex = graph.vertices[polyline.begin + i];
+            if (uses[vertex] > 1) line.stops[i] = true;
+            if (!is_corner[vertex]) continue;
+            const int chord = reach;
+            const Vec3 before = line.points[i] - beside(line, i, -chord),
+                       after = beside(line, i, chord) - line.points[i];
+            if (is_turn(before, after)) line.stops[i] = true;
+        }
+    }
+}
+
+bool is_chosen(FeatureType type, const LineChoice& choice) {
+    if (type == FeatureType::crease) return choice.creases;
+    return type == FeatureType::hole ? choice.holes : choice.boundaries;
+}
+
+}  // namespace
+
+std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& choice) {
+    if (features.left_normals.size() != features.vertices.size() ||
+        features.right_normals.size() != features.vertices.size())
+        throw Error("the features have {} left and {} right normals for {} vertices of lines",
+                    features.left_normals.size(), features.right_normals.size(), features.vertices.size())
+            .hint(damaged);
+    std::vector<Line> lines;
+    std::array<std::size_t, 3> counts{};
+    for (u32 row = 0; row < features.polylines.size(); ++row) {
+        const FeatureType type = features.polylines[row].type;
+        ++counts[static_cast<std::size_t>(type)];
+        if (is_chosen(type, choice)) lines.push_back(read_line(features, row));
+    }
+    if (lines.empty())
+        throw Error("there is no line to probe: the features have {} outer boundaries, {} holes and {} creases",
+                    counts[0], counts[1], counts[2])
+            .hint(features.polylines.empty()
+                      ? "a closed mesh without sharp edges has no features; lower sharp-angle where they are found"
+                      : "features: all takes every line");
+    find_stops(features, lines);
+    return lines;
+}
+
+Window window_round(const Line& line, u32 segment, const Vec3& point) {
+    // Of a closed line at most half is in a window.
+    const u32 widest = line.closed ? std::min(reach, (line.segments() - 1) / 4) : reach;
+    for (u32 most = widest;; --most) {
+        Window window;
+        u32 first = segment, last = segment;
+        for (u32 step = 0; step < most && !line.stops[first]; ++step) {
+            const std::optional<u32> next = line.before(first);
+            if (!next) break;
+            first = *next;
+        }
+        for (u32 step = 0; step < most && !line.stops[(last + 1) % line.vertices()]; ++step) {
+            const std::optional<u32> next = line.after(last);
+            if (!next) break;
+            last = *next;
+        }
+        window.start = line.points[first];
+        window.end = line.end_of(last);
+        for (u32 at = first;; at = *line.after(at)) {
+            window.segments.push_back(at);
+            window.length += line.lengths[at];
+            if (at == last) break;
+        }
+        if (most == 0 || !is_turn(point - window.start, window.end - point)) return window;
+    }
+}
+
+Vec3 mean_normal(const Line& line, const Window& window, const Array<Vec3>& normals) {
+    Vec3 sum = Vec3::Zero();
+    for (const u32 segment : window.segments) sum += line.lengths[segment] * normals[segment];
+    return sum;
+}
+
+}  // namespace scanmill::probing

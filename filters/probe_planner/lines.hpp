@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Feature lines as they are probed: polylines with the normals on both sides of every segment, and windows on them.
+
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "scanmill/data/features.hpp"
+
+namespace scanmill::probing {
+
+/// The hint for arrays that do not fit.
+inline constexpr const char* damaged = "the features are damaged: make them again from a mesh";
+inline constexpr double sqrt_half = std::numbers::sqrt2 / 2;
+
+/// A polyline with what is computed once for every segment. Segment i starts at vertex i; those of closed lines wrap.
+struct Line {
+    u32 row = 0;
+    FeatureType type{};
+    bool closed = false;
+    Array<Vec3> points, left,
+        right;  ///< right: zero also where it is not perpendicular to the line to within 45 degrees
+    Array<Vec3> directions;
+    Array<double> lengths;
+    Array<double> arcs;  ///< where the segments begin, and the whole length
+    std::vector<bool> stops;  ///< vertices that no window passes
+
+    u32 vertices() const { return static_cast<u32>(points.size()); }
+    u32 segments() const { return static_cast<u32>(lengths.size()); }
+    bool is_boundary() const { return type != FeatureType::crease; }
+    const Vec3& end_of(u32 segment) const { return points[(segment + 1) % vertices()]; }
+    Vec3 middle(u32 segment) const { return (points[segment] + end_of(segment)) / 2; }
+    double middle_arc(u32 segment) const { return arcs[segment] + lengths[segment] / 2; }
+    bool has_right(u32 segment) const { return right[segment] != Vec3::Zero(); }
+    /// The segments beside one; nothing at the ends of open lines.
+    std::optional<u32> before(u32 segment) const {
+        if (segment > 0) return segment - 1;
+        return closed ? std::optional(segments() - 1) : std::nullopt;
+    }
+    std::optional<u32> after(u32 segment) const {
+        if (segment + 1 < segments()) return segment + 1;
+        return closed ? std::optional(0u) : std::nullopt;
+    }
+};
+
+struct LineChoice {
+    bool creases = true, holes = true, boundaries = true;
+};
+
+/// The lines of the choice, in their order. Throws Error as find_reference_points() does.
+std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& choice);
+
+/// Consecutive segments round one.
+struct Window {
+    Array<u32> segments;
+    Vec3 start, end;
+    double length = 0;
+};
+
+/// The window round a point of a segment: see reference_points.hpp.
+Window window_round(const Line& line, u32 segment, const Vec3& point);
+
+/// The length-weighted mean of unit normals, without those that are zero.
+Vec3 mean_normal(const Line& line, const Window& window, const Array<Vec3>& normals);
+
+inline Vec3 perpendicular(const Vec3& normal, const Vec3& tangent) { return normal - tangent.dot(normal) * tangent; }
+
+}  // namespace scanmill::probing
