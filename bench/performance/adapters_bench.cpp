@@ -238,8 +238,10 @@ void poisson_surface(PointCloud cloud) {
         "poisson", cloud.size(), "PCL Poisson, depth 9",
         [&] {
             return [&] {
+                PoissonParams params;
+                params.scale = 1.1;  // PCL's default
                 Context context;
-                poisson(cloud, {}, context);
+                poisson(cloud, params, context);
             };
         },
         [&] {

@@ -54,7 +54,7 @@ namespace scanmill {
 namespace {
 
 constexpr int degree = 2, full_depth = 5, least_iterations = 8;
-constexpr float scale_of_cube = 1.1f, samples_per_node = 1, point_weight = 4, accuracy = 1e-3f;
+constexpr float samples_per_node = 1, point_weight = 4, accuracy = 1e-3f;
 
 /// The memory of the octree's cells, freed at the end.
 struct Memory {
@@ -113,7 +113,7 @@ private:
 
 }  // namespace
 
-OctreeSurface octree_surface(std::span<const OrientedPoint> points, int depth,
+OctreeSurface octree_surface(std::span<const OrientedPoint> points, int depth, double scale,
                              const std::function<void(double share)>& progress) {
     using namespace pcl::poisson;
     static std::mutex one_at_a_time;  // the octree's memory is a static member
@@ -126,9 +126,9 @@ OctreeSurface octree_surface(std::span<const OrientedPoint> points, int depth,
     octree.threads = 1;
     octree.setBSplineData(depth, Real(1.0 / (1 << depth)), true);
     Point3D<float> corner;
-    float scale = 1;
-    octree.setTree<OrientedPoint>(cloud, depth, full_depth, depth - 2, samples_per_node, scale_of_cube, corner, scale,
-                                  0, point_weight, true);
+    float size = 1;
+    octree.setTree<OrientedPoint>(cloud, depth, full_depth, depth - 2, samples_per_node, static_cast<float>(scale),
+                                  corner, size, 0, point_weight, true);
     progress(0.1);
     octree.ClipTree();
     octree.finalize();
@@ -144,8 +144,8 @@ OctreeSurface octree_surface(std::span<const OrientedPoint> points, int depth,
     Collected collected;
     if (std::isfinite(level)) octree.GetMCIsoTriangles(level, depth, &collected, 0, 1, true, false);
     progress(1);
-    OctreeSurface surface = collected.surface(corner, scale);
-    surface.cell = scale / (1 << depth);
+    OctreeSurface surface = collected.surface(corner, size);
+    surface.cell = size / (1 << depth);
     return surface;
 }
 

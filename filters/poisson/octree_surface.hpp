@@ -25,9 +25,9 @@ struct OctreeSurface {
     double cell;
 };
 
-/// Parameters are PCL's defaults, except `depth`, and that the equation is solved and the surface extracted without
-/// division into blocks, which changes nothing but the memory in use. The cube of the octree is centred on the points'
-/// box, and 1.1 times as large.
+/// Parameters are PCL's defaults, except `depth`, `scale`, and that the equation is solved and the surface extracted
+/// without division into blocks, which changes nothing but the memory in use. The cube of the octree is centred on the
+/// points' box, and `scale` times as large as its longest side; PCL's default is 1.1.
 ///
 /// PCL's own class pcl::Poisson is not called, but the templates beneath it, compiled here without OpenMP: with it,
 /// sums are added in the order in which threads arrive, and differ from run to run. They print to stdout; that is
@@ -39,7 +39,7 @@ struct OctreeSurface {
 /// Pre: at least 2 different positions; finite numbers; coordinates of magnitude 1, so that floats suffice.
 /// `progress` is called between the stages with their share of the time, and may throw. Calls from several threads wait
 /// for each other. Empty if there is no surface.
-OctreeSurface octree_surface(std::span<const OrientedPoint> points, int depth,
+OctreeSurface octree_surface(std::span<const OrientedPoint> points, int depth, double scale,
                              const std::function<void(double share)>& progress);
 
 }  // namespace scanmill

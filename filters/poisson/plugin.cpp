@@ -21,9 +21,14 @@ SCANMILL_FILTER() {
                            "The surface, with the vertex column `density`: about 1 where points are as dense as usual, "
                            "1/100 where they are ten times as far away.")
         .param("depth", &P::depth,
-               "The octree has at most 2^depth cells along the longest side. A step more halves the cells and takes up "
+               "The octree has at most 2^depth cells along the edge of its cube. A step more halves the cells and "
+               "takes up "
                "to four times the time and memory.",
                at_least(3), at_most(12))
+        .param("scale", &P::scale,
+               "Edge of the octree's cube, in longest sides of the points' box. A larger cube closes gaps that face "
+               "its sides, with larger cells at equal `depth`.",
+               above(1), at_most(10))
         .param("trim", &P::trim, "Share of the vertices that is removed, the least dense ones; 0 keeps all.",
                at_least(0), below(1))
         .param("max-distance", &P::max_distance,

@@ -26,6 +26,7 @@ namespace scanmill {
 namespace {
 
 constexpr u32 least_depth = 3, most_depth = 12;
+constexpr double most_scale = 10;
 constexpr std::size_t neighbours = 8;
 constexpr double far_factor = 2;  // of the distance to the 8th neighbour
 constexpr double doubtful_share = 0.05;
@@ -37,6 +38,9 @@ void require_usable(const PointCloud& cloud, const PoissonParams& params) {
     if (params.depth < least_depth || params.depth > most_depth)
         throw Error("depth must be from {} to {}; it is {}", least_depth, most_depth, params.depth)
             .hint("9 suits most scans; time and memory grow up to fourfold with every step");
+    if (!(params.scale > 1 && params.scale <= most_scale))
+        throw Error("scale must be above 1 and at most {}; it is {:g}", most_scale, params.scale)
+            .hint("1.5 suits most scans; a larger cube needs a larger depth for cells as small");
     if (const double trim = params.trim.value(); !(trim >= 0 && trim < 1))
         throw Error("trim must be from 0 to below 100 %; it is {:g} %", 100 * trim)
             .hint("`0 %` keeps the whole surface; `2 %` removes the 2 % of the vertices that have the fewest points");
@@ -97,7 +101,8 @@ void require_extent(const PointTree& tree) {
             .hint("a scan of one line has no surface");
 }
 
-TriangleMesh surface_of(const Oriented& points, const Frame& frame, u32 depth, double& cell, Context& context) {
+TriangleMesh surface_of(const Oriented& points, const Frame& frame, const PoissonParams& params, double& cell,
+                        Context& context) {
     const BoundingBox box = bounding_box(points.positions);
     const Vec3 centre = (box.low + box.high) / 2;
     const double size = (box.high - box.low).maxCoeff();
@@ -107,7 +112,7 @@ TriangleMesh surface_of(const Oriented& points, const Frame& frame, u32 depth, d
         const Eigen::Vector3f normal = points.normals[i].cast<float>();
         scaled[i] = {at.x(), at.y(), at.z(), normal.x(), normal.y(), normal.z()};
     }
-    OctreeSurface surface = octree_surface(scaled, static_cast<int>(depth), [&](double share) {
+    OctreeSurface surface = octree_surface(scaled, static_cast<int>(params.depth), params.scale, [&](double share) {
         context.check_cancelled();
         context.progress(0.02 + 0.78 * share);
     });
@@ -244,10 +249,14 @@ TriangleMesh trimmed(TriangleMesh mesh, const Support& support, const std::vecto
     return without_unused_vertices(mesh);
 }
 
-void report_doubts(const PoissonResult& result, bool inside_out, Context& context) {
+void report_doubts(const PoissonResult& result, std::size_t ends, bool inside_out, Context& context) {
     if (result.without_normal > 0)
         context.warn(fmt::format("{} not used: their normals are 0, NaN or infinite",
                                  count_text(result.without_normal, "point is", "points are")));
+    if (ends > 0)
+        context.warn(
+            fmt::format("the surface leaves the octree's cube and ends there, in {}; a larger scale may close it",
+                        count_text(ends, "boundary loop", "boundary loops")));
     if (inside_out)
         context.warn("the normals point into the volume that the surface encloses; the surface is turned like them");
     if (result.invented > doubtful_share)
@@ -275,14 +284,14 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
 
     PoissonResult result;
     result.without_normal = cloud.size() - points.positions.size();
-    TriangleMesh whole = surface_of(points, cloud.frame, params.depth, result.cell, context);
+    TriangleMesh whole = surface_of(points, cloud.frame, params, result.cell, context);
     result.cracks = fill_cracks(whole, context);
     context.progress(0.85);
     const Support support = support_of(whole, points, tree, context);
     const std::size_t vertices = whole.positions.size();
     result.against = static_cast<double>(std::ranges::count(support.against, u8(1))) / static_cast<double>(vertices);
-    const bool inside_out =
-        std::ranges::count(half_edges::opposites(whole), half_edges::boundary) == 0 && volume_of(whole) < 0;
+    const std::size_t ends = boundary_loops(whole, half_edges::opposites(whole)).size();
+    const bool inside_out = ends == 0 && volume_of(whole) < 0;
 
     const std::vector<u8> removed = removed_vertices(support, params);
     double area = 0, invented = 0;
@@ -296,7 +305,7 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
     result.mesh = trimmed(std::move(whole), support, removed, params);
     result.trimmed = vertices - result.mesh.positions.size();
     result.loops = boundary_loops(result.mesh, half_edges::opposites(result.mesh)).size();
-    report_doubts(result, inside_out, context);
+    report_doubts(result, ends, inside_out, context);
 
     context.metric("triangles", static_cast<double>(result.mesh.triangles.size()));
     context.metric("trimmed", static_cast<double>(result.trimmed));

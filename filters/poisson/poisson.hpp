@@ -16,6 +16,8 @@ namespace scanmill {
 struct PoissonParams {
     /// The octree has at most 2^depth cells along an edge of its cube; from 3 to 12.
     u32 depth = 9;
+    /// Edge of the octree's cube, in longest sides of the points' box; above 1, at most 10.
+    double scale = 1.5;
     /// Share of the vertices, the least dense ones, that are removed; from 0 to below 1.
     Ratio trim = Ratio::percent(2);
     /// Vertices farther than this from every point are removed as well; above 0. Empty: none.
@@ -59,10 +61,10 @@ struct PoissonResult {
 ///      positions with a normal, not on one line. Throws Error otherwise, for a parameter out of range, if no surface
 ///      separates the points, and if trimming leaves no triangle.
 /// Post: triangles are counter-clockwise seen from the outside of the normals. With a trim of 0 and no `max_distance`
-///       the surface is closed, unless it leaves the octree's cube, which is centred on the points and 1.1 times as
-///       large as the longest side of their box: that of an open sheet does.
+///       the surface is closed, unless it leaves the octree's cube, which is centred on the points' box: that of an
+///       open sheet does, and one with a gap near a face of the cube.
 /// Doubts its result if more than 5 % of its area is invented, and if more than 5 % of the vertices are against their
-/// points. Warns of points without a normal, and of a closed surface that is inside out.
+/// points. Warns of points without a normal, of a surface that leaves the cube, and of a closed one that is inside out.
 ///
 /// Deterministic: the same bytes for any number of threads and any processor. They depend on the order of the points.
 /// Cost: time and memory grow with the surface's area in cells, fourfold with every `depth` until cells are as small as
