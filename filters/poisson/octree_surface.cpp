@@ -136,6 +136,8 @@ OctreeSurface octree_surface(std::span<const OrientedPoint> points, int depth, d
     octree.RefineBoundary(depth);
     progress(0.15);
     octree.SetLaplacianConstraints();
+    delete[] octree.fData.dvDotTable;  // PCL makes another one, and would lose this
+    octree.fData.dvDotTable = nullptr;
     progress(0.25);
     octree.LaplacianMatrixIteration(depth, false, least_iterations, accuracy);
     progress(0.6);

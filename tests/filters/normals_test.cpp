@@ -203,6 +203,34 @@ TEST(Normals, OnTheOtherSideOfTheirNeighbours_AreDoubtful) {
     EXPECT_THAT(result.doubts, IsEmpty());
 }
 
+TEST(Normals, OfOutliersAlone_AreDoubtful) {
+    const PointCloud cloud = random_cube(5000, 3);
+    EXPECT_THAT(estimated(cloud).doubts, Contains(HasSubstr("have a doubtful normal")));
+}
+
+TEST(Normals, OfTwoScales_PointOutwards) {
+    // A sphere of 1 and one of 1/100 inside the larger one's box, both of 2,000 points.
+    const PointCloud sphere = fibonacci_sphere(2000);
+    const Estimated result = estimated(joined(sphere, moved(sphere, 0.01, {0.9, 0.9, 0.9})));
+    for (std::size_t row = 0; row < 4000; ++row)
+        EXPECT_GT(result.normal(row).dot(sphere.positions[row % 2000]), 0.99) << row;
+    EXPECT_EQ(result.doubtful, 0u);
+    EXPECT_THAT(result.doubts,
+                ElementsAre(HasSubstr("2 connected components are turned by their highest points alone")));
+}
+
+TEST(Normals, OfAPlane_AreItsNormal) {
+    const Estimated result = estimated(sheet(20, 3));
+    for (std::size_t row = 0; row < 400; ++row) EXPECT_EQ(result.normal(row), Vec3(0, 0, 1));
+    EXPECT_THAT(result.doubts, IsEmpty());
+}
+
+TEST(Normals, OfLengthZeroInTheInput_AreReplaced) {
+    PointCloud cloud = sheet(6, 0);
+    cloud.columns.add(Column("normal", 3, Buffer<float>(Array<float>(108, 0.f))));
+    EXPECT_EQ(estimated(cloud).normal(0), Vec3(0, 0, 1));
+}
+
 TEST(Normals, BesideALineWhereTheSidesChange_AreNotDoubtful) {
     // Points beside the line have most neighbours on their own side of it.
     const PointCloud cloud =

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#ifdef SCANMILL_PCL
 #include "poisson/poisson.hpp"
 
 #include <gmock/gmock.h>
@@ -408,3 +409,5 @@ TEST(PoissonReal, OfTheKitten_IsAClosedTorus) {
 
 }  // namespace
 }  // namespace scanmill::test
+
+#endif  // SCANMILL_PCL

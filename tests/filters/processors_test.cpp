@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// sculpt, features, measure, a-patch and probe-planner give the same bytes on every processor: on one without fused
-/// multiply-add the C library takes other variants of atan2, sin and the like, whose last bits differ.
+/// sculpt, features, measure, a-patch, probe-planner and poisson give the same bytes on every processor: on one without
+/// fused multiply-add the C library takes other variants of atan2, sin and the like, whose last bits differ.
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -15,8 +15,11 @@
 #include "features/features.hpp"
 #include "filters/sculpt_cases.hpp"
 #include "measure/measure.hpp"
+#include "normals/normals.hpp"
+#include "poisson/poisson.hpp"
 #include "probe_planner/probe_planner.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
+#include "support/point_sets.hpp"
 #include "support/shapes.hpp"
 #include "support/temporary_folder.hpp"
 #include "tessellate/tessellate.hpp"
@@ -120,10 +123,23 @@ std::uint64_t of_probes(const TriangleMesh& mesh) {
     return digest.value();
 }
 
+/// Of a jittered lattice on a block, with normals by neighbours.
+std::uint64_t of_poisson() {
+    Digest digest;
+#ifdef SCANMILL_PCL
+    Context context;
+    PoissonParams params;
+    params.depth = 6;
+    const PointCloud cloud = normals(l_block_surface(8, 2, 8, 0.01), {}, context).points;
+    for (const Vec3& p : poisson(cloud, params, context).mesh.positions) digest.add(p);
+#endif
+    return digest.value();
+}
+
 /// The points have exact coordinates, which do not depend on the processor.
 std::string results() {
-    std::string text = fmt::format("angles {:x}\npatches {:x}\nprobes {:x}\n", of_angles(),
-                                   of_patches(geodesic_sphere(1, 3)), of_probes(l_block(1)));
+    std::string text = fmt::format("angles {:x}\npatches {:x}\nprobes {:x}\npoisson {:x}\n", of_angles(),
+                                   of_patches(geodesic_sphere(1, 3)), of_probes(l_block(1)), of_poisson());
     for (const TetMesh& tets : {hull_of(random_cube(2000, 1)), hull_of(lattice_cube(4)),
                                 solid_of(tets_of(l_block_surface(3, 2, 6, 2e-3))).tets})
         for (const SculptWeight weight : {SculptWeight::none, SculptWeight::length}) {

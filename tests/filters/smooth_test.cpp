@@ -154,6 +154,21 @@ TEST(Smooth, NeighbourhoodsAsLargeAsTheObject_AreDoubtful) {
                 ElementsAre(HasSubstr("details as large as that are lost")));
 }
 
+TEST(Smooth, OutliersAlone_AreDoubtful) {
+    EXPECT_THAT(smoothed(random_cube(5000, 3)).doubts, ElementsAre(HasSubstr("details as large as that are lost")));
+}
+
+TEST(Smooth, TwoScales_MoveByTheirOwnNoise) {
+    // Two spheres, one a hundredth of the other; both move as one alone does.
+    const PointCloud noisy = fibonacci_sphere(3000, 0.01, 3);
+    const Smoothed alone = smoothed(noisy), both = smoothed(joined(noisy, moved(noisy, 0x1p-7, {4, 0, 0})));
+    const Column &one = *alone.points.columns.find("moved"), &two = *both.points.columns.find("moved");
+    for (std::size_t row = 0; row < 3000; ++row) {
+        EXPECT_EQ(two.number(row), one.number(row));
+        EXPECT_NEAR(two.number(row + 3000), one.number(row) * 0x1p-7, 1e-9);
+    }
+}
+
 TEST(Smooth, DoesNotDependOnThreadsOrOrder) {
     const PointCloud cloud = fibonacci_sphere(3000, 0.01);
     for (const SmoothParams& params : {with(Method::jet), with(Method::mls), with(Method::mls, 24, 0.1)}) {
