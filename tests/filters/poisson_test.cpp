@@ -164,8 +164,8 @@ TEST(Poisson, Trim_RemovesTheShareOfLeastDensity) {
     EXPECT_EQ(topology(part.mesh).unused_vertices, 0u);
 }
 
-TEST(Poisson, EqualDensities_TheLowestRowGoesFirst) {
-    // One vertex of all is removed; with equal densities it would be the first.
+TEST(Poisson, TrimOfOneVertex_RemovesTheLeastDense) {
+    // Of several equal ones it would be the first.
     const Made whole = made(outward(vertices_of(icosahedron())), with(3, 0));
     const double share = 1.5 / static_cast<double>(whole.mesh.positions.size());
     const Made less = made(outward(vertices_of(icosahedron())), with(3, share));
