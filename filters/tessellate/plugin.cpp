@@ -22,7 +22,13 @@ SCANMILL_FILTER() {
                word("none"), above(0))
         .metric("triangles", Unit::count, "Triangles of the result.", headline)
         .run([](const Inputs& inputs, const P& params, Context& context) {
-            TriangleMesh mesh = tessellate(inputs.get<PatchComplex>("patches"), params, context);
+            double left = 0;
+            TriangleMesh mesh = tessellate(inputs.get<PatchComplex>("patches"), params, context, &left);
+            if (left > 0)
+                context.doubt(fmt::format(
+                    "the triangles are up to {:.3g} from the surface, where it leaps: no more segments bring "
+                    "them nearer; max-error is {:.3g}",
+                    left, params.max_error->value()));
             context.metric("triangles", static_cast<double>(mesh.triangles.size()));
             return Outputs().set("mesh", std::move(mesh));
         });

@@ -41,11 +41,11 @@ public:
         if (max_error_ && !(*max_error_ > 0)) throw Error("max-error must be above 0; it is {:g}", *max_error_);
     }
 
-    TriangleMesh mesh() {
+    TriangleMesh mesh(double* left) {
         structure_ = structure_of(patches_);
         zero_ = rounding * bounding_box(patches_.positions.span()).diagonal();
         number_corners();
-        max_error_ ? build_within_error() : static_cast<void>(build(subdivision_));
+        max_error_ ? build_within_error(left) : static_cast<void>(build(subdivision_));
         collect_points();
         connect();
         return finished();
@@ -130,9 +130,10 @@ private:
         return worst;
     }
 
-    void build_within_error() {
+    void build_within_error(double* distance_left) {
         const unsigned most = std::bit_floor(subdivision_);
         const double worst = build(most);
+        if (distance_left) *distance_left = 0;
         if (worst <= *max_error_ || segments_) return;
         // The error falls with the square of the segments, but not where the surface leaps.
         unsigned enough = 2 * most;
@@ -141,6 +142,10 @@ private:
             if (left <= *max_error_) break;
             if (left > least_decrease * before && left != before) enough = most_subdivision;
             before = left;
+        }
+        if (distance_left && enough > most_subdivision) {
+            *distance_left = build(most);
+            return;
         }
         Error error("with {} segments per edge the triangles are up to {:.3g} from the surface; max-error is {:.3g}",
                     most, worst, *max_error_);
@@ -312,8 +317,9 @@ private:
 
 }  // namespace
 
-TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution) {
-    return Tessellation(patches, params, execution).mesh();
+TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution,
+                        double* left) {
+    return Tessellation(patches, params, execution).mesh(left);
 }
 
 }  // namespace scanmill

@@ -41,8 +41,12 @@ struct TessellateParams {
 /// max_error. A quarter of max_error doubles the segments. Spheres got 7 to 15 times, tori 10 to 40 times as many
 /// triangles as equilateral ones of the best size: the segments are powers of two, and lines to an apex make a small
 /// angle with the surface near a vertex where the mesh is coarse.
-/// Throws Error if `subdivision` does not suffice, with the distance left; for patches without tetrahedra or with some
-/// missing, and for parameters out of range. Cost: linear in the triangles made, about 1 us each.
-TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution);
+/// Where the surface leaps, as beside a crease that leaves its tetrahedra, no number of segments suffices. With `left`
+/// the result then has `subdivision` segments there, and `left` is the distance left; otherwise 0.
+/// Throws Error if `subdivision` does not suffice, with the distance left and what would do; for patches without
+/// tetrahedra or with some missing, and for parameters out of range. Cost: linear in the triangles made, about 1 us
+/// each.
+TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution,
+                        double* left = nullptr);
 
 }  // namespace scanmill

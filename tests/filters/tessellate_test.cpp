@@ -218,6 +218,33 @@ TEST(Tessellate, ATooSmallSubdivision_IsRefusedWithTheDistanceLeftAndWhatWouldDo
     EXPECT_NO_THROW(tessellated(patches, enough, Length(1e-4)));
 }
 
+TEST(Tessellate, WhereTheSurfaceLeaps_ADistanceIsLeftAndTheRestIsWithinMaxError) {
+    PatchComplex patches = patched(exact_sphere(1), Curvature::mean).result.patches;
+    double left = 1;
+    Execution execution;
+    tessellate(patches, {64, Length(1e-3)}, execution, &left);
+    EXPECT_EQ(left, 0);
+    // The function beside one edge no longer agrees with that of the triangle on their common face.
+    std::size_t row = 0;
+    while (patches.kinds[row] != PatchKind::edge || patches.sides[row] != 1) ++row;
+    constexpr std::size_t between_edge_and_apex = 14;  // exponents 0, 1, 1, 1
+    Array<PatchWeights> weights(patches.weights.begin(), patches.weights.end());
+    weights[row][between_edge_and_apex] *= 1.2;
+    patches.weights = std::move(weights);
+    EXPECT_THAT(error_of([&] { tessellated(patches, 64, Length(1e-3)); }).hint(),
+                HasSubstr("a larger max-error needs fewer segments"));
+    const TriangleMesh mesh = tessellate(patches, {64, Length(1e-3)}, execution, &left);
+    EXPECT_GT(left, 1e-3);
+    EXPECT_LT(left, 0.1);
+    const MeshTopology found = topology(mesh);
+    EXPECT_TRUE(found.closed);
+    EXPECT_EQ(found.euler, 2);
+    // As fine as without the leap elsewhere.
+    EXPECT_LT(
+        mesh.triangles.size(),
+        20 * tessellated(patched(exact_sphere(1), Curvature::mean).result.patches, 64, Length(1e-3)).triangles.size());
+}
+
 TEST(Tessellate, AnOpenMesh_HasItsBoundary) {
     const TriangleMesh mesh = without_triangles(geodesic_sphere(1, 2), {0, 1});
     for (const Split split : {Split::always, Split::where_needed}) {
