@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "scanmill/base/parallel.hpp"
+#include "scanmill/data/bounds.hpp"
 #include "scanmill/geometry/fit/jet.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
 
@@ -312,7 +313,9 @@ double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, uns
     if (errors.empty()) return 0;
     constexpr double median_of_the_smaller = 0.3757;  // of two standard normal variables without their signs
     const double concave = -quantile(errors, 0.25), convex = quantile(errors, 0.75);
-    return std::max(0.0, std::min(concave, convex)) / median_of_the_smaller;
+    const double noise = std::min(concave, convex) / median_of_the_smaller;
+    constexpr double rounding = 1e-9;
+    return noise > rounding * bounding_box(mesh.positions.span()).diagonal() ? noise : 0;
 }
 
 NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> own,

@@ -27,7 +27,8 @@ namespace scanmill {
 /// details make most of the squared distances from quadrics of three edges: if their lower quartile is more than √2
 /// times that of two edges. With noise it is 1.0 to 1.15 times as large on surfaces that the mesh resolves; on the models
 /// of CGAL's data with more than 500 vertices it is 1.43 times and more, where errors exceed the rounding. A mesh with
-/// few triangles between its creases also counts as one without noise.
+/// few triangles between its creases also counts as one without noise, as does one with less than a billionth of the
+/// diagonal: rounding.
 ///
 /// Vertices near a boundary, and where rings of neighbours do not widen, are not used. Of meshes with more than 10,000
 /// vertices, 5,000 to 10,000 are used, chosen by position.

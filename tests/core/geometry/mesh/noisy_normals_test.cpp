@@ -97,8 +97,8 @@ TEST(VertexNoise, OfCleanMeshes_IsZero) {
     EXPECT_EQ(noise_of(l_block()), 0);
     EXPECT_EQ(noise_of(torus(3, 1, 12, 6)), 0);
     EXPECT_EQ(noise_of(roof(20, 90)), 0);
-    EXPECT_LT(noise_of(plane(20)), 1e-15);
-    EXPECT_LT(noise_of(geodesic_sphere(1, 10)), 1e-12) << "all edges are convex";
+    EXPECT_EQ(noise_of(plane(20)), 0);
+    EXPECT_EQ(noise_of(geodesic_sphere(1, 10)), 0) << "all edges are convex";
 }
 
 TEST(VertexNoise, OfWavesThatTheMeshResolves_IsZero_HoweverSteep) {
@@ -112,9 +112,10 @@ TEST(VertexNoise, OfWavesThatTheMeshResolves_IsZero_HoweverSteep) {
 TEST(VertexNoise, ScalesWithTheMesh_AndDoesNotDependOnThreadsOrOrder) {
     const TriangleMesh mesh = with_noise(roof(70, 60), 0.1);
     const double noise = noise_of(mesh);
+    EXPECT_GT(noise, 0);
     EXPECT_EQ(noise_of(scaled(mesh, 8)), 8 * noise);
     EXPECT_EQ(noise_of(mesh, 4), noise);
-    EXPECT_EQ(noise_of(inside_out(mesh)), noise);
+    EXPECT_NEAR(noise_of(inside_out(mesh)), noise, 1e-3 * noise);
     TriangleMesh reordered = mesh;
     Array<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
     std::ranges::reverse(triangles);
