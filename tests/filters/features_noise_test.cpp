@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "filters/features_cases.hpp"
+#include "support/mesh_operations.hpp"
 
 namespace scanmill {
 namespace {
@@ -68,6 +69,57 @@ TEST(FeaturesOfANoisyRoof, FollowItsRidge) {
         EXPECT_GE(std::ranges::count(length.found, true), 55) << degrees;
         EXPECT_LT(length.far, length.near / 10) << degrees;
         EXPECT_LT(length.near, 120) << degrees << ": one line, at most of twice the length";
+    }
+}
+
+TEST(FeaturesOfANoisyRoof, AreFewLines_AlthoughTheyZigzag) {
+    const FeatureLines lines = features_of(noisy_roof(90, 0.15));
+    EXPECT_LT(lines.counts.creases, 25u);
+}
+
+/// Faces of 24 by 24 edges of length 1.
+TriangleMesh noisy_cube(double noise) {
+    constexpr int size = 24;
+    MeshBuilder builder;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const bool upper : {false, true})
+            for (int i = 0; i < size; ++i)
+                for (int j = 0; j < size; ++j) {
+                    const auto corner = [&](int u, int v) {
+                        Vec3 p;
+                        p[axis] = upper ? size : 0;
+                        p[(axis + 1) % 3] = u;
+                        p[(axis + 2) % 3] = v;
+                        return p;
+                    };
+                    const Vec3 a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1), d = corner(i, j + 1);
+                    upper ? builder.quad(a, b, c, d) : builder.quad(a, d, c, b);
+                }
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> normal(0, noise);
+    return with_positions(builder.mesh(), [&](const Vec3& p) {
+        const double x = normal(random), y = normal(random), z = normal(random);
+        return Vec3(p + Vec3(x, y, z));
+    });
+}
+
+TEST(FeaturesOfANoisyCube, AreItsTwelveEdges_AndACornerIsNearEachOfItsCorners) {
+    EXPECT_EQ(features_of(noisy_cube(0)).counts.creases, 12u);
+    const FeatureLines lines = features_of(noisy_cube(0.15));
+    EXPECT_NEAR(lines.noise, 0.15, 0.05);
+    double length = 0;
+    for (const FeaturePolyline& line : lines.graph.polylines)
+        for (u32 i = line.begin; i + 1 < line.end; ++i)
+            length +=
+                (lines.graph.positions[lines.graph.vertices[i + 1]] - lines.graph.positions[lines.graph.vertices[i]])
+                    .norm();
+    EXPECT_NEAR(length, 12 * 24, 0.3 * 12 * 24);
+    EXPECT_LT(lines.counts.creases, 80u);
+    for (int i = 0; i < 8; ++i) {
+        const Vec3 corner = 24 * Vec3(i & 1, i >> 1 & 1, i >> 2 & 1);
+        EXPECT_TRUE(std::ranges::any_of(lines.graph.corners, [&](u32 v) {
+            return (lines.graph.positions[v] - corner).norm() < 2.5;
+        })) << i;
     }
 }
 

@@ -33,14 +33,15 @@ struct FeatureLine {
 class FeatureNet {
 public:
     /// `sharp`: whether the edge of a half-edge is sharp; equal for opposite half-edges, false on the boundary.
+    /// `reach`: creases turn over at least this distance.
     FeatureNet(const TriangleMesh& mesh, std::span<const u32> opposite, const std::vector<bool>& sharp,
-               double corner_angle)
+               double corner_angle, double reach)
         : mesh_(mesh),
           opposite_(opposite),
           loops_(boundary_loops(mesh, opposite)) {
         number_vertices(sharp);
         find_creases(sharp);
-        find_corners(corner_angle);
+        find_corners(corner_angle, reach);
         for (Array<u32>& loop : loops_) start_at_lowest(loop);
     }
 
@@ -110,6 +111,20 @@ private:
         return std::span(creases_).subspan(begin_[number], begin_[number + 1] - begin_[number]);
     }
 
+    const Vec3& position(u32 number) const { return mesh_.positions[vertices_[number]]; }
+
+    /// Calls visit with the vertices along the line of creases from `from` on, at least one, up to the first that is
+    /// `reach` away or not inside of a line.
+    template <class Visit>
+    void walk(u32 from, Crease crease, double reach, Visit&& visit) const {
+        while (crease.end != from) {
+            visit(crease.end);
+            const std::span<const Crease> two = creases_at(crease.end);
+            if (two.size() != 2 || !((position(crease.end) - position(from)).norm() < reach)) return;
+            crease = two[0].half_edge == opposite_[crease.half_edge] ? two[1] : two[0];
+        }
+    }
+
     bool turns(u32 before, u32 at, u32 after, double corner_angle) const {
         const Vec3& here = mesh_.positions[vertices_[at]];
         const Vec3 arriving = here - mesh_.positions[vertices_[before]],
@@ -117,7 +132,7 @@ private:
         return angle_between(arriving, leaving) > corner_angle;
     }
 
-    void find_corners(double corner_angle) {
+    void find_corners(double corner_angle, double reach) {
         Array<u32> boundary_edges(vertices_.size(), 0);
         for (const Array<u32>& loop : loops_)
             for (const u32 half_edge : loop) {
@@ -125,10 +140,29 @@ private:
                 ++boundary_edges[number_at_end(half_edge)];
             }
         is_corner_.assign(vertices_.size(), false);
+        Array<double> angles(vertices_.size(), 0.0);  // between the two creases of vertices inside of lines
         for (u32 number = 0; number < vertices_.size(); ++number) {
             const std::span<const Crease> creases = creases_at(number);
-            is_corner_[number] = creases.size() + boundary_edges[number] != 2 ||
-                                 (creases.size() == 2 && turns(creases[0].end, number, creases[1].end, corner_angle));
+            is_corner_[number] = creases.size() + boundary_edges[number] != 2;
+            if (is_corner_[number] || creases.size() != 2) continue;
+            const Vec3& here = position(number);
+            const auto far_end = [&](const Crease& crease) {
+                u32 end = crease.end;
+                walk(number, crease, reach, [&](u32 next) { end = next; });
+                return position(end);
+            };
+            angles[number] = angle_between(here - far_end(creases[0]), far_end(creases[1]) - here);
+        }
+        for (u32 number = 0; number < vertices_.size(); ++number) {
+            if (!(angles[number] > corner_angle)) continue;
+            bool is_largest = true;  // of equal angles that of the lower number
+            for (const Crease& crease : creases_at(number))
+                walk(number, crease, reach, [&](u32 other) {
+                    const bool is_near = (position(other) - position(number)).norm() < reach;
+                    if (is_near && std::pair(-angles[other], other) < std::pair(-angles[number], number))
+                        is_largest = false;
+                });
+            if (is_largest) is_corner_[number] = true;
         }
         for (const Array<u32>& loop : loops_)
             for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -282,11 +316,11 @@ FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params
     FeatureCounts& counts = result.counts;
     counts.unreliable = reliable.unreliable;
     counts.without_area = normals.without_area;
-    std::optional<FeatureNet> net(std::in_place, mesh, opposite, sharp, corner_angle);
+    std::optional<FeatureNet> net(std::in_place, mesh, opposite, sharp, corner_angle, reliable.reach);
     std::vector<FeatureLine> lines = net->lines();
     counts.dropped = drop_short(mesh, opposite, lines, params.min_length.value(), sharp);
     if (counts.dropped > 0) {
-        net.emplace(mesh, opposite, sharp, corner_angle);
+        net.emplace(mesh, opposite, sharp, corner_angle, reliable.reach);
         lines = net->lines();
     }
     counts.ambiguous = classify_loops(mesh, opposite, normals.unit, lines);

@@ -161,7 +161,8 @@ struct Limits {
         variance = noise * noise;
         reliable = 2 * z * z * variance / (angle * angle);
         // The squared distances from the best plane of a disc with a crease through its middle sum up to 0.28 λ
-        // tan²(angle / 2); those by noise to (n - 3) σ² with a standard deviation of √(2 (n - 3)) σ².
+        // tan²(angle / 2); those by noise to (n - 3) σ² with a standard deviation of √(2 (n - 3)) σ². Both sums keep to
+        // their side of the middle by z of these.
         constexpr double of_a_crease = 1 - 64 / (9 * std::numbers::pi * std::numbers::pi);
         const double slope = std::tan(std::min(angle, std::numbers::pi / 2) / 2);
         visible = 2 * z * std::numbers::sqrt2 * variance / (of_a_crease * slope * slope);
@@ -171,6 +172,7 @@ struct Limits {
 struct Neighbourhood {
     Vec3 normal = Vec3::Zero();
     double error = std::numeric_limits<double>::infinity();  ///< mean square, of the slope
+    double radius = 0;  ///< squared
     std::vector<u32> vertices;
 };
 
@@ -196,6 +198,7 @@ public:
             const auto [distance, offset, vertex] = waiting_.back();
             waiting_.pop_back();
             result.vertices.push_back(vertex);
+            result.radius = std::max(result.radius, distance);
             sum += offset;
             squares += product(offset);
             outwards += areas_[vertex];
@@ -320,7 +323,7 @@ double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, uns
 
 NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> own,
                            double noise, double angle, unsigned threads) {
-    NoisyNormals result{Array<Vec3>(own.begin(), own.end()), 0};
+    NoisyNormals result{Array<Vec3>(own.begin(), own.end())};
     if (!(noise > 0)) return result;
     const Limits limits(noise, angle, mesh.triangles.size());
     std::vector<u32> unreliable;
@@ -342,9 +345,11 @@ NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposi
     const Array<Vec3> areas = area_vectors(mesh);
     const std::vector<u32> centres = near_vertices(mesh, neighbours, unreliable);
     std::vector<u32> containing(mesh.positions.size(), 0);  // by vertex: the last neighbourhood
+    std::vector<double> radii;  // squared
     u32 number = 0;
     const auto offer = [&](const Neighbourhood& neighbourhood) {
         ++number;
+        radii.push_back(neighbourhood.radius);
         for (const u32 vertex : neighbourhood.vertices) containing[vertex] = number;
         for (const u32 vertex : neighbourhood.vertices)
             for (const u32 t : triangles_at[vertex]) {
@@ -368,6 +373,7 @@ NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposi
                 found.push_back(grower.around(centres[c]));
         },
         [&](std::size_t, Block& found) { std::ranges::for_each(found, offer); });
+    result.reach = 2 * std::sqrt(quantile(radii, 0.5));
     return result;
 }
 

@@ -25,10 +25,10 @@ namespace scanmill {
 ///
 /// Noise is the same at all scales; the details of an object grow with the neighbourhood. The result is therefore 0 if
 /// details make most of the squared distances from quadrics of three edges: if their lower quartile is more than √2
-/// times that of two edges. With noise it is 1.0 to 1.15 times as large on surfaces that the mesh resolves; on the models
-/// of CGAL's data with more than 500 vertices it is 1.43 times and more, where errors exceed the rounding. A mesh with
-/// few triangles between its creases also counts as one without noise, as does one with less than a billionth of the
-/// diagonal: rounding.
+/// times that of two edges. With noise it is 1.0 to 1.15 times as large on surfaces that the mesh resolves; on the
+/// models of CGAL's data with more than 500 vertices it is 1.43 times and more, where errors exceed the rounding. A
+/// mesh with few triangles between its creases also counts as one without noise, as does one with less than a billionth
+/// of the diagonal: rounding.
 ///
 /// Vertices near a boundary, and where rings of neighbours do not widen, are not used. Of meshes with more than 10,000
 /// vertices, 5,000 to 10,000 are used, chosen by position.
@@ -42,6 +42,9 @@ struct NoisyNormals {
     Array<Vec3> unit;
     /// Triangles whose own normal is not reliable.
     std::size_t unreliable = 0;
+    /// Median diameter of the neighbourhoods, 0 without unreliable triangles: shorter lines on the mesh have no
+    /// reliable direction.
+    double reach = 0;
 };
 
 /// For every triangle a normal with which its angles to its neighbours can be compared with `angle`, in radians. `own`:
