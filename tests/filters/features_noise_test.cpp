@@ -113,7 +113,7 @@ TEST(FeaturesOfANoisyCube, AreItsTwelveEdges_AndACornerIsNearEachOfItsCorners) {
             length +=
                 (lines.graph.positions[lines.graph.vertices[i + 1]] - lines.graph.positions[lines.graph.vertices[i]])
                     .norm();
-    EXPECT_NEAR(length, 12 * 24, 0.3 * 12 * 24);
+    EXPECT_NEAR(length, 12 * 24, 0.25 * 12 * 24);
     EXPECT_LT(lines.counts.creases, 80u);
     for (int i = 0; i < 8; ++i) {
         const Vec3 corner = 24 * Vec3(i & 1, i >> 1 & 1, i >> 2 & 1);

@@ -169,11 +169,17 @@ struct Limits {
     }
 };
 
-struct Neighbourhood {
+struct Plane {
     Vec3 normal = Vec3::Zero();
     double error = std::numeric_limits<double>::infinity();  ///< mean square, of the slope
-    double radius = 0;  ///< squared
+};
+
+/// Nested neighbourhoods: the first n vertices for every n.
+struct Neighbourhoods {
     std::vector<u32> vertices;
+    /// Per n - 1: the best plane of n and more vertices.
+    std::vector<Plane> best;
+    double radius = 0;  ///< squared, of the largest
 };
 
 class Grower {
@@ -185,10 +191,10 @@ public:
           limits_(limits),
           reached_(mesh.positions.size(), 0) {}
 
-    Neighbourhood around(u32 centre) {
-        Neighbourhood result;
+    Neighbourhoods around(u32 centre) {
+        Neighbourhoods result;
         Vec3 sum = Vec3::Zero(), outwards = Vec3::Zero();
-        Matrix squares = Matrix::Zero(), scatter = Matrix::Zero();
+        Matrix squares = Matrix::Zero();
         ++round_;
         waiting_.clear();
         reach(centre, centre);
@@ -205,18 +211,12 @@ public:
             for (const u32 next : neighbours_[vertex])
                 if (reached_[next] != round_) reach(next, centre);
             const auto n = static_cast<double>(result.vertices.size());
-            if (result.vertices.size() <= 3) continue;
-            scatter = squares - product(sum) / n;
-            if (middle_reaches(scatter, std::max(limits_.reliable, limits_.visible * std::sqrt(n - 3)))) break;
+            const Matrix scatter = squares - product(sum) / n;
+            result.best.push_back(plane_of(scatter, n, outwards));
+            if (n > 3 && middle_reaches(scatter, std::max(limits_.reliable, limits_.visible * std::sqrt(n - 3)))) break;
         }
-        if (result.vertices.size() <= 3) return result;
-        const Eigen::SelfAdjointEigenSolver<Matrix> solver(scatter);
-        const double least = solver.eigenvalues()[0], middle = solver.eigenvalues()[1];
-        if (!(middle > 0)) return result;
-        const double free = static_cast<double>(result.vertices.size() - 3);
-        result.normal = solver.eigenvectors().col(0);
-        if (result.normal.dot(outwards) < 0) result.normal = -result.normal;
-        result.error = (std::max(0.0, least - free * limits_.variance) + limits_.variance) / middle;
+        for (std::size_t n = result.best.size(); n-- > 1;)
+            if (result.best[n].error < result.best[n - 1].error) result.best[n - 1] = result.best[n];
         return result;
     }
 
@@ -226,6 +226,15 @@ private:
         Vec3 offset;
         u32 vertex;
     };
+    Plane plane_of(const Matrix& scatter, double n, const Vec3& outwards) const {
+        if (n <= 3) return {};
+        const Eigen::SelfAdjointEigenSolver<Matrix> solver(scatter);
+        const double least = solver.eigenvalues()[0], middle = solver.eigenvalues()[1];
+        if (!(middle > 0)) return {};
+        const Vec3 normal = solver.eigenvectors().col(0);
+        return {normal.dot(outwards) < 0 ? Vec3(-normal) : normal,
+                (std::max(0.0, least - (n - 3) * limits_.variance) + limits_.variance) / middle};
+    }
     static bool after(const Waiting& a, const Waiting& b) {
         return a.distance != b.distance ? a.distance > b.distance : lower(b.offset, a.offset);
     }
@@ -344,26 +353,28 @@ NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposi
     const Lists neighbours = neighbours_of(mesh, opposite), triangles_at = triangles_of(mesh);
     const Array<Vec3> areas = area_vectors(mesh);
     const std::vector<u32> centres = near_vertices(mesh, neighbours, unreliable);
-    std::vector<u32> containing(mesh.positions.size(), 0);  // by vertex: the last neighbourhood
+    constexpr u32 outside = ~u32(0);
+    std::vector<u32> rank(mesh.positions.size(), outside);  // by vertex, in the current neighbourhood
     std::vector<double> radii;  // squared
-    u32 number = 0;
-    const auto offer = [&](const Neighbourhood& neighbourhood) {
-        ++number;
-        radii.push_back(neighbourhood.radius);
-        for (const u32 vertex : neighbourhood.vertices) containing[vertex] = number;
-        for (const u32 vertex : neighbourhood.vertices)
+    const auto offer = [&](const Neighbourhoods& found) {
+        radii.push_back(found.radius);
+        for (u32 i = 0; i < found.vertices.size(); ++i) rank[found.vertices[i]] = i;
+        for (const u32 vertex : found.vertices)
             for (const u32 t : triangles_at[vertex]) {
-                const Triangle& corners = mesh.triangles[t];
-                if (corners[0] != vertex || neighbourhood.error > errors[t] || containing[corners[1]] != number ||
-                    containing[corners[2]] != number)
-                    continue;
-                if (neighbourhood.error == errors[t] && !lower(neighbourhood.normal, result.unit[t])) continue;
-                errors[t] = neighbourhood.error;
-                result.unit[t] = neighbourhood.normal;
+                const auto& [a, b, c] = mesh.triangles[t];
+                if (a != vertex || rank[b] == outside || rank[c] == outside) continue;
+                const Plane& plane = found.best[std::max({rank[a], rank[b], rank[c]})];
+                const bool is_better =
+                    plane.error < errors[t] ||
+                    (plane.error == errors[t] && plane.normal != Vec3::Zero() && lower(plane.normal, result.unit[t]));
+                if (!is_better) continue;
+                errors[t] = plane.error;
+                result.unit[t] = plane.normal;
             }
+        for (const u32 vertex : found.vertices) rank[vertex] = outside;
     };
     constexpr std::size_t block = 1 << 13;  // few, because each clears an array of all vertices
-    using Block = std::vector<Neighbourhood>;
+    using Block = std::vector<Neighbourhoods>;
     for_each_in_order<Block>(
         threads, (centres.size() + block - 1) / block,
         [&](std::size_t i, Block& found) {

@@ -42,8 +42,8 @@ struct NoisyNormals {
     Array<Vec3> unit;
     /// Triangles whose own normal is not reliable.
     std::size_t unreliable = 0;
-    /// Median diameter of the neighbourhoods, 0 without unreliable triangles: shorter lines on the mesh have no
-    /// reliable direction.
+    /// Median diameter of the vertices' largest neighbourhoods, 0 without unreliable triangles: shorter lines on the
+    /// mesh have no reliable direction.
     double reach = 0;
 };
 
@@ -57,12 +57,13 @@ struct NoisyNormals {
 /// neighbourhood and their least eigenvalue λ₃. At a crease that is a neighbourhood on one side of it, so creases stay
 /// sharp, and triangles that bridge a crease join one of its sides. Ties: the lower normal by x, y, z.
 ///
-/// The neighbourhood of a vertex contains the nearest vertices that are connected with it, up to the first for which
-/// its normal would be reliable and a crease of `angle` through its middle visible, but at most 256.
+/// The neighbourhoods of a vertex contain 4 and more of the nearest vertices that are connected with it, one more each
+/// time, up to the first for which the normal would be reliable and a crease of `angle` through its middle visible, but
+/// at most 256.
 ///
 /// Pre: finite positions, noise >= 0, angle >= 0. Without noise the result is `own`. The same bits for any number of
 /// threads and any order of the triangles and vertices, unless vertices have equal positions. Cost: linear; for a noise
-/// of a tenth of the edges' length about 5 µs and 200 bytes per vertex.
+/// of a tenth of the edges' length about 20 µs and 200 bytes per vertex.
 NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> own,
                            double noise, double angle, unsigned threads);
 
