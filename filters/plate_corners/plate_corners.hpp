@@ -45,13 +45,14 @@ struct PlateCornersResult {
 ///    tenth at either end, and the outermost point of every strip is taken.
 /// 4. The line through most of these points within `tolerance` and one spacing, then by least squares. A side is found
 ///    if at least half of its strips are on the line.
-/// 5. Neighbouring sides are intersected. With `sides`, the rectangle of this size that fits the corners best replaces
+/// 5. The border is beyond the outermost points. The line is moved out by the distance for which the number of points
+///    under it, by depth, is that of a constant density.
+/// 6. Neighbouring sides are intersected. With `sides`, the rectangle of this size that fits the corners best replaces
 ///    them.
 /// If that fails, the points of the plane are left out, and the next plane is tried, at most three in all; the error of
 /// the first is then thrown.
 ///
-/// The outermost points lie up to a spacing inside the true border, so found sides are shorter by about two thirds of a
-/// spacing; all four alike, so that the middle and the directions stay.
+/// Half a spacing of a grid whose rows are along the border remains unknown; the corners are then at its middle.
 ///
 /// Throws Error for fewer than 4 points, NaN or infinite coordinates, a tolerance that is not above 0, other than two
 /// sides or sides that are not above 0; for points of which no plane holds a tenth; for a plane without four sides, or

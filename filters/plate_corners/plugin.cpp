@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = PlateCornersParams;
-    return Declare<P>("plate-corners", 1)
+    return Declare<P>("plate-corners", 2)
         .summary("Finds the four corners of a rectangular plate in a scan.")
         .source("Wang 2006, chapter 5; Fischler and Bolles 1981")
         .ties("Of equally good planes and lines the first in the order of the random samples.")

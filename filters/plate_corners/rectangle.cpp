@@ -75,7 +75,7 @@ Corners smallest_rectangle(std::span<const Vec2> hull) {
     return best;
 }
 
-/// A side of the plate, and the points at the border that it was fitted to.
+/// A side of the plate, and the points at the border that it was fitted to, moved out as far as the border.
 struct Side {
     Vec2 point, direction;
     std::vector<Vec2> border;
@@ -86,17 +86,26 @@ struct NotASide {
     std::size_t found, strips;
 };
 
-/// The outermost point of every strip across the side from `a` to `b`. In coordinates along the side and outwards.
-std::vector<Vec2> border_points(std::span<const Vec2> points, const Vec2& a, const Vec2& b, std::size_t strips) {
-    const double length = (b - a).norm();
-    const Vec2 along = (b - a) / length, out = outwards(along);
-    std::vector<Vec2> outermost(strips, Vec2(0, -std::numeric_limits<double>::infinity()));
-    for (const Vec2& p : points) {
-        const double share = along.dot(p - a) / length, strip = (share - end_share) / (1 - 2 * end_share);
-        if (!(strip >= 0 && strip < 1)) continue;
-        Vec2& best = outermost[std::min(strips - 1, static_cast<std::size_t>(strip * static_cast<double>(strips)))];
-        if (const double height = out.dot(p - a); height > best.y()) best = {share * length, height};
+/// Strips of equal width across a side of this length, without those at its ends.
+struct Strips {
+    double length;
+    std::size_t count;
+
+    double width() const { return (1 - 2 * end_share) * length / static_cast<double>(count); }
+    /// Of a position along the side; `count` beyond the strips.
+    std::size_t at(double along) const {
+        const double strip = (along / length - end_share) / (1 - 2 * end_share);
+        if (!(strip >= 0 && strip < 1)) return count;
+        return std::min(count - 1, static_cast<std::size_t>(strip * static_cast<double>(count)));
     }
+};
+
+/// The outermost point of every strip. `points`: in coordinates along the side and outwards, as the result.
+std::vector<Vec2> border_points(std::span<const Vec2> points, const Strips& strips) {
+    std::vector<Vec2> outermost(strips.count, Vec2(0, -std::numeric_limits<double>::infinity()));
+    for (const Vec2& p : points)
+        if (const std::size_t strip = strips.at(p.x()); strip < strips.count && p.y() > outermost[strip].y())
+            outermost[strip] = p;
     std::erase_if(outermost, [](const Vec2& p) { return std::isinf(p.y()); });
     return outermost;
 }
@@ -128,18 +137,38 @@ Line least_squares(std::span<const Vec2> points) {
     return {mean.y() - slope * mean.x(), slope};
 }
 
+/// How far the border is beyond the line through its outermost points: the number n(D) of points to the depth D under
+/// the line is the density times D plus this distance. The density and the distance follow from the integrals of n over
+/// depths up to a strip's width, and from there to twice that width. Strips without points there do not count.
+double border_beyond(const Line& line, std::span<const Vec2> points, const Strips& strips) {
+    const double depth = strips.width();
+    double upper = 0, lower = 0;
+    for (const Vec2& p : points) {
+        const double under = -line.distance(p);
+        if (under < -depth || under >= 2 * depth || strips.at(p.x()) == strips.count) continue;
+        upper += std::clamp(depth - under, 0.0, depth);
+        lower += std::min(2 * depth - under, depth);
+    }
+    if (!(lower > upper)) return 0;  // another density there: a part, or a shadow
+    return std::clamp(upper * depth / (lower - upper) - depth / 2, 0.0, depth);
+}
+
 /// The side near that from `a` to `b`, or why there is none.
 std::variant<Side, NotASide> side_near(std::span<const Vec2> points, const Vec2& a, const Vec2& b, double spacing,
                                        double tolerance, Random random) {
     constexpr double most_strips = 200;
     constexpr std::size_t least_points = 5;
     const double length = (b - a).norm(), used = (1 - 2 * end_share) * length;
-    const auto strips =
-        static_cast<std::size_t>(std::max(1.0, std::floor(used / std::max(2 * spacing, used / most_strips))));
-    const std::vector<Vec2> border = border_points(points, a, b, strips);
+    const Strips strips{
+        length, static_cast<std::size_t>(std::max(1.0, std::floor(used / std::max(2 * spacing, used / most_strips))))};
+    const Vec2 along = (b - a) / length, out = outwards(along);
+    std::vector<Vec2> turned;
+    turned.reserve(points.size());
+    for (const Vec2& p : points) turned.emplace_back(along.dot(p - a), out.dot(p - a));
+    const std::vector<Vec2> border = border_points(turned, strips);
     const auto needed =
-        std::max(least_points, static_cast<std::size_t>(std::ceil(least_strips * static_cast<double>(strips))));
-    if (border.size() < needed) return NotASide{border.size(), strips};
+        std::max(least_points, static_cast<std::size_t>(std::ceil(least_strips * static_cast<double>(strips.count))));
+    if (border.size() < needed) return NotASide{border.size(), strips.count};
 
     const double within = tolerance + spacing;
     std::vector<Vec2> near;
@@ -158,10 +187,10 @@ std::variant<Side, NotASide> side_near(std::span<const Vec2> points, const Vec2&
         if (next == near) break;
         near = std::move(next);
     }
-    if (near.size() < needed) return NotASide{near.size(), strips};
-    const Vec2 along = (b - a) / length, out = outwards(along);
-    Side side{a + line.offset * out, (along + line.slope * out).normalized(), {}};
-    for (const Vec2& p : near) side.border.push_back(a + p.x() * along + p.y() * out);
+    if (near.size() < needed) return NotASide{near.size(), strips.count};
+    const double beyond = border_beyond(line, turned, strips);
+    Side side{a + (line.offset + beyond) * out, (along + line.slope * out).normalized(), {}};
+    for (const Vec2& p : near) side.border.push_back(a + p.x() * along + (p.y() + beyond) * out);
     return side;
 }
 

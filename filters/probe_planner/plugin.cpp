@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = ProbePlannerParams;
-    return Declare<P>("probe-planner", 1)
+    return Declare<P>("probe-planner", 2)
         .summary("Plans where and from which direction a touch probe measures the edges of a part, and proves it.")
         .source("Wang 2006, chapter 5; both faces in closed form, collisions and order are our own")
         .ties("Of phi and -phi the one towards the left face; of equally near lines and touches the lower one.")

@@ -160,13 +160,20 @@ void fit_to_mesh(std::vector<ReferencePoint>& points, const TriangleTree& mesh, 
         context.check_cancelled();
         for (std::size_t i = begin; i < end; ++i) {
             ReferencePoint& point = points[i];
-            if (point.assumed) continue;
             // A single segment may be much shorter than the edges round it.
             const double size =
                 std::max(point.segment_length, mean_edge_near(mesh, point.position, point.segment_length));
-            const auto faces = edge_faces(mesh, {point.position, point.tangent, point.left_normal, point.right_normal},
+            const Vec3& right = point.assumed ? point.left_normal : point.right_normal;
+            const auto faces = edge_faces(mesh, {point.position, point.tangent, point.left_normal, right},
                                           segments_near * size + error, segments_apart * size + error);
             if (!faces) continue;
+            if (point.assumed) {
+                const double cosine_30 = std::sqrt(0.75);
+                if (faces->left_normal == faces->right_normal || faces->left_normal.dot(point.left_normal) < cosine_30)
+                    continue;
+                point.assumed = false;
+                point.beyond = 0;
+            }
             point.position = faces->position;
             point.tangent = faces->tangent;
             point.left_normal = faces->left_normal;

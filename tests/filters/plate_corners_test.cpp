@@ -18,6 +18,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 
 struct Found : PlateCornersResult {
     Metrics metrics;
@@ -49,11 +50,11 @@ Error refusal(const PointCloud& cloud, const PlateCornersParams& params) {
     return error;
 }
 
-/// A grid over [0, width] x [0, depth] at z = 0, borders included.
+/// A grid over [0, width] x [0, depth] at z = 0: the middles of its cells.
 std::vector<Vec3> grid(double width, double depth, double step) {
     std::vector<Vec3> points;
-    for (double x = 0; x <= width; x += step)
-        for (double y = 0; y <= depth; y += step) points.emplace_back(x, y, 0);
+    for (double x = step / 2; x <= width; x += step)
+        for (double y = step / 2; y <= depth; y += step) points.emplace_back(x, y, 0);
     return points;
 }
 
@@ -100,24 +101,67 @@ PointCloud scanned_plate(double noise, std::vector<double> views = {0, 0, 1, 1, 
 }
 
 TEST(PlateCorners, AGrid_HasTheCornersOfItsBorder) {
-    // Border points lie exactly on the sides.
+    // The outermost points are half a step, 0.25, inside; a tenth of that remains.
     const Found found = corners_of(cloud(grid(20, 10, 0.5)), within(0.1));
     ASSERT_EQ(found.corners.size(), 4u);
     const std::vector<Vec3> expected{{0, 0, 0}, {20, 0, 0}, {20, 10, 0}, {0, 10, 0}};
-    for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((found.corners.positions[i] - expected[i]).norm(), 1e-12) << i;
-    EXPECT_NEAR(found.first_side, 20, 1e-12);
-    EXPECT_NEAR(found.second_side, 10, 1e-12);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((found.corners.positions[i] - expected[i]).norm(), 0.03) << i;
+    EXPECT_NEAR(found.first_side, 20, 0.05);
+    EXPECT_NEAR(found.second_side, 10, 0.05);
     EXPECT_LT(found.residual, 1e-12);
     EXPECT_LT(found.flatness, 1e-12);
-    EXPECT_EQ(found.points, 41u * 21u);
+    EXPECT_EQ(found.points, 40u * 20u);
     EXPECT_EQ(found.metrics.find("side-2")->value, found.second_side);
+}
+
+/// Points of a plate of 200 x 120 at a spacing of about 1: at random, or on a grid that is turned by an angle and
+/// moved.
+std::vector<Vec3> sampled_plate(bool at_random, double angle, Random& random) {
+    std::vector<Vec3> points;
+    if (at_random) {
+        for (int i = 0; i < 200 * 120; ++i)
+            points.emplace_back(random.uniform(-100, 100), random.uniform(-60, 60), 0.01 * random.normal());
+        return points;
+    }
+    const double dx = random.uniform(0, 1), dy = random.uniform(0, 1), c = std::cos(angle), s = std::sin(angle);
+    for (int i = -130; i <= 130; ++i)
+        for (int j = -130; j <= 130; ++j) {
+            const double u = i + dx, v = j + dy;
+            const Vec3 p(c * u - s * v, s * u + c * v, 0.01 * random.normal());
+            if (std::abs(p.x()) <= 100 && std::abs(p.y()) <= 60) points.push_back(p);
+        }
+    return points;
+}
+
+TEST(PlateCorners, SidesOfScannedPlates_AreAsLongAsThePlateOnAverage) {
+    Random random(3);
+    constexpr int trials = 10;
+    struct Sampling {
+        bool at_random;
+        double angle, most;
+    };
+    // With rows along the border, n of them fit sides from n - 1 to n + 1 spacings; these sides have n.
+    for (const Sampling& sampling : {Sampling{true, 0, 0.4}, {false, 0.3, 0.1}, {false, 0.02, 0.1}, {false, 0, 0.1}}) {
+        double sum = 0, largest = 0;
+        for (int trial = 0; trial < trials; ++trial) {
+            const Found found =
+                corners_of(cloud(sampled_plate(sampling.at_random, sampling.angle, random)), within(0.1));
+            const double one = std::max(found.first_side, found.second_side) - 200,
+                         other = std::min(found.first_side, found.second_side) - 120;
+            sum += one + other;
+            largest = std::max({largest, std::abs(one), std::abs(other)});
+        }
+        const double mean = sum / (2 * trials);
+        EXPECT_LT(std::abs(mean), 0.05) << sampling.at_random << " " << sampling.angle;
+        EXPECT_LT(largest, sampling.most) << sampling.at_random << " " << sampling.angle;
+    }
 }
 
 TEST(PlateCorners, FromBelow_TheOrderIsReversed) {
     PlateCornersParams below = within(0.1);
     below.up = {0, 0, -1};
     const Found found = corners_of(cloud(grid(20, 10, 0.5)), below);
-    EXPECT_LT((found.corners.positions[1] - Vec3(0, 10, 0)).norm(), 1e-12);
+    EXPECT_LT((found.corners.positions[1] - Vec3(0, 10, 0)).norm(), 0.03);
     EXPECT_NEAR(found.corners.columns.find("normal")->number(0, 2), -1, 1e-12);
     // Normals of the points decide before `up`.
     PointCloud points = cloud(grid(20, 10, 0.5));
@@ -134,7 +178,7 @@ TEST(PlateCorners, ASquareOnItsCorner_BeginsWithTheLowestSum_TiesByX) {
     const Found found = corners_of(cloud(points), within(0.1));
     const double first = found.corners.positions[0].sum();
     for (const Vec3& p : found.corners.positions) EXPECT_LE(first, p.sum() + 1e-9);
-    EXPECT_LT(worst(found, {{0, 0, 0}, {10, 10, 0}, {20, 0, 0}, {10, -10, 0}}), 1e-9);
+    EXPECT_LT(worst(found, {{0, 0, 0}, {10, 10, 0}, {20, 0, 0}, {10, -10, 0}}), 0.03);
 }
 
 TEST(PlateCorners, AScanWithAPartOnThePlate_IsFoundWithinASpacing) {
@@ -174,7 +218,7 @@ TEST(PlateCorners, StraysOnThePlane_AndBittenSides_AreLeftOut) {
         if (!(p.x() > 60 && p.x() < 120 && p.y() < 12) && !(p.x() + p.y() > 310)) points.push_back(p);
     for (int i = 0; i < 40; ++i) points.emplace_back(230 + 7 * i, -30.0 - i, 0);
     EXPECT_LT(worst(corners_of(cloud(points), within(0.2)), {{0, 0, 0}, {200, 0, 0}, {200, 120, 0}, {0, 120, 0}}),
-              1e-9);
+              0.05);
 }
 
 TEST(PlateCorners, ALargerTable_IsPassedOverForThePlateOfTheGivenSides) {
@@ -254,9 +298,9 @@ TEST(PlateCornersRefusals, ALozengeIsNoRectangle) {
 }
 
 TEST(PlateCornersRefusals, OtherSidesThanGiven) {
-    EXPECT_EQ(refusal(cloud(grid(20, 10, 0.5)), of_sides(10, 22, 0.1)).sentence(),
-              "the sides of the plane are 10 and 20 u long; 10 and 22 u are given, and at most 1.2 u of difference is "
-              "accepted");
+    EXPECT_THAT(refusal(cloud(grid(20, 10, 0.5)), of_sides(10, 22, 0.1)).sentence(),
+                MatchesRegex("the sides of the plane are 10[.0-9]* and 20[.0-9]* u long; 10 and 22 u are given, and at "
+                             "most 1.2 u of difference is accepted"));
 }
 
 TEST(PlateCornersRefusals, AnUprightPlateNeedsUp) {

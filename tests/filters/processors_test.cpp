@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// sculpt, features, measure, a-patch, probe-planner and poisson give the same bytes on every processor: on one without
-/// fused multiply-add the C library takes other variants of atan2, sin and the like, whose last bits differ.
+/// sculpt, features, measure, a-patch, poisson and the filters of probing give the same bytes on every processor: on
+/// one without fused multiply-add the C library takes other variants of atan2, sin and the like, whose last bits
+/// differ.
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -12,10 +13,13 @@
 #include <fstream>
 
 #include "a_patch/a_patch.hpp"
+#include "align/align.hpp"
+#include "apply_transform/apply_transform.hpp"
 #include "features/features.hpp"
 #include "filters/sculpt_cases.hpp"
 #include "measure/measure.hpp"
 #include "normals/normals.hpp"
+#include "plate_corners/plate_corners.hpp"
 #include "poisson/poisson.hpp"
 #include "probe_planner/probe_planner.hpp"
 #include "scanmill/geometry/spatial/angle.hpp"
@@ -23,6 +27,7 @@
 #include "support/shapes.hpp"
 #include "support/temporary_folder.hpp"
 #include "tessellate/tessellate.hpp"
+#include "virtual_probe/virtual_probe.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -119,6 +124,11 @@ std::uint64_t of_probes(const TriangleMesh& mesh) {
                 if (!std::isnan(number)) digest.add(number);
         }
         digest.add(result.travel);
+        VirtualProbeParams errors;
+        errors.reference_error = 0.01;
+        errors.noise = 0.001;
+        const VirtualProbeResult touched = virtual_probe(result.plan, mesh, errors, context);
+        for (const Vec3& p : touched.points.positions) digest.add(p);
     }
     return digest.value();
 }
@@ -136,10 +146,49 @@ std::uint64_t of_poisson() {
     return digest.value();
 }
 
+/// A plate with points at random, its corners, and the motion that they give.
+std::uint64_t of_registration() {
+    Random random(5);
+    Array<Vec3> positions;
+    for (int i = 0; i < 5000; ++i)
+        positions.emplace_back(random.uniform(0, 20), random.uniform(0, 12), 0.01 * random.normal());
+    PointCloud plate;
+    plate.frame.name = "scanner";
+    plate.positions = std::move(positions);
+    Context context;
+    PlateCornersParams params;
+    params.tolerance = 0.1;
+    const PlateCornersResult found = plate_corners(plate, params, context);
+    PointCloud target = found.corners;
+    target.frame.name = "machine";
+    Array<Vec3> measured;
+    for (const Vec3& p : found.corners.positions)
+        measured.emplace_back(3 - p.y() + 0.01 * random.normal(), p.x() + 0.01 * random.normal(), p.z() + 5);
+    target.positions = std::move(measured);
+    target.columns = {};
+    AlignPart part;
+    part.box.add(Vec3(0, 0, 0));
+    part.box.add(Vec3(5, 5, 5));
+    part.frame = "scanner";
+    const AlignResult aligned = align(found.corners, target, part, {}, context);
+    Digest digest;
+    for (const Vec3& p : found.corners.positions) digest.add(p);
+    digest.add(found.residual);
+    for (const Vec3& axis : aligned.transform.rotation.colwise()) digest.add(axis);
+    digest.add(aligned.transform.translation);
+    digest.add(aligned.rms);
+    digest.add(*aligned.error_at_part);
+    const Value moved =
+        apply_transform(Value(std::make_shared<const PointCloud>(found.corners)), aligned.transform, context);
+    for (const Vec3& p : moved.get<PointCloud>()->positions) digest.add(p);
+    return digest.value();
+}
+
 /// The points have exact coordinates, which do not depend on the processor.
 std::string results() {
-    std::string text = fmt::format("angles {:x}\npatches {:x}\nprobes {:x}\npoisson {:x}\n", of_angles(),
-                                   of_patches(geodesic_sphere(1, 3)), of_probes(l_block(1)), of_poisson());
+    std::string text =
+        fmt::format("angles {:x}\npatches {:x}\nprobes {:x}\npoisson {:x}\nregistration {:x}\n", of_angles(),
+                    of_patches(geodesic_sphere(1, 3)), of_probes(l_block(1)), of_poisson(), of_registration());
     for (const TetMesh& tets : {hull_of(random_cube(2000, 1)), hull_of(lattice_cube(4)),
                                 solid_of(tets_of(l_block_surface(3, 2, 6, 2e-3))).tets})
         for (const SculptWeight weight : {SculptWeight::none, SculptWeight::length}) {
