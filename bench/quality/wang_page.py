@@ -32,9 +32,8 @@ Table 5.1 has two cones with a common base, table 5.2 a cone on half of a sphere
 angle. The ranges are those of directions from which a ball of radius {radius} meets the edge before a face, wherever the
 reference point is within {error} of the edge, in degrees from the axis. Scanmill's columns are medians over the touches
 that probe-planner plans from a virtual scan, thinned and triangulated, as far as the mesh has both faces there; the
-interior angle is measured on the mesh. The settings of the scan and of
-region-grow (`max-normal-angle: 15 deg`, wang-probing.yaml) were chosen among a dozen by these angles, so the column
-shows what the chain can reach; its defaults bevel more of the sharp edges."""
+interior angle is measured on the mesh. The scan has eight views, one from each octant, with rays {resolution} apart; the
+voxels have an edge of {bin_size}. All other settings are the defaults (wang-probing.yaml)."""
 
 
 def printed_line(name):
@@ -155,7 +154,8 @@ def lines(results):
     text += [conclusion(entries), ""]
     text += [f"- {remark(entry)}" for entry in entries]
     text += ["", "## Directions of the probe (chapter 5)", "",
-             PROBING.format(radius=paper.PROBE_RADIUS, error=paper.REFERENCE_ERROR), "",
+             PROBING.format(radius=paper.PROBE_RADIUS, error=paper.REFERENCE_ERROR,
+                            resolution=wang_probing.RESOLUTION, bin_size=wang_probing.BIN_SIZE), "",
              *page.table(wang_probing.HEADER, wang_probing.rows(results["probing"])), ""]
     text += [f"- {sentence}" for sentence in wang_probing.remarks(results["probing"])]
     return text + ["", page.other_load(results["load"])]

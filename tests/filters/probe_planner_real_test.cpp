@@ -17,12 +17,13 @@
 namespace scanmill::test {
 namespace {
 
-RegionGrowResult surface_of(const TriangleMesh* mesh, const VirtualScanParams& scan, double voxel) {
+RegionGrowResult surface_of(const TriangleMesh* mesh, const VirtualScanParams& scan, double voxel,
+                            const RegionGrowParams& growing = {}) {
     Context context;
     const PointCloud points = virtual_scan(mesh, scan, context).points;
     VoxelThinParams thinning;
     thinning.bin_size = Length(voxel);
-    return region_grow(voxel_thin(points, thinning, context).points, {}, context);
+    return region_grow(voxel_thin(points, thinning, context).points, growing, context);
 }
 
 /// Seen from above: 88 x 95 x 41, a hole of radius 21 in the middle and four of radius 5.
@@ -143,21 +144,26 @@ TEST(ProbePlannerReal, MachinedPart_EveryPlannedTouchIsWithinTheErrorOfATrueEdge
     VirtualScanParams scan;
     scan.views = {20};
     scan.resolution = 0.002 * diagonal;
-    const RegionGrowResult surface = surface_of(part.get(), scan, 0.005 * diagonal);
-    const Planned result =
-        planned(surface.features, surface.mesh, probe_of(0.01 * diagonal, 0.005 * diagonal, 0.01 * diagonal));
-    EXPECT_GT(result.plan.touches.size(), result.unreachable + 80);
-    EXPECT_EQ(result.false_touches, 0u);
-    EXPECT_EQ(result.wrong_contacts, 0u);
-    EXPECT_EQ(result.unreachable, result.concave + result.too_narrow + result.too_tilted + result.obstructed);
     const TriangleTree edges = sharp_edges_of(*part);
-    for (const ProbeTouch& touch : result.plan.touches) {
-        EXPECT_EQ(touch.reason == ProbeReason::none, touch.approach != Vec3::Zero());
-        if (touch.reason == ProbeReason::none) {
-            EXPECT_LE(std::sqrt(edges.nearest(touch.position + result.plan.frame.origin).squared_distance),
-                      result.plan.scanner_error);
-            EXPECT_EQ(touch.false_share, 0);
-            EXPECT_EQ(touch.contact, ProbeContact::edge);
+    // Within one patch, and with patches that end at sharp edges, up to 1.5 voxels before them.
+    for (const double angle : {90.0, 40.0}) {
+        RegionGrowParams growing;
+        growing.max_normal_angle = Angle::degrees(angle);
+        const RegionGrowResult surface = surface_of(part.get(), scan, 0.005 * diagonal, growing);
+        const Planned result =
+            planned(surface.features, surface.mesh, probe_of(0.01 * diagonal, 0.005 * diagonal, 0.01 * diagonal));
+        EXPECT_GT(result.plan.touches.size(), result.unreachable + 200);
+        EXPECT_EQ(result.false_touches, 0u);
+        EXPECT_EQ(result.wrong_contacts, 0u);
+        EXPECT_EQ(result.unreachable, result.concave + result.too_narrow + result.too_tilted + result.obstructed);
+        for (const ProbeTouch& touch : result.plan.touches) {
+            EXPECT_EQ(touch.reason == ProbeReason::none, touch.approach != Vec3::Zero());
+            if (touch.reason == ProbeReason::none) {
+                EXPECT_LE(std::sqrt(edges.nearest(touch.position + result.plan.frame.origin).squared_distance),
+                          result.plan.scanner_error);
+                EXPECT_EQ(touch.false_share, 0);
+                EXPECT_EQ(touch.contact, ProbeContact::edge);
+            }
         }
     }
 }
