@@ -7,6 +7,7 @@
 
 #include "a_patch/checks.hpp"
 #include "a_patch/fit.hpp"
+#include "a_patch/normal_fit.hpp"
 #include "a_patch/normals.hpp"
 #include "a_patch/refinement.hpp"
 #include "a_patch/repair.hpp"
@@ -466,6 +467,10 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     context.progress(0.2);
 
     Construction construction(work, params, context);
+    if (points && params.fit && params.normals == APatchParams::Normals::automatic) {
+        replace_opposing(work, construction.repairs);
+        fit_normals(work, points->positions.span(), context);
+    }
     construction.run();
     Hull& hull = construction.hull;
     result.repairs = construction.repairs;

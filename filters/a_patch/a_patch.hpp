@@ -16,7 +16,9 @@ namespace scanmill {
 
 struct APatchParams {
     enum class Normals {
-        automatic,  ///< given if the mesh has them, else points if there are any, else mesh
+        /// given if the mesh has them, else points if there are any, else mesh; with points and `fit` turned so that
+        /// the surface passes near them, see normal_fit.hpp
+        automatic,
         given,  ///< the mesh's face column `corner-normals`; of several without a sharp edge between them the mean
         points,  ///< of a quadric through the vertex, fitted to the 25 nearest points on its side of sharp edges
         mesh  ///< the mean of the triangles' normals, exact for a mesh inscribed in a sphere
@@ -58,7 +60,7 @@ struct APatchResult {
         double rms = 0, p95 = 0, max = 0;
     };
     std::optional<Distances> fit;  ///< of the points in tetrahedra, if there are any
-    double regularisation = 0;  ///< the weight used
+    double regularisation = 0;  ///< the median of the weights used
     double unfairness_before = 0, unfairness_after = 0;  ///< of the default, and of the result; see fit.hpp
 };
 

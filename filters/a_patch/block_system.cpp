@@ -3,6 +3,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace scanmill::a_patches {
 
@@ -10,6 +12,9 @@ namespace {
 
 constexpr double accuracy = 1e-8;  // of the solution, in the norm of the matrix
 constexpr int most_steps = 2000;
+constexpr double worthwhile = 1e-3;  // of the squared change that the data ask for, that a larger weight must gain
+constexpr double most_times = 10;  // the geometric mean, that a row counts
+constexpr double enough_points = 2000;  // to choose a weight
 
 }  // namespace
 
@@ -40,11 +45,18 @@ void BlockSystem::add_to_diagonal(double value) {
     for (u32 row = 0; row < size(); ++row) block(row, row).diagonal().array() += value;
 }
 
-double BlockSystem::energy(const std::vector<Vector>& x) const {
+std::vector<double> BlockSystem::energies(const std::vector<Vector>& x) const {
     const std::vector<Vector> product = times(x);
-    double sum = 0;
-    for (std::size_t row = 0; row < size(); ++row) sum += x[row].dot(product[row]) - 2 * x[row].dot(right_[row]);
-    return sum;
+    std::vector<double> result(size());
+    for (std::size_t row = 0; row < size(); ++row) result[row] = x[row].dot(product[row]);
+    return result;
+}
+
+std::vector<double> BlockSystem::sums_of_neighbours(std::span<const double> values) const {
+    std::vector<double> result(size(), 0.0);
+    for (std::size_t row = 0; row < size(); ++row)
+        for (std::size_t n = begin_[row]; n < begin_[row + 1]; ++n) result[row] += values[columns_[n]];
+    return result;
 }
 
 std::size_t BlockSystem::index(u32 row, u32 column) const {
@@ -99,6 +111,75 @@ void BlockSystem::solve(std::vector<Vector>& x, const Execution& execution) cons
         for (std::size_t e = 0; e < size(); ++e) direction[e] = scaled[e] + (after / product) * direction[e];
         product = after;
     }
+}
+
+std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::size_t points,
+                                 std::span<const double> weights,
+                                 const std::function<void(BlockSystem&, double)>& add_prior,
+                                 const std::function<void(std::vector<BlockSystem::Vector>&)>& restrict,
+                                 const Execution& execution) {
+    const std::size_t size = halves[0].size();
+    // r rings have about 10 r² rows.
+    const double per_row = static_cast<double>(points) / static_cast<double>(size);
+    const auto rings = static_cast<int>(std::clamp(std::ceil(std::sqrt(enough_points / 10 / per_row)), 2.0, 20.0));
+    const auto near = [&](std::vector<double> values) {
+        for (int ring = 0; ring < rings; ++ring) values = halves[0].sums_of_neighbours(values);
+        return values;
+    };
+    using Solution = std::vector<BlockSystem::Vector>;
+    const auto solution = [&](std::size_t half, double weight) {
+        BlockSystem system = halves[half];
+        add_prior(system, weight);
+        Solution x(size, BlockSystem::Vector::Zero());
+        system.solve(x, execution);
+        return x;
+    };
+    // Of the least weight. To a constant, the squared error of a solution is its difference from that of the data in
+    // the norm of the data's matrix, and so is its part near a row.
+    const std::array<Solution, 2> least{solution(0, weights.front()), solution(1, weights.front())};
+    std::vector<double> size_of_least(size, 0.0), best(size, weights.front()), least_error;
+    for (std::size_t half = 0; half < 2; ++half) {
+        const std::vector<double> found = halves[half].energies(least[half]);
+        for (std::size_t row = 0; row < size; ++row) size_of_least[row] += found[row];
+    }
+    std::vector<std::vector<double>> errors;  // by weight and row
+    for (const double weight : weights) {
+        std::vector<double>& error = errors.emplace_back(size, 0.0);
+        for (std::size_t half = 0; half < 2; ++half) {
+            Solution x = weight == weights.front() ? least[half] : solution(half, weight);
+            restrict(x);
+            for (std::size_t row = 0; row < size; ++row) x[row] -= least[1 - half][row];
+            const std::vector<double> found = halves[1 - half].energies(x);
+            for (std::size_t row = 0; row < size; ++row) error[row] += found[row];
+        }
+    }
+    // A row with much more than the geometric mean near it counts as much as that, so that a few with outliers do not
+    // decide for others.
+    std::vector<double> largest = size_of_least, exponents(size), used(size);
+    for (std::size_t row = 0; row < size; ++row) {
+        for (const auto& error : errors) largest[row] = std::max(largest[row], std::abs(error[row]));
+        used[row] = largest[row] > 0 ? 1 : 0;
+        exponents[row] = largest[row] > 0 ? std::log(largest[row]) : 0;
+    }
+    exponents = near(std::move(exponents));
+    used = near(std::move(used));
+    for (std::size_t row = 0; row < size; ++row) {
+        if (!(largest[row] > 0)) continue;
+        const double share = std::min(1.0, most_times * std::exp(exponents[row] / used[row]) / largest[row]);
+        for (auto& error : errors) error[row] *= share;
+        size_of_least[row] *= share;
+    }
+    size_of_least = near(std::move(size_of_least));
+    for (std::size_t n = 0; n < weights.size(); ++n) {
+        errors[n] = near(std::move(errors[n]));
+        if (n == 0) least_error = errors[0];
+        for (std::size_t row = 0; row < size; ++row) {
+            if (!(errors[n][row] < least_error[row] - worthwhile * size_of_least[row])) continue;
+            least_error[row] = errors[n][row];
+            best[row] = weights[n];
+        }
+    }
+    return best;
 }
 
 }  // namespace scanmill::a_patches

@@ -3,6 +3,8 @@
 /// A sparse symmetric system of equations with two unknowns per edge.
 
 #include <Eigen/Core>
+#include <array>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -34,8 +36,11 @@ public:
     /// right-hand side stay exactly 0 if they are. Cost: some hundred multiplications at most.
     void solve(std::vector<Vector>& x, const Execution& execution) const;
 
-    /// x · matrix · x - 2 right · x: what the solution minimises.
-    double energy(const std::vector<Vector>& x) const;
+    /// x · matrix · x as a sum over the rows.
+    std::vector<double> energies(const std::vector<Vector>& x) const;
+
+    /// Of every row the sum of the values over the rows that its equation contains.
+    std::vector<double> sums_of_neighbours(std::span<const double> values) const;
 
     /// What the row's equation leaves for its own unknowns, the others being `x`.
     Vector remainder(u32 row, const std::vector<Vector>& x) const;
@@ -49,5 +54,14 @@ private:
     std::vector<Matrix> blocks_;
     std::vector<Vector> right_;
 };
+
+/// Of `weights`, for every row the one with which each half of the data predicts the other half best near that row:
+/// noise is not the same everywhere. Near are at least two rings of rows, and so many that they have several hundred
+/// points. `add_prior` adds to a half what the weight stands for, `restrict` moves a solution to where it may be.
+std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::size_t points,
+                                 std::span<const double> weights,
+                                 const std::function<void(BlockSystem&, double)>& add_prior,
+                                 const std::function<void(std::vector<BlockSystem::Vector>&)>& restrict,
+                                 const Execution& execution);
 
 }  // namespace scanmill::a_patches

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "a_patch/block_system.hpp"
+#include "a_patch/outliers.hpp"
 #include "a_patch/slope_dependence.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
@@ -24,7 +25,6 @@ constexpr std::size_t rows_at_once = 256;  // tetrahedra
 constexpr int rounds = 3;
 constexpr double most_regularisation = 200;
 constexpr double at_vertex = 1e-9;  // barycentric
-constexpr double outlier = 3;         // times the median distance
 constexpr double least_gradient = 0.5;  // a point where F is flatter is not near the surface
 constexpr double least_share = 0.1;   // of an edge's value at an apex, that is kept
 constexpr int most_sweeps = 200;
@@ -140,6 +140,7 @@ public:
         for (std::size_t row = 0; row < weights_.patches.tets.size(); ++row)
             wrong_before_.push_back(wrong_signs(weights_.patches, row));
         changes_.assign(hull_.edges.size(), Vector2::Zero());
+        regularisation_.assign(hull_.edges.size(), params_.regularisation);
         const bool has_points = params_.to_points && !points_.empty();
         if (!has_points && params_.fairing == 0) return {std::move(weights_), params_.regularisation};
         for (int round = 0; round < (has_points ? rounds : 1); ++round) {
@@ -149,14 +150,14 @@ public:
                 add_points(halves);
                 for (const BlockSystem& half : halves) system_.add(half);
                 set_scale();
-                if (round == 0) regularisation_ = best_regularisation(halves);
+                if (round == 0) set_regularisation(halves);
             }
             add_priors();
             solve();
             set_slopes();
         }
         reduce_changes();
-        return {std::move(weights_), regularisation_};
+        return {std::move(weights_), median_regularisation()};
     }
 
 private:
@@ -205,7 +206,7 @@ private:
 
     /// The points' sums; in every tetrahedron they go to both halves by turns.
     void add_points(std::array<BlockSystem, 2>& halves) const {
-        const double most = outlier * median_distance();
+        const std::vector<double> most = outlier_distances();
         using Parts = std::vector<std::array<Part, 2>>;
         for_each_in_order<Parts>(
             execution_.threads(), (rows_.size() + rows_at_once - 1) / rows_at_once,
@@ -214,7 +215,7 @@ private:
                 parts.clear();
                 for (std::size_t r = number * rows_at_once; r < std::min(rows_.size(), (number + 1) * rows_at_once);
                      ++r)
-                    parts.push_back(parts_of(rows_[r], most));
+                    parts.push_back(parts_of(rows_[r], most[weights_.patches.triangles[rows_[r].tet]]));
             },
             [&](std::size_t, const Parts& parts) {
                 for (const auto& part : parts)
@@ -261,45 +262,46 @@ private:
         scale_ = trace > 0 ? trace / count : 1;
     }
 
-    /// Of the weights from the given one on, each ten times the one before, the one with which each half of the points
-    /// predicts the other half best.
-    double best_regularisation(std::array<BlockSystem, 2>& halves) {
-        double best = params_.regularisation, least = std::numeric_limits<double>::infinity();
-        for (double weight = params_.regularisation; weight < most_regularisation; weight *= 10) {
-            double error = 0;
-            for (std::size_t half = 0; half < 2; ++half) {
-                BlockSystem system = halves[half];
-                system.add_to_diagonal(scale_ * weight);
-                changes_.assign(changes_.size(), Vector2::Zero());
-                system.solve(changes_, execution_);
-                for (u32 e = 0; e < system_.size(); ++e) move_within_limits(e);
-                error += halves[1 - half].energy(changes_);
-            }
-            if (error < least) {
-                least = error;
-                best = weight;
-            }
-        }
-        changes_.assign(changes_.size(), Vector2::Zero());
-        return best;
-    }
-
-    /// Of the points that are not at a vertex, through which the surface goes in any case.
-    double median_distance() const {
+    /// By triangle. Points at a vertex, through which the surface goes in any case, do not count.
+    std::vector<double> outlier_distances() const {
         std::vector<double> found(points_.size());
+        std::vector<u32> triangles(points_.size());
         for_each_chunk(execution_.threads(), rows_.size(), rows_at_once, [&](std::size_t begin, std::size_t end) {
             for (std::size_t r = begin; r < end; ++r) {
                 const PatchCell cell(weights_.patches, rows_[r].tet);
                 for (std::size_t p = rows_[r].begin; p < rows_[r].end; ++p) {
                     const bool is_vertex = points_[p].at.maxCoeff() > 1 - at_vertex;
-                    found[p] = is_vertex ? -1 : sample(cell, p, 0).distance();
+                    found[p] = is_vertex ? no_distance : sample(cell, p, 0).distance();
+                    triangles[p] = weights_.patches.triangles[rows_[r].tet];
                 }
             }
         });
-        std::erase(found, -1);
-        if (found.empty()) return 0;
-        const auto middle = found.begin() + static_cast<std::ptrdiff_t>(found.size() / 2);
-        std::ranges::nth_element(found, middle);
+        std::vector<std::array<u32, 3>> neighbours(hull_.faces.size());
+        for (u32 f = 0; f < hull_.faces.size(); ++f)
+            for (std::size_t i = 0; i < 3; ++i) {
+                const HullEdge& edge = hull_.edges[hull_.faces[f].edges[i]];
+                neighbours[f][i] = edge.first == f ? edge.second : edge.first;
+            }
+        return a_patches::outlier_distances(found, triangles, neighbours);
+    }
+
+    void set_regularisation(const std::array<BlockSystem, 2>& halves) {
+        std::vector<double> weights;
+        for (double weight = params_.regularisation; weight < most_regularisation; weight *= 10)
+            weights.push_back(weight);
+        regularisation_ = best_weights(
+            halves, points_.size(), weights,
+            [&](BlockSystem& half, double weight) { half.add_to_diagonal(scale_ * weight); },
+            [&](std::vector<Vector2>& changes) {
+                for (u32 e = 0; e < changes.size(); ++e) move_within_limits(e, changes[e]);
+            },
+            execution_);
+    }
+
+    double median_regularisation() const {
+        std::vector<double> all = regularisation_;
+        const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+        std::ranges::nth_element(all, middle);
         return *middle;
     }
 
@@ -307,7 +309,7 @@ private:
         const std::vector<Vec3> fair = params_.fairing > 0 ? fair_slopes(hull_, curvature_) : std::vector<Vec3>();
         for (u32 e = 0; e < system_.size(); ++e) {
             Matrix2& diagonal = system_.block(e, e);
-            diagonal.diagonal().array() += scale_ * regularisation_;
+            diagonal.diagonal().array() += scale_ * regularisation_[e];
             if (params_.fairing == 0 || !is_smooth(hull_.edges[e])) continue;
             diagonal.diagonal().array() += scale_ * params_.fairing;
             system_.right(e) += scale_ * params_.fairing * (free_[e].transpose() * (fair[e] - defaults_[e]));
@@ -339,7 +341,7 @@ private:
     void solve() {
         system_.solve(changes_, execution_);
         bool is_sound = true;
-        for (u32 e = 0; e < system_.size(); ++e) is_sound = move_within_limits(e) && is_sound;
+        for (u32 e = 0; e < system_.size(); ++e) is_sound = move_within_limits(e, changes_[e]) && is_sound;
         for (int sweep = 0; !is_sound && sweep < most_sweeps; ++sweep) {
             execution_.check_cancelled();
             double largest = 0;
@@ -356,14 +358,14 @@ private:
     }
 
     /// Shortens the change of an edge that is beyond its limits. Returns whether it was within.
-    bool move_within_limits(u32 e) {
-        if (is_within(limits_[e], changes_[e])) return true;
+    bool move_within_limits(u32 e, Vector2& change) const {
+        if (is_within(limits_[e], change)) return true;
         double share = 1;
         for (const Limit& limit : limits_[e]) {
-            const double value = limit.along.dot(changes_[e]);
+            const double value = limit.along.dot(change);
             if (value < limit.least) share = std::min(share, limit.least / value);
         }
-        changes_[e] *= share;
+        change *= share;
         return false;
     }
 
@@ -404,7 +406,7 @@ private:
     const std::vector<LocatedPoints::Point>& points_;
     Curvature curvature_;
     FitParams params_;
-    double regularisation_ = params_.regularisation;
+    std::vector<double> regularisation_;  ///< by edge
     double scale_ = 1;
     const std::function<std::vector<u32>(const PatchComplex&)>& violating_edges_;
     Execution& execution_;

@@ -37,19 +37,19 @@ struct FitParams {
 
 struct FitResult {
     Weights weights;
-    double regularisation;  ///< the weight used
+    double regularisation;  ///< the median of the weights used
 };
 
 /// Minimises, over the components of the slopes that the vertices leave free,
 ///     sum of (F / |grad F|)² over the points + s · (regularisation · |change|² + fairing · unfairness),
 /// where s is the mean diagonal element of the first sum's matrix; 1 without points. Points whose distance is above 3
-/// times the median count less (Huber). Derivatives are those at the foot points. Gradients, foot points and the
-/// points' weights follow the solution, 3 times. Every function f(a, b, .) of an edge keeps at least a tenth of its
-/// value at each apex; where more weights of a tetrahedron than by default get a wrong sign, the changes of the edges
-/// around are reduced.
+/// times the median near their triangle count less (Huber). Derivatives are those at the foot points. Gradients, foot
+/// points and the points' weights follow the solution, 3 times. Every function f(a, b, .) of an edge keeps at least a
+/// tenth of its value at each apex; where more weights of a tetrahedron than by default get a wrong sign, the changes
+/// of the edges around are reduced.
 ///
-/// `regularisation` is the given one times a power of 10, below 200, that with which each half of the points predicts
-/// the distances of the other half best: few or noisy points change the slopes less.
+/// `regularisation` is, by edge, the given one times a power of 10, below 200: that with which each half of the points
+/// predicts the distances of the other half best near the edge. Few or noisy points change the slopes less.
 ///
 /// Sets the slopes of `hull` and returns its weights. `weights` are those of the hull as it is. Slopes without points
 /// near them and without fairing keep their bits. Bytes do not depend on the number of threads.

@@ -27,7 +27,9 @@ SCANMILL_FILTER() {
         .out<PatchComplex>("patches", "Tetrahedra on both sides of the mesh, with the cubic's 20 weights each.")
         .choice("normals", &P::normals,
                 {{"auto", P::Normals::automatic,
-                  "given if the mesh has the column, else points if there are any, else mesh."},
+                  "given if the mesh has the column, else points if there are any, else mesh; with points and `fit` "
+                  "turned so "
+                  "that the surface passes near the points."},
                  {"given", P::Normals::given, "The mesh's face column `corner-normals`."},
                  {"points", P::Normals::points, "Of quadrics fitted to the points near each vertex."},
                  {"mesh", P::Normals::mesh, "Of the triangles around each vertex."}},
@@ -42,7 +44,7 @@ SCANMILL_FILTER() {
                "Weight of a fair surface against a near one: at 1 it weighs about as much as the points.", at_least(0))
         .param("regularisation", &P::regularisation,
                "Least weight of the changes of the free weights, likewise; where each half of the points predicts the "
-               "other half better with a larger one, that is used.",
+               "other half better with a larger one, that is used there.",
                at_least(1e-6), at_most(1))
         .choice("curvature", &P::curvature,
                 {{"distance", Curvature::distance, "None: F grows like a distance."},
@@ -81,7 +83,7 @@ SCANMILL_FILTER() {
         .metric("fit-max", Unit::length, "Largest of these distances.", smaller_is_better)
         .metric("left-out", Unit::count, "Points in no tetrahedron near the surface: not fitted, not measured.",
                 smaller_is_better)
-        .metric("regularisation", Unit::number, "The weight used.")
+        .metric("regularisation", Unit::number, "Median of the weights used.")
         .metric(
             "fairness-before", Unit::number,
             "Sum over the edges of the squared difference between the gradient and that of the triangles' quadrics, "

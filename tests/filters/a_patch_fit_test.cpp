@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "a_patch/slope_dependence.hpp"
-#include "filters/a_patch_cases.hpp"
+#include "filters/a_patch_sharp_cases.hpp"
 #include "support/point_sets.hpp"
 
 namespace scanmill {
@@ -506,6 +506,67 @@ TEST(APatchFit, SharpStraightEdges_StayExactlyStraight) {
                     EXPECT_EQ(combined_value(patches, tet, at), 0);
                 }
             }
+}
+
+// Normals.
+
+TEST(APatchFitNormals, ThatFollowDetailsBetweenTheVertices_AreTurnedTowardsThePoints) {
+    // A torus whose normals are up to 30 degrees off, as those of a dense mesh with noise are.
+    TriangleMesh mesh = exact_torus(24, 12);
+    std::vector<Vec3> normals(mesh.positions.size());
+    Random random(6);
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+        const Vec3 p = mesh.positions[v], exact = (p - outwards(p)).normalized();
+        normals[v] =
+            (exact + 0.5 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))).normalized();
+    }
+    mesh = with_normals(mesh, normals);
+    const PointCloud points = torus_points(20'000);
+    const auto error = [&](PatchNormals source, const PointCloud* wired) {
+        APatchParams params;
+        params.normals = source;
+        const PatchRun run = patched(mesh, params, wired);
+        expect_sound(run.result);
+        return rms_distance(run.result.patches, torus_distance);
+    };
+    const double unfitted = error(PatchNormals::automatic, nullptr), kept = error(PatchNormals::given, &points),
+                 turned = error(PatchNormals::automatic, &points);
+    EXPECT_LT(kept, unfitted);
+    EXPECT_LT(turned, 0.1 * kept);
+    EXPECT_LT(turned, 1e-3);
+}
+
+TEST(APatchFitNormals, WithoutPointsNearThem_Stay) {
+    const TriangleMesh mesh = exact_torus(12, 6);
+    const PointCloud far = cloud({{9, 9, 9}, {0, 0, 0}, {-8, 1, 2}});
+    for (const PointCloud* wired : {static_cast<const PointCloud*>(nullptr), &far}) {
+        const PatchRun run = patched(mesh, {}, wired);
+        expect_same_bits(run.result.patches, by_default(mesh).result.patches);
+    }
+}
+
+TEST(APatchFitNormals, OfManyThreads_HaveTheSameBits) {
+    const TriangleMesh mesh = irregular_torus(24, 12, 0.2);
+    const PointCloud points = torus_points(5000, 1e-3);
+    expect_same_bits(patched(mesh, {}, &points, 1).result.patches, patched(mesh, {}, &points, 4).result.patches);
+}
+
+TEST(APatchFitNormals, OfACurvedSurfaceBesidePlanes_AreFitted) {
+    // Most points are exactly on the planes of a cylinder, so the median distance of all points is 0.
+    TriangleMesh mesh = cylinder(12);
+    mesh.face_columns = {};
+    Random random(4);
+    Array<Vec3> positions;
+    for (int i = 0; i < 12'000; ++i) {
+        const double angle = random.uniform(0, 2 * std::numbers::pi), radius = std::sqrt(random.uniform(0, 1));
+        const Vec3 out(std::cos(angle), std::sin(angle), 0);
+        positions.push_back(i % 4 == 0 ? Vec3(out.x(), out.y(), random.uniform(-1, 1))
+                                       : Vec3(radius * out.x(), radius * out.y(), i % 8 < 4 ? -1 : 1));
+    }
+    const PointCloud points = cloud(std::move(positions));
+    const PatchRun run = patched(mesh, {}, &points);
+    EXPECT_EQ(run.result.open, 0u);
+    EXPECT_LT(worst_distance(run.result.patches, cylinder_distance), 3e-3);
 }
 
 // Fairing.
