@@ -165,7 +165,7 @@ std::vector<u32> hole_at(const Surface& surface, u32 from, u32 to, std::size_t m
 struct LoopShape {
     double farthest = 0;  ///< corner, from the loop's centre
     double facing = 0;  ///< mean cosine, by length, between the normals of its triangles and of a lid
-    double mean_radius = 0;  ///< search radius
+    double largest_radius = 0;  ///< of the corners' search radii
     /// Least cosine between the normals of any two triangles around it; 1 without `compare`.
     double least_cosine = 1;
 
@@ -192,7 +192,7 @@ struct LoopShape {
             if (compare) normals.push_back(normal);
             facing += (p[b] - p[a]).norm() / length * normal.dot(lid_normal);
             farthest = std::max(farthest, (p[a] - centre).norm());
-            mean_radius += surface.search_radius[a] / static_cast<double>(corners.size());
+            largest_radius = std::max(largest_radius, surface.search_radius[a]);
         }
     }
 };
@@ -211,7 +211,7 @@ public:
         const bool of_any_size = corners.size() <= narrow_.most_edges;
         const bool ends_at_sharp_edges = !of_any_size && dihedral_cosine_ > tip_cosine;
         const LoopShape loop(surface_, corners, ends_at_sharp_edges);
-        const double radius = narrow_.largest_radius * loop.mean_radius;
+        const double radius = narrow_.largest_radius * loop.largest_radius;
         const bool is_long = loop.farthest > long_in_radii * radius;
         if (loop.facing < (is_long ? least_facing_of_long : least_facing)) return false;
         if (ends_at_sharp_edges && loop.least_cosine < dihedral_cosine_) return false;

@@ -53,7 +53,7 @@ struct NarrowHoles {
 };
 
 struct NarrowHoleLimits {
-    /// In mean search radii of a loop's points.
+    /// In the largest search radius of a loop's points, as growth uses the larger one of an edge.
     double largest_radius;
     /// Loops of at most this many edges are closed whatever their size.
     std::size_t most_edges;

@@ -197,6 +197,17 @@ TEST(NarrowHoles_RoundHoles, AreClosedBelowTheLargestRadius) {
     EXPECT_EQ(closed(ring(16, 1, 0), 0.99, 180, 16).closed, 1u) << "of any size";
 }
 
+TEST(NarrowHoles_LoopsBesideSparsePoints, AreClosedBelowTheLargestRadiusOfAPoint) {
+    const auto closed_with = [](double one) {
+        Patch patch = ring(16, 1, 0);
+        patch.set_search_radius(5, one);
+        return close_narrow_holes(patch.surface(), {0.99 / 4, 4, 180 * degree}, Execution()).closed;
+    };
+    EXPECT_EQ(closed_with(4 * 1.02), 1u);
+    EXPECT_EQ(closed_with(4 * 1.005), 0u);
+    EXPECT_EQ(closed_with(1), 0u);
+}
+
 TEST(NarrowHoles_Slits, OfAtMost100EdgesAreClosed) {
     EXPECT_EQ(closed(slit(49, 0), 0.75).closed, 1u) << "100 edges";
     EXPECT_EQ(closed(slit(50, 0), 0.75).closed, 0u) << "102 edges";
