@@ -60,12 +60,14 @@ reconstruction := scanmill scanmill-delaunay scanmill-alpha-solid scanmill-sculp
 # Filters that thin a scan, make an open mesh of it and find its features.
 hybrid := scanmill-virtual-scan scanmill-voxel-thin scanmill-region-grow scanmill-features scanmill-cluster-mesh
 smooth := scanmill-a-patch scanmill-tessellate scanmill-patch-distance
+# Filters of raw-scans.yaml.
+raw := scanmill-merge scanmill-outlier-removal scanmill-smooth scanmill-normals scanmill-repair scanmill-fill-holes
 
 bench-quality: deps ## compare our results with trimesh, Open3D, three papers and other decimations: LARGE=1
 	tools/deps.sh bench
 	tools/data.sh
 	cmake --preset bench >/dev/null
-	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) $(smooth) peers-drivers
+	cmake --build --preset bench -j $(jobs) --target $(reconstruction) $(hybrid) $(smooth) $(raw) peers-drivers
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/measure.py build/bench/bin/scanmill
 	python3 bench/quality/bernardini_table_1.py build/bench/bin/scanmill
 	python3 bench/quality/wang_tables.py build/bench/bin/scanmill
@@ -73,6 +75,7 @@ bench-quality: deps ## compare our results with trimesh, Open3D, three papers an
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/decimate.py build/bench $(if $(LARGE),--large)
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/smooth_surface.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/creases.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_scans.py build/bench/bin/scanmill
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench
