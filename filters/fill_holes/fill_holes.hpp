@@ -21,6 +21,8 @@ struct FillHolesParams {
     /// Moves the new vertices so that the filling continues the surface without a crease. Otherwise they stay in the
     /// triangles that span the loop.
     bool fair = true;
+    /// Closes the surface as a whole if loops stay open otherwise, unless a limit left others open.
+    bool together = true;
 };
 
 struct FillHolesResult {
@@ -31,6 +33,9 @@ struct FillHolesResult {
     std::size_t filled = 0, beyond_limits = 0, failed = 0;
     /// Loops of `filled` whose faired filling would have met the surface, and that have a plainer one.
     std::size_t plain = 0;
+    /// Loops of `filled` that were closed together, as the boundary of a solid; triangles of the input that this
+    /// replaced.
+    std::size_t together = 0, replaced = 0;
     /// Of all fillings.
     double area = 0;
     /// Length of the longest filled loop; 0 without one.
@@ -54,6 +59,12 @@ struct FillHolesResult {
 /// area among all that do not intersect the mesh. If that is in conflict as well the loop stays open. Of two fillings
 /// in conflict with each other only one is replaced: the one with more edges, or the later one.
 ///
+/// Together. If loops stay open and no limit left others open, the surface with its fillings is closed as a whole: see
+/// closing_solid.hpp. That closes rings, holes with islands, and rims that cross themselves, replaces some triangles
+/// of the input by others on the same vertices, and leaves out surfaces inside the solid. If it is not possible either,
+/// as on flat sheets, or if more than half of the area would be fillings, these loops stay open and everything else is
+/// as without `together`.
+///
 /// Columns. A new vertex has the values of the loop's vertex from which it is reached over the fewest edges (of several
 /// the first along the loop). A new triangle has those of the triangle at the loop's edge that starts at the first such
 /// vertex of its corners. But the vertex column `normal` is
@@ -63,14 +74,16 @@ struct FillHolesResult {
 ///
 /// Pre:  at least one triangle; finite vertices; at most two triangles at an edge, oriented consistently; no triangle
 ///       with a repeated vertex. Throws Error naming the first offender otherwise, and for parameters out of range.
-/// Post: no vertex or triangle of the input is moved or removed. Every filled loop is closed by a disc. A filling
-///       intersects nothing.
-/// Doubts its result if a filled loop is longer than the diagonal of the mesh's box, if more than 5 % of the area is
-/// filled, and if a loop stays open that no limit excludes. Warns of boundary edges at equal positions.
+/// Post: no vertex of the input is moved or removed, and no triangle unless loops are closed together; then the mesh is
+///       closed and does not intersect itself. Every other filled loop is closed by a disc that intersects nothing.
+/// Doubts its result if loops are closed together, if a filled loop is longer than the diagonal of the mesh's box, if
+/// more than 5 % of the area is filled, and if a loop stays open that no limit excludes. Warns of boundary edges at
+/// equal positions.
 ///
 /// Deterministic: the same bytes for any number of threads. Cost: linear in the triangles and about 1 µs for each of
 /// them if there is a loop; of a filling with n vertices about n² in time.
-/// Metrics: `filled`, `left`, `added-triangles`, `added-points`, `area`, `share`, `longest`, `plain`, `failed`.
+/// Metrics: `filled`, `left`, `added-triangles`, `added-points`, `area`, `share`, `longest`, `plain`, `together`,
+/// `replaced-triangles`, `failed`.
 FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& params, Context& context);
 
 }  // namespace scanmill

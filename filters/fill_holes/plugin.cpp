@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = FillHolesParams;
-    return Declare<P>("fill-holes", 1)
+    return Declare<P>("fill-holes", 2)
         .summary("Closes the holes of a mesh with triangles that continue the surface, and marks them.")
         .source("Liepa 2003, Filling holes in meshes; Botsch, Kobbelt 2004 for fairing; by CGAL")
         .ties(
@@ -28,6 +28,9 @@ SCANMILL_FILTER() {
         .param("fair", &P::fair,
                "Moves the new vertices so that the filling continues the surface without a crease. Otherwise they stay "
                "in the triangles that span the loop.")
+        .param("together", &P::together,
+               "If loops stay open because every filling would intersect something, closes the surface as a whole, as "
+               "the boundary of a solid, which replaces some of its triangles. Not if a limit leaves loops open.")
         .metric("filled", Unit::count, "Loops that are filled.", headline)
         .metric("left", Unit::count, "Loops that stay open: beyond a limit, or without a valid filling.", headline)
         .metric("added-triangles", Unit::count, "New triangles.")
@@ -37,6 +40,9 @@ SCANMILL_FILTER() {
         .metric("longest", Unit::length, "Length of the longest filled loop.", smaller_is_better)
         .metric("plain", Unit::count,
                 "Filled loops whose faired filling would intersect something and that have a plainer one.")
+        .metric("together", Unit::count,
+                "Filled loops that have no filling of their own: the surface was closed as a whole.", smaller_is_better)
+        .metric("replaced-triangles", Unit::count, "Triangles of the input that this replaced.", smaller_is_better)
         .metric("failed", Unit::count,
                 "Loops within the limits that stay open because every filling would intersect "
                 "something.",

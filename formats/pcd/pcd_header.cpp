@@ -121,6 +121,7 @@ private:
             if (!parse_number(words_[i + 1], number))
                 throw Error("line {}: {} is not a number for VIEWPOINT", line_, quote(words_[i + 1]));
             header_.has_viewpoint |= number != identity[i];
+            if (i < 3) header_.sensor[static_cast<Eigen::Index>(i)] = number;
             header_.viewpoint.append(i > 0 ? " " : "").append(words_[i + 1]);
         }
     }

@@ -26,6 +26,7 @@ struct PcdHeader {
     std::vector<std::string> comments;
     std::string viewpoint;  ///< as written; empty when absent
     bool has_viewpoint = false;  ///< not at the origin, or rotated
+    Vec3 sensor = Vec3::Zero();  ///< its position
     u64 bytes_behind = 0;  ///< after the last point, unless all are zero; 0 for ascii
 };
 

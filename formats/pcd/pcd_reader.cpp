@@ -150,6 +150,17 @@ ColumnTable columns_of(const PCLPointCloud2& cloud, const ReadOptions& options) 
     return table;
 }
 
+/// The column `approach`: unit vectors from the points to the sensor, 0 where there is none.
+Column directions_to(const Vec3& sensor, std::span<const Vec3> positions) {
+    Array<float> numbers;
+    for (const Vec3& position : positions) {
+        const Vec3 direction = (sensor - position).stableNormalized();
+        for (const double number : direction)
+            numbers.push_back(direction.allFinite() ? static_cast<float>(number) : 0.0f);
+    }
+    return {"approach", 3, Buffer<float>(std::move(numbers))};
+}
+
 // The bytes of the rows.
 
 /// Reads one number of the field's type to `to`.
@@ -234,13 +245,16 @@ PCLPointCloud2 read_cloud(std::string_view bytes, const PcdHeader& header) {
 LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     const PcdHeader header = checked_header(file.bytes);
     const PCLPointCloud2 cloud = read_cloud(file.bytes, header);
-    if (header.height > 1 && header.width > 1)
+    const bool is_grid = header.height > 1 && header.width > 1;
+    if (is_grid)
         warn(options.on_warning, "the grid of {} × {} points became a list in file order", header.width, header.height);
     if (header.bytes_behind > 0)
         warn(options.on_warning, "{} behind the last point and left out",
              count_text(header.bytes_behind, "byte was", "bytes were"));
     if (header.has_viewpoint)
-        warn(options.on_warning, "the sensor's pose (VIEWPOINT {}) was left out; coordinates are as in the file",
+        warn(options.on_warning,
+             "the sensor's pose (VIEWPOINT {}) was left out; coordinates are as in the file, and the column 'approach' "
+             "has the directions to the sensor",
              header.viewpoint);
     LoadedFile loaded;
     loaded.format = "PCD";
@@ -250,9 +264,13 @@ LoadedFile read_pcd(const FileBytes& file, const ReadOptions& options) {
     PointCloud points;
     points.frame = declared_frame(loaded.comments, options);
     Array<Vec3> positions = positions_of(cloud);
+    ColumnTable columns = columns_of(cloud, options);
+    // Programs write an identity also where no sensor was, but only a sensor makes a grid.
+    if ((header.has_viewpoint || is_grid) && !columns.find("approach"))
+        columns.add(directions_to(header.sensor, positions));
     move_near_origin(positions, points.frame);
     points.positions = std::move(positions);
-    points.columns = with_exponents(columns_of(cloud, options), loaded.comments);
+    points.columns = with_exponents(std::move(columns), loaded.comments);
     loaded.value = std::make_shared<const PointCloud>(std::move(points));
     return loaded;
 }

@@ -58,6 +58,12 @@ inline std::size_t intersecting_fillings(const TriangleMesh& before, const Trian
     return count;
 }
 
+inline std::size_t self_intersections_of(const TriangleMesh& mesh) {
+    const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), 1);
+    Execution execution;
+    return self_intersections(mesh.positions.span(), mesh.triangles.span(), tree, execution).count;
+}
+
 /// The input is the beginning of the result; fillings intersect nothing and repeat no edge.
 inline void expect_laws(const TriangleMesh& mesh, const FillHolesResult& result) {
     const TriangleMesh& after = result.mesh;

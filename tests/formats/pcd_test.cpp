@@ -88,6 +88,25 @@ TEST(PcdReader, GridAndSensorPose_AreReported) {
     EXPECT_EQ(cloud->frame.unit, LengthUnit::millimetre);
     EXPECT_EQ(cloud->frame.name, "bench");
     EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("the grid of 2 × 2 points"), HasSubstr("VIEWPOINT 0 0 5")));
+    const Column* approach = cloud->columns.find("approach");
+    ASSERT_TRUE(approach && approach->components() == 3);
+    EXPECT_EQ(approach->number(0, 2), 1);
+    EXPECT_NEAR(approach->number(1, 0), -1 / std::sqrt(26), 1e-6);
+    EXPECT_NEAR(approach->number(1, 2), 5 / std::sqrt(26), 1e-6);
+}
+
+TEST(PcdReader, AGridWithoutAPose_WasSeenFromTheOrigin) {
+    std::string text = xyz_header(4, "ascii") + "0 0 2\n1 0 2\nnan nan nan\n1 1 2\n";
+    text.replace(text.find("WIDTH 4\nHEIGHT 1"), 16, "WIDTH 2\nHEIGHT 2");
+    const auto cloud = points_in(text, "a.pcd");
+    const Column* approach = cloud->columns.find("approach");
+    ASSERT_TRUE(approach);
+    EXPECT_EQ(approach->number(0, 2), -1);
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(approach->number(2, axis), 0);
+}
+
+TEST(PcdReader, AListWithoutAPose_HasNoDirections) {
+    EXPECT_FALSE(points_in(xyz_header(1, "ascii") + "1 2 3\n", "a.pcd")->columns.find("approach"));
 }
 
 TEST(PcdReader, BlankLinesOfAnAsciiFile_AreNotPoints) {

@@ -4,6 +4,7 @@
 #include "scanmill/formats/common/built_in.hpp"
 #include "scanmill/formats/common/polygons.hpp"
 #include "scanmill/formats/ply/detail/ply_elements.hpp"
+#include "scanmill/formats/ply/detail/range_grid.hpp"
 
 namespace scanmill {
 
@@ -30,6 +31,8 @@ public:
                 strips_ = read_lists(element);
             else if (element.name == "edge" || element.name == "sharp_edge")
                 read_edges(element);
+            else if (element.name == "range_grid" && element.count > 0)
+                read_grid(element);
             else
                 skip(element);
         }
@@ -114,10 +117,46 @@ private:
         }
     }
 
+    /// The number in the comment "num_cols N", as the scans of the Stanford repository have it; 0 without one.
+    std::size_t grid_columns() const {
+        for (const std::string& comment : header_.comments) {
+            TextCursor text(comment);
+            std::size_t columns = 0;
+            if (text.next_row() && text.token() == "num_cols" && text.more() && text.number(columns)) return columns;
+        }
+        return 0;
+    }
+
+    /// The grid of a range image gives the column `approach`.
+    void read_grid(const PlyElement& element) {
+        PlyTable table(element, header_.comments);
+        decode(element, table.slots());
+        const std::optional<Column> cells = table.take("vertex_indices");
+        std::optional<Vec3> direction;
+        if (cells && cells->is_list() && !columns_.find("approach"))
+            direction = direction_to_scanner(*cells, grid_columns(), positions_);
+        if (!direction) {
+            warn_left_out(element);
+            return;
+        }
+        Array<float> approaches;
+        for (std::size_t i = 0; i < positions_.size(); ++i)
+            for (const double number : *direction) approaches.push_back(static_cast<float>(number));
+        columns_.add(Column("approach", 3, Buffer<float>(std::move(approaches))));
+        warn(options_.on_warning,
+             "the order of the {} in columns and rows was left out; the column 'approach' has the direction to the "
+             "scanner",
+             count_text(element.count, "cell", "cells"));
+    }
+
     void skip(const PlyElement& element) {
         std::vector<PlySlot> slots;
         for (const PlyProperty& property : element.properties) slots.push_back({.property = &property});
         decode(element, slots);
+        warn_left_out(element);
+    }
+
+    void warn_left_out(const PlyElement& element) const {
         if (element.count > 0)
             warn(options_.on_warning,
                  "the element {} with its {} was left out: only vertex, face, tristrips, edge and sharp_edge are read",

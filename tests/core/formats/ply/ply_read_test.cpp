@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
 #include <limits>
 
 #include "core/formats/support.hpp"
+#include "scanmill/formats/files.hpp"
+#include "support/real_data.hpp"
 
 namespace scanmill::test {
 namespace {
@@ -136,6 +139,76 @@ TEST(PlyReader_Ascii, RangeGridWithoutFaces_IsAPointCloudAndReported) {
                                  "a.ply", &warnings);
     EXPECT_EQ(world_of(*cloud, 0), Vec3(5, 6, 7));
     EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("'range_grid' with its 3 rows")));
+}
+
+/// A range image of 3 × 3 cells, the one in the corner without a point; `at` gives the points.
+template <class At>
+std::string range_image(At&& at, const std::string& columns = "3") {
+    std::string points, cells;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) {
+            const int number = 3 * row + column;
+            if (number == 8) continue;
+            const Vec3 p = at(column, row);
+            points += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+            cells += fmt::format("1 {}\n", number);
+        }
+    return ascii("obj_info num_cols " + columns + "\nobj_info num_rows 3\nelement vertex 8\n" + xyz +
+                     "element range_grid 9\nproperty list uchar int vertex_indices\n",
+                 points + cells + "0\n");
+}
+
+TEST(PlyReader_RangeGrid, GivesTheDirectionToTheScanner) {
+    // Seen along z, at the depths of a saddle; then the same turned, so that x becomes y, y becomes z and z becomes x.
+    const auto saddle = [](int column, int row) { return Vec3(0.5 * column, row, (column - 1) * (row - 1) - row); };
+    Warnings warnings;
+    const auto straight = points_in(range_image(saddle), "a.ply", &warnings);
+    const Column* approach = straight->columns.find("approach");
+    ASSERT_TRUE(approach && approach->components() == 3 && approach->rows() == 8);
+    for (std::size_t i = 0; i < 8; ++i) {
+        EXPECT_NEAR(approach->number(i, 0), 0, 1e-6);
+        EXPECT_NEAR(approach->number(i, 1), 0, 1e-6);
+        EXPECT_NEAR(approach->number(i, 2), 1, 1e-6);
+    }
+    EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("'approach' has the direction to the scanner")));
+    const auto turned = points_in(range_image([&](int column, int row) {
+                                      const Vec3 p = saddle(column, row);
+                                      return Vec3(p.z(), p.x(), p.y());
+                                  }),
+                                  "a.ply");
+    EXPECT_NEAR(turned->columns.find("approach")->number(0, 0), 1, 1e-6);
+}
+
+TEST(PlyReader_RangeGrid, OfAPlane_GivesItsNormal) {
+    const auto plane =
+        points_in(range_image([](int column, int row) { return Vec3(column, row, 0.5 * row); }), "a.ply");
+    const Column* approach = plane->columns.find("approach");
+    ASSERT_TRUE(approach);
+    EXPECT_NEAR(approach->number(0, 1), -0.5 / std::sqrt(1.25), 0.6);
+    EXPECT_GT(approach->number(0, 2), 0.5);
+}
+
+TEST(PlyReader_RangeGrid, WithoutUsableCells_IsLeftOut) {
+    const auto flat = [](int column, int row) { return Vec3(column, row, 0); };
+    for (const std::string columns : {"0", "1", "4", "-3", "x"}) {
+        Warnings warnings;
+        EXPECT_FALSE(points_in(range_image(flat, columns), "a.ply", &warnings)->columns.find("approach")) << columns;
+        EXPECT_THAT(warnings.sentences, ElementsAre(HasSubstr("'range_grid' with its 9 rows was left out"))) << columns;
+    }
+    std::string beyond = range_image(flat);
+    beyond.replace(beyond.rfind("1 7"), 3, "1 8");
+    EXPECT_FALSE(points_in(beyond, "a.ply")->columns.find("approach"));
+    std::string two = range_image(flat);
+    two.replace(two.rfind("1 7"), 3, "2 7 6");
+    EXPECT_FALSE(points_in(two, "a.ply")->columns.find("approach"));
+}
+
+TEST(PlyReader_RangeGrid, OfARealScan_LooksAlongItsAxis) {
+    SCANMILL_REAL_SCAN(path, shared_data, "1-bunny/raw/bun000.ply");
+    const auto cloud = read_points(path);
+    const Column* approach = cloud->columns.find("approach");
+    ASSERT_TRUE(approach);
+    EXPECT_GT(approach->number(0, 2), std::cos(0.35)) << "the Cyberware scanner looks along -z";
 }
 
 TEST(PlyReader_Edges, WithColumns_AreKeptSmallerVertexFirst) {

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fill_holes/closing_solid.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/boykov_kolmogorov_max_flow.hpp>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "delaunay/canonical_cells.hpp"
+#include "delaunay/flatness.hpp"
+#include "delaunay/triangulate.hpp"
+#include "scanmill/base/disjoint_sets.hpp"
+#include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/tets/solid_boundary.hpp"
+
+namespace scanmill {
+
+namespace {
+
+/// Of a suggested triangle, as a share of its area: a fair filling is larger than the flattest one.
+constexpr double cost_of_suggested = 0.1;
+
+/// The area of the mesh's triangles that a cell is behind and in front of, and their component.
+struct Claim {
+    double inside = 0, outside = 0;
+    u32 component = 0;
+};
+
+class Closing {
+public:
+    Closing(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::size_t given, Context& context)
+        : positions_(positions),
+          triangles_(triangles),
+          given_(given),
+          context_(context) {}
+
+    ClosingSolid run() {
+        RawTriangulation raw = triangulate(positions_, context_);
+        if (raw.dimension < 3) return {};
+        CanonicalCells canonical =
+            canonical_cells(std::move(raw.cells), std::move(raw.neighbours), positions_.size(), context_.threads());
+        tets_.positions = Array<Vec3>(positions_.begin(), positions_.end());
+        tets_.cells = std::move(canonical.cells);
+        tets_.neighbours = std::move(canonical.neighbours);
+        claim();
+        label();
+        drop_specks();
+        mend_vertices();
+        drop_specks();
+        return boundary();
+    }
+
+private:
+    static constexpr u32 hull = TetMesh::outside_hull;
+
+    Triangle facet(u32 cell, std::size_t i) const {
+        Triangle corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = tets_.cells[cell][static_cast<std::size_t>(outward_facet[i][k])];
+        return corners;
+    }
+
+    double area(const Triangle& triangle) const {
+        const auto& [a, b, c] = triangle;
+        return (positions_[b] - positions_[a]).cross(positions_[c] - positions_[a]).norm() / 2;
+    }
+
+    double volume(u32 cell) const {
+        const auto& [a, b, c, d] = tets_.cells[cell];
+        const Vec3& from = positions_[a];
+        return std::abs((positions_[b] - from).cross(positions_[c] - from).dot(positions_[d] - from)) / 6;
+    }
+
+    /// Of a facet on the boundary.
+    double cost(const Triangle& corners) const {
+        const bool is_suggested = std::ranges::binary_search(suggested_, rotated(corners)) ||
+                                  std::ranges::binary_search(suggested_, rotated({corners[0], corners[2], corners[1]}));
+        return (is_suggested ? cost_of_suggested : 1) * area(corners);
+    }
+
+    /// The smallest corner first, in the same direction.
+    static Triangle rotated(Triangle triangle) {
+        std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+        return triangle;
+    }
+
+    void claim() {
+        const Array<u32> lowest = lowest_at_position(positions_);
+        std::vector<Triangle> directed;
+        for (Triangle triangle : triangles_) {
+            for (u32& vertex : triangle) vertex = lowest[vertex];
+            directed.push_back(rotated(triangle));
+        }
+        const auto first_guess = directed.begin() + static_cast<std::ptrdiff_t>(given_);
+        suggested_.assign(first_guess, directed.end());
+        directed.erase(first_guess, directed.end());
+        std::ranges::sort(directed);
+        std::ranges::sort(suggested_);
+        DisjointSets components(positions_.size());
+        join_vertices(directed, components);
+        const auto exists = [&](const Triangle& triangle) {
+            return std::ranges::binary_search(directed, rotated(triangle));
+        };
+        claims_.resize(tets_.cells.size());
+        double hull_out = 0, hull_in = 0;
+        for (u32 cell = 0; cell < claims_.size(); ++cell) {
+            if ((cell & 0xffff) == 0) context_.check_cancelled();
+            for (std::size_t i = 0; i < 4; ++i) {
+                const Triangle corners = facet(cell, i);
+                const bool out = exists(corners), in = exists({corners[0], corners[2], corners[1]});
+                if (!out && !in) continue;
+                const double its = area(corners);
+                claims_[cell].component = components.find(corners[0]);
+                if (out) claims_[cell].inside += its;
+                if (in) claims_[cell].outside += its;
+                if (tets_.neighbours[cell][i] == hull) (out ? hull_out : hull_in) += its;
+            }
+        }
+        reversed_ = hull_in > hull_out;
+        if (reversed_)
+            for (Claim& claim : claims_) std::swap(claim.inside, claim.outside);
+    }
+
+    /// Labels by claims, and the unclaimed cells by the minimum cut.
+    void label() {
+        using namespace boost;
+        using Traits = adjacency_list_traits<vecS, vecS, directedS>;
+        using Graph = adjacency_list<
+            vecS, vecS, directedS,
+            property<
+                vertex_index_t, long,
+                property<vertex_color_t, default_color_type,
+                         property<vertex_distance_t, long, property<vertex_predecessor_t, Traits::edge_descriptor>>>>,
+            property<edge_capacity_t, double,
+                     property<edge_residual_capacity_t, double, property<edge_reverse_t, Traits::edge_descriptor>>>>;
+        const u32 count = static_cast<u32>(claims_.size());
+        labels_.assign(count, 0);
+        std::vector<u32> node(count, hull), free;
+        for (u32 cell = 0; cell < count; ++cell) {
+            labels_[cell] = claims_[cell].inside > claims_[cell].outside;
+            if (claims_[cell].inside == claims_[cell].outside) {
+                node[cell] = static_cast<u32>(free.size());
+                free.push_back(cell);
+            }
+        }
+        const u32 source = static_cast<u32>(free.size()), sink = source + 1;
+        Graph graph(sink + 1);
+        const auto connect = [&](u32 from, u32 to, double there, double back) {
+            const auto one = add_edge(from, to, graph).first, other = add_edge(to, from, graph).first;
+            put(edge_capacity, graph, one, there);
+            put(edge_capacity, graph, other, back);
+            put(edge_reverse, graph, one, other);
+            put(edge_reverse, graph, other, one);
+        };
+        for (const u32 cell : free) {
+            context_.check_cancelled();
+            double inside = 0, outside = 0;
+            for (std::size_t i = 0; i < 4; ++i) {
+                const u32 other = tets_.neighbours[cell][i];
+                const double its = cost(facet(cell, i));
+                if (other == hull || (node[other] == hull && labels_[other] == 0))
+                    outside += its;
+                else if (node[other] == hull)
+                    inside += its;
+                else if (cell < other)
+                    connect(node[cell], node[other], its, its);
+            }
+            if (inside > 0) connect(source, node[cell], inside, 0);
+            if (outside > 0) connect(node[cell], sink, outside, 0);
+        }
+        boykov_kolmogorov_max_flow(graph, source, sink);
+        context_.check_cancelled();
+        for (u32 i = 0; i < free.size(); ++i)
+            labels_[free[i]] = get(vertex_color, graph, i) == color_traits<default_color_type>::black();
+    }
+
+    /// At vertices where the boundary is not one closed fan. Every change removes surplus parts, so this ends.
+    void mend_vertices() {
+        const std::size_t vertices = positions_.size();
+        begin_.assign(vertices + 1, 0);
+        for (const Tetrahedron& cell : tets_.cells)
+            for (const u32 vertex : cell) ++begin_[vertex + 1];
+        for (std::size_t v = 0; v < vertices; ++v) begin_[v + 1] += begin_[v];
+        around_.resize(begin_.back());
+        std::vector<u32> at(begin_.begin(), begin_.end() - 1);
+        for (u32 cell = 0; cell < tets_.cells.size(); ++cell)
+            for (const u32 vertex : tets_.cells[cell]) around_[at[vertex]++] = cell;
+        for (bool changes = true; changes;) {
+            changes = false;
+            context_.check_cancelled();
+            const Array<Triangle> boundary = boundary_triangles(tets_, labels_, context_.threads());
+            for (const u32 vertex : boundary_defects(boundary, vertices, context_.threads()).vertices)
+                while (mend(vertex)) changes = true;
+        }
+    }
+
+    /// The face-connected parts of a vertex's cells on either side.
+    struct Parts {
+        std::vector<u32> of;  ///< by cell at the vertex: its part, the smallest cell's number
+        std::vector<u32> inside, outside;  ///< `beyond` is the outside of the hull
+        static constexpr u32 beyond = hull;
+
+        /// The boundary is one closed fan, or none, if there are none.
+        std::size_t extra() const {
+            return (inside.empty() ? 0 : inside.size() - 1) + (outside.empty() ? 0 : outside.size() - 1);
+        }
+    };
+
+    std::span<const u32> cells_at(u32 vertex) const {
+        return std::span(around_).subspan(begin_[vertex], begin_[vertex + 1] - begin_[vertex]);
+    }
+
+    Parts parts_at(u32 vertex) const {
+        const std::span<const u32> cells = cells_at(vertex);
+        const u32 count = static_cast<u32>(cells.size());
+        DisjointSets sets(count + 1);  // the last: beyond the hull
+        bool at_hull = false;
+        for (u32 i = 0; i < count; ++i)
+            for (std::size_t k = 0; k < 4; ++k) {
+                if (tets_.cells[cells[i]][k] == vertex) continue;
+                const u32 other = tets_.neighbours[cells[i]][k];
+                at_hull = at_hull || other == hull;
+                if (other == hull && labels_[cells[i]] == 0) sets.unite(i, count);
+                if (other != hull && labels_[other] == labels_[cells[i]])
+                    sets.unite(i, static_cast<u32>(std::ranges::lower_bound(cells, other) - cells.begin()));
+            }
+        Parts parts;
+        const u32 beyond = sets.find(count);
+        for (u32 i = 0; i < count; ++i) {
+            const u32 part = sets.find(i);
+            parts.of.push_back(at_hull && part == beyond ? Parts::beyond : part);
+            if (part == i && parts.of.back() != Parts::beyond)
+                (labels_[cells[i]] ? parts.inside : parts.outside).push_back(part);
+        }
+        if (at_hull) parts.outside.push_back(Parts::beyond);
+        return parts;
+    }
+
+    /// Lets the part of the vertex's cells change sides with which the most surplus parts, at all vertices, disappear;
+    /// of equal ones that which the mesh claims least, then the smaller one. False if none disappears.
+    bool mend(u32 vertex) {
+        const Parts parts = parts_at(vertex);
+        if (parts.extra() == 0) return false;
+        const std::span<const u32> cells = cells_at(vertex);
+        u32 best = hull;
+        std::tuple<std::ptrdiff_t, double, double> least{0, 0, 0};
+        for (const auto* side : {&parts.inside, &parts.outside})
+            for (const u32 part : *side) {
+                if (part == Parts::beyond) continue;
+                double claimed = 0, size = 0;
+                std::set<u32> corners;
+                for (u32 i = 0; i < cells.size(); ++i) {
+                    if (parts.of[i] != part) continue;
+                    const Claim& its = claims_[cells[i]];
+                    claimed += labels_[cells[i]] ? its.inside - its.outside : its.outside - its.inside;
+                    size += volume(cells[i]);
+                    corners.insert(tets_.cells[cells[i]].begin(), tets_.cells[cells[i]].end());
+                }
+                std::ptrdiff_t change = 0;
+                for (const u32 corner : corners) change -= static_cast<std::ptrdiff_t>(parts_at(corner).extra());
+                swap_sides(cells, parts, part);
+                for (const u32 corner : corners) change += static_cast<std::ptrdiff_t>(parts_at(corner).extra());
+                swap_sides(cells, parts, part);
+                if (change < 0 && (best == hull || std::tuple(change, claimed, size) < least)) {
+                    best = part;
+                    least = {change, claimed, size};
+                }
+            }
+        if (best == hull) return false;
+        swap_sides(cells, parts, best);
+        return true;
+    }
+
+    void swap_sides(std::span<const u32> cells, const Parts& parts, u32 part) {
+        for (u32 i = 0; i < cells.size(); ++i)
+            if (parts.of[i] == part) labels_[cells[i]] ^= 1;
+    }
+
+    /// Face-connected parts of either side change sides if no component of the mesh has most of its triangles there.
+    void drop_specks() {
+        const u32 count = static_cast<u32>(labels_.size());
+        DisjointSets parts(count + 1);  // the last: beyond the hull
+        for (u32 cell = 0; cell < count; ++cell)
+            for (const u32 other : tets_.neighbours[cell]) {
+                if (other == hull && labels_[cell] == 0) parts.unite(cell, count);
+                if (other != hull && labels_[other] == labels_[cell]) parts.unite(cell, other);
+            }
+        std::map<std::pair<u32, u8>, std::map<u32, double>> areas;  // by component and side: of parts
+        for (u32 cell = 0; cell < count; ++cell) {
+            const Claim& its = claims_[cell];
+            const double area = labels_[cell] ? its.inside : its.outside;
+            if (area > 0) areas[{its.component, labels_[cell]}][parts.find(cell)] += area;
+        }
+        std::vector<bool> stays(count + 1, false);
+        stays[parts.find(count)] = true;
+        for (const auto& [component, its] : areas)
+            stays[std::ranges::max_element(its, {}, &std::pair<const u32, double>::second)->first] = true;
+        for (u32 cell = 0; cell < count; ++cell)
+            if (!stays[parts.find(cell)]) labels_[cell] ^= 1;
+    }
+
+    /// The facet of the solid's boundary that joins the facet opposite to corner i of `cell` at the edge opposite to
+    /// its corner `third`, on the side of the solid.
+    std::array<u32, 2> mate(u32 cell, std::size_t i, u32 third) const {
+        u32 pivot = tets_.cells[cell][i];
+        for (u32 across = third;;) {
+            const auto k = static_cast<u32>(std::ranges::find(tets_.cells[cell], across) - tets_.cells[cell].begin());
+            const u32 other = tets_.neighbours[cell][k];
+            if (other == hull || labels_[other] == 0) return {cell, k};
+            // The facet between both has the edge and `pivot`; the next one lacks `pivot`.
+            const Tetrahedron& corners = tets_.cells[other];
+            const auto back = static_cast<std::size_t>(std::ranges::find(tets_.neighbours[other], cell) -
+                                                       tets_.neighbours[other].begin());
+            across = std::exchange(pivot, corners[back]);
+            cell = other;
+        }
+    }
+
+    /// The boundary. Where it still is not one closed fan at a vertex, every fan but the first gets a copy of it.
+    ClosingSolid boundary() {
+        ClosingSolid result;
+        std::vector<std::array<u32, 2>> facets;
+        for (u32 cell = 0; cell < labels_.size(); ++cell)
+            for (u32 i = 0; i < 4 && labels_[cell] == 1; ++i)
+                if (const u32 other = tets_.neighbours[cell][i]; other == hull || labels_[other] == 0) {
+                    facets.push_back({cell, i});
+                    result.triangles.push_back(facet(cell, i));
+                }
+        if (facets.empty()) return {};
+        std::vector<bool> is_defect(positions_.size(), false);
+        for (const u32 vertex : boundary_defects(result.triangles, positions_.size(), context_.threads()).vertices)
+            is_defect[vertex] = true;
+        const auto number = [&](const std::array<u32, 2>& its) {
+            return static_cast<u32>(std::ranges::lower_bound(facets, its) - facets.begin());
+        };
+        const std::vector<Triangle> originals = result.triangles;
+        const auto corner = [&](u32 f, u32 vertex) {
+            return 3 * f + static_cast<u32>(std::ranges::find(originals[f], vertex) - originals[f].begin());
+        };
+        DisjointSets fans(3 * facets.size());
+        for (u32 f = 0; f < facets.size(); ++f)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const u32 a = originals[f][(k + 1) % 3], b = originals[f][(k + 2) % 3];
+                if (!is_defect[a] && !is_defect[b]) continue;
+                const u32 other = number(mate(facets[f][0], facets[f][1], originals[f][k]));
+                fans.unite(corner(f, a), corner(other, a));
+                fans.unite(corner(f, b), corner(other, b));
+            }
+        std::vector<u32> fan_of(positions_.size(), hull);  // the first fan of a vertex keeps it
+        std::map<u32, u32> copy_of;
+        for (u32 f = 0; f < facets.size(); ++f)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const u32 vertex = originals[f][k];
+                if (!is_defect[vertex]) continue;
+                const u32 fan = fans.find(static_cast<u32>(3 * f + k));
+                if (fan_of[vertex] == hull) fan_of[vertex] = fan;
+                if (fan_of[vertex] == fan) continue;
+                const auto [copy, is_new] =
+                    copy_of.try_emplace(fan, static_cast<u32>(positions_.size() + result.copies.size()));
+                if (is_new) result.copies.push_back(vertex);
+                result.triangles[f][k] = copy->second;
+            }
+        if (reversed_)
+            for (Triangle& triangle : result.triangles) std::swap(triangle[1], triangle[2]);
+        std::vector<Edge> directed;
+        for (const Triangle& triangle : result.triangles)
+            for (std::size_t k = 0; k < 3; ++k) directed.push_back({triangle[k], triangle[(k + 1) % 3]});
+        std::ranges::sort(directed);
+        if (std::ranges::adjacent_find(directed) != directed.end()) return {};  // one fan passes an edge twice
+        return result;
+    }
+
+    std::span<const Vec3> positions_;
+    std::span<const Triangle> triangles_;
+    std::size_t given_;
+    Context& context_;
+    TetMesh tets_;
+    std::vector<Claim> claims_;
+    std::vector<u8> labels_;
+    std::vector<Triangle> suggested_;
+    bool reversed_ = false;
+    /// The cells at every vertex, ascending.
+    std::vector<u32> begin_, around_;
+};
+
+}  // namespace
+
+ClosingSolid closing_solid(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::size_t given,
+                           const Vec3& origin, Context& context) {
+    std::vector<u32> number(positions.size(), 0), row;
+    for (const Triangle& triangle : triangles)
+        for (const u32 vertex : triangle) number[vertex] = 1;
+    std::vector<Vec3> used;
+    for (u32 v = 0; v < positions.size(); ++v)
+        if (std::exchange(number[v], static_cast<u32>(row.size())) == 1) {
+            row.push_back(v);
+            used.push_back(positions[v]);
+        }
+    const Extents size = extents(used, origin, context.threads());
+    if (size.from_plane <= size.rounding) return {};
+    std::vector<Triangle> renumbered(triangles.begin(), triangles.end());
+    for (Triangle& triangle : renumbered)
+        for (u32& vertex : triangle) vertex = number[vertex];
+    ClosingSolid result = Closing(used, renumbered, given, context).run();
+    const u32 unchanged = static_cast<u32>(used.size()), vertices = static_cast<u32>(positions.size());
+    for (Triangle& triangle : result.triangles)
+        for (u32& vertex : triangle) vertex = vertex < unchanged ? row[vertex] : vertex - unchanged + vertices;
+    for (u32& vertex : result.copies) vertex = row[vertex];
+    return result;
+}
+
+}  // namespace scanmill
