@@ -12,7 +12,9 @@ FUZZ_SECONDS ?= 60
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 14
 
-demo: release data ## turn real scans into closed meshes and print a table
+demo: release data ## turn scans into closed meshes and print tables
+	build/release/bin/scanmill run workflows/virtual-scans.yaml build/data/meshes/hand.off --set "noise=0.05 %diag" -o build/virtual-views -q
+	build/release/bin/scanmill run workflows/raw-scans.yaml build/virtual-views/hand-default.ply -o build/demo
 	build/release/bin/scanmill run workflows/quickstart.yaml $(addprefix build/data/,$(demo_scans)) -o build/demo
 
 nightly: release data ## compare three surfaces of virtual and real scans with the accepted run, and print the report

@@ -23,6 +23,9 @@ namespace scanmill {
 
 namespace {
 
+/// To get rid of edges of four triangles, by filling the cells around them. One or two suffice for real scans.
+constexpr int most_attempts = 20;
+
 /// Of a suggested triangle, as a share of its area: a fair filling is larger than the flattest one.
 constexpr double cost_of_suggested = 0.1;
 
@@ -51,9 +54,17 @@ public:
         claim();
         label();
         drop_specks();
-        mend_vertices();
-        drop_specks();
-        return boundary();
+        for (int attempt = 0; attempt < most_attempts; ++attempt) {
+            mend_vertices();
+            drop_specks();
+            ClosingSolid solid = boundary();
+            const std::vector<Edge> pinched = edges_of_four(solid);
+            if (pinched.empty()) return solid;
+            for (const auto& [a, b] : pinched)
+                for (const u32 cell : cells_at(a))
+                    if (std::ranges::find(tets_.cells[cell], b) != tets_.cells[cell].end()) labels_[cell] = 1;
+        }
+        return {};
     }
 
 private:
@@ -322,6 +333,23 @@ private:
         }
     }
 
+    /// Edges of four triangles, because a fan passes an edge twice; as vertices without copies.
+    std::vector<Edge> edges_of_four(const ClosingSolid& solid) const {
+        std::vector<Edge> directed, result;
+        for (const Triangle& triangle : solid.triangles)
+            for (std::size_t k = 0; k < 3; ++k) directed.push_back({triangle[k], triangle[(k + 1) % 3]});
+        std::ranges::sort(directed);
+        const u32 vertices = static_cast<u32>(positions_.size());
+        for (std::size_t i = 1; i < directed.size(); ++i) {
+            if (directed[i] != directed[i - 1]) continue;
+            Edge edge = directed[i];
+            for (u32& vertex : edge)
+                if (vertex >= vertices) vertex = solid.copies[vertex - vertices];
+            result.push_back(edge);
+        }
+        return result;
+    }
+
     /// The boundary. Where it still is not one closed fan at a vertex, every fan but the first gets a copy of it.
     ClosingSolid boundary() {
         ClosingSolid result;
@@ -368,11 +396,6 @@ private:
             }
         if (reversed_)
             for (Triangle& triangle : result.triangles) std::swap(triangle[1], triangle[2]);
-        std::vector<Edge> directed;
-        for (const Triangle& triangle : result.triangles)
-            for (std::size_t k = 0; k < 3; ++k) directed.push_back({triangle[k], triangle[(k + 1) % 3]});
-        std::ranges::sort(directed);
-        if (std::ranges::adjacent_find(directed) != directed.end()) return {};  // one fan passes an edge twice
         return result;
     }
 

@@ -25,12 +25,13 @@ struct ClosingSolid {
 /// on are suggestions: they claim nothing, and a tenth of their area counts. Face-connected parts of
 /// either side in which no component of the mesh has most of its triangles are left out. At a vertex where the boundary
 /// is not one closed fan, parts of its cells then change sides, as long as such surplus parts disappear; where some are
-/// left, every fan gets its own copy of the vertex at the same position.
+/// left, every fan gets its own copy of the vertex at the same position. If a fan passes an edge twice, the cells
+/// around this edge become inside first.
 ///
 /// Returns the boundary, in the orientation of the mesh; of vertices at one position it uses the first. It is a closed
 /// manifold and does not intersect itself, because its triangles are facets of one tetrahedralisation. It lacks the
-/// triangles of the mesh that are no such facets. Empty if the vertices are within rounding of a plane, or if a fan
-/// passes an edge twice.
+/// triangles of the mesh that are no such facets. Empty if the vertices are within rounding of a plane, or if
+/// that does not help.
 ///
 /// Pre: at least one triangle; finite vertices; `origin` is the frame's. Which side is which is decided by the
 /// triangles on the convex hull. Deterministic: the same bytes for any number of threads. Cost: O(n log n) time for

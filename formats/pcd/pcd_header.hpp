@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scanmill/data/columns.hpp"
+#include "scanmill/data/frame.hpp"
 
 namespace scanmill::pcd {
 

@@ -160,7 +160,7 @@ std::string range_image(At&& at, const std::string& columns = "3") {
 
 TEST(PlyReader_RangeGrid, GivesTheDirectionToTheScanner) {
     // Seen along z, at the depths of a saddle; then the same turned, so that x becomes y, y becomes z and z becomes x.
-    const auto saddle = [](int column, int row) { return Vec3(0.5 * column, row, (column - 1) * (row - 1) - row); };
+    const auto saddle = [](int column, int row) { return Vec3(column, row, 0.3 * ((column - 1) * (row - 1) - row)); };
     Warnings warnings;
     const auto straight = points_in(range_image(saddle), "a.ply", &warnings);
     const Column* approach = straight->columns.find("approach");
