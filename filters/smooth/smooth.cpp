@@ -17,13 +17,13 @@ namespace {
 
 using Method = SmoothParams::Method;
 
-constexpr double doubtful_spacings = 0.5;  // moved, root of the mean square
+constexpr double doubtful_error = 0.25;  // of the fits, as a share of the neighbourhood; about 0.5 in a filled ball
 constexpr std::size_t chunk = 1 << 10;
 
 /// By position of the tree.
 struct Moves {
     Array<Vec3> offsets;
-    Array<double> nearest;  ///< squared distance; 0 without neighbours
+    Array<double> errors;  ///< of the polynomials, see Jet::error
     std::vector<u8> flat;
 };
 
@@ -48,12 +48,13 @@ void move(u32 index, std::span<const Neighbour> neighbours, std::span<const Vec3
             work.weights.push_back(1 / (inverse * inverse));
         }
     }
-    moves.nearest[index] = neighbours.empty() ? 0 : neighbours.front().squared;
+    moves.errors[index] = 0;
     moves.flat[index] = 1;
     moves.offsets[index] = Vec3::Zero();
     if (neighbours.size() < 3) return;
     const Jet jet = fit_jet(work.offsets, work.weights);
     moves.offsets[index] = jet.offset;
+    moves.errors[index] = jet.error;
     moves.flat[index] = !jet.is_curved;
 }
 
@@ -89,10 +90,14 @@ Moves moves_of(const PointTree& tree, const SmoothParams& params, Context& conte
     return moves;
 }
 
-double median_spacing(Array<double> squares) {
-    const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-    std::nth_element(squares.begin(), middle, squares.end());
-    return std::sqrt(*middle);
+/// Of the points with a polynomial; not all are flat.
+double median_error(const Moves& moves) {
+    Array<double> errors;
+    for (std::size_t i = 0; i < moves.errors.size(); ++i)
+        if (!moves.flat[i]) errors.push_back(moves.errors[i]);
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    return *middle;
 }
 
 PointCloud moved_points(const PointCloud& cloud, std::span<const u32> index_of_row, const Moves& moves,
@@ -157,12 +162,11 @@ SmoothResult smooth(const PointCloud& cloud, const SmoothParams& params, Context
     }
     result.moved_rms = std::sqrt(squares / static_cast<double>(cloud.size()));
     result.points = moved_points(cloud, tree.index_of_row(), moves, context);
-    if (const double spacing = median_spacing(moves.nearest); result.moved_rms > doubtful_spacings * spacing)
-        context.doubt(
-            fmt::format("the points moved by {:.3g} u (root of the mean square), the median distance to the "
-                        "nearest other point is {:.3g} u: details as large as that are lost; fewer neighbours "
-                        "move them less",
-                        result.moved_rms, spacing));
+    if (const double error = median_error(moves); error > doubtful_error)
+        context.doubt(fmt::format(
+            "the neighbours of a point miss the surface that fits them by {:.0f} % of their distance to the "
+            "point (median): they form no surface at that size; remove outliers, or change {}",
+            100 * error, params.radius ? "radius" : "neighbours"));
     context.metric("moved-rms", result.moved_rms, Unit::length);
     context.metric("moved-max", result.moved_max, Unit::length);
     context.metric("flat", static_cast<double>(result.flat));

@@ -50,8 +50,9 @@ struct SmoothResult {
 /// An older column `moved` is replaced, with a warning. A column `normal` stays as it was, with a warning.
 ///
 /// Throws Error for an empty cloud, a NaN or infinite coordinate, a parameter out of range, and if no point has
-/// neighbours that determine a polynomial. Doubts its result if the points moved by more than half of the median
-/// distance to the nearest other position (root of the mean square): the neighbourhoods are then wider than details.
+/// neighbours that determine a polynomial. Doubts its result if the median error of the polynomials is above a quarter
+/// of the distance of the neighbours (see Jet::error): the neighbourhoods then hold no surface, or are wider than
+/// details.
 ///
 /// Deterministic: the same bytes for any number of threads and any processor; the same positions for any order of the
 /// points. Cost: O(n log n) time for a fixed number of neighbours; about 100 bytes per point beside the result.

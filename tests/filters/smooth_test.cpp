@@ -151,11 +151,11 @@ TEST(Smooth, NeighbourhoodsAsLargeAsTheObject_AreDoubtful) {
     PointCloud cloud;
     cloud.positions = std::move(positions);
     EXPECT_THAT(smoothed(cloud, with(Method::jet, 100)).doubts,
-                ElementsAre(HasSubstr("details as large as that are lost")));
+                ElementsAre(HasSubstr("they form no surface at that size")));
 }
 
 TEST(Smooth, OutliersAlone_AreDoubtful) {
-    EXPECT_THAT(smoothed(random_cube(5000, 3)).doubts, ElementsAre(HasSubstr("details as large as that are lost")));
+    EXPECT_THAT(smoothed(random_cube(5000, 3)).doubts, ElementsAre(HasSubstr("they form no surface at that size")));
 }
 
 TEST(Smooth, TwoScales_MoveByTheirOwnNoise) {

@@ -45,6 +45,7 @@ Jet fit_jet(std::span<const Vec3> offsets, std::span<const double> weights) {
     jet.offset = size * fit[0] * normal;
     jet.normal = with_positive_sign((normal - fit[1] * u - fit[2] * v).normalized());
     jet.is_curved = true;
+    jet.error = (rows * fit - heights).norm() / rows.col(0).norm();
     return jet;
 }
 
