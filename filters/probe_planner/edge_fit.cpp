@@ -190,9 +190,10 @@ std::optional<EdgeFaces> edge_faces(const TriangleTree& mesh, const EdgeFaces& g
     }
     first = plane_of(facets, Side::first);
     second = plane_of(facets, Side::second);
-    if (!(misfit(facets, first.normal, second.normal) + chord_1 / chord_15 <
-          misfit(facets, guess.left_normal, guess.right_normal)))
-        return {};
+    const double found = misfit(facets, first.normal, second.normal),
+                 guessed = misfit(facets, guess.left_normal, guess.right_normal);
+    const bool is_one_face = guess.left_normal == guess.right_normal;
+    if (!(found + chord_1 / chord_15 < guessed) || (is_one_face && !(found < guessed / 2))) return {};
 
     const Vec3 across = first.normal.cross(second.normal);
     EdgeFaces faces = guess;

@@ -168,8 +168,10 @@ void fit_to_mesh(std::vector<ReferencePoint>& points, const TriangleTree& mesh, 
                                           segments_near * size + error, segments_apart * size + error);
             if (!faces) continue;
             if (point.assumed) {
+                // The line runs along the edge, with its own face on the left.
                 const double cosine_30 = std::sqrt(0.75);
-                if (faces->left_normal == faces->right_normal || faces->left_normal.dot(point.left_normal) < cosine_30)
+                if (faces->left_normal.dot(point.left_normal) < cosine_30 ||
+                    faces->left_normal.dot(faces->right_normal) > cosine_30 || faces->tangent.dot(point.tangent) < 0.5)
                     continue;
                 point.assumed = false;
                 point.beyond = 0;

@@ -59,8 +59,9 @@ struct ReferencePoints {
 /// Runs of segments that match along half of the shorter run are paired: the one of the earlier line gets points on the
 /// intersection of the planes of both faces, the matching part of the other one none.
 ///
-/// Where the mesh within `error` and two segment lengths of a point shows other faces than the line does, and both of
-/// them are known, the faces, the tangent and the point on the edge are the mesh's: see edge_fit.hpp.
+/// Where the mesh within `error` and two segment lengths of a point (or two mean edge lengths there) shows other faces
+/// than the line does, the faces, the tangent and the point on the edge are the mesh's: see edge_fit.hpp. An assumed
+/// face is replaced if there is one beyond an edge along the line (to within 60 degrees) at 30 degrees or more.
 ///
 /// Then points are left out that are nearer than half a spacing to a point of a longer line (ties: of an earlier one)
 /// on the same edge: at most `error` and 1.5 segment lengths beside its tangent, both normals within 30 degrees. So
