@@ -125,8 +125,8 @@ struct RegionGrowResult {
 ///
 /// Metrics: see plugin.cpp. Warns when more than half a percent of the points stay unused, when most points are too
 /// dense for their `bin-size`, about normals with mixed signs, and about what find_features() could not decide. Doubts:
-/// more than 2 % of the points unused, triangles that by themselves make more than one crease per 20 of more than 10,000
-/// edges, normals that end the surface, loops at thin parts.
+/// more than 2 % of the points unused, triangles that by themselves make more than one crease per 20 of more than
+/// 10,000 edges, normals that end the surface, loops at thin parts.
 RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& params, Context& context);
 
 }  // namespace scanmill
