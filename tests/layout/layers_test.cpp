@@ -19,7 +19,7 @@ const std::vector<std::string> layers{"base",     "io",     "data",    "geometry
                                       "filter",   "plugin",    // core
                                       "workflow", "plan",   "gate",    "batch",    "graph",   "cache",
                                       "worker",   "run",    "records", "compare",  "session", "describe"};  // engine
-const std::vector<std::string> geometry_layers{"spatial",  "mesh",    "fit",         "tets",
+const std::vector<std::string> geometry_layers{"spatial",  "fit",     "mesh",        "tets",
                                                "distance", "growing", "a_patch.hpp", "a_patch.cpp"};
 
 struct Include {
