@@ -315,6 +315,21 @@ TEST(Normals, Cancelled_End) {
     }
 }
 
+TEST(NormalsReal, OfARawView_NeighboursAndScannerAgree) {
+    // The scanner of a raw view looks along -z.
+    SCANMILL_REAL_SCAN(path, shared_data, "1-bunny/raw/bun000.ply");
+    const std::shared_ptr<const PointCloud> cloud = read_points(path);
+    const Estimated result = estimated(*cloud, with(Orient::tree), 2);
+    std::size_t away = 0;
+    for (std::size_t row = 0; row < cloud->size(); ++row) away += result.normal(row).z() < 0;
+    EXPECT_LT(static_cast<double>(away), 0.001 * static_cast<double>(cloud->size()));
+    NormalsParams params;
+    params.scanner = std::vector<Length>{Length(0.0), Length(0.1), Length(10)};
+    const Estimated sensed = estimated(*cloud, params, 2);
+    EXPECT_GT(static_cast<double>(sensed.by_sensor), 0.99 * static_cast<double>(cloud->size()));
+    for (std::size_t row = 0; row < cloud->size(); ++row) EXPECT_GT(sensed.normal(row).z(), -0.1);
+}
+
 TEST(NormalsReal, OfTheKitten_AreThoseOfTheFile) {
     SCANMILL_REAL_SCAN(path, shared_data, "2-organic/kitten.xyz");
     const std::shared_ptr<const PointCloud> cloud = read_points(path);
