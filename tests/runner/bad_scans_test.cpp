@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -112,6 +114,26 @@ TEST_P(BadScanTest, Quickstart_SaysOneClearSentenceAndEndsWith1) {
 
 INSTANTIATE_TEST_SUITE_P(All, BadScanTest, testing::ValuesIn(bad_scans),
                          [](const auto& bad) { return bad.param.test_name; });
+
+TEST(BadScan, RawScans_WithoutASurface_SaysOneClearSentence) {
+    std::string far_apart, line;
+    for (int i = 0; i < 60; ++i) far_apart += fmt::format("{} {} {}\n", i * i * i % 977, i * i % 983, i * 31 % 991);
+    for (int i = 0; i < 400; ++i) line += fmt::format("{} {} 0\n", 0.1 * i, 0.2 * i);
+    const std::string surface = "determine a surface: they are too few, or on a line";
+    const std::vector<BadScan> scans{
+        {"AllOutliers", "outliers.xyz", far_apart, {"60", surface}},
+        {"Line", "line.xyz", line, {"400", surface}},
+        {"OnePosition", "one.xyz", repeated("1 2 3\n", 50), {"50 points", "one position"}}};
+    for (const BadScan& bad : scans) {
+        const TemporaryFolder folder;
+        folder.write(bad.file, bad.content);
+        const std::string workflow = std::string(SCANMILL_SOURCE_DIR) + "/workflows/raw-scans.yaml";
+        const ProgramResult ran =
+            scanmill_program({"run", workflow, bad.file, "-o", "out"}, {.folder = folder.path(), .environment = {}});
+        expect_one_clear_sentence(ran, "raw-scans", bad.parts);
+        EXPECT_FALSE(std::filesystem::exists(folder / "out/raw-scans.ply")) << bad.test_name;
+    }
+}
 
 TEST(BadScan, Folder_IsRefused) {
     const TemporaryFolder folder;

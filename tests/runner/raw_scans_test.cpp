@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -174,6 +175,26 @@ TEST_F(RawScans, CleanModelsAndTheScansOfTheDemo_AreNotDoubtful) {
         if (const auto path = fetched_data(name)) scans.push_back(path->string());
     if (scans.empty()) GTEST_SKIP() << "skipped: no collection";
     for (const json& cell : cells_of(shipped("quickstart.yaml"), scans)) EXPECT_EQ(cell.at("outcome"), "ok") << cell;
+}
+
+TEST_F(RawScans, TheBunnysTenViews_BecomeOneClosedMesh) {
+    SCANMILL_REAL_SCAN(poses, shared_data, "1-bunny/raw/bun.conf");
+    std::vector<std::string> views;
+    for (const auto& entry : fs::directory_iterator(poses.parent_path()))
+        if (entry.path().extension() == ".ply") views.push_back(entry.path().string());
+    ASSERT_EQ(views.size(), 10u);
+    std::ranges::sort(views);
+    views.insert(views.end(), {"--set", "poses=" + poses.string()});
+    cells_of(shipped("raw-scans.yaml"), views);
+    const fs::path truth = poses.parent_path() / "../bun_zipper.ply";
+    const ProgramResult measured = scanmill_program(
+        {"measure", "out/raw-scans.ply", truth.string(), "--set", "same-frame=true", "--json"}, options());
+    const json found = json::parse(measured.out).at("metrics");
+    EXPECT_EQ(found.at("closed"), true);
+    EXPECT_EQ(found.at("components"), 1);
+    EXPECT_EQ(found.at("genus"), 0);
+    EXPECT_EQ(found.at("self-intersections"), 0);
+    EXPECT_GE(found.at("f-score").get<double>(), 0.97);
 }
 
 }  // namespace
