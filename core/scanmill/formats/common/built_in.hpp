@@ -17,11 +17,12 @@ namespace scanmill {
 /// with vertex1, vertex2 and columns; `sharp_edge` with vertex1, vertex2, which only scanmill writes; `range_grid`, the
 /// cells of a range image, with a comment `num_cols N`: the vertex column `approach` (3 × float32) then has the
 /// direction to the scanner (see range_grid.hpp), with a warning. Other elements are left out. Coordinates in text keep
-/// all their digits, whatever type the header declares. Written: binary little-endian; coordinates as float when every
-/// one is exactly a float, else double. 64-bit integers become double, because PLY has none. Reading a written file
-/// gives everything else back unchanged. Streamed: binary files whose first element is `vertex` without lists and whose
-/// other elements are empty, without trailing bytes except line ends. Source: G. Turk, The PLY polygon file format,
-/// 1994.
+/// all their digits, whatever type the header declares.
+/// Written: binary little-endian; coordinates as float when every one is exactly a float, else double. 64-bit integers
+/// become double, because PLY has none. Reading a written file gives everything else back unchanged.
+/// Streamed: binary files whose first element is `vertex` without lists and whose other elements are empty, without
+/// trailing bytes except line ends.
+/// Source: G. Turk, The PLY polygon file format, 1994.
 Format ply_format();
 
 /// STL: triangles without connectivity, in single precision.
