@@ -19,8 +19,8 @@ that one of our results misses:
 
 - *mean*: of a closed model with noise, larger than that of Poisson.
 - *pieces*: not those of the model.
-- *loops*: more than 0, because both workflows close everything; of an open model also a number of region-grow other than
-  the model's, and every result of quickstart.
+- *loops*: more than 0, because both workflows close everything; of an open model also a number of region-grow other
+  than the model's, and every result of quickstart.
 - *genus*: not that of the model.
 - *cuts*: more than the model has.
 - *ball*: more pieces and loops than ball pivoting."""
