@@ -26,6 +26,7 @@ using namespace a_patches;
 
 constexpr double thinnest = 1e-9;  // height over longest edge of a triangle with area
 constexpr std::size_t most_bisections = 7;  // rounds
+constexpr std::size_t most_crease_rounds = 2;
 constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
 constexpr double most_open = 0.01;  // share of the edges, without a doubt
@@ -233,12 +234,35 @@ private:
             for (const u32 e : edges)
                 if (hull.edges[e].is_sharp && !hull.edges[e].is_straight)
                     creases.push_back(make_edge(hull.edges[e].a, hull.edges[e].b));
+        if (bisect_creases(creases)) return true;
         if (!creases.empty() && !is_aligned_) {
             is_aligned_ = true;
             align_normals(mesh_, creases, repairs);
             return true;
         }
         return smooth_edges(mesh_, creases, repairs) > 0;
+    }
+
+    /// The same: a crease that leaves the tetrahedra beside its edge has less room to do so over a shorter one. Undone
+    /// unless that repairs half of them.
+    bool bisect_creases(std::span<const Edge> creases) {
+        if (is_aligned_ || are_creases_bisected_) return false;
+        if (crease_rounds_ == 0) {
+            if (creases.empty()) return false;
+            before_creases_ = mesh_;
+            repairs_before_creases_ = repairs;
+            creases_before_ = creases.size();
+        } else if (creases.empty() || crease_rounds_ == most_crease_rounds) {
+            are_creases_bisected_ = true;
+            if (2 * creases.size() <= creases_before_) return false;
+            mesh_ = std::move(*before_creases_);
+            repairs = repairs_before_creases_;
+            return true;
+        }
+        ++crease_rounds_;
+        repairs.bisected += bisect_edges(mesh_, creases);
+        level_normals(mesh_);
+        return true;
     }
 
     /// The same: where nothing else helps the surface follows the mesh.
@@ -276,6 +300,10 @@ private:
     std::size_t rounds_ = 0, faults_before_ = 0;
     std::optional<PatchMesh> before_;  ///< the first bisection
     Repairs repairs_before_;
+    bool are_creases_bisected_ = false;
+    std::size_t crease_rounds_ = 0, creases_before_ = 0;
+    std::optional<PatchMesh> before_creases_;
+    Repairs repairs_before_creases_;
 };
 
 /// Takes the changes of a fit back where parts of the surface meet others since, or weights got a wrong sign by that.
@@ -471,6 +499,7 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
         replace_opposing(work, construction.repairs);
         fit_normals(work, points->positions.span(), context);
     }
+    level_normals(work);
     construction.run();
     Hull& hull = construction.hull;
     result.repairs = construction.repairs;

@@ -34,14 +34,11 @@ LongEdge longest_edge(const TriangleMesh& mesh, u32 triangle) {
     return longest;
 }
 
-}  // namespace
-
-std::size_t bisect(PatchMesh& patch_mesh, std::span<const u32> triangles) {
+/// Bisects those of the edges, longest first, whose triangles are not cut yet. Returns how many.
+std::size_t bisect(PatchMesh& patch_mesh, std::vector<LongEdge> edges) {
     TriangleMesh& mesh = patch_mesh.mesh;
     CornerNormals& normals = patch_mesh.normals;
     const Array<u32> opposites = half_edges::opposites(mesh);
-    std::vector<LongEdge> edges;
-    for (const u32 triangle : triangles) edges.push_back(longest_edge(mesh, triangle));
     std::ranges::sort(edges, std::less<>());
 
     Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
@@ -120,6 +117,26 @@ std::size_t bisect(PatchMesh& patch_mesh, std::span<const u32> triangles) {
     mesh.triangles = std::move(cut);
     mesh.sharp_edges = Array<Edge>(sharp.begin(), sharp.end());
     return bisected;
+}
+
+}  // namespace
+
+std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles) {
+    std::vector<LongEdge> edges;
+    for (const u32 triangle : triangles) edges.push_back(longest_edge(mesh.mesh, triangle));
+    return bisect(mesh, std::move(edges));
+}
+
+std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges) {
+    std::vector<Edge> sought(edges.begin(), edges.end());
+    std::ranges::sort(sought);
+    std::vector<LongEdge> found;
+    for (u32 half = 0; half < 3 * mesh.mesh.triangles.size(); ++half) {
+        const u32 a = half_edges::start(mesh.mesh, half), b = half_edges::end(mesh.mesh, half);
+        if (a < b && std::ranges::binary_search(sought, make_edge(a, b)))
+            found.push_back({(mesh.mesh.positions[b] - mesh.mesh.positions[a]).squaredNorm(), make_edge(a, b), half});
+    }
+    return bisect(mesh, std::move(found));
 }
 
 }  // namespace scanmill::a_patches

@@ -14,4 +14,7 @@ namespace scanmill::a_patches {
 /// how many edges were bisected: at least one, if there are triangles. Pre: an oriented manifold.
 std::size_t bisect(PatchMesh& mesh, std::span<const u32> triangles);
 
+/// The same for edges.
+std::size_t bisect_edges(PatchMesh& mesh, std::span<const Edge> edges);
+
 }  // namespace scanmill::a_patches

@@ -13,6 +13,8 @@ namespace scanmill::a_patches {
 namespace {
 
 constexpr double cosine_of_fold = 0.8660254037844386;  // of 30 degrees
+constexpr double level_sine = 1e-3, level_share = 0.1;  // between a normal and a sharp edge; of that beyond the edge
+constexpr double cosine_of_level = 0.9993908270190958;  // of 2 degrees
 constexpr double least_length = 0.1;  // of a sum or product of unit vectors that gives a direction
 
 std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3> of_triangles) {
@@ -50,6 +52,27 @@ std::optional<Edge> most_acute_edge(const TriangleMesh& mesh, const Sectors& sec
         if (!best || found < *best) best = found;
     }
     return best ? std::optional(best->second) : std::nullopt;
+}
+
+/// Of a sector: the directions of the sharp edges at its sides, and the normals beyond them.
+struct SharpSides {
+    std::vector<Vec3> along, beyond;
+};
+
+SharpSides sharp_sides(const PatchMesh& mesh, std::span<const u32> corners, const Array<u32>& opposites) {
+    SharpSides sides;
+    const auto add = [&](u32 half, u32 from, u32 to, u32 corner_beyond) {
+        if (opposites[half] == half_edges::boundary) return;
+        if (!std::ranges::binary_search(mesh.mesh.sharp_edges, make_edge(from, to))) return;
+        sides.along.push_back((mesh.mesh.positions[to] - mesh.mesh.positions[from]).normalized());
+        sides.beyond.push_back(mesh.normals[corner_beyond / 3][corner_beyond % 3]);
+    };
+    for (const u32 corner : corners) {
+        const u32 v = half_edges::start(mesh.mesh, corner), in = half_edges::before(corner);
+        add(corner, v, half_edges::end(mesh.mesh, corner), half_edges::after(opposites[corner]));
+        add(in, v, half_edges::start(mesh.mesh, in), opposites[in]);
+    }
+    return sides;
 }
 
 }  // namespace
@@ -92,6 +115,38 @@ void replace_opposing(PatchMesh& mesh, Repairs& repairs) {
         if (sharp.empty()) return;
         repairs.creased += add_sharp(mesh.mesh, std::move(sharp));
     }
+}
+
+void level_normals(PatchMesh& mesh) {
+    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
+    const Array<u32> opposites = half_edges::opposites(mesh.mesh);
+    const Sectors sectors = sectors_of(mesh.mesh);
+    const std::vector<std::vector<u32>> corners = corners_of(sectors);
+    CornerNormals levelled = mesh.normals;
+    for (std::size_t s = 0; s < sectors.size(); ++s) {
+        if (sectors.is_whole[s]) continue;
+        const Vec3 normal = mesh.normals[corners[s][0] / 3][corners[s][0] % 3];
+        const SharpSides sides = sharp_sides(mesh, corners[s], opposites);
+        if (normal == Vec3::Zero() || sides.along.empty() || sides.along.size() > 2) continue;
+        bool is_level = true;
+        for (std::size_t i = 0; i < sides.along.size(); ++i)
+            is_level =
+                is_level && std::abs(normal.dot(sides.along[i])) <=
+                                std::max(level_sine, level_share * std::abs(sides.beyond[i].dot(sides.along[i])));
+        if (!is_level) continue;
+        Vec3 better;
+        if (sides.along.size() == 2) {
+            better = sides.along[0].cross(sides.along[1]);
+            if (better.norm() < least_length / 2) continue;
+            better *= better.dot(normal) < 0 ? -1 : 1;
+        } else {
+            better = normal - sides.along[0] * sides.along[0].dot(normal);
+        }
+        better.normalize();
+        if (better.dot(normal) < cosine_of_level || opposes(better, normals_at(corners[s], of_triangles))) continue;
+        for (const u32 corner : corners[s]) levelled[corner / 3][corner % 3] = better;
+    }
+    mesh.normals = std::move(levelled);
 }
 
 void turn_normals(PatchMesh& mesh, std::span<const u32> triangles, Repairs& repairs) {

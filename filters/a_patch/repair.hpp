@@ -24,6 +24,11 @@ bool opposes(const Vec3& direction, std::span<const Vec3> normals);
 /// vertices).
 void replace_opposing(PatchMesh& mesh, Repairs& repairs);
 
+/// Makes the normal of a sector perpendicular to the one or two sharp edges at its sides, where it almost is, and it is
+/// much more so than that of the other sides: then a plane face meets a curved one in a curve of the plane, and two
+/// planes in a straight line. Rounding would make the plane cross the chord of the curve.
+void level_normals(PatchMesh& mesh);
+
 /// Gives the corners of the triangles the direction nearest to all their triangles' normals.
 void turn_normals(PatchMesh& mesh, std::span<const u32> triangles, Repairs& repairs);
 

@@ -7,6 +7,7 @@
 #include "scanmill/formats/files.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
 #include "sculpt/sculpt.hpp"
 #include "support/real_data.hpp"
 #include "tessellate/tessellate.hpp"
@@ -139,6 +140,60 @@ TEST_P(APatchRealFit, DecimatedModel_IsAtMostHalfAsFarFromThePointsAsItsMesh) {
 }
 INSTANTIATE_TEST_SUITE_P(Models, APatchRealFit,
                          testing::Values("points_3/kitten.xyz", "meshes/bunny00.off", "meshes/bear.off"));
+
+// Creases.
+
+double distance_to(const TriangleMesh& mesh, std::span<const Edge> edges, const Vec3& p) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Edge& edge : edges) {
+        const Vec3 &a = mesh.positions[edge[0]], d = mesh.positions[edge[1]] - a;
+        const double share = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+        least = std::min(least, (p - a - share * d).norm());
+    }
+    return least;
+}
+
+TEST(APatchRealCreases, OfAnAnchor_AreNearTheOriginalEdges_AndAsSharp) {
+    SCANMILL_REAL_SCAN(path, shared_data, "3-mechanical/anchor_dense.off");
+    const TriangleMesh mesh = *read_mesh(path);
+    PointCloud points;
+    points.frame = mesh.frame;
+    points.positions = mesh.positions;
+    DecimateParams reduction;
+    const double max_error = 0.003 * surface_box(mesh).diagonal();
+    reduction.max_error = max_error;
+    Context context;
+    const TriangleMesh light = decimate(mesh, &points, reduction, context).mesh;
+    const PatchRun run = patched(light, {}, &points, 2);
+    EXPECT_EQ(run.result.open, 0u);
+    EXPECT_LT(run.result.repairs.pointed + run.result.repairs.faceted, 5u);
+    const TriangleMesh fine = tessellate(run.result.patches, {8, {}}, context);
+    const auto normal = [](const TriangleMesh& of, u32 f) -> Vec3 {
+        const Triangle& t = of.triangles[f];
+        return (of.positions[t[1]] - of.positions[t[0]]).cross(of.positions[t[2]] - of.positions[t[0]]).normalized();
+    };
+    // The object's edges are right angles.
+    std::vector<Edge> edges;
+    const Array<u32> of_mesh = half_edges::opposites(mesh), opposites = half_edges::opposites(fine);
+    for (u32 half = 0; half < of_mesh.size(); ++half)
+        if (of_mesh[half] > half && normal(mesh, half / 3).dot(normal(mesh, of_mesh[half] / 3)) < 0.766)  // 40 degrees
+            edges.push_back(make_edge(half_edges::start(mesh, half), half_edges::end(mesh, half)));
+    std::vector<double> off;
+    double farthest = 0;
+    for (u32 half = 0; half < opposites.size(); ++half) {
+        const Edge edge = make_edge(half_edges::start(fine, half), half_edges::end(fine, half));
+        if (opposites[half] < half || !std::ranges::binary_search(fine.sharp_edges, edge)) continue;
+        farthest =
+            std::max(farthest, distance_to(mesh, edges, (fine.positions[edge[0]] + fine.positions[edge[1]]) / 2));
+        const double cosine = normal(fine, half / 3).dot(normal(fine, opposites[half] / 3));
+        off.push_back(std::abs(std::asin(std::clamp(cosine, -1.0, 1.0))) * 180 / std::numbers::pi);
+    }
+    ASSERT_GT(off.size(), 1000u);
+    EXPECT_LT(farthest, max_error);
+    std::ranges::sort(off);
+    EXPECT_LT(off[off.size() / 2], 2);
+    EXPECT_LT(off[off.size() * 4 / 5], 5);
+}
 
 }  // namespace
 }  // namespace scanmill::test
