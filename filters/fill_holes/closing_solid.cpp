@@ -23,7 +23,7 @@ namespace scanmill {
 
 namespace {
 
-/// To get rid of edges of four triangles, by filling the cells around them. One or two suffice for real scans.
+/// To get rid of edges of four triangles, by filling the cells around them.
 constexpr int most_attempts = 20;
 
 /// Of a suggested triangle, as a share of its area: a fair filling is larger than the flattest one.
