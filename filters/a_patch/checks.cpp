@@ -73,9 +73,15 @@ private:
     bool is_sound_gap(u32 row) const {
         const double least = rounding * largest_weight(row);
         if (!is_sound_end(row, 1) || !is_sound_end(row, 2)) return false;
-        for (const double share : {0.02, 0.1, 0.25, 0.4, 0.6, 0.75, 0.9, 0.98})
-            for (const double across : {0.0, 0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9, 1.0})
+        // Rays from equal parts of the edge, and from near its ends.
+        constexpr int parts = 24;
+        for (int i = 0; i <= parts; ++i) {
+            const double share = std::clamp(static_cast<double>(i) / parts, 0.005, 0.995);
+            for (int k = 0; k <= parts; ++k) {
+                const double across = static_cast<double>(k) / parts;
                 if (!is_single(row, {0, 1 - share, share, 0}, {across, 0, 0, 1 - across}, least)) return false;
+            }
+        }
         return true;
     }
 
@@ -100,7 +106,7 @@ private:
 
     /// Pre: of the row and its partner this one is the continuation.
     bool is_sound_third(u32 row) const {
-        constexpr int grid = 6;
+        constexpr int grid = 12;
         const double least = rounding * largest_weight(row);
         const Barycentric apex(0, 0, 0, 1);
         for (int i = 0; i < grid; ++i)
