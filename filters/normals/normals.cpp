@@ -263,7 +263,7 @@ void require_usable(const PointCloud& cloud, const NormalsParams& params) {
 
 /// The column `approach` if the directions come from it; throws Error if it is not usable.
 const Column* sensor_column(const PointCloud& cloud, const NormalsParams& params) {
-    if (params.scanner || (params.orient != Orient::automatic && params.orient != Orient::sensor)) return nullptr;
+    if (params.scanner || params.orient == Orient::tree || params.orient == Orient::none) return nullptr;
     const Column* approach = cloud.columns.find("approach");
     if (approach && approach->components() != 3)
         throw Error("the column 'approach' has {} per point; 3 are needed, a direction to the scanner",
@@ -289,11 +289,25 @@ void report_doubts(const NormalsResult& result, std::size_t guessed, std::size_t
                         result.components, 100 * static_cast<double>(guessed) / static_cast<double>(positions)));
 }
 
+void report(const NormalsResult& result, Context& context) {
+    context.metric("oriented", static_cast<double>(result.oriented));
+    context.metric("by-sensor", static_cast<double>(result.by_sensor));
+    context.metric("doubtful", static_cast<double>(result.doubtful));
+    context.metric("components", static_cast<double>(result.components));
+    context.progress(1);
+}
+
 }  // namespace
 
 NormalsResult normals(const PointCloud& cloud, const NormalsParams& params, Context& context) {
     require_usable(cloud, params);
     const Column* approach = sensor_column(cloud, params);
+    if (params.orient == Orient::known && !approach && !params.scanner) {
+        NormalsResult unchanged;
+        unchanged.points = cloud;
+        report(unchanged, context);
+        return unchanged;
+    }
     context.check_cancelled();
     const PointTree tree(cloud.positions.span(), context.threads());
     const std::span<const Vec3> positions = tree.positions();
@@ -330,12 +344,7 @@ NormalsResult normals(const PointCloud& cloud, const NormalsParams& params, Cont
     }
     result.points = with_normals(cloud, tree.index_of_row(), field, sides, context);
     report_doubts(result, guessed, positions.size(), context);
-
-    context.metric("oriented", static_cast<double>(result.oriented));
-    context.metric("by-sensor", static_cast<double>(result.by_sensor));
-    context.metric("doubtful", static_cast<double>(result.doubtful));
-    context.metric("components", static_cast<double>(result.components));
-    context.progress(1);
+    report(result, context);
     return result;
 }
 

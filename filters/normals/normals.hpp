@@ -26,6 +26,7 @@ struct NormalsParams {
     enum class Orient {
         automatic,  ///< as sensor if there is a scanner's position or a column `approach`, else as tree
         sensor,  ///< towards the scanner
+        known,  ///< as sensor; without a scanner's position or a column `approach`, the points stay as they are
         tree,  ///< as the neighbours, along a spanning tree
         none  ///< one of the two, by with_positive_sign()
     };
@@ -35,7 +36,8 @@ struct NormalsParams {
 };
 
 struct NormalsResult {
-    /// The input with the column `normal` (3 × float32, unit length). An older one is replaced, with a warning.
+    /// The input with the column `normal` (3 × float32, unit length). An older one is replaced, with a warning. The
+    /// input itself with Orient::known, if no scanner is known.
     PointCloud points;
     /// Points whose side is decided: all, or with Orient::none 0.
     std::size_t oriented = 0;

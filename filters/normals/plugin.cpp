@@ -33,6 +33,9 @@ SCANMILL_FILTER() {
                   "`tree`."},
                  {"sensor", P::Orient::sensor,
                   "Towards the scanner; where the surface is seen edge-on, as the neighbours."},
+                 {"known", P::Orient::known,
+                  "As `sensor` if there is a column `approach` or a `scanner`; else the points stay as they are, for "
+                  "steps that can do without normals."},
                  {"tree", P::Orient::tree,
                   "As the neighbours, along a spanning tree from the highest point of every component, where up is "
                   "outside."},
@@ -40,7 +43,8 @@ SCANMILL_FILTER() {
                 "Which side is outside.")
         .param("scanner", &P::scanner,
                "x, y, z of the scanner, in the coordinates of the file, for a scan from one position.", size(3))
-        .metric("oriented", Unit::count, "Points whose side is decided: all, or none with `orient: none`.")
+        .metric("oriented", Unit::count,
+                "Points whose side is decided: all; none with `orient: none`, and if points stay as they are.")
         .metric("by-sensor", Unit::count, "Points that are turned towards the scanner.")
         .metric("doubtful", Unit::count,
                 "Points whose neighbours lie on one line, or most of whose neighbours have normals on the other side.",

@@ -145,8 +145,12 @@ SmoothResult smooth(const PointCloud& cloud, const SmoothParams& params, Context
     require_usable(cloud, params);
     context.check_cancelled();
     const PointTree tree(cloud.positions.span(), context.threads());
-    const Moves moves = moves_of(tree, params, context);
     const std::size_t positions = tree.positions().size();
+    if (positions < 6)
+        throw Error("the cloud has {} at {}; smoothing needs at least 6", count_text(cloud.size(), "point", "points"),
+                    count_text(positions, "distinct position", "distinct positions"))
+            .hint("`scanmill info` shows what a file contains");
+    const Moves moves = moves_of(tree, params, context);
     if (std::ranges::all_of(moves.flat, [](u8 it) { return it == 1; }))
         throw Error("the neighbours of none of the {} determine a surface: they are too few, or on a line",
                     count_text(positions, "position", "positions"))

@@ -133,6 +133,17 @@ TEST(Normals, Sensor_TurnsEveryPointToItsScanner) {
     EXPECT_EQ(result.metrics.find("by-sensor")->value, 200);
 }
 
+TEST(Normals, KnownOrientation_NeedsAScanner) {
+    const PointCloud cloud = sheet(6, 0);
+    const Estimated without = estimated(cloud, with(Orient::known));
+    EXPECT_EQ(without.points.columns.find("normal"), nullptr);
+    EXPECT_EQ(without.metrics.find("oriented")->value, 0);
+    NormalsParams params = with(Orient::known);
+    params.scanner = std::vector<Length>{Length(0.0), Length(0.0), Length(-9)};
+    const Estimated seen = estimated(cloud, params);
+    for (std::size_t row = 0; row < 36; ++row) EXPECT_EQ(seen.normal(row), Vec3(0, 0, -1));
+}
+
 TEST(Normals, ScannersPosition_IsInWorldCoordinates) {
     PointCloud cloud = sheet(6, 0);
     cloud.frame.origin = Vec3(1000, 0, 100);

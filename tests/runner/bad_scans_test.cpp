@@ -116,14 +116,12 @@ INSTANTIATE_TEST_SUITE_P(All, BadScanTest, testing::ValuesIn(bad_scans),
                          [](const auto& bad) { return bad.param.test_name; });
 
 TEST(BadScan, RawScans_WithoutASurface_SaysOneClearSentence) {
-    std::string far_apart, line;
-    for (int i = 0; i < 60; ++i) far_apart += fmt::format("{} {} {}\n", i * i * i % 977, i * i % 983, i * 31 % 991);
+    std::string line;
     for (int i = 0; i < 400; ++i) line += fmt::format("{} {} 0\n", 0.1 * i, 0.2 * i);
     const std::string surface = "determine a surface: they are too few, or on a line";
     const std::vector<BadScan> scans{
-        {"AllOutliers", "outliers.xyz", far_apart, {"60", surface}},
         {"Line", "line.xyz", line, {"400", surface}},
-        {"OnePosition", "one.xyz", repeated("1 2 3\n", 50), {"50 points", "one position"}}};
+        {"OnePosition", "one.xyz", repeated("1 2 3\n", 50), {"50 points at 1 distinct position"}}};
     for (const BadScan& bad : scans) {
         const TemporaryFolder folder;
         folder.write(bad.file, bad.content);
@@ -133,6 +131,18 @@ TEST(BadScan, RawScans_WithoutASurface_SaysOneClearSentence) {
         expect_one_clear_sentence(ran, "raw-scans", bad.parts);
         EXPECT_FALSE(std::filesystem::exists(folder / "out/raw-scans.ply")) << bad.test_name;
     }
+}
+
+TEST(BadScan, RawScans_OfOutliersAlone_AreDoubtful) {
+    std::string far_apart;
+    for (int i = 0; i < 60; ++i) far_apart += fmt::format("{} {} {}\n", i * i * i % 977, i * i % 983, i * 31 % 991);
+    const TemporaryFolder folder;
+    folder.write("outliers.xyz", far_apart);
+    const std::string workflow = std::string(SCANMILL_SOURCE_DIR) + "/workflows/raw-scans.yaml";
+    const ProgramResult ran =
+        scanmill_program({"run", workflow, "outliers.xyz", "-o", "out"}, {.folder = folder.path(), .environment = {}});
+    EXPECT_THAT(ran.err, HasSubstr("they form no surface at that size"));
+    EXPECT_THAT(ran.out, HasSubstr("1 of 1 doubtful"));
 }
 
 TEST(BadScan, Folder_IsRefused) {

@@ -21,7 +21,7 @@ TEST(Readers_RealScan, RawRangeScan_IsAPointCloudWithoutItsGrid) {
     SCANMILL_REAL_SCAN(path, shared_data, "1-bunny/raw/bun000.ply");
     Warnings warnings;
     EXPECT_EQ(read_file(path, warnings.reading()).value.get<PointCloud>()->size(), 40256u);
-    EXPECT_THAT(warnings.sentences, testing::ElementsAre(testing::HasSubstr("204800 rows")));
+    EXPECT_THAT(warnings.sentences, testing::ElementsAre(testing::HasSubstr("204800 cells")));
 }
 
 TEST(Readers_RealScan, FemurStl_IsClosed_ByEulersFormula) {

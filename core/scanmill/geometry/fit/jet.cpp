@@ -30,12 +30,14 @@ Jet fit_jet(std::span<const Vec3> offsets, std::span<const double> weights) {
     if (!(size > 0)) return jet;
     Eigen::Matrix<double, Eigen::Dynamic, coefficients> rows(count, coefficients);
     Eigen::VectorXd heights(count);
+    double distances = 0;
     for (Eigen::Index i = 0; i < count; ++i) {
         const Vec3 offset = offsets[static_cast<std::size_t>(i)] / size;
         const double x = offset.dot(u), y = offset.dot(v);
         const double weight = weights.empty() ? 1 : std::sqrt(weights[static_cast<std::size_t>(i)]);
         rows.row(i) << weight, weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y;
         heights[i] = weight * offset.dot(normal);
+        distances += weight * weight * offset.squaredNorm();
     }
     Eigen::ColPivHouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, coefficients>> solver;
     solver.setThreshold(least_pivot);
@@ -45,7 +47,7 @@ Jet fit_jet(std::span<const Vec3> offsets, std::span<const double> weights) {
     jet.offset = size * fit[0] * normal;
     jet.normal = with_positive_sign((normal - fit[1] * u - fit[2] * v).normalized());
     jet.is_curved = true;
-    jet.error = (rows * fit - heights).norm() / rows.col(0).norm();
+    jet.error = (rows * fit - heights).norm() / std::sqrt(distances);
     return jet;
 }
 

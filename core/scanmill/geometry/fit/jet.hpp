@@ -20,7 +20,7 @@ struct Jet {
     /// False if the points do not determine the polynomial: fewer than 6, or all near one conic of the plane. The
     /// result is then that of the plane that fits the points best.
     bool is_curved;
-    /// Root of the mean square of the (weighted) errors, as a share of that of the distances to the first point: about
+    /// Root of the (weighted) mean square of the errors, as a share of that of the distances to the first point: about
     /// 0.5 for points that fill a ball. 0 unless the polynomial is determined.
     double error = 0;
 };
