@@ -190,7 +190,8 @@ inline std::optional<Vec3> point_on_ray(const PatchComplex& patches, u32 tet, co
         changes += above != before;
         before = above;
     }
-    EXPECT_EQ(changes, 1) << "tetrahedron " << tet << " of kind " << static_cast<int>(patches.kinds[tet]);
+    EXPECT_EQ(changes, 1) << "tetrahedron " << tet << " of kind " << static_cast<int>(patches.kinds[tet]) << " from "
+                          << from.transpose() << " to " << to.transpose();
     double low = 0, high = 1;
     while (true) {
         const double middle = (low + high) / 2;
