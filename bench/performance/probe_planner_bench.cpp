@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
     ContextOptions options;
     options.threads = argc > 2 ? static_cast<unsigned>(std::stoi(argv[2])) : 2;
     const TriangleMesh mesh = blocks();
-    const FeatureGraph features = find_features(mesh, {}, 1).graph;
+    const FeatureGraph features = find_features(mesh, {}, Execution()).graph;
     for (const double spacing : {0.64, 0.064}) {
         ProbePlannerParams params;
         params.radius = 0.5;

@@ -33,7 +33,10 @@ angle. The ranges are those of directions from which a ball of radius {radius} m
 reference point is within {error} of the edge, in degrees from the axis. Scanmill's columns are medians over the touches
 that probe-planner plans from a virtual scan, thinned and triangulated, as far as the mesh has both faces there; the
 interior angle is measured on the mesh. The scan has eight views, one from each octant, with rays {resolution} apart; the
-voxels have an edge of {bin_size}. All other settings are the defaults (wang-probing.yaml)."""
+voxels have an edge of {bin_size}. Touches are 10 apart, and may be tilted by up to 180 degrees (`spacing: 10 u`,
+`max-tilt: 180 deg`). All other settings are the defaults (wang-probing.yaml). Touches with a range are those that have
+a range for every reference point within the error, and both faces in the mesh; expected are the length of the edge
+divided by the spacing. All touches contain those at the tips of cones, which are blunt in a mesh."""
 
 
 def printed_line(name):

@@ -13,11 +13,13 @@ import paper_wang as paper
 from tables import scanmill
 
 HEADER = ["table", "body", "height, radius", "thesis: range", "centre", "half", "equation 5.7: centre", "half", "range",
-          "Scanmill, from a scan: interior angle (true)", "centre", "half", "touches"]
+          "Scanmill, from a scan: interior angle (true)", "centre", "half", "touches: with a range / all / expected"]
 #: A measured interior angle that is further off, in degrees, is remarked on.
 NEAR = 1
 
 RESOLUTION, BIN_SIZE = 0.25, 1
+#: Between touches, as in wang-probing.yaml.
+SPACING = 10
 VIEWS = "[" + ", ".join(f"{x}, {y}, {z}" for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)) + "]"
 
 
@@ -37,6 +39,11 @@ def centre(case):
 def half_range(case):
     """Equation 5.7: acos(t / r) - alpha / 2, in degrees."""
     return math.degrees(math.acos(paper.REFERENCE_ERROR / paper.PROBE_RADIUS)) - interior_angle(case) / 2
+
+
+def expected_touches(case):
+    """On the circular edge."""
+    return round(2 * math.pi * case.radius / SPACING)
 
 
 def in_the_tables_angle(direction):
@@ -89,7 +96,7 @@ def row(case, entry):
             f"{case.centre:.2f}", f"{case.half:.2f}", f"{formula:.2f}", f"{half:.2f}",
             f"{formula - half:.2f} to {formula + half:.2f}",
             f"{entry['interior_angle']:.1f} ({interior_angle(case):.1f})", f"{entry['centre']:.1f}",
-            f"{entry['half']:.1f}", entry["ranges"]]
+            f"{entry['half']:.1f}", f"{entry['ranges']} / {entry['touches']} / {expected_touches(case)}"]
 
 
 def rows(entries):
@@ -113,6 +120,16 @@ def about_the_mesh(entries):
                    f"planned than are safe." if far else ".")
 
 
+def about_the_touches(entries):
+    """Rows with few touches that have a range."""
+    few = [(case, entry) for case, entry in zip(paper.PROBING, entries)
+           if entry["ranges"] < expected_touches(case) / 2]
+    return [f"**Few touches**: {case.height}, {case.radius} of table {case.table} has a range at {entry['ranges']} of "
+            f"{entry['touches']} touches; the edge's length gives {expected_touches(case)}. An interior angle of "
+            f"{interior_angle(case):.0f} degrees is found as a sharp edge only in parts of the mesh, so the medians are of "
+            f"few touches." for case, entry in few]
+
+
 def remarks(entries):
     """What agrees and what does not, with numbers."""
     apart = [abs(case.centre - centre(case)) for case in paper.PROBING]
@@ -131,4 +148,5 @@ def remarks(entries):
         f"{paper.REFERENCE_ERROR}. The equation gives them with t / r from {least:.3f} to {largest:.3f} instead of "
         f"{stated:.2f}. Scanmill follows the equation, which a simulation of the moving ball confirms.",
         about_the_mesh(entries),
+        *about_the_touches(entries),
     ]

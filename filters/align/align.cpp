@@ -203,12 +203,18 @@ void require_same_side(const PointCloud& source, const PointCloud& target, std::
                        const Matrix3& rotation) {
     const std::optional<Points> before = normals_of(source), after = normals_of(target);
     if (!before || !after) return;
-    for (std::size_t row = 0; row < partner.size(); ++row)
-        if (!((rotation * (*before)[partner[row]]).dot((*after)[row]) < 0)) return;
+    std::size_t compared = 0;
+    for (std::size_t row = 0; row < partner.size(); ++row) {
+        const Vec3 &one = (*before)[partner[row]], &other = (*after)[row];
+        if (one.isZero(0) || other.isZero(0)) continue;
+        if (!((rotation * one).dot(other) < 0)) return;
+        ++compared;
+    }
+    if (compared == 0) return;
     throw Error(
-        "the normals of all {} pairs point to opposite sides after the motion: the target is a mirror image of "
+        "the normals of all {} pairs{} point to opposite sides after the motion: the target is a mirror image of "
         "the source",
-        partner.size())
+        compared, compared < partner.size() ? " that have them" : "")
         .hint("the points of one file run the other way round; exchange its rows");
 }
 
@@ -219,8 +225,9 @@ Vec3 area_of(const Points& corners) {
     return area;
 }
 
-/// The normal of the plane through the corners, whatever their order: of the largest of the three possible polygons.
-Vec3 plane_normal(const Points& c, std::string_view port) {
+/// The area vector of the largest of the three polygons through the corners. It does not depend on their order, except
+/// for its sign.
+Vec3 largest_area(const Points& c, std::string_view port) {
     Vec3 largest = Vec3::Zero();
     for (const Points& order :
          {Points{c[0], c[1], c[2], c[3]}, Points{c[0], c[2], c[1], c[3]}, Points{c[0], c[1], c[3], c[2]}})
@@ -228,27 +235,35 @@ Vec3 plane_normal(const Points& c, std::string_view port) {
     if (const double extent = extent_of(c); !(largest.norm() > rounding * extent * extent))
         throw Error("the four corners at '{}' lie on one line", port)
             .hint("give the four different corners of a rectangle");
-    return largest.normalized();
+    return largest;
 }
 
-Vec3 up_of(const PointCloud& cloud, const Points& corners, const Vec3& otherwise, std::string_view port) {
-    Vec3 up = otherwise;
-    std::string_view name = "`up`";
-    if (const std::optional<Points> normals = normals_of(cloud)) {
-        const Vec3 mean = mean_of(*normals);
-        if (mean.norm() > 0) {
-            up = mean;
-            name = "the mean normal of the corners";
-        }
+/// Whether the rows of four corners go once around: of corners row by row, whose polygon crosses itself, only noise
+/// gives the area a sign.
+bool goes_around(const Vec3& area, const Vec3& largest) { return area.norm() > 0.5 * largest.norm(); }
+
+/// The unit normal of the plate on its upper side. See the contract for what decides.
+Vec3 up_of(const PointCloud& cloud, const Points& corners, const std::optional<Vec3>& given, bool rows_decide,
+           std::string_view port) {
+    const Vec3 largest = largest_area(corners, port), normal = largest.normalized(), by_rows = area_of(corners);
+    std::vector<std::pair<std::string_view, Vec3>> directions;  // the first one that decides
+    if (const std::optional<Points> normals = normals_of(cloud))
+        if (const Vec3 mean = mean_of(*normals); mean.norm() > 0)
+            directions.emplace_back("the mean normal of the corners", mean);
+    const bool has_normals = !directions.empty();
+    if (given) directions.emplace_back("`up`", *given);
+    if (!has_normals && rows_decide && goes_around(by_rows, largest))
+        directions.emplace_back("the order of the rows", by_rows);
+    if (directions.empty()) directions.emplace_back("`up`", Vec3::UnitZ());
+    const auto cosine_of = [&](const Vec3& up) { return normal.dot(up.normalized()); };
+    for (const auto& [name, up] : directions) {
+        constexpr double least = 0.5;  // of 60 degrees
+        if (const double cosine = cosine_of(up); std::abs(cosine) >= least) return cosine > 0 ? normal : Vec3(-normal);
     }
-    const Vec3 normal = plane_normal(corners, port);
-    const double cosine = normal.dot(up.normalized());
-    constexpr double least = 0.5;  // of 60 degrees
-    if (!(std::abs(cosine) >= least))
-        throw Error("{} is {:.3g} deg off the normal of the plate at '{}'; at most 60 deg decide which side is up",
-                    name, std::acos(std::min(1.0, std::abs(cosine))) * 180 / std::numbers::pi, port)
-            .hint("give `up`, a direction that points away from the plate's upper side");
-    return cosine > 0 ? normal : Vec3(-normal);
+    const auto& [name, up] = directions.front();
+    throw Error("{} is {:.3g} deg off the normal of the plate at '{}'; at most 60 deg decide which side is up", name,
+                std::acos(std::min(1.0, std::abs(cosine_of(up)))) * 180 / std::numbers::pi, port)
+        .hint("give `up`, a direction that points away from the plate's upper side");
 }
 
 /// The rows in counter-clockwise order seen from `up`, beginning with row 0.
@@ -316,13 +331,13 @@ std::vector<u32> partners_in_rectangle(const PointCloud& source, const PointClou
     if (source.size() != 4)
         throw Error("the source and the target have {} points each; a rectangle has 4 corners", source.size())
             .hint("`correspondence: rows` aligns any number of pairs");
-    const Vec3 given_up = direction_of(params.up, "`up`");
+    std::optional<Vec3> up;
+    if (params.up) up = direction_of(*params.up, "`up`");
     const std::string_view unit = symbol(source.frame.unit);
     const Points from = points_of(source), to = points_of(target);
     const Points from_centre = about(from, mean_of(from)), to_centre = about(to, mean_of(to));
-    const Vec3 by_order = area_of(from_centre);
-    const Vec3 source_up = up_of(source, from_centre, by_order.norm() > 0 ? by_order : given_up, "source");
-    const Vec3 target_up = up_of(target, to_centre, given_up, "target");
+    const Vec3 source_up = up_of(source, from_centre, up, true, "source");
+    const Vec3 target_up = up_of(target, to_centre, up, false, "target");
     const std::array<u32, 4> from_order = order_around(from_centre, source_up, "source");
     const std::array<u32, 4> to_order = order_around(to_centre, target_up, "target");
     const std::size_t first = corner_near(from, from_order, first_corner_of(params) - source.frame.origin, unit);
@@ -407,8 +422,8 @@ AlignResult align(const PointCloud& source, const PointCloud& target, const std:
     require_same_side(source, target, result.partner, fit.rotation);
     if (!source.frame.name.empty() && source.frame.name == target.frame.name)
         context.warn(
-            fmt::format("source and target are both in the frame '{}': nothing prevents that the transform is "
-                        "applied twice",
+            fmt::format("source and target are both in the frame '{}': a second application of the transform "
+                        "cannot be detected",
                         source.frame.name));
 
     result.transform.rotation = fit.rotation;

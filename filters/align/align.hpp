@@ -24,8 +24,9 @@ struct AlignParams {
     /// Rectangle: three world coordinates in the source, near the corner that belongs to the first target point. A
     /// rectangle is its own image after half a turn; this decides which of the two is meant.
     std::optional<std::vector<Length>> first_corner;
-    /// Rectangle: points away from the upper side of a plate without a column `normal`.
-    std::vector<double> up = {0, 0, 1};
+    /// Rectangle: points away from the upper side of a plate without a column `normal`, in the source as in the target.
+    /// Absent: the order of the source's rows decides, else (0, 0, 1).
+    std::optional<std::vector<double>> up;
 };
 
 /// What `error_at_part` is computed for.
@@ -56,17 +57,20 @@ struct AlignResult {
 /// centroid, [v] the cross-product matrix, J = sum(|c|² I - c c^T) over c = a_i - m, and sigma² = sum|residual|² /
 /// (3 n - 6). The farther the part stands from the pairs, the larger it is, whatever the residuals are.
 ///
-/// Rectangle: both corner lists are brought in counter-clockwise order seen from their upper sides: of the mean of the
-/// column `normal`, else of `up`, which for a source without normals is replaced by the order of its rows. Then the
-/// source corner nearest to `first_corner` belongs to the first target point. Ties: of equally near corners none is
-/// chosen; that is refused.
+/// Rectangle: both corner lists are brought in counter-clockwise order seen from their upper sides. The upper side is
+/// that of the mean of the column `normal`; else that of `up`, if it is given; else, of the source, the side from which
+/// its rows go counter-clockwise, if they go once around (the area of the polygon is more than half of that of the
+/// largest of the three possible ones); else that of (0, 0, 1). A direction more than 60 degrees off the plate's normal
+/// does not decide: the next one does, but the rows only where there are no normals. The source corner nearest to
+/// `first_corner` belongs to the first target point. Ties: of equally near corners none is chosen; that is refused.
 ///
 /// Throws Error for fewer than 3 pairs, different numbers of points, NaN or infinite coordinates, different units; for
 /// pairs that fit ten times better after mirroring; for pairs that leave the rotation uncertain by more than 1 degree
-/// (standard error), as all pairs on a line do; for rows whose normals all point to opposite sides after the motion;
-/// for a part in another frame than the source. Rectangle: other numbers than 4 corners, no `first_corner`, one that is
-/// not nearer than half the shorter side to a corner, corners that do not go once around a centre, an upper side that
-/// cannot be decided, and sides that fit another choice of the corner better.
+/// (standard error), as all pairs on a line do; for rows whose normals all point to opposite sides after the motion
+/// (without rows that have no normal, or NaN); for a part in another frame than the source. Rectangle: other numbers
+/// than 4 corners, no `first_corner`, one that is not nearer than half the shorter side to a corner, corners that do
+/// not go once around a centre, an upper side that cannot be decided, and sides that fit another choice of the corner
+/// better.
 ///
 /// Cost: O(n). Metrics: `rms`, `largest-residual`, `residual` (numbered, of the first 100 target rows), `scale` if it
 /// is reported, `error-at-part` if there is a part.

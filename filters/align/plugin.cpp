@@ -23,7 +23,7 @@ std::optional<AlignPart> part_at(const Inputs& inputs) {
 
 SCANMILL_FILTER() {
     using P = AlignParams;
-    return Declare<P>("align", 1)
+    return Declare<P>("align", 2)
         .summary("Finds the rigid motion that carries points onto corresponding points.")
         .source("Kabsch 1978; Umeyama 1991; Wang 2006, chapter 5")
         .ties("A `first-corner` that is equally near to two corners is refused.")
@@ -45,8 +45,12 @@ SCANMILL_FILTER() {
         .param("first-corner", &P::first_corner,
                "x, y, z of a rough position in the source of the corner that belongs to the first target point.",
                size(3))
-        .param("up", &P::up,
-               "Rectangle: a direction away from the upper side of a plate, where the points have no normals.", size(3))
+        .param(
+            "up", &P::up,
+            "Rectangle: a direction away from the upper side of a plate whose points have no normals, in the source as "
+            "in the target. Without it, a source whose rows go around the plate has them counter-clockwise seen from "
+            "above, and other plates face (0, 0, 1).",
+            size(3))
         .metric("rms", Unit::length, "Distance of the target points from their moved partners, root mean square.",
                 headline, smaller_is_better)
         .metric("largest-residual", Unit::length,

@@ -136,7 +136,7 @@ std::optional<std::array<double, 2>> sides_of(const PlateCornersParams& params) 
                       positive((*params.sides)[1], "a length of `sides`")};
 }
 
-/// Sum of the normals at the rows; zero without a column of normals.
+/// Unit mean of the normals at the rows; zero without a column of normals.
 Vec3 mean_normal(const PointCloud& cloud, std::span<const u32> rows) {
     const Column* column = cloud.columns.find("normal");
     Vec3 sum = Vec3::Zero();

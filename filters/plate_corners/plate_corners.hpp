@@ -39,14 +39,14 @@ struct PlateCornersResult {
 
 /// 1. The plane with the most points within `tolerance`, by random samples, then by least squares until its points stay
 ///    the same.
-/// 2. Of the points on it those that belong to a group of at least 2 % of them; groups are apart by more than a
-///    hundredth of the extent and four times the spacing.
+/// 2. Of the points on it those that belong to a group of at least 2 % of them; the gap between two groups is larger
+///    than a hundredth of the extent and than four times the spacing.
 /// 3. The rectangle of smallest area around them, only as a start. Each of its sides is cut into strips, without the
 ///    tenth at either end, and the outermost point of every strip is taken.
 /// 4. The line through most of these points within `tolerance` and one spacing, then by least squares. A side is found
 ///    if at least half of its strips are on the line.
-/// 5. The border is beyond the outermost points. The line is moved out by the distance for which the number of points
-///    under it, by depth, is that of a constant density.
+/// 5. The border is beyond the outermost points. The line is moved outwards until the number of points within each
+///    depth below it is that of a constant density.
 /// 6. Neighbouring sides are intersected. With `sides`, the rectangle of this size that fits the corners best replaces
 ///    them.
 /// If that fails, the points of the plane are left out, and the next plane is tried, at most three in all; the error of

@@ -32,7 +32,7 @@ constexpr double largest_skew_cosine = 0.0871557427476582;  // of 85 degrees
 double square(double x) { return x * x; }
 
 double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-/// By a right angle to the right: outwards of a side that is passed counter-clockwise.
+/// Turned clockwise by 90 degrees: the outward direction of a side of a counter-clockwise polygon.
 Vec2 outwards(const Vec2& direction) { return {direction.y(), -direction.x()}; }
 
 /// Counter-clockwise, without points on its edges (Andrew 1979).

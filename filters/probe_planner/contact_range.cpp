@@ -50,10 +50,6 @@ double arc_cosine(double cosine) { return angle_of(cosine, std::sqrt(std::max(0.
 
 bool is_empty(const AngleRange& range) { return !(range.min <= range.max); }
 
-bool contains(const AngleRange& range, double phi) {
-    return phi >= range.min - angle_rounding && phi <= range.max + angle_rounding;
-}
-
 AngleRange range_of_disc(double alpha, double radius, double error) {
     const double most = arc_cosine(error / radius) - alpha / 2;
     return range_between(-most, most);

@@ -31,7 +31,6 @@ Turn turn_of(double angle);
 double arc_cosine(double cosine);
 
 bool is_empty(const AngleRange& range);
-bool contains(const AngleRange& range, double phi);
 
 /// The directions that meet the edge first for every T with |T| <= error: |phi| <= acos(error / radius) - alpha/2.
 /// Empty if there is none. Pre: 0 <= error <= radius, 0 < alpha < pi.

@@ -30,6 +30,28 @@ void require_unit(const Vec3& normal, u32 line, u32 segment, const char* side) {
             .hint("make the features again: `features`, or region-grow's port `features`");
 }
 
+/// Throws unless the arrays fit, of lines that are not chosen, too: whether lines meet depends on all of them.
+void require_consistent(const FeatureGraph& graph) {
+    if (graph.left_normals.size() != graph.vertices.size() || graph.right_normals.size() != graph.vertices.size())
+        throw Error("the features have {} left and {} right normals for {} vertices of lines",
+                    graph.left_normals.size(), graph.right_normals.size(), graph.vertices.size())
+            .hint(damaged);
+    for (u32 row = 0; row < graph.polylines.size(); ++row) {
+        const FeaturePolyline& polyline = graph.polylines[row];
+        const u32 least = polyline.closed ? 3 : 2;
+        if (polyline.begin > polyline.end || polyline.end > graph.vertices.size() ||
+            polyline.end - polyline.begin < least)
+            throw Error("line {} names the vertices {} to {} of {}; a line needs at least {}", row, polyline.begin,
+                        polyline.end, graph.vertices.size(), least)
+                .hint(damaged);
+        for (u32 i = polyline.begin; i < polyline.end; ++i)
+            if (graph.vertices[i] >= graph.positions.size())
+                throw Error("line {} names the point {}; there are {}", row, graph.vertices[i], graph.positions.size())
+                    .hint(damaged);
+    }
+}
+
+/// Pre: require_consistent().
 Line read_line(const FeatureGraph& graph, u32 row) {
     const FeaturePolyline& polyline = graph.polylines[row];
     Line line;
@@ -40,15 +62,8 @@ Line read_line(const FeatureGraph& graph, u32 row) {
         throw Error("line {} is an open {} with {} vertices; boundaries of a mesh are closed", row, name_of(line.type),
                     polyline.end - polyline.begin)
             .hint("make the features again from a mesh, or probe creases alone: features: creases");
-    const u32 least = line.closed ? 3 : 2;
-    if (polyline.begin > polyline.end || polyline.end > graph.vertices.size() || polyline.end - polyline.begin < least)
-        throw Error("line {} names the vertices {} to {} of {}; a line needs at least {}", row, polyline.begin,
-                    polyline.end, graph.vertices.size(), least)
-            .hint(damaged);
     for (u32 i = polyline.begin; i < polyline.end; ++i) {
         const u32 vertex = graph.vertices[i];
-        if (vertex >= graph.positions.size())
-            throw Error("line {} names the point {}; there are {}", row, vertex, graph.positions.size()).hint(damaged);
         if (!graph.positions[vertex].allFinite())
             throw Error("vertex {} of line {} is not finite", i - polyline.begin, row)
                 .hint("make the features again from a mesh without NaN");
@@ -131,11 +146,7 @@ bool is_chosen(FeatureType type, const LineChoice& choice) {
 }  // namespace
 
 std::vector<Line> chosen_lines(const FeatureGraph& features, const LineChoice& choice) {
-    if (features.left_normals.size() != features.vertices.size() ||
-        features.right_normals.size() != features.vertices.size())
-        throw Error("the features have {} left and {} right normals for {} vertices of lines",
-                    features.left_normals.size(), features.right_normals.size(), features.vertices.size())
-            .hint(damaged);
+    require_consistent(features);
     std::vector<Line> lines;
     std::array<std::size_t, 3> counts{};
     for (u32 row = 0; row < features.polylines.size(); ++row) {

@@ -6,15 +6,14 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = ProbePlannerParams;
-    return Declare<P>("probe-planner", 2)
+    return Declare<P>("probe-planner", 3)
         .summary("Plans where and from which direction a touch probe measures the edges of a part, and proves it.")
         .source("Wang 2006, chapter 5; both faces in closed form, collisions and order are our own")
         .ties("Of phi and -phi the one towards the left face; of equally near lines and touches the lower one.")
         .not_finite("Refused: the line and segment, or the vertex of the mesh, are named.")
-        .in<FeatureGraph>(
-            "features",
-            "Lines with the normals on both sides; best region-grow's own, which knows the normals beyond "
-            "patch edges.")
+        .in<FeatureGraph>("features",
+                          "Lines with the normals on both sides; best region-grow's own, which contains the normals "
+                          "beyond patch edges.")
         .made_by("region-grow")
         .in<TriangleMesh>("mesh", "The part, which ball and stylus must not meet elsewhere.")
         .out<ProbePlan>("probes", "A touch for every reference point, with those that cannot be made and why.")
@@ -50,8 +49,10 @@ SCANMILL_FILTER() {
                 "The lines that are probed.")
         .param(
             "directions", &P::directions,
-            "2: two touches of each reference point from both sides of the bisector, where that leaves 10 deg between "
-            "them; together they measure the edge exactly.",
+            "2: two touches of each reference point from both sides of the bisector, which together measure the edge "
+            "exactly. Where the range leaves less than 10 deg between them, or one of them is too tilted, obstructed "
+            "or "
+            "too narrow, the point gets one touch and counts as `single`.",
             at_least(1), at_most(2))
         .metric("touches", Unit::count, "Touches, with those that cannot be made.", headline)
         .metric("assumed", Unit::count, "Touches beyond whose edge there is no surface: a right angle is assumed.")
@@ -68,14 +69,16 @@ SCANMILL_FILTER() {
                 "unless `approach` is given.",
                 headline, smaller_is_better)
         .metric("wrong-contacts", Unit::count,
-                "Touches whose ball, moved against the mesh, meets it too far from the reference point; 0 unless "
-                "`approach` is given.",
+                "Touches whose ball, moved against the mesh, does not meet it near the reference point first, or whose "
+                "stylus does; 0 unless `approach` is given.",
                 smaller_is_better)
         .metric("travel", Unit::length, "Length of all moves, approaches included.", headline, smaller_is_better)
         .metric("edge-roughness", Unit::length,
                 "How far the lines' vertices are beside smooth curves (95 % quantile); a part of scanner-error.",
                 smaller_is_better)
         .metric("paired-lines", Unit::count, "Pairs of lines of two patches along one edge, which is probed once.")
+        .metric("single", Unit::count, "Reference points with one touch although two were asked for.",
+                smaller_is_better)
         .run([](const Inputs& inputs, const P& params, Context& context) {
             return Outputs().set("probes", probe_planner(inputs.get<FeatureGraph>("features"),
                                                          inputs.get<TriangleMesh>("mesh"), params, context)

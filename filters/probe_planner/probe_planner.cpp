@@ -27,6 +27,8 @@ using namespace probing;
 constexpr double pi = std::numbers::pi, degree = pi / 180;
 /// Angles and cosines that exceed a limit by this do not, so that rounding does not exclude axis-parallel approaches.
 constexpr double rounding = 1e-9;
+/// Tried positions of T for each touch.
+constexpr int false_trials = 1000;
 
 struct Settings {
     Probe probe;
@@ -40,7 +42,8 @@ struct Settings {
 double require_length(const char* name, const Length& length, bool may_be_zero) {
     const double value = length.value();
     if (!(may_be_zero ? value >= 0 : value > 0) || !std::isfinite(value))
-        throw Error("{} must be {} 0; it is {} u", name, may_be_zero ? "at least" : "above", number_text(value));
+        throw Error("{} must be {} 0; it is {} u", name, may_be_zero ? "at least" : "above", number_text(value))
+            .hint(fmt::format("give a finite length {} 0", may_be_zero ? "of at least" : "above"));
     return value;
 }
 
@@ -73,15 +76,18 @@ Settings settings_of(const ProbePlannerParams& params) {
     if (params.approach) {
         settings.approach = params.approach->in_radians();
         if (!(std::abs(*settings.approach) <= pi / 2 + rounding))
-            throw Error("approach must be from -90 to 90 deg; it is {}", params.approach->text());
+            throw Error("approach must be from -90 to 90 deg; it is {}", params.approach->text())
+                .hint("0 deg is the bisector of the faces; auto is the smallest safe angle of each touch");
     }
     const double tilt = params.max_tilt.in_radians();
     if (!(tilt >= 0 && tilt <= pi + rounding))
-        throw Error("max-tilt must be from 0 to 180 deg; it is {}", params.max_tilt.text());
+        throw Error("max-tilt must be from 0 to 180 deg; it is {}", params.max_tilt.text())
+            .hint("90 deg, the default, excludes approaches from below; 180 deg allows all");
     settings.least_cosine = turn_of(std::min(tilt, pi)).cosine - rounding;
     probe.axis = direction_of(params.machine_axis, "machine-axis");
     if (params.directions != 1 && params.directions != 2)
-        throw Error("directions must be 1 or 2; it is {}", params.directions);
+        throw Error("directions must be 1 or 2; it is {}", params.directions)
+            .hint("2 measures an edge across the approach, too");
     settings.two_directions = params.directions == 2;
     if (settings.two_directions && settings.approach)
         throw Error("directions: 2 chooses both approaches; approach gives one")
@@ -103,18 +109,22 @@ void require_same_frame(const Frame& features, const Frame& mesh) {
 
 /// The mesh relative to the origin of the features.
 TriangleMesh mesh_beside(const TriangleMesh& mesh, const Frame& frame) {
-    require_consistent(mesh);
+    try {
+        require_consistent(mesh);
+    } catch (Error& error) {
+        if (error.hint().empty()) error.set_hint("the mesh is damaged: make it again");
+        throw;
+    }
     if (mesh.triangles.empty())
         throw Error("the mesh has no triangles: collisions cannot be checked").hint("wire the mesh of the features");
     TriangleMesh moved;
     moved.triangles = mesh.triangles;
     const Vec3 shift = mesh.frame.origin - frame.origin;
     Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
-    for (const Triangle& triangle : mesh.triangles)
-        for (const u32 vertex : triangle)
-            if (!positions[vertex].allFinite())
-                throw Error("vertex {} of the mesh is not finite", vertex)
-                    .hint("remove the triangles at such vertices");
+    for (std::size_t vertex = 0; vertex < positions.size(); ++vertex)
+        if (!positions[vertex].allFinite())
+            throw Error("vertex {} of the mesh is not finite", vertex)
+                .hint("remove such vertices and the triangles at them");
     for (Vec3& position : positions) position += shift;
     moved.positions = std::move(positions);
     return moved;
@@ -163,16 +173,16 @@ public:
         return refused(reason);
     }
 
-    /// T for trial `trial`: uniform in the disc of the scanner's error, or on the left face.
+    /// Sets the touch's false share: the share of random positions of T, uniform in the disc of the scanner's error or
+    /// on the left face, for which a face is met first.
     static void try_positions(const Settings& settings, const ReferencePoint& reference, ProbeTouch& touch,
                               Random random) {
-        constexpr int trials = 1000;
         const EdgeFirst edge_first(touch.interior_angle, settings.probe.radius, touch.phi);
         const bool on_face = is_empty(touch.range) && touch.assumed;
         const Vec2 face = on_left_face(touch.interior_angle, 1);
         const double beyond = std::min(reference.beyond, settings.error);
         int missed = 0;
-        for (int trial = 0; trial < trials; ++trial) {
+        for (int trial = 0; trial < false_trials; ++trial) {
             Vec2 position;
             if (on_face) {
                 position = random.uniform(-beyond, settings.error) * face;
@@ -183,7 +193,7 @@ public:
             }
             missed += !edge_first(position);
         }
-        touch.false_share = missed / static_cast<double>(trials);
+        touch.false_share = missed / static_cast<double>(false_trials);
     }
 
 private:
@@ -272,8 +282,10 @@ private:
     ProbeTouch touch_;
 };
 
-void count(ProbePlannerResult& result) {
-    for (const ProbeTouch& touch : result.plan.touches) {
+void count(ProbePlannerResult& result, bool two_directions) {
+    const std::vector<ProbeTouch>& touches = result.plan.touches;
+    for (std::size_t row = 0; row < touches.size(); ++row) {
+        const ProbeTouch& touch = touches[row];
         result.assumed += touch.assumed;
         switch (touch.reason) {
             case ProbeReason::none: break;
@@ -286,7 +298,10 @@ void count(ProbePlannerResult& result) {
             ++result.unreachable;
             continue;
         }
-        result.false_touches += static_cast<std::size_t>(std::lround(touch.false_share * 1000));
+        const bool is_one_of_two = (row > 0 && touches[row - 1].touch == touch.touch) ||
+                                   (row + 1 < touches.size() && touches[row + 1].touch == touch.touch);
+        result.single += two_directions && !is_one_of_two;
+        result.false_touches += static_cast<std::size_t>(std::lround(touch.false_share * false_trials));
         result.wrong_contacts += touch.contact != ProbeContact::edge;
     }
 }
@@ -302,7 +317,8 @@ void report(const ProbePlannerResult& result, const Settings& settings, Context&
                                                           {"too-tilted", result.too_tilted},
                                                           {"false-touches", result.false_touches},
                                                           {"wrong-contacts", result.wrong_contacts},
-                                                          {"paired-lines", result.paired_lines}};
+                                                          {"paired-lines", result.paired_lines},
+                                                          {"single", result.single}};
     for (const auto& [name, number] : counts) context.metric(name, static_cast<double>(number));
     context.metric("travel", result.travel, Unit::length);
     context.metric("edge-roughness", result.edge_roughness, Unit::length);
@@ -365,11 +381,11 @@ ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMes
             }
         if (!line.rows.empty()) lines.push_back(std::move(line));
     }
-    const std::vector<u32> tour = tour_over(lines, plan.touches, machine.home(), machine.diagonal());
+    const std::vector<u32> tour = tour_over(lines, plan.touches, machine.home(), machine.diagonal(), context);
     result.travel = add_moves(plan, tour, machine, context);
     result.edge_roughness = references.edge_roughness;
     result.paired_lines = references.paired_lines;
-    count(result);
+    count(result, settings.two_directions);
     report(result, settings, context);
     context.progress(1);
     return result;

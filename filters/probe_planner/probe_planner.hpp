@@ -53,12 +53,15 @@ struct ProbePlannerResult {
     std::size_t unreachable = 0, concave = 0, too_narrow = 0, too_tilted = 0, obstructed = 0;
     /// Tried positions of reference points, 1,000 per touch, for which a face is met before the edge.
     std::size_t false_touches = 0;
-    /// Touches whose ball, moved against the mesh, does not meet it near the reference point first. Only a given
-    /// `approach` plans such ones.
+    /// Touches whose ball, moved against the mesh, does not meet it near the reference point first, or whose stylus
+    /// meets it on the way. Only a given `approach` plans such ones.
     std::size_t wrong_contacts = 0;
     double travel = 0;  ///< length of all moves
     double edge_roughness = 0;
     std::size_t paired_lines = 0;
+    /// With two `directions`: reference points that got one touch, since the range leaves less than 10 degrees between
+    /// two, or one of them is too tilted, obstructed or does not pass a hole.
+    std::size_t single = 0;
 };
 
 /// Plans touches at `spacing` along the chosen lines (see reference_points.hpp). The angle phi of an approach is
@@ -75,18 +78,22 @@ struct ProbePlannerResult {
 /// applies: concave, too-narrow, too-tilted, obstructed. With `approach`, that phi is used; only concave edges, holes,
 /// tilt and collisions prevent the touch.
 ///
-/// A ball that comes from above meets the rim of a round hole of radius R before the opposite rim if
-/// r sin psi <= R, with the angle psi between the bisector (or the given approach) and the normal of the left face;
-/// else the touch is too narrow.
+/// Collisions are checked for the planned T only; raise `stylus_radius` by `scanner_error` for approaches from below.
 ///
-/// Post: false shares are those of 1,000 seeded random positions per touch. Order and moves: see tour.hpp. Metrics: the
+/// A ball that comes from above meets the rim of a round hole of radius R before the opposite rim if
+/// r sin psi <= R, with the angle psi between the preferred direction (the bisector, the middle of the known range, or
+/// the given approach) and the normal of the left face; else the touch is too narrow.
+///
+/// Post: false shares are those of 1,000 seeded random positions per touch. They evaluate the closed form that chose
+/// phi, so without `approach` they are 0 and only confirm the range. Order and moves: see tour.hpp. Metrics: the
 /// counts above; a warning if the edge roughness exceeds `scanner_error`; a doubt if no touch can be made.
 ///
 /// Throws Error: a parameter out of range; features and mesh in different units or named frames; a mesh without
 /// triangles or with a vertex that is not finite; features as in find_reference_points().
 ///
-/// Deterministic: the same bytes for any number of threads. Cost: O((touches + triangles) log triangles), about 0.05 ms
-/// per touch; obstructed touches, for which all directions are tried, up to some milliseconds.
+/// Deterministic: the same bytes for any number of threads. Cost: O((touches + triangles) log triangles + lines² +
+/// lines · touches on closed lines), about 0.05 ms per touch; obstructed touches, for which all directions are tried,
+/// up to some milliseconds.
 ProbePlannerResult probe_planner(const FeatureGraph& features, const TriangleMesh& mesh,
                                  const ProbePlannerParams& params, Context& context);
 

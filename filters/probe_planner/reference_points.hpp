@@ -63,13 +63,14 @@ struct ReferencePoints {
 /// than the line does, the faces, the tangent and the point on the edge are the mesh's: see edge_fit.hpp. An assumed
 /// face is replaced if there is one beyond an edge along the line (to within 60 degrees) at 30 degrees or more.
 ///
-/// Then points are left out that are nearer than half a spacing to a point of a longer line (ties: of an earlier one)
+/// Then points are left out that are nearer than 3/4 spacing to a point of a longer line (ties: of an earlier one)
 /// on the same edge: at most `error` and 1.5 segment lengths beside its tangent, both normals within 30 degrees. So
 /// the many short creases of a blunted edge are one edge.
 ///
-/// Throws Error: no line of the choice, an open boundary, a line with too few vertices or with arrays that do not fit,
-/// a segment of length 0, a coordinate or normal that is not finite, a left normal that is missing, a normal that is
-/// not a unit vector, equal normals on both sides, more than 10^6 points. Cost: O(n log n) in the segments and points.
+/// Throws Error: any line with too few vertices or with arrays that do not fit; no line of the choice; among those an
+/// open boundary, a segment of length 0, a coordinate or normal that is not finite, a left normal that is missing, a
+/// normal that is not a unit vector, equal normals on both sides; more than 10^6 points.
+/// Cost: O(n log n) in the segments and points.
 ReferencePoints find_reference_points(const FeatureGraph& features, const LineChoice& choice, double spacing,
                                       const TriangleTree& mesh, double error, const Context& context);
 

@@ -9,7 +9,7 @@ namespace scanmill::probing {
 
 namespace {
 
-/// A line as it is run through.
+/// A line in the tour: its first touch and its direction.
 struct Passage {
     const TouchLine* line;
     u32 first;  ///< position in line->rows
@@ -27,10 +27,12 @@ struct Passage {
 
 class Tour {
 public:
-    Tour(const std::vector<TouchLine>& lines, const std::vector<ProbeTouch>& touches, const Vec3& home, double diagonal)
+    Tour(const std::vector<TouchLine>& lines, const std::vector<ProbeTouch>& touches, const Vec3& home, double diagonal,
+         const Context& context)
         : touches_(touches),
           home_(home),
-          least_gain_(1e-9 * diagonal) {
+          least_gain_(1e-9 * diagonal),
+          context_(context) {
         begin_greedily(lines);
         constexpr int most_rounds = 10;
         for (int round = 0; round < most_rounds; ++round) {
@@ -59,6 +61,7 @@ private:
         std::vector<bool> used(lines.size());
         Vec3 from = home_;
         for (std::size_t count = 0; count < lines.size(); ++count) {
+            context_.check_cancelled();
             double least = std::numeric_limits<double>::infinity();
             Passage next{};
             for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -80,7 +83,8 @@ private:
 
     bool reverse_parts() {
         bool is_changed = false;
-        for (std::size_t i = 0; i < passages_.size(); ++i)
+        for (std::size_t i = 0; i < passages_.size(); ++i) {
+            context_.check_cancelled();
             for (std::size_t j = i; j < passages_.size(); ++j) {
                 const u32 first = passages_[i].first_row(), last = passages_[j].last_row();
                 const double now = (start(first) - before(i)).norm() + to_next(last, j + 1),
@@ -91,12 +95,14 @@ private:
                 for (std::size_t k = i; k <= j; ++k) passages_[k] = passages_[k].reversed();
                 is_changed = true;
             }
+        }
         return is_changed;
     }
 
     bool begin_lines_anew() {
         bool is_changed = false;
         for (std::size_t i = 0; i < passages_.size(); ++i) {
+            context_.check_cancelled();
             Passage& passage = passages_[i];
             if (!passage.line->closed) continue;
             const auto cost = [&](const Passage& candidate) {
@@ -120,6 +126,7 @@ private:
     const std::vector<ProbeTouch>& touches_;
     const Vec3 home_;
     const double least_gain_;
+    const Context& context_;
     std::vector<Passage> passages_;
 };
 
@@ -132,8 +139,8 @@ double length_of(std::span<const Vec3> path) {
 }  // namespace
 
 std::vector<u32> tour_over(const std::vector<TouchLine>& lines, const std::vector<ProbeTouch>& touches,
-                           const Vec3& home, double diagonal) {
-    return Tour(lines, touches, home, diagonal).rows();
+                           const Vec3& home, double diagonal, const Context& context) {
+    return Tour(lines, touches, home, diagonal, context).rows();
 }
 
 double add_moves(ProbePlan& plan, const std::vector<u32>& tour, const Machine& machine, const Context& context) {

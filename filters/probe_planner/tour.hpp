@@ -19,9 +19,9 @@ struct TouchLine {
 /// It begins greedily with the nearest end of a line each time, and is shortened by reversing parts of the tour and by
 /// beginning closed lines at the touch nearest to where the probe comes from, until no such change saves more than 1e-9
 /// of `diagonal`, at most ten rounds. A link costs the straight distance of the starts. Ties: the lower line, then the
-/// lower touch. Cost: O(lines² + lines · touches).
+/// lower touch. Throws Cancelled. Cost: O(lines² + lines · touches).
 std::vector<u32> tour_over(const std::vector<TouchLine>& lines, const std::vector<ProbeTouch>& touches,
-                           const Vec3& home, double diagonal);
+                           const Vec3& home, double diagonal, const Context& context);
 
 /// Sets order, moves and path of the plan; returns the length of all moves. A move between two starts is straight if it
 /// is free, else it goes up to the clearance plane, across and down. Pre: is_lift_free() for every start.

@@ -23,8 +23,9 @@ constexpr double contact = 1e-9;
 /// A ball that is still on its way after so many steps slides along a face, nearer than 1e-4 radii: contact, too.
 constexpr int most_steps = 100'000;
 
-/// Where the ball's centre is when the ball meets the mesh on its way from `start` along `motion`, at most `length`
-/// far; nothing if it does not, or meets it at once. By sphere tracing: the mesh is at least its distance away.
+/// The centre of the ball at its first contact with the mesh, on the segment of length `length` from `start` along
+/// `motion`; nothing without contact, or if the ball meets the mesh at `start`. By sphere tracing: the mesh is at least
+/// its distance away.
 std::optional<Vec3> met(const TriangleTree& mesh, const Vec3& start, const Vec3& motion, double length, double radius) {
     u32 hint = NearestTriangle::none;
     double travelled = 0;
@@ -85,7 +86,7 @@ std::vector<u32> made_touches(const ProbePlan& plan) {
         if (plan.touches[row].reason == ProbeReason::none) rows.push_back(row);
     if (rows.empty())
         throw Error("the plan has {}, of which none is made", count_text(plan.touches.size(), "touch", "touches"))
-            .hint("the touches' `reason` says why; plan with a smaller ball, or with another approach");
+            .hint("the touches' `reason` gives the cause; plan with a smaller ball, or with another approach");
     std::ranges::stable_sort(rows, {}, [&](u32 row) { return plan.touches[row].order; });
     return rows;
 }
@@ -125,7 +126,12 @@ TriangleTree tree_of(const TriangleMesh& mesh, const Frame& frame, unsigned thre
         throw Error("the mesh has {} and 0 triangles; the ball needs at least 1 to touch",
                     count_text(mesh.positions.size(), "vertex", "vertices"))
             .hint("wire the mesh of the part");
-    require_consistent(mesh);
+    try {
+        require_consistent(mesh);
+    } catch (Error& error) {
+        if (error.hint().empty()) error.set_hint("the mesh is damaged: make it again");
+        throw;
+    }
     require_finite(mesh.positions.span(), "vertices");
     const Vec3 shift = mesh.frame.origin - frame.origin;
     const Buffer<Vec3> positions = shift.isZero(0) ? mesh.positions : translated(mesh.positions, shift);

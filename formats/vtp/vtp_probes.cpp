@@ -21,18 +21,23 @@ const std::vector<std::string> type_names{"touch", "direction", "clearance", "ap
 struct ProbeCells {
     Array<Vec3> points, directions;
     vtkSmartPointer<vtkCellArray> lines = vtkSmartPointer<vtkCellArray>::New();
-    Array<u8> type, reason;
-    Array<u32> touch, feature, order;
-    Array<double> phi, false_share;
+    Array<u8> type, reason, contact, assumed;
+    Array<u32> touch, feature;
+    Array<double> interior_angle, phi, false_share, contact_distance;
+    Array<double> order;  ///< NaN, as phi, where the touch is not made
 
     void add_data(u8 cell_type, const ProbeTouch& of) {
         type.push_back(cell_type);
         reason.push_back(static_cast<u8>(of.reason));
         touch.push_back(of.touch);
         feature.push_back(of.feature);
-        order.push_back(of.order);
+        interior_angle.push_back(of.interior_angle);
+        assumed.push_back(of.assumed);
         phi.push_back(of.phi);
         false_share.push_back(of.false_share);
+        contact.push_back(static_cast<u8>(of.contact));
+        contact_distance.push_back(of.contact_distance);
+        order.push_back(of.order == ProbeTouch::no_order ? ProbeTouch::nan : static_cast<double>(of.order));
     }
     void add_line(u8 cell_type, const ProbeTouch& of, std::span<const Vec3> line) {
         lines->InsertNextCell(static_cast<int>(line.size()));
@@ -82,15 +87,22 @@ void write_vtp_probes(const Value& value, OutputBuffer& out, const WriteOptions&
     add(cells.touch, "touch");
     add(cells.feature, "feature");
     add(cells.reason, "reason");
-    add(cells.order, "order");
+    add(cells.interior_angle, "interior_angle");
+    add(cells.assumed, "assumed");
     add(cells.phi, "phi");
     add(cells.false_share, "false_share");
+    add(cells.contact, "contact");
+    add(cells.contact_distance, "contact_distance");
+    add(cells.order, "order");
     add_frame(plan.frame, Text::as_string, *data->GetFieldData());
     add_text("type_names", type_names, *data->GetFieldData());
-    std::vector<std::string> reasons;
+    std::vector<std::string> reasons, contacts;
     for (u8 reason = 0; reason <= static_cast<u8>(ProbeReason::obstructed); ++reason)
         reasons.emplace_back(name_of(static_cast<ProbeReason>(reason)));
+    for (u8 contact = 0; contact <= static_cast<u8>(ProbeContact::missed); ++contact)
+        contacts.emplace_back(name_of(static_cast<ProbeContact>(contact)));
     add_text("reason_names", reasons, *data->GetFieldData());
+    add_text("contact_names", contacts, *data->GetFieldData());
     write(*vtkSmartPointer<vtkXMLPolyDataWriter>::New(), *data, out);
 }
 

@@ -173,7 +173,8 @@ class ProbingTest(unittest.TestCase):
             probing.plan_of({"outputs": [], "error": "too flat"})
 
     def test_page_says_what_agrees_and_what_does_not(self):
-        measured = [{"interior_angle": probing.interior_angle(case)} for case in thesis.PROBING]
+        measured = [{"interior_angle": probing.interior_angle(case), "touches": 60, "ranges": 60}
+                    for case in thesis.PROBING]
         centres, halves, angles = probing.remarks(measured)
         self.assertIn("within 1 degree of the true one in 9 of 9 cases.", angles)
         measured[4]["interior_angle"] = 90
@@ -182,10 +183,12 @@ class ProbingTest(unittest.TestCase):
         self.assertIn("100, 100 of table 5.2, which prints 116.4 instead of 112.5", centres)
         self.assertIn("10.9 to 16.3 degrees smaller", halves)
         self.assertIn("Scanmill follows the equation", halves)
+        measured[0]["ranges"] = 20
+        self.assertIn("has a range at 20 of 60 touches; the edge's length gives 63", probing.remarks(measured)[3])
         entry = {"interior_angle": 112.5, "centre": 90.5, "half": 31.5, "touches": 99, "ranges": 63}
         row = probing.row(thesis.PROBING[0], entry)
         self.assertEqual(row, ["5.1", "bicone", "150, 100", "72.1 to 107.9", "90.00", "17.90", "90.00", "31.40",
-                               "58.60 to 121.40", "112.5 (112.6)", "90.5", "31.5", 63])
+                               "58.60 to 121.40", "112.5 (112.6)", "90.5", "31.5", "63 / 99 / 63"])
         self.assertEqual(len(row), len(probing.HEADER))
 
 

@@ -88,6 +88,18 @@ TEST(AlignRefusals, APlateUpsideDown_IsRefusedWhereNormalsShowIt) {
     EXPECT_THAT(refusal(source, target).sentence(), HasSubstr("normals of all 4 pairs point to opposite sides"));
 }
 
+TEST(AlignRefusals, RowsWithoutNormals_DoNotHideAPlateUpsideDown) {
+    PointCloud source = cloud(plate());
+    source.columns.add(Column("normal", 3, Buffer<double>{0, 0, 1, 0, 0, 0, nan, 0, 1, 0, 0, 1}));
+    PointCloud target = cloud({plate()[1], plate()[0], plate()[3], plate()[2]});
+    target.columns.add(Column("normal", 3, Buffer<double>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}));
+    EXPECT_THAT(refusal(source, target).sentence(),
+                HasSubstr("normals of all 2 pairs that have them point to opposite sides"));
+    PointCloud bare = cloud(plate());
+    bare.columns.add(Column("normal", 3, Buffer<double>{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(aligned(bare, target).partner.size(), 4u) << "no normals, no contradiction";
+}
+
 TEST(AlignRefusals, CoordinatesThatAreNotNumbers_AreRefused) {
     std::vector<Vec3> bad = plate();
     bad[2].y() = nan;
@@ -149,9 +161,11 @@ TEST(AlignRefusals, OtherThanFourCorners_OrCornersInOnePlace) {
     const std::vector<Vec3> twice{plate()[0], plate()[1], plate()[2], plate()[2]};
     EXPECT_EQ(refusal(cloud(plate()), cloud(twice), in_rectangle(plate()[0])).sentence(),
               "the four corners at 'target' do not go once around their centre");
+    EXPECT_EQ(refusal(cloud(twice), cloud(plate()), in_rectangle(plate()[0])).sentence(),
+              "the four corners at 'source' do not go once around their centre");
 }
 
-TEST(AlignRefusals, CornersOnOneLine_AreNoRectangle) {
+TEST(AlignRefusals, CornersOnOneLine_AreNotARectangle) {
     for (const std::vector<Vec3>& line : {std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}},
                                           std::vector<Vec3>{{5, 5, 5}, {5, 5, 5}, {5, 5, 5}, {5, 5, 5}}}) {
         EXPECT_EQ(refusal(cloud(plate()), cloud(line), in_rectangle(plate()[0])).sentence(),
@@ -165,6 +179,14 @@ TEST(AlignRefusals, AnUprightPlate_NeedsUp) {
     const std::vector<Vec3> upright{{-100, 0, -60}, {100, 0, -60}, {100, 0, 60}, {-100, 0, 60}};
     EXPECT_EQ(refusal(cloud(plate()), cloud(upright), in_rectangle(plate()[0])).sentence(),
               "`up` is 90 deg off the normal of the plate at 'target'; at most 60 deg decide which side is up");
+    PointCloud slanted = cloud(plate());
+    slanted.columns.add(Column("normal", 3, Buffer<double>{1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}));
+    EXPECT_EQ(refusal(slanted, cloud(plate()), in_rectangle(plate()[0])).sentence(),
+              "the mean normal of the corners is 90 deg off the normal of the plate at 'source'; at most 60 deg decide "
+              "which side is up");
+    AlignParams given = in_rectangle(plate()[0]);
+    given.up = {0, 0, 1};
+    EXPECT_EQ(aligned(slanted, cloud(plate()), given).partner[0], 0u) << "as the hint says";
     AlignParams nowhere = in_rectangle(plate()[0]);
     nowhere.up = {0, 0, 0};
     EXPECT_EQ(refusal(cloud(plate()), cloud(plate()), nowhere).sentence(), "`up` is (0, 0, 0); it must have a length");

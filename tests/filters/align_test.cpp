@@ -163,6 +163,44 @@ TEST(AlignRectangle, EveryOrderOfTheCorners_GivesTheSameMotion) {
     } while (std::ranges::next_permutation(order).found);
 }
 
+TEST(AlignRectangle, AnyOrderOfTheSource_WithNoise_GivesTheSameMotion) {
+    // Row by row the corners' polygon crosses itself, and noise alone gives its area a sign.
+    Random random(17);
+    for (const std::vector<Vec3>& corners :
+         {plate(), std::vector<Vec3>{{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {0, 100, 0}}}) {
+        std::array<std::size_t, 4> order{0, 1, 2, 3};
+        do {
+            // Rows that go around clockwise would be a plate seen from below.
+            const bool is_clockwise = (order[1] + 1) % 4 == order[0] && (order[2] + 1) % 4 == order[1];
+            for (int trial = 0; trial < 5; ++trial) {
+                std::vector<Vec3> source;
+                for (const std::size_t i : order) source.push_back(corners[i]);
+                const PointCloud noisy = cloud(with_noise(source, 0.05, random));
+                AlignParams params = in_rectangle(corners[0] + Vec3(5, 8, 3));
+                if (is_clockwise) params.up = {0, 0, 1};
+                const Aligned result = aligned(noisy, cloud(corners), params);
+                EXPECT_LT(off(result.transform.rotation, Eigen::Matrix3d::Identity()), 0.01);
+                for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(order[result.partner[row]], row);
+            }
+        } while (std::ranges::next_permutation(order).found);
+    }
+}
+
+TEST(AlignRectangle, AGivenUp_WinsOverTheOrderOfTheRows) {
+    // The source's rows go clockwise seen from above: a plate seen from below, unless `up` is given.
+    const std::vector<Vec3> clockwise{plate()[0], plate()[3], plate()[2], plate()[1]};
+    EXPECT_NEAR(aligned(cloud(clockwise), cloud(plate()), in_rectangle(plate()[1])).transform.rotation(2, 2), -1,
+                1e-14);
+    AlignParams params = in_rectangle(plate()[0]);
+    params.up = {0, 0, 1};
+    EXPECT_NEAR(aligned(cloud(clockwise), cloud(plate()), params).transform.rotation(2, 2), 1, 1e-14);
+    // It is a direction of the target's frame only: the source's rows decide where it cannot.
+    const std::vector<Vec3> upright{{-100, 0, -60}, {100, 0, -60}, {100, 0, 60}, {-100, 0, 60}};
+    params.up = {0, -1, 0};
+    const Aligned stood = aligned(cloud(plate()), cloud(upright), params);
+    EXPECT_LT((stood.transform.rotation * Vec3::UnitZ() + Vec3::UnitY()).norm(), 1e-14);
+}
+
 TEST(AlignRectangle, FirstCorner_DecidesBetweenTheTwoHalfTurns) {
     const Aligned stays = aligned(cloud(plate()), cloud(plate()), in_rectangle(plate()[0]));
     const Aligned turns = aligned(cloud(plate()), cloud(plate()), in_rectangle(plate()[2]));

@@ -291,7 +291,7 @@ TEST(PlateCornersRefusals, ATriangleHasNoRightAngles) {
     EXPECT_THAT(refusal(cloud(triangle), within(0.2)).sentence(), HasSubstr("two sides of the plane meet at"));
 }
 
-TEST(PlateCornersRefusals, ALozengeIsNoRectangle) {
+TEST(PlateCornersRefusals, ALozengeIsNotARectangle) {
     std::vector<Vec3> lozenge;
     for (const Vec3& p : grid(200, 100, 1)) lozenge.emplace_back(p.x() + 0.12 * p.y(), p.y(), 0);
     EXPECT_THAT(refusal(cloud(lozenge), within(0.2)).sentence(), HasSubstr("two sides of the plane meet at"));
@@ -308,6 +308,33 @@ TEST(PlateCornersRefusals, AnUprightPlateNeedsUp) {
     for (const Vec3& p : grid(20, 10, 0.5)) upright.emplace_back(p.x(), 0, p.y());
     EXPECT_EQ(refusal(cloud(upright), within(0.1)).sentence(),
               "`up` is 90 deg off the normal of the plate; at most 60 deg decide which side is up");
+}
+
+TEST(PlateCornersRefusals, NormalsAlongThePlate) {
+    PointCloud points = cloud(grid(20, 10, 0.5));
+    Array<double> normals;
+    for (std::size_t i = 0; i < points.size(); ++i) normals.insert(normals.end(), {1, 0, 0});
+    points.columns.add(Column("normal", 3, Buffer<double>(std::move(normals))));
+    EXPECT_EQ(
+        refusal(points, within(0.1)).sentence(),
+        "the mean normal of the plate's points is 90 deg off the normal of the plate; at most 60 deg decide which "
+        "side is up");
+}
+
+TEST(PlateCornersRefusals, ScatteredPoints) {
+    std::vector<Vec3> points;  // 100 groups of 1 %
+    for (const Vec3& middle : grid(100, 100, 10))
+        for (const double x : {0.0, 0.01})
+            for (const double y : {0.0, 0.01}) points.push_back(middle + Vec3(x, y, 0));
+    EXPECT_EQ(refusal(cloud(points), within(0.1)).sentence(),
+              "the 400 points of the plane are scattered: no group has 2 % of them");
+}
+
+TEST(PlateCorners, ACancelledRun_Ends) {
+    ContextOptions options;
+    options.is_cancelled = [] { return true; };
+    Context context(options);
+    EXPECT_THROW(plate_corners(cloud(grid(20, 10, 0.5)), within(0.1), context), Cancelled);
 }
 
 }  // namespace

@@ -2,9 +2,13 @@
 #pragma once
 /// Parts whose edges are known, and how the tests plan them.
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
+#include "probe_planner/contact_range.hpp"
 #include "probe_planner/probe_planner.hpp"
 #include "scanmill/geometry/mesh/feature_lines.hpp"
 #include "support/shapes.hpp"
@@ -62,7 +66,32 @@ inline TriangleMesh box(const Vec3& low, const Vec3& high, int times) {
 inline FeatureGraph lines_of(const TriangleMesh& mesh, double sharp_angle = 40) {
     FeatureParams params;
     params.sharp_angle = Angle::degrees(sharp_angle);
-    return find_features(mesh, params, 1).graph;
+    return find_features(mesh, params, Execution()).graph;
+}
+
+/// A ball of a radius and two faces at the angle alpha, in the plane of contact_range.hpp.
+struct Wedge {
+    double alpha, radius;
+};
+
+/// The circle moves along T + s u for falling s. Returns by how much the edge is met before both faces: positive if it
+/// is, negative if a face is met first or the edge is missed. Both faces are half-lines from the edge.
+inline double lead_of_edge(const Wedge& wedge, double phi, const probing::Vec2& t) {
+    using probing::Vec2;
+    const Vec2 u(-std::sin(phi), std::cos(phi));
+    const double r = wedge.radius, along = t.dot(u), square = along * along - t.squaredNorm() + r * r;
+    if (square < 0) return -1;
+    const double edge = -along + std::sqrt(square);
+    double lead = std::numeric_limits<double>::infinity();
+    for (const double side : {-1.0, 1.0}) {
+        const double a = wedge.alpha / 2;
+        const Vec2 face(side * std::sin(a), -std::cos(a)), normal(side * std::cos(a), std::sin(a));
+        if (normal.dot(u) <= 0) continue;  // approached from behind, where the other face is in front of it
+        const double s = (r - normal.dot(t)) / normal.dot(u);
+        // Where the circle would touch the face, if that is on it: then the face is met at s >= edge.
+        if (face.dot(t + s * u) > 0) lead = std::min(lead, edge - s);
+    }
+    return lead;
 }
 
 inline ProbePlannerParams probe_of(double radius, double error, double spacing) {

@@ -91,8 +91,7 @@ TEST(EdgeFaces, OnAPlane_AreOneFace) {
                                      [](const Vec3& p) { return Vec3(p.x() - p.z(), p.y(), 0); });
     const auto faces =
         faces_at(mesh, {Vec3(0, 10.3, 0), Vec3::UnitY(), Vec3(-1, 0, 1).normalized(), Vec3(1, 0, 1).normalized()});
-    // All normals are equal, so no two planes are found.
-    EXPECT_FALSE(faces && faces->left_normal != faces->right_normal);
+    EXPECT_FALSE(faces) << "all normals are equal, so no two planes are found";
 }
 
 TEST(EdgeFaces, OfAConcaveEdge_AreOnTheirSides) {
@@ -147,7 +146,7 @@ TEST(ProbePlannerEdges, TheRimOfAScannedDoubleCone_IsTouchedAlongTheBisectors) {
     }
     // 63 at a spacing of 2; short creases are not touched twice.
     EXPECT_GT(at_rim, 55u);
-    EXPECT_LT(at_rim, 110u);
+    EXPECT_LT(at_rim, 72u);
     EXPECT_GT(sound, at_rim * 9 / 10);
 }
 

@@ -67,11 +67,15 @@ std::vector<std::vector<u32>> passages(const Lines& lines, const std::vector<u32
     return result;
 }
 
+std::vector<u32> tour_of(const Lines& lines, const Vec3& home) {
+    return tour_over(lines.lines, lines.touches, home, 30, Context());
+}
+
 TEST(Tour, OverRandomLines_TakesEachTouchOnce_LineByLine_AndNoExchangeShortensIt) {
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
         const Lines lines = random_lines(seed, 12);
         const Vec3 home(10, 10, 30);
-        const std::vector<u32> tour = tour_over(lines.lines, lines.touches, home, 30);
+        const std::vector<u32> tour = tour_of(lines, home);
         EXPECT_EQ(std::set<u32>(tour.begin(), tour.end()).size(), lines.touches.size());
         EXPECT_EQ(tour.size(), lines.touches.size());
         std::vector<std::vector<u32>> parts = passages(lines, tour);
@@ -111,10 +115,22 @@ TEST(Tour, OrderOfTheLines_DoesNotMatter) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         Lines lines = random_lines(seed, 9);
         const Vec3 home(10, 10, 30);
-        const double before = length_of(lines, tour_over(lines.lines, lines.touches, home, 30), home);
+        const double before = length_of(lines, tour_of(lines, home), home);
         std::ranges::reverse(lines.lines);
         std::ranges::rotate(lines.lines, lines.lines.begin() + 4);
-        EXPECT_NEAR(length_of(lines, tour_over(lines.lines, lines.touches, home, 30), home), before, 1e-9);
+        EXPECT_NEAR(length_of(lines, tour_of(lines, home), home), before, 1e-9);
+    }
+}
+
+TEST(Tour, Cancelled_EndsInEveryLoop) {
+    // Cancelled after some checks: in the greedy tour, and while it is shortened.
+    const Lines lines = random_lines(3, 12);
+    for (const int after : {0, 5, 13, 20}) {
+        ContextOptions options;
+        int checks = 0;
+        options.is_cancelled = [&] { return checks++ >= after; };
+        const Context context(options);
+        EXPECT_THROW(tour_over(lines.lines, lines.touches, Vec3(10, 10, 30), 30, context), Cancelled) << after;
     }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "filters/probe_planner_cases.hpp"
 #include "probe_planner/contact_range.hpp"
 #include "scanmill/base/random.hpp"
 
@@ -14,31 +15,10 @@ namespace {
 
 constexpr double pi = std::numbers::pi, degree = pi / 180;
 
-struct Wedge {
-    double alpha, radius;
-};
+using test::lead_of_edge;
+using test::Wedge;
 
-Vec2 direction(double phi) { return {-std::sin(phi), std::cos(phi)}; }
 Vec2 at(double t, double theta) { return {t * std::sin(theta), t * std::cos(theta)}; }
-
-/// The circle moves along T + s u for falling s. Returns by how much the edge is met before both faces: positive if it
-/// is, negative if a face is met first or the edge is missed. Both faces are half-lines from the edge.
-double lead_of_edge(const Wedge& wedge, double phi, const Vec2& t) {
-    const Vec2 u = direction(phi);
-    const double r = wedge.radius, along = t.dot(u), square = along * along - t.squaredNorm() + r * r;
-    if (square < 0) return -1;
-    const double edge = -along + std::sqrt(square);
-    double lead = std::numeric_limits<double>::infinity();
-    for (const double side : {-1.0, 1.0}) {
-        const double a = wedge.alpha / 2;
-        const Vec2 face(side * std::sin(a), -std::cos(a)), normal(side * std::cos(a), std::sin(a));
-        if (normal.dot(u) <= 0) continue;  // approached from behind, where the other face is in front of it
-        const double s = (r - normal.dot(t)) / normal.dot(u);
-        // Where the circle would touch the face, if that is on it: then the face is met at s >= edge.
-        if (face.dot(t + s * u) > 0) lead = std::min(lead, edge - s);
-    }
-    return lead;
-}
 
 /// |phi - beta| and its limit.
 double margin(const Wedge& wedge, double phi, const Vec2& t) {

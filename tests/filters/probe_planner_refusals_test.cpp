@@ -28,7 +28,7 @@ std::string refusal_of_params(Change&& change) {
     ProbePlannerParams params = probe_of(1, 0.1, 2);
     change(params);
     const TriangleMesh mesh = part();
-    return error_of([&] { planned(lines_of(mesh), mesh, params, 1); }).sentence();
+    return refusal(lines_of(mesh), mesh, params).sentence();
 }
 
 TEST(ProbePlannerRefusals, Parameters) {
@@ -38,6 +38,8 @@ TEST(ProbePlannerRefusals, Parameters) {
     EXPECT_EQ(refusal_of_params([](P& p) { p.scanner_error = -1; }), "scanner-error must be at least 0; it is -1 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.scanner_error = 1; }),
               "scanner-error is 1 u, radius 1 u: a ball that is not larger than the error cannot be guided");
+    EXPECT_EQ(refusal_of_params([](P& p) { p.scanner_error = 1.5; }),
+              "scanner-error is 1.5 u, radius 1 u: a ball that is not larger than the error cannot be guided");
     EXPECT_EQ(refusal_of_params([](P& p) { p.spacing = 0; }), "spacing must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.spacing = 1e-9; }),
               "a spacing of 1e-09 u gives more than 1000000 touches");
@@ -45,6 +47,8 @@ TEST(ProbePlannerRefusals, Parameters) {
     EXPECT_EQ(refusal_of_params([](P& p) { p.retract = 0; }), "retract must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.stylus_radius = 1; }),
               "stylus-radius is 1 u, radius 1 u: the stylus is as thick as the ball");
+    EXPECT_EQ(refusal_of_params([](P& p) { p.stylus_radius = 0; }), "stylus-radius must be above 0; it is 0 u");
+    EXPECT_EQ(refusal_of_params([](P& p) { p.stylus_length = 0; }), "stylus-length must be above 0; it is 0 u");
     EXPECT_EQ(refusal_of_params([](P& p) { p.stylus_length = 0.5; }),
               "stylus-length is 0.5 u, radius 1 u: the stylus ends inside the ball");
     EXPECT_EQ(refusal_of_params([](P& p) { p.approach = Angle::degrees(91); }),
@@ -83,6 +87,15 @@ TEST(ProbePlannerRefusals, Meshes) {
     EXPECT_THAT(refusal(features, TriangleMesh(), params).sentence(), HasSubstr("the mesh has no triangles"));
     const TriangleMesh broken = mapped(part(), [](const Vec3& p) { return p == Vec3::Zero() ? Vec3(0, nan, 0) : p; });
     EXPECT_THAT(refusal(features, broken, params).sentence(), HasSubstr("vertex 0 of the mesh is not finite"));
+    TriangleMesh loose = part();
+    Array<Vec3> more(loose.positions.begin(), loose.positions.end());
+    more.push_back(Vec3(nan, 0, 0));
+    loose.positions = std::move(more);
+    EXPECT_THAT(refusal(features, loose, params).sentence(), HasSubstr("of the mesh is not finite"))
+        << "also a vertex of no triangle, as virtual-probe";
+    TriangleMesh torn = part();
+    torn.triangles = {{0, 1, 2}, {0, 1, 9999}};
+    EXPECT_THAT(refusal(features, torn, params).sentence(), HasSubstr("triangle 1 names vertex 9999; there are"));
     TriangleMesh other = part();
     other.frame.unit = LengthUnit::millimetre;
     EXPECT_EQ(refusal(features, other, params).sentence(), "the features are in u, the mesh in mm");
@@ -153,6 +166,16 @@ TEST(ProbePlannerRefusals, Lines) {
               "line 1 names the vertices 4 to 5 of 8; a line needs at least 2");
     EXPECT_EQ(sentence([](FeatureGraph& g) { g.polylines[1].end = 9; }),
               "line 1 names the vertices 4 to 9 of 8; a line needs at least 2");
+    // Of lines that are not chosen, too: whether lines meet depends on all of them.
+    ProbePlannerParams creases = params;
+    creases.features = ProbePlannerParams::Features::creases;
+    EXPECT_EQ(planned(two_lines(), mesh, creases).plan.touches.size(), 3u);
+    FeatureGraph beyond = two_lines(), far = two_lines();
+    beyond.polylines[0].end = 1'000'000;
+    far.vertices = with(far.vertices, 2, 1'000'000u);
+    EXPECT_EQ(refusal(beyond, mesh, creases).sentence(),
+              "line 0 names the vertices 0 to 1000000 of 8; a line needs at least 3");
+    EXPECT_EQ(refusal(far, mesh, creases).sentence(), "line 0 names the point 1000000; there are 8");
     EXPECT_EQ(sentence([](FeatureGraph& g) { g.left_normals = {Vec3(0, 0, 1)}; }),
               "the features have 1 left and 8 right normals for 8 vertices of lines");
 }

@@ -104,10 +104,13 @@ TEST(ProbePlanner, FromBelow_IsPossibleWhereTheStylusPassesBesideThePart) {
     EXPECT_EQ(planned(fine_cube(), params).unreachable, 0u);
     params.stylus_radius = 0.8;  // the ball's centre is 0.71 beside the face
     const Planned thick = planned(fine_cube(), params);
-    for (const ProbeTouch& touch : thick.plan.touches)
-        if ((touch.left_normal + touch.right_normal).z() < -0.1 && touch.reason == ProbeReason::none) {
-            EXPECT_GE(std::abs(touch.phi), 8 * degree);
-        }
+    int from_below = 0;
+    for (const ProbeTouch& touch : thick.plan.touches) {
+        if (!((touch.left_normal + touch.right_normal).z() < -0.1) || touch.reason != ProbeReason::none) continue;
+        ++from_below;
+        EXPECT_GE(std::abs(touch.phi), 8 * degree);
+    }
+    EXPECT_EQ(from_below, 16);
     params.approach = Angle::degrees(0);
     EXPECT_EQ(planned(fine_cube(), params).obstructed, 16u);
 }
@@ -214,6 +217,8 @@ TEST(ProbePlanner, TwoDirections_AreOnBothSidesOfTheBisector) {
     params.directions = 2;
     const Planned result = planned(fine_cube(), params);
     EXPECT_EQ(result.plan.touches.size(), 80u) << "two where both approaches are possible";
+    EXPECT_EQ(result.single, 0u);
+    EXPECT_EQ(result.metrics.find("single")->value, 0);
     for (std::size_t row = 0; row < result.plan.touches.size(); ++row) {
         const ProbeTouch& touch = result.plan.touches[row];
         if (touch.reason != ProbeReason::none || touch.phi < 0) continue;
@@ -227,6 +232,10 @@ TEST(ProbePlanner, TwoDirections_AreOnBothSidesOfTheBisector) {
     const Planned single = planned(fine_cube(), params);
     EXPECT_EQ(single.plan.touches.size(), 48u);
     EXPECT_EQ(single.plan.touches[0].phi, 0);
+    EXPECT_EQ(single.single, 32u) << "16 of 48 are too tilted";
+    EXPECT_EQ(single.metrics.find("single")->value, 32);
+    params.directions = 1;
+    EXPECT_EQ(planned(fine_cube(), params).single, 0u) << "one was asked for";
 }
 
 TEST(ProbePlanner, BeyondABorder_ARightAngleIsAssumed) {

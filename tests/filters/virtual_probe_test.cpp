@@ -246,7 +246,12 @@ TEST(VirtualProbeRefusals, LengthsRadiusAndDirections) {
     EXPECT_EQ(refusal(plan, wedge(1), error).sentence(), "reference-error is nan u; it must be 0 or more");
     EXPECT_EQ(refusal(plan_of({touch_at({0, 0, 0}, 0)}, 0), wedge(1)).sentence(),
               "the plan's ball has the radius 0 u; it must be above 0");
-    ProbePlan crooked = plan, endless = plan;
+    ProbePlan crooked = plan, endless = plan, lengthwise = plan;
+    lengthwise.touches[0].tangent = lengthwise.touches[0].approach;
+    EXPECT_EQ(
+        refusal(lengthwise, wedge(1)).sentence(),
+        "the touch in row 0 has an approach of length 1 at 0 of a right angle to its tangent; a unit vector across "
+        "the edge is needed");
     crooked.touches[0].approach *= 2;
     endless.touches[0].start.x() = nan;
     EXPECT_THAT(refusal(crooked, wedge(1)).sentence(), HasSubstr("the touch in row 0 has an approach of length 2"));
@@ -262,8 +267,8 @@ TEST(VirtualProbeRefusals, Meshes) {
     bad.triangles = {{0, 1, 2}};
     EXPECT_EQ(refusal(plan, empty).sentence(),
               "the mesh has 6 vertices and 0 triangles; the ball needs at least 1 to touch");
-    EXPECT_THAT(error_of([&] { probed(plan, wrong); }).sentence(), HasSubstr("9"));
-    EXPECT_THAT(error_of([&] { probed(plan, bad); }).sentence(), HasSubstr("1 of "));
+    EXPECT_THAT(refusal(plan, wrong).sentence(), HasSubstr("triangle 0 names vertex 9; there are 6"));
+    EXPECT_THAT(refusal(plan, bad).sentence(), HasSubstr("1 of "));
 }
 
 TEST(VirtualProbeRefusals, OtherFramesAndUnits) {

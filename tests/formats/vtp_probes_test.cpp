@@ -7,6 +7,7 @@ namespace scanmill::test {
 namespace {
 
 using testing::ElementsAre;
+using testing::IsNan;
 
 TEST(VtpProbes, TouchesDirectionsAndMoves_AreCellsWithTheirTypes) {
     ProbePlan plan;
@@ -17,6 +18,11 @@ TEST(VtpProbes, TouchesDirectionsAndMoves_AreCellsWithTheirTypes) {
     plan.touches[0].approach = Vec3::UnitZ();
     plan.touches[0].start = Vec3(0, 0, 3);
     plan.touches[0].order = 0;
+    plan.touches[0].interior_angle = 1.5;
+    plan.touches[0].assumed = true;
+    plan.touches[0].phi = 0.25;
+    plan.touches[0].contact = ProbeContact::elsewhere;
+    plan.touches[0].contact_distance = 0.5;
     plan.touches[1].touch = 5;
     plan.touches[1].position = Vec3(1, 0, 0);
     plan.touches[1].reason = ProbeReason::concave;
@@ -33,7 +39,12 @@ TEST(VtpProbes, TouchesDirectionsAndMoves_AreCellsWithTheirTypes) {
     EXPECT_THAT(cell_data("touch"), ElementsAre(4, 5, 4, 4, 4));
     EXPECT_THAT(cell_data("feature"), ElementsAre(2, 0, 2, 2, 2));
     EXPECT_THAT(cell_data("reason"), ElementsAre(0, 1, 0, 0, 0));
-    EXPECT_THAT(cell_data("order"), ElementsAre(0, 4294967295.0, 0, 0, 0));
+    EXPECT_THAT(cell_data("assumed"), ElementsAre(1, 0, 1, 1, 1));
+    EXPECT_THAT(cell_data("contact"), ElementsAre(2, 0, 2, 2, 2));
+    EXPECT_THAT(cell_data("interior_angle"), ElementsAre(1.5, IsNan(), 1.5, 1.5, 1.5));
+    EXPECT_THAT(cell_data("phi"), ElementsAre(0.25, IsNan(), 0.25, 0.25, 0.25));
+    EXPECT_THAT(cell_data("contact_distance"), ElementsAre(0.5, IsNan(), 0.5, 0.5, 0.5));
+    EXPECT_THAT(cell_data("order"), ElementsAre(0, IsNan(), 0, 0, 0)) << "the second touch is not made";
     const std::vector<double> direction = numbers_in(data->GetPointData()->GetArray("direction"));
     ASSERT_EQ(direction.size(), 27u);
     EXPECT_EQ(direction[2], 1);
@@ -42,6 +53,7 @@ TEST(VtpProbes, TouchesDirectionsAndMoves_AreCellsWithTheirTypes) {
                 ElementsAre("touch", "direction", "clearance", "approach", "retract"));
     EXPECT_THAT(texts_in(data->GetFieldData(), "reason_names"),
                 ElementsAre("none", "concave", "too-narrow", "too-tilted", "obstructed"));
+    EXPECT_THAT(texts_in(data->GetFieldData(), "contact_names"), ElementsAre("none", "edge", "elsewhere", "missed"));
     EXPECT_THAT(texts_in(data->GetFieldData(), "unit"), ElementsAre("in"));
 }
 

@@ -21,14 +21,14 @@ enum class ProbeReason : u8 {
     concave,  ///< the interior angle is pi or more
     too_narrow,  ///< no direction meets the edge first for every position of T, or the ball does not pass the hole
     too_tilted,  ///< every such direction is farther from the machine's axis than allowed
-    obstructed  ///< ball or stylus would meet the part elsewhere
+    obstructed  ///< ball or stylus would meet the part elsewhere, or the start cannot be left along the axis
 };
 
 /// What the ball meets first if it moves against the mesh.
 enum class ProbeContact : u8 {
     none,  ///< not simulated: the touch is not made
     edge,  ///< the part, near T
-    elsewhere,  ///< the part, too far from T
+    elsewhere,  ///< the part too far from T, or the stylus meets the part
     missed  ///< nothing
 };
 
