@@ -22,7 +22,7 @@ FeatureLines features(const TriangleMesh& mesh, const FeatureParams& params, Con
         throw Error("the mesh has no triangles; features need at least one")
             .hint("`scanmill info` shows what a file contains");
     context.check_cancelled();
-    FeatureLines lines = find_features(mesh, params, context.threads());
+    FeatureLines lines = find_features(mesh, params, context);
     for (std::string& sentence : doubts(lines.counts)) context.warn(std::move(sentence));
     warn_of_short_creases(lines.counts, params, context);
 

@@ -90,15 +90,10 @@ private:
 
     /// Of a facet on the boundary.
     double cost(const Triangle& corners) const {
-        const bool is_suggested = std::ranges::binary_search(suggested_, rotated(corners)) ||
-                                  std::ranges::binary_search(suggested_, rotated({corners[0], corners[2], corners[1]}));
+        const bool is_suggested =
+            std::ranges::binary_search(suggested_, smallest_first(corners)) ||
+            std::ranges::binary_search(suggested_, smallest_first({corners[0], corners[2], corners[1]}));
         return (is_suggested ? cost_of_suggested : 1) * area(corners);
-    }
-
-    /// The smallest corner first, in the same direction.
-    static Triangle rotated(Triangle triangle) {
-        std::ranges::rotate(triangle, std::ranges::min_element(triangle));
-        return triangle;
     }
 
     void claim() {
@@ -106,7 +101,7 @@ private:
         std::vector<Triangle> directed;
         for (Triangle triangle : triangles_) {
             for (u32& vertex : triangle) vertex = lowest[vertex];
-            directed.push_back(rotated(triangle));
+            directed.push_back(smallest_first(triangle));
         }
         const auto first_guess = directed.begin() + static_cast<std::ptrdiff_t>(given_);
         suggested_.assign(first_guess, directed.end());
@@ -116,7 +111,7 @@ private:
         DisjointSets components(positions_.size());
         join_vertices(directed, components);
         const auto exists = [&](const Triangle& triangle) {
-            return std::ranges::binary_search(directed, rotated(triangle));
+            return std::ranges::binary_search(directed, smallest_first(triangle));
         };
         claims_.resize(tets_.cells.size());
         double hull_out = 0, hull_in = 0;
@@ -413,6 +408,11 @@ private:
 };
 
 }  // namespace
+
+Triangle smallest_first(Triangle triangle) {
+    std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+    return triangle;
+}
 
 ClosingSolid closing_solid(std::span<const Vec3> positions, std::span<const Triangle> triangles, std::size_t given,
                            const Vec3& origin, Context& context) {

@@ -10,6 +10,9 @@
 
 namespace scanmill {
 
+/// The same triangle with its smallest corner first, in the same direction.
+Triangle smallest_first(Triangle triangle);
+
 struct ClosingSolid {
     /// Empty if there is no such solid.
     std::vector<Triangle> triangles;
@@ -30,7 +33,7 @@ struct ClosingSolid {
 ///
 /// Returns the boundary, in the orientation of the mesh; of vertices at one position it uses the first. It is a closed
 /// manifold and does not intersect itself, because its triangles are facets of one tetrahedralisation. It lacks the
-/// triangles of the mesh that are no such facets. Empty if the vertices are within rounding of a plane, or if
+/// triangles of the mesh that are not such facets. Empty if the vertices are within rounding of a plane, or if
 /// that does not help.
 ///
 /// Pre: at least one triangle; finite vertices; `origin` is the frame's. Which side is which is decided by the

@@ -63,18 +63,20 @@ std::size_t coincident_edges(const TriangleMesh& mesh, std::span<const u32> boun
 Assembly fillings_of(const TriangleMesh& mesh, const MeshLoops& boundary, std::vector<Hole>& holes, Context& context) {
     Assembly all(mesh, {});
     if (holes.empty()) return all;
-    const Conflicts conflicts(mesh, holes, context.threads());
-    std::atomic<std::size_t> done = 0;
-    do {
+    const Conflicts conflicts(mesh, holes);
+    // The first round takes the most time. Further rounds are few; each gets a part of what is left.
+    for (double from = 0, to = 0.7;; from = std::exchange(to, to + (0.8 - to) / 2)) {
         context.check_cancelled();
-        done = 0;
+        std::atomic<std::size_t> done = 0;
         for_each_chunk(context.threads(), holes.size(), 1, [&](std::size_t i, std::size_t) {
             context.check_cancelled();
-            if (!holes[i].open && holes[i].triangles.empty()) fill(holes[i], mesh, boundary, conflicts, context);
-            context.progress(0.8 * static_cast<double>(++done) / static_cast<double>(holes.size()));
+            if (!holes[i].open && holes[i].triangles.empty()) fill(holes[i], mesh, boundary, context);
+            context.progress(from + (to - from) * static_cast<double>(++done) / static_cast<double>(holes.size()));
         });
+        conflicts.avoid(holes, context);
         all = Assembly(mesh, holes);
-    } while (conflicts.resolve(all, holes, context));
+        if (!conflicts.resolve(all, holes, context)) break;
+    }
     return all;
 }
 

@@ -60,7 +60,7 @@ struct FillHolesResult {
 /// in conflict with each other only one is replaced: the one with more edges, or the later one.
 ///
 /// Together. If loops stay open and no limit left others open, the surface with its fillings is closed as a whole: see
-/// closing_solid.hpp. That closes rings, holes with islands, and rims that cross themselves, replaces some triangles
+/// closing_solid.hpp. That closes rings, holes with islands, and loops that cross themselves, replaces some triangles
 /// of the input by others on the same vertices, and leaves out surfaces inside the solid. If it is not possible either,
 /// as on flat sheets, or if more than half of the area would be fillings, these loops stay open and everything else is
 /// as without `together`.
@@ -81,7 +81,8 @@ struct FillHolesResult {
 /// equal positions.
 ///
 /// Deterministic: the same bytes for any number of threads. Cost: linear in the triangles and about 1 µs for each of
-/// them if there is a loop; of a filling with n vertices about n² in time.
+/// them if there is a loop; of a filling with n vertices about n² in time. Closing together: O(n log n) time and about
+/// 2 kB per vertex, for all vertices.
 /// Metrics: `filled`, `left`, `added-triangles`, `added-points`, `area`, `share`, `longest`, `plain`, `together`,
 /// `replaced-triangles`, `failed`.
 FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& params, Context& context);

@@ -15,7 +15,7 @@ namespace scanmill {
 
 namespace {
 
-constexpr u32 nobody = ~u32(0);
+constexpr u32 invalid_index = ~u32(0);
 
 /// `column` with the vectors `added`, repeated to fill a row, in its last rows. Rows whose vector is 0 stay.
 template <class Number>
@@ -54,12 +54,6 @@ ColumnTable extended(const ColumnTable& columns, const Array<u32>& rows, std::st
     for (std::size_t i = 0; i < filled.size(); ++i) filled[i] |= marks[i];
     result.add(Column("filled", 1, Buffer<u8>(std::move(filled))));
     return result;
-}
-
-/// The smallest corner first, in the same direction.
-Triangle rotated(Triangle triangle) {
-    std::ranges::rotate(triangle, std::ranges::min_element(triangle));
-    return triangle;
 }
 
 std::set<Edge> edges_of(std::span<const Triangle> triangles) {
@@ -133,13 +127,13 @@ FilledMesh filled_mesh(const TriangleMesh& mesh, Assembly all, std::span<const H
     rows.triangle_rows.resize(triangles);
     std::iota(rows.vertex_rows.begin(), rows.vertex_rows.end(), 0);
     std::iota(rows.triangle_rows.begin(), rows.triangle_rows.end(), 0);
-    rows.vertex_rows.resize(all.positions.size(), nobody);
+    rows.vertex_rows.resize(all.positions.size(), invalid_index);
     std::size_t first = triangles;
     for (const Hole& hole : holes) {
         if (hole.triangles.empty()) continue;
         const std::size_t last = first + hole.triangles.size();
-        // Breadth first from the loop; a vertex takes the position in the loop of the one that reaches it first.
-        std::unordered_map<u32, u32> place;
+        // Breadth first from the loop; a vertex takes the slot in the loop of the one that reaches it first.
+        std::unordered_map<u32, u32> slot;
         std::unordered_map<u32, std::vector<u32>> beside;
         for (std::size_t t = first; t < last; ++t)
             for (int i = 0; i < 3; ++i)
@@ -149,16 +143,16 @@ FilledMesh filled_mesh(const TriangleMesh& mesh, Assembly all, std::span<const H
         std::vector<u32> queue;
         for (u32 i = 0; i < hole.loop.size(); ++i) {
             queue.push_back(half_edges::start(mesh, hole.loop[i]));
-            place[queue.back()] = i;
+            slot[queue.back()] = i;
         }
         for (std::size_t head = 0; head < queue.size(); ++head)
             for (const u32 vertex : beside[queue[head]])
-                if (place.try_emplace(vertex, place.at(queue[head])).second) queue.push_back(vertex);
+                if (slot.try_emplace(vertex, slot.at(queue[head])).second) queue.push_back(vertex);
         for (const u32 vertex : queue)
-            if (vertex >= vertices) rows.vertex_rows[vertex] = half_edges::start(mesh, hole.loop[place.at(vertex)]);
+            if (vertex >= vertices) rows.vertex_rows[vertex] = half_edges::start(mesh, hole.loop[slot.at(vertex)]);
         for (std::size_t t = first; t < last; ++t) {
-            u32 least = nobody;
-            for (const u32 vertex : all.triangles[t]) least = std::min(least, place.at(vertex));
+            u32 least = invalid_index;
+            for (const u32 vertex : all.triangles[t]) least = std::min(least, slot.at(vertex));
             rows.triangle_rows.push_back(hole.loop[least] / 3);
         }
         first = last;
@@ -184,10 +178,10 @@ std::size_t replace_triangles(FilledMesh& filled, const ClosingSolid& closed, st
         return make_edge(ends[0], ends[1]);
     };
     std::map<Edge, u32> uses;
-    std::vector<u32> at_vertex(filled.positions.size(), nobody);  // the first triangle
+    std::vector<u32> at_vertex(filled.positions.size(), invalid_index);  // the first triangle
     std::vector<std::pair<Triangle, u32>> rows;
     for (u32 t = 0; t < count; ++t) {
-        rows.emplace_back(rotated(filled.triangles[t]), t);
+        rows.emplace_back(smallest_first(filled.triangles[t]), t);
         for (std::size_t i = 0; i < 3; ++i) {
             ++uses[make_edge(filled.triangles[t][i], filled.triangles[t][(i + 1) % 3])];
             u32& first = at_vertex[filled.triangles[t][i]];
@@ -195,10 +189,10 @@ std::size_t replace_triangles(FilledMesh& filled, const ClosingSolid& closed, st
         }
     }
     std::ranges::sort(rows);
-    constexpr Triangle none{nobody, nobody, nobody};
+    constexpr Triangle none{invalid_index, invalid_index, invalid_index};
     std::vector<Triangle> stays(count, none), added;  // as they are with copies
     for (const Triangle& triangle : closed.triangles) {
-        const Triangle key = rotated(original(triangle));
+        const Triangle key = smallest_first(original(triangle));
         const auto found = std::ranges::lower_bound(rows, std::pair(key, u32(0)));
         if (found == rows.end() || found->first != key) {
             added.push_back(triangle);
@@ -274,8 +268,8 @@ TriangleMesh with_columns(const TriangleMesh& mesh, FilledMesh filled, Context& 
         extended(mesh.vertex_columns, filled.vertex_rows, "normal", 3, vertex_normals, new_vertices, "vertex", context);
     result.face_columns = extended(mesh.face_columns, filled.triangle_rows, "corner-normals", 9, facet_normals,
                                    filled.filled, "face", context);
-    if (filled.kept == filled.triangles.size()) return result;
     const bool replaces = filled.kept < mesh.triangles.size();
+    if (!replaces && filled.kept == filled.triangles.size()) return result;
     result.positions = std::move(filled.positions);
     result.triangles = std::move(filled.triangles);
     if (replaces) keep_edges(result);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
@@ -17,13 +18,19 @@ namespace {
 /// With more edges, all triangulations of a loop take too long: 100 have 161,700 triangles, at about 1 µs each.
 constexpr std::size_t most_edges_to_avoid = 100;
 
-BoundingBox box_of(const Array<Vec3>& positions, const Triangle& triangle) {
+BoundingBox box_of(std::span<const Vec3> positions, const Triangle& triangle) {
     BoundingBox box;
     for (const u32 vertex : triangle) box.add(positions[vertex]);
     return box;
 }
 
+/// Whether the hole waits for Conflicts::avoid().
+bool is_to_avoid(const Hole& hole) {
+    return !hole.open && hole.stage == FillingStage::avoiding && hole.triangles.empty();
+}
+
 u64 key(u32 a, u32 b) { return u64{std::min(a, b)} << 32 | std::max(a, b); }
+
 u32 loser_of(u32 one, u32 other, std::span<const Hole> holes) {
     const std::size_t edges = holes[one].loop.size(), others = holes[other].loop.size();
     return edges > others || (edges == others && one > other) ? one : other;
@@ -56,26 +63,81 @@ Assembly::Assembly(const TriangleMesh& mesh, std::span<const Hole> holes)
     }
 }
 
-Conflicts::Conflicts(const TriangleMesh& mesh, std::span<const Hole> holes, unsigned threads)
+Conflicts::Conflicts(const TriangleMesh& mesh, std::span<const Hole> holes)
     : mesh_(mesh),
       vertices_(static_cast<u32>(mesh.positions.size())),
       count_(static_cast<u32>(mesh.triangles.size())),
-      tree_(mesh.positions.span(), mesh.triangles.span(), threads),
       lowest_(lowest_at_position(mesh.positions.span())) {
-    std::vector<bool> is_rim(mesh.positions.size(), false);
+    std::vector<bool> is_in_loop(mesh.positions.size(), false);
     for (const Hole& hole : holes)
-        for (const u32 h : hole.loop) is_rim[half_edges::start(mesh, h)] = true;
+        for (const u32 h : hole.loop) is_in_loop[half_edges::start(mesh, h)] = true;
     for (const Triangle& triangle : mesh.triangles)
         for (std::size_t i = 0; i < 3; ++i)
-            if (const u32 a = triangle[i], b = triangle[(i + 1) % 3]; is_rim[a] && is_rim[b])
-                rim_edges_.insert(key(a, b));
+            if (const u32 a = triangle[i], b = triangle[(i + 1) % 3]; is_in_loop[a] && is_in_loop[b])
+                loop_edges_.insert(key(a, b));
+}
+
+struct Conflicts::Nearby {
+    Array<Triangle> triangles;
+    std::optional<TriangleTree> tree;  ///< empty without triangles
+
+    /// Whether meets(triangle) is true for one whose box meets `box`. `rows` is reused memory.
+    template <class Meets>
+    bool any_meets(const BoundingBox& box, Array<u32>& rows, const Meets& meets) const {
+        rows.clear();
+        if (tree) tree->meeting(box, rows);
+        return std::ranges::any_of(rows, [&](u32 row) { return meets(triangles[row]); });
+    }
+};
+
+Conflicts::Nearby Conflicts::nearby(const TriangleTree& others, const Execution& execution) const {
+    constexpr std::size_t chunk = 1 << 12;
+    std::vector<Array<Triangle>> parts((mesh_.triangles.size() + chunk - 1) / chunk);
+    for_each_chunk(execution.threads(), mesh_.triangles.size(), chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
+        Array<u32> rows;
+        for (std::size_t f = begin; f < end; ++f) {
+            rows.clear();
+            others.meeting(box_of(mesh_.positions, mesh_.triangles[f]), rows);
+            if (!rows.empty()) parts[begin / chunk].push_back(mesh_.triangles[f]);
+        }
+    });
+    Nearby found;
+    for (const Array<Triangle>& part : parts) found.triangles.insert(found.triangles.end(), part.begin(), part.end());
+    if (!found.triangles.empty()) found.tree.emplace(mesh_.positions.span(), found.triangles, execution.threads());
+    return found;
+}
+
+void Conflicts::avoid(std::vector<Hole>& holes, const Execution& execution) const {
+    std::vector<u32> waiting;
+    Array<Vec3> corners;  // of the loops' boxes, which are those of triangles with these corners
+    Array<Triangle> boxes;
+    for (u32 i = 0; i < holes.size(); ++i) {
+        if (!is_to_avoid(holes[i])) continue;
+        holes[i].open = holes[i].loop.size() > most_edges_to_avoid;
+        if (holes[i].open) continue;
+        waiting.push_back(i);
+        BoundingBox box;
+        for (const u32 h : holes[i].loop) box.add(mesh_.positions[half_edges::start(mesh_, h)]);
+        const u32 low = static_cast<u32>(corners.size());
+        corners.push_back(box.low);
+        corners.push_back(box.high);
+        boxes.push_back({low, low + 1, low});
+    }
+    if (waiting.empty()) return;
+    const Nearby around = nearby(TriangleTree(corners, boxes, execution.threads()), execution);
+    for_each_chunk(execution.threads(), waiting.size(), 1, [&](std::size_t i, std::size_t) {
+        Hole& hole = holes[waiting[i]];
+        hole.triangles = least_triangulation(hole.loop, around, execution);
+        hole.open = hole.triangles.empty();
+    });
 }
 
 bool Conflicts::resolve(const Assembly& all, std::vector<Hole>& holes, const Execution& execution) const {
     const u32 added = static_cast<u32>(all.owners.size());
     if (added == 0) return false;
-    const auto joined_row = [&](u32 row) { return joined(all.triangles[row]); };
     const TriangleTree fillings(all.positions, std::span(all.triangles).subspan(count_), execution.threads());
+    const Nearby around = nearby(fillings, execution);
     std::vector<u32> begin{0};
     for (u32 i = 1; i <= added; ++i)
         if (i == added || all.owners[i] != all.owners[i - 1]) begin.push_back(i);
@@ -88,18 +150,16 @@ bool Conflicts::resolve(const Assembly& all, std::vector<Hole>& holes, const Exe
         for (u32 i = begin[hole]; i < begin[hole + 1]; ++i) {
             if ((i & 255) == 0) execution.check_cancelled();
             const BoundingBox box = box_of(all.positions, all.triangles[count_ + i]);
-            const auto meets = [&](u32 other) {
-                return other != count_ + i &&
-                       triangles_intersect(all.positions, joined_row(count_ + i), joined_row(other));
+            const Triangle triangle = joined(all.triangles[count_ + i]);
+            const auto meets = [&](const Triangle& other) {
+                return triangles_intersect(all.positions, triangle, joined(other));
             };
-            near.clear();
-            tree_.meeting(box, near);
-            bool gives_way = std::ranges::any_of(near, meets);
+            bool gives_way = around.any_meets(box, near, meets);
             near.clear();
             if (!gives_way) fillings.meeting(box, near);
             for (const u32 row : near) {
                 const u32 other = all.owners[row];
-                if (!meets(count_ + row)) continue;
+                if (row == i || !meets(all.triangles[count_ + row])) continue;
                 if (other == owner) gives_way = true;
                 if (other != owner) losers[hole].push_back(loser_of(owner, other, holes));
             }
@@ -120,15 +180,21 @@ bool Conflicts::resolve(const Assembly& all, std::vector<Hole>& holes, const Exe
     return any;
 }
 
-std::vector<Triangle> Conflicts::least_triangulation(std::span<const u32> loop, const Execution& execution) const {
+std::vector<Triangle> Conflicts::least_triangulation(std::span<const u32> loop, const Nearby& around,
+                                                     const Execution& execution) const {
     const std::size_t count = loop.size();
-    if (count > most_edges_to_avoid) return {};
     constexpr double none = std::numeric_limits<double>::infinity();
     std::vector<double> least(count * count, none);
     std::vector<std::size_t> third(count * count, 0);
     const auto vertex = [&](std::size_t i) { return half_edges::start(mesh_, loop[i]); };
     const auto is_free = [&](std::size_t i, std::size_t j) {
-        return j == i + 1 || (i == 0 && j + 1 == count) || !rim_edges_.contains(key(vertex(i), vertex(j)));
+        return j == i + 1 || (i == 0 && j + 1 == count) || !loop_edges_.contains(key(vertex(i), vertex(j)));
+    };
+    Array<u32> near;
+    const auto meets_mesh = [&](const Triangle& triangle) {
+        return around.any_meets(box_of(mesh_.positions, triangle), near, [&](const Triangle& other) {
+            return triangles_intersect(mesh_.positions.span(), joined(triangle), joined(other));
+        });
     };
     for (std::size_t i = 0; i + 1 < count; ++i) least[i * count + i + 1] = 0;
     for (std::size_t span = 2; span < count; ++span) {
@@ -166,24 +232,13 @@ std::vector<Triangle> Conflicts::least_triangulation(std::span<const u32> loop, 
     return triangles;
 }
 
-/// Vertices of the mesh at one position are one corner.
 Triangle Conflicts::joined(Triangle triangle) const {
     for (u32& vertex : triangle)
         if (vertex < vertices_) vertex = lowest_[vertex];
     return triangle;
 }
 
-bool Conflicts::meets_mesh(const Triangle& triangle) const {
-    BoundingBox box;
-    for (const u32 vertex : triangle) box.add(mesh_.positions[vertex]);
-    Array<u32> near;
-    tree_.meeting(box, near);
-    return std::ranges::any_of(near, [&](u32 row) {
-        return triangles_intersect(mesh_.positions.span(), joined(triangle), joined(mesh_.triangles[row]));
-    });
-}
-
-/// Fillings with an inner edge, between two vertices of rims, that the mesh or another filling has.
+/// Fillings with an inner edge, between two vertices of loops, that the mesh or another filling has.
 std::vector<u32> Conflicts::owners_of_repeated_edges(const Assembly& all, std::span<const u32> begin,
                                                      std::span<const Hole> holes) const {
     std::vector<u32> losers;
@@ -200,7 +255,7 @@ std::vector<u32> Conflicts::owners_of_repeated_edges(const Assembly& all, std::s
         std::ranges::sort(edges);
         for (std::size_t i = 1; i < edges.size(); ++i) {
             if (edges[i] != edges[i - 1]) continue;  // an edge of the loop has one triangle of the filling
-            if (rim_edges_.contains(edges[i])) losers.push_back(owner);
+            if (loop_edges_.contains(edges[i])) losers.push_back(owner);
             const auto [found, is_new] = owner_of.try_emplace(edges[i], owner);
             if (!is_new) losers.push_back(loser_of(owner, found->second, holes));
         }
@@ -208,16 +263,11 @@ std::vector<u32> Conflicts::owners_of_repeated_edges(const Assembly& all, std::s
     return losers;
 }
 
-void fill(Hole& hole, const TriangleMesh& mesh, const MeshLoops& boundary, const Conflicts& conflicts,
-          const Execution& execution) {
+void fill(Hole& hole, const TriangleMesh& mesh, const MeshLoops& boundary, const Execution& execution) {
+    if (hole.stage == FillingStage::avoiding) return;
     const Cutout cutout(mesh, boundary, hole.loop);
     const u32 around = static_cast<u32>(cutout.vertices.size()), vertices = static_cast<u32>(mesh.positions.size());
-    while (!hole.open) {
-        if (hole.stage == FillingStage::avoiding) {
-            hole.triangles = conflicts.least_triangulation(hole.loop, execution);
-            hole.open = hole.triangles.empty();
-            return;
-        }
+    while (hole.stage != FillingStage::avoiding) {
         LoopFilling filling = fill_loop(cutout.part, hole.stage, execution);
         if (filling.triangles.empty()) {
             hole.demote();

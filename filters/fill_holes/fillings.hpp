@@ -9,6 +9,7 @@
 
 #include "fill_holes/loop_filling.hpp"
 #include "fill_holes/mesh_loops.hpp"
+#include "scanmill/base/execution.hpp"
 #include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill {
@@ -38,31 +39,38 @@ struct Assembly {
 /// Finds which fillings intersect something, or repeat an edge.
 class Conflicts {
 public:
-    Conflicts(const TriangleMesh& mesh, std::span<const Hole> holes, unsigned threads);
+    Conflicts(const TriangleMesh& mesh, std::span<const Hole> holes);
+
+    /// Fills the holes at stage `avoiding` by least_triangulation(); without one they are open.
+    void avoid(std::vector<Hole>& holes, const Execution& execution) const;
 
     /// Demotes the fillings that have to give way; false if there is none.
     bool resolve(const Assembly& all, std::vector<Hole>& holes, const Execution& execution) const;
 
-    /// The triangles of least total area that close the loop, do not intersect the mesh and repeat none of its edges;
-    /// of equal ones those that join the first vertices. Empty if there are none, or too many to try.
-    std::vector<Triangle> least_triangulation(std::span<const u32> loop, const Execution& execution) const;
-
 private:
+    /// The mesh's triangles in some region: that is faster to search than the whole mesh.
+    struct Nearby;
+    /// The mesh's triangles whose boxes meet that of one of `others`. Cost: linear in the mesh's triangles.
+    Nearby nearby(const TriangleTree& others, const Execution& execution) const;
+    /// The triangles of least total area that close the loop, do not intersect the mesh and repeat none of its edges;
+    /// of equal ones those that join the first vertices. Empty if there are none. `around`: the triangles whose boxes
+    /// meet that of the loop, and others.
+    std::vector<Triangle> least_triangulation(std::span<const u32> loop, const Nearby& around,
+                                              const Execution& execution) const;
+    /// Vertices of the mesh at one position are one corner.
     Triangle joined(Triangle triangle) const;
-    bool meets_mesh(const Triangle& triangle) const;
     std::vector<u32> owners_of_repeated_edges(const Assembly& all, std::span<const u32> begin,
                                               std::span<const Hole> holes) const;
 
     const TriangleMesh& mesh_;
     u32 vertices_, count_;
-    TriangleTree tree_;
     Array<u32> lowest_;
     /// Of the mesh, between vertices of loops.
-    std::unordered_set<u64> rim_edges_;
+    std::unordered_set<u64> loop_edges_;
 };
 
-/// Fills the hole at its stage, or at the first plainer one that has a filling; otherwise it is open.
-void fill(Hole& hole, const TriangleMesh& mesh, const MeshLoops& boundary, const Conflicts& conflicts,
-          const Execution& execution);
+/// Fills the hole at its stage, or at the first plainer one for which CGAL has a filling; otherwise its stage becomes
+/// `avoiding`, see Conflicts::avoid().
+void fill(Hole& hole, const TriangleMesh& mesh, const MeshLoops& boundary, const Execution& execution);
 
 }  // namespace scanmill

@@ -22,7 +22,7 @@ struct LoopSurroundings {
 };
 
 /// How far a filling is worked out. `avoiding`: the triangles of least area that do not intersect the mesh, see
-/// fill_holes.cpp.
+/// Conflicts::least_triangulation().
 enum class FillingStage { avoiding, triangulated, refined, faired };
 
 struct LoopFilling {

@@ -11,7 +11,7 @@ namespace scanmill {
 
 namespace {
 
-constexpr u32 nobody = ~u32(0);
+constexpr u32 invalid_index = ~u32(0);
 
 }  // namespace
 
@@ -105,11 +105,11 @@ Cutout::Cutout(const TriangleMesh& mesh, const MeshLoops& boundary, std::span<co
             part.before_on_boundary[h] = in;
         }
     }
-    std::vector<u32> number(count, nobody);
+    std::vector<u32> number(count, invalid_index);
     part.triangles.resize(rows.size());
     for (u32 h = 0; h < count; ++h) {
         u32& vertex = number[corners.find(h)];
-        if (vertex == nobody) {
+        if (vertex == invalid_index) {
             vertex = static_cast<u32>(vertices.size());
             vertices.push_back(half_edges::start(mesh, global(h)));
             part.positions.push_back(mesh.positions[vertices.back()]);

@@ -122,10 +122,15 @@ private:
     Array<u32> reverse_;
 };
 
-/// Gives the highest position of every component without a side its side. Returns the number of positions in such
-/// components, other than the largest of them all.
-std::size_t seed_components(std::span<const Vec3> positions, const Field& field, DisjointSets& components,
-                            std::vector<signed char>& sides, std::size_t& count) {
+/// Components, and their positions, that have their side from their highest position alone. The largest component of
+/// all does not count.
+struct Guessed {
+    std::size_t components = 0, positions = 0;
+};
+
+/// Gives the highest position of every component without a side its side. `count`: of all components.
+Guessed seed_components(std::span<const Vec3> positions, const Field& field, DisjointSets& components,
+                        std::vector<signed char>& sides, std::size_t& count) {
     struct Component {
         std::size_t size = 0;
         u32 highest = 0;
@@ -140,23 +145,25 @@ std::size_t seed_components(std::span<const Vec3> positions, const Field& field,
         its.sum += positions[i] - positions[components.find(i)];
         its.seeded = its.seeded || sides[i] != 0;
     }
-    std::size_t guessed = 0, largest = 0, largest_guessed = 0;
+    Guessed guessed, largest_guessed;
+    std::size_t largest = 0;
     for (u32 i = 0; i < positions.size(); ++i) {
         const Component& its = of[i];
         if (its.size == 0) continue;
         ++count;
         if (its.size > largest) {
             largest = its.size;
-            largest_guessed = its.seeded ? 0 : its.size;
+            largest_guessed = its.seeded ? Guessed{} : Guessed{1, its.size};
         }
         if (its.seeded) continue;
-        guessed += its.size;
+        ++guessed.components;
+        guessed.positions += its.size;
         const Vec3& normal = field.directions[its.highest];
         const Vec3 centroid = positions[i] + its.sum / static_cast<double>(its.size);
         const double up = normal.z() != 0 ? normal.z() : normal.dot(positions[its.highest] - centroid);
         sides[its.highest] = up < 0 ? -1 : 1;
     }
-    return guessed - largest_guessed;
+    return {guessed.components - largest_guessed.components, guessed.positions - largest_guessed.positions};
 }
 
 /// Prim's algorithm from all positions that have a side.
@@ -168,9 +175,9 @@ void spread(const Field& field, const Graph& graph, std::vector<signed char>& si
         bool operator>(const Link& other) const { return key() > other.key(); }
     };
     const std::size_t count = sides.size();
-    constexpr u32 nobody = ~u32(0);
+    constexpr u32 invalid_index = ~u32(0);
     std::vector<double> least(count, std::numeric_limits<double>::infinity());
-    std::vector<u32> best(count, nobody);
+    std::vector<u32> best(count, invalid_index);
     std::priority_queue<Link, std::vector<Link>, std::greater<>> queue;
     const auto offer = [&](u32 from) {
         graph.for_each_neighbour(from, [&](u32 to) {
@@ -248,6 +255,10 @@ void require_usable(const PointCloud& cloud, const NormalsParams& params) {
     if (params.scanner && params.scanner->size() != 3)
         throw Error("scanner needs 3 lengths, x, y and z; it has {}", params.scanner->size())
             .hint("write `scanner: [0 u, 0 u, 10 u]`");
+    if (params.scanner && (params.orient == Orient::tree || params.orient == Orient::none))
+        throw Error("scanner is given, but orient is `{}`, which does not use it",
+                    params.orient == Orient::tree ? "tree" : "none")
+            .hint("leave scanner out, or write `orient: sensor`");
     if (params.scanner)
         for (const Length& length : *params.scanner)
             if (!std::isfinite(length.value()))
@@ -275,18 +286,21 @@ const Column* sensor_column(const PointCloud& cloud, const NormalsParams& params
     return approach;
 }
 
-void report_doubts(const NormalsResult& result, std::size_t guessed, std::size_t positions, Context& context) {
+void report_doubts(const NormalsResult& result, const Guessed& guessed, std::size_t positions, Context& context) {
     const double count = static_cast<double>(result.points.size());
     if (static_cast<double>(result.doubtful) > doubtful_share * count)
         context.doubt(fmt::format(
             "{} of {} points ({:.0f} %) have a doubtful normal: their neighbours lie on a line, or most of their "
             "normals are on the other side; more neighbours, or outlier-removal before, may help",
             result.doubtful, result.points.size(), 100 * static_cast<double>(result.doubtful) / count));
-    if (static_cast<double>(guessed) > doubtful_share * static_cast<double>(positions))
-        context.doubt(
-            fmt::format("{} connected components are turned by their highest points alone: {:.0f} % of the "
-                        "positions may be inside out; give the scanner's position, or more neighbours",
-                        result.components, 100 * static_cast<double>(guessed) / static_cast<double>(positions)));
+    const double share = static_cast<double>(guessed.positions) / static_cast<double>(positions);
+    if (share > doubtful_share)
+        context.doubt(fmt::format(
+            "{} turned by {} alone: {:.0f} % of the positions may be inside out; give the scanner's position, or more "
+            "neighbours",
+            count_text(guessed.components, "connected component beside the largest is",
+                       "connected components beside the largest are"),
+            by_count(guessed.components, "its highest point", "their highest points"), 100 * share));
 }
 
 void report(const NormalsResult& result, Context& context) {
@@ -329,7 +343,7 @@ NormalsResult normals(const PointCloud& cloud, const NormalsParams& params, Cont
     const std::vector<signed char> sensed = sides;
     const Graph graph(field);
     DisjointSets components = graph.components();
-    std::size_t guessed = 0;
+    Guessed guessed;
     if (params.orient == Orient::none) {
         for (u32 i = 0; i < positions.size(); ++i) result.components += components.find(i) == i;
     } else {

@@ -32,6 +32,7 @@ struct NormalsParams {
     };
     Orient orient = Orient::automatic;
     /// The scanner's position: x, y, z in the scan's coordinates, frame.origin included. Empty: the column `approach`.
+    /// Not with Orient::tree or none.
     std::optional<std::vector<Length>> scanner;
 };
 
@@ -52,8 +53,7 @@ struct NormalsResult {
 /// One normal for each distinct position; duplicates share it.
 ///
 /// 1. Normal. By `method` from the position and its `neighbours` nearest other positions; of equally near ones the
-/// lower
-///    by x, then y, then z. A jet that is not determined is the plane.
+///    lower by x, then y, then z. A jet that is not determined is the plane.
 /// 2. Sensor. Every point has a direction to the scanner: its column `approach` (3 numbers, of any length above 0) or
 ///    that to `scanner`. A normal is turned to the side of the mean direction of the points at its position, unless
 ///    they are nearly perpendicular (the angle between them is above 85 degrees), or the direction is missing (0 or

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = NormalsParams;
-    return Declare<P>("normals", 1)
+    return Declare<P>("normals", 2)
         .summary("Estimates the normal at every point, and turns it to the outside.")
         .source("Hoppe, DeRose, Duchamp, McDonald, Stuetzle 1992; Cazals, Pouget 2005 for `jet`")
         .ties(
@@ -17,7 +17,10 @@ SCANMILL_FILTER() {
         .in<PointCloud>("points",
                         "Finite coordinates, at least 3 different positions; every column is carried along. The column "
                         "`approach`, 3 numbers, is a direction from the point to the scanner.")
-        .out<PointCloud>("points", "The same points with the column `normal`, of unit length.")
+        .out<PointCloud>(
+            "points",
+            "The same points with the column `normal`, of unit length; with `orient: known` and no scanner, the "
+            "input as it is.")
         .choice("method", &P::method,
                 {{"pca", P::Method::pca, "The normal of the plane that fits a point and its neighbours best."},
                  {"jet", P::Method::jet,

@@ -8,6 +8,8 @@
 #include <mutex>
 #include <vector>
 
+#include "scanmill/base/elementary.hpp"
+
 // PCL's templates call these functions without a namespace, so these come before those of the C library: nothing is
 // printed, and logarithms and powers have the same bits on every processor.
 namespace pcl::poisson {
@@ -17,17 +19,8 @@ constexpr struct Nowhere {
 } stderr;
 inline int fprintf(Nowhere, const char*, ...) { return 0; }
 
-/// Of x above 0. Error: a few units in the last place.
-inline double log2(double x) {
-    int exponent;
-    double mantissa = std::frexp(x, &exponent);
-    if (mantissa < 0.70710678118654752) mantissa *= 2, --exponent;
-    const double ratio = (mantissa - 1) / (mantissa + 1), square = ratio * ratio;
-    double sum = 0;  // of ratio^2k / (2k + 1)
-    for (int power = 23; power > 0; power -= 2) sum = sum * square + 1.0 / power;
-    return exponent + 2.8853900817779268 * ratio * sum;  // 2 / ln 2
-}
-inline double log(double x) { return 0.69314718055994531 * log2(x); }
+using scanmill::elementary::log;
+using scanmill::elementary::log2;
 inline double pow(double base, double power) {
     const double exponent = power * log2(base), whole = std::nearbyint(exponent);
     const double rest = 0.69314718055994531 * (exponent - whole);

@@ -31,7 +31,7 @@ constexpr std::size_t neighbours = 8;
 constexpr double far_factor = 2;  // of the distance to the 8th neighbour
 constexpr double doubtful_share = 0.05;
 constexpr double least_flatness = 1e-12;  // of points that are not on one line
-constexpr u32 most_crack_edges = 12;
+constexpr u32 most_crack_edges = 12;  // loops with more are where the surface leaves the octree's cube
 constexpr std::size_t chunk = 1 << 10;
 
 void require_usable(const PointCloud& cloud, const PoissonParams& params) {
@@ -130,7 +130,12 @@ TriangleMesh surface_of(const Oriented& points, const Frame& frame, const Poisso
     return mesh;
 }
 
-std::size_t fill_cracks(TriangleMesh& mesh, Context& context) {
+/// Of PCL's cracks.
+struct Cracks {
+    std::size_t filled = 0, open = 0;
+};
+
+Cracks fill_cracks(TriangleMesh& mesh, Context& context) {
     ContextOptions options;
     options.threads = context.threads();
     options.is_cancelled = [&] { return context.cancelled(); };
@@ -138,10 +143,11 @@ std::size_t fill_cracks(TriangleMesh& mesh, Context& context) {
     FillHolesParams params;
     params.max_edges = most_crack_edges;
     params.fair = false;
+    params.together = false;
     FillHolesResult filled = fill_holes(mesh, params, own);
     mesh.positions = filled.mesh.positions;
     mesh.triangles = filled.mesh.triangles;
-    return filled.filled;
+    return {filled.filled, filled.failed};
 }
 
 Array<Vec3> vertex_normals(const TriangleMesh& mesh) {
@@ -249,7 +255,16 @@ TriangleMesh trimmed(TriangleMesh mesh, const Support& support, const std::vecto
     return without_unused_vertices(mesh);
 }
 
-void report_doubts(const PoissonResult& result, std::size_t ends, bool inside_out, Context& context) {
+void warn_of_columns(const PointCloud& cloud, Context& context) {
+    std::string names;
+    for (const Column& column : cloud.columns)
+        if (column.name() != "normal") names += (names.empty() ? "'" : ", '") + column.name() + "'";
+    if (!names.empty())
+        context.warn(fmt::format("columns of the points are dropped, because the vertices are new: {}", names));
+}
+
+void report_doubts(const PoissonResult& result, std::size_t ends, std::size_t open_cracks, bool inside_out,
+                   Context& context) {
     if (result.without_normal > 0)
         context.warn(fmt::format("{} not used: their normals are 0, NaN or infinite",
                                  count_text(result.without_normal, "point is", "points are")));
@@ -257,6 +272,11 @@ void report_doubts(const PoissonResult& result, std::size_t ends, bool inside_ou
         context.warn(
             fmt::format("the surface leaves the octree's cube and ends there, in {}; a larger scale may close it",
                         count_text(ends, "boundary loop", "boundary loops")));
+    if (open_cracks > 0)
+        context.warn(
+            fmt::format("{} that cells of different sizes leave in the surface {} open: every filling would "
+                        "intersect something",
+                        count_text(open_cracks, "crack", "cracks"), by_count(open_cracks, "stays", "stay")));
     if (inside_out)
         context.warn("the normals point into the volume that the surface encloses; the surface is turned like them");
     if (result.invented > doubtful_share)
@@ -285,12 +305,15 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
     PoissonResult result;
     result.without_normal = cloud.size() - points.positions.size();
     TriangleMesh whole = surface_of(points, cloud.frame, params, result.cell, context);
-    result.cracks = fill_cracks(whole, context);
+    const Cracks cracks = fill_cracks(whole, context);
+    result.cracks = cracks.filled;
     context.progress(0.85);
     const Support support = support_of(whole, points, tree, context);
     const std::size_t vertices = whole.positions.size();
     result.against = static_cast<double>(std::ranges::count(support.against, u8(1))) / static_cast<double>(vertices);
-    const std::size_t ends = boundary_loops(whole, half_edges::opposites(whole)).size();
+    const auto ends = static_cast<std::size_t>(
+        std::ranges::count_if(boundary_loops(whole, half_edges::opposites(whole)),
+                              [](const auto& loop) { return loop.size() > most_crack_edges; }));
     const bool inside_out = ends == 0 && volume_of(whole) < 0;
 
     const std::vector<u8> removed = removed_vertices(support, params);
@@ -305,7 +328,8 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
     result.mesh = trimmed(std::move(whole), support, removed, params);
     result.trimmed = vertices - result.mesh.positions.size();
     result.loops = boundary_loops(result.mesh, half_edges::opposites(result.mesh)).size();
-    report_doubts(result, ends, inside_out, context);
+    warn_of_columns(cloud, context);
+    report_doubts(result, ends, cracks.open, inside_out, context);
 
     context.metric("triangles", static_cast<double>(result.mesh.triangles.size()));
     context.metric("trimmed", static_cast<double>(result.trimmed));

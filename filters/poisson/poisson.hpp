@@ -64,7 +64,8 @@ struct PoissonResult {
 ///       the surface is closed, unless it leaves the octree's cube, which is centred on the points' box: that of an
 ///       open sheet does, and one with a gap near a face of the cube.
 /// Doubts its result if more than 5 % of its area is invented, and if more than 5 % of the vertices are against their
-/// points. Warns of points without a normal, of a surface that leaves the cube, and of a closed one that is inside out.
+/// points. Warns of points without a normal, of a surface that leaves the cube, of cracks that stay open, of a closed
+/// surface that is inside out, and of columns of the points other than `normal`, which are dropped.
 ///
 /// Deterministic: the same bytes for any number of threads and any processor. They depend on the order of the points.
 /// Cost: time and memory grow with the surface's area in cells, fourfold with every `depth` until cells are as small as

@@ -31,20 +31,29 @@ void require_in_range(const RegionGrowParams& params, std::size_t points) {
     const double least = params.min_angle.in_degrees(), most = params.max_normal_angle.in_degrees();
     if (!(least >= 0 && least < 60))
         throw Error("min-angle is {} degrees; it must be at least 0 and below 60, the angle of an equilateral triangle",
-                    least);
+                    least)
+            .hint("`10 deg` suits most scans");
     if (!(most > 0 && most <= 180))
-        throw Error("max-normal-angle is {} degrees; it must be above 0 and at most 180", most);
+        throw Error("max-normal-angle is {} degrees; it must be above 0 and at most 180", most)
+            .hint("`90 deg` suits most scans");
     if (params.search_radius) {
         const double radius = params.search_radius->value();
-        if (!(radius > 0 && std::isfinite(radius))) throw Error("search-radius is {}; it must be above 0", radius);
+        if (!(radius > 0 && std::isfinite(radius)))
+            throw Error("search-radius is {}; it must be above 0", radius)
+                .hint("leave search-radius out to derive it from the density of the points");
     }
     if (params.noise) {
         const double noise = params.noise->value();
-        if (!(noise >= 0 && std::isfinite(noise))) throw Error("noise is {}; it must be at least 0", noise);
+        if (!(noise >= 0 && std::isfinite(noise)))
+            throw Error("noise is {}; it must be at least 0", noise)
+                .hint("leave noise out to estimate it; 0 judges every triangle by itself");
     }
-    if (params.close_holes > 100) throw Error("close-holes is {}; at most 100 edges are closed", params.close_holes);
+    if (params.close_holes > 100)
+        throw Error("close-holes is {}; at most 100 edges are closed", params.close_holes)
+            .hint("fill-holes closes loops of any number of edges");
     if (params.start && *params.start >= points)
-        throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points);
+        throw Error("start is row {}; the cloud has {} points, counted from 0", *params.start, points)
+            .hint("leave start at `auto` to begin at the flattest point");
 }
 
 [[noreturn]] void refuse_start(u32 row) {
@@ -158,7 +167,7 @@ std::size_t creases_of_triangles(const TriangleMesh& mesh, FeatureParams params,
                                  const Context& context) {
     if (lines.counts.unreliable == 0) return lines.counts.creases;
     params.noise = 0;
-    return find_features(mesh, params, context.threads()).counts.creases;
+    return find_features(mesh, params, context).counts.creases;
 }
 
 /// Creases of an object are long polylines: on the clean scans of the tests there is at most one per 80 edges. Where
@@ -250,7 +259,7 @@ RegionGrowResult region_grow(const PointCloud& cloud, const RegionGrowParams& pa
     FeatureParams feature_params;
     feature_params.sharp_angle = params.sharp_angle;
     feature_params.noise = params.noise;
-    FeatureLines lines = find_features(finished.mesh, feature_params, context.threads());
+    FeatureLines lines = find_features(finished.mesh, feature_params, context);
     const std::size_t by_themselves = creases_of_triangles(finished.mesh, feature_params, lines, context);
     set_sharp_edges(finished, lines, patch_edges);
     set_normals_beyond(lines.graph, finished, patch_edges);

@@ -10,10 +10,9 @@
 ///
 /// What keeps the result a surface:
 /// - A triangle is rejected when one of its edges has two triangles, when it overlaps triangles around one of its
-/// corners
-///   (exact, projected along the normal), when a nearer point lies in it, and when the boundary crosses it.
+///   corners (exact, projected along the normal), when a nearer point lies in it, and when the boundary crosses it.
 /// - Its normal must agree with the normals of its points: within 60 degrees, at sharp edges 85. This keeps sheets
-/// apart.
+///   apart.
 /// - In space it must not intersect triangles near it. This is tested where the surface is not flat, candidates were
 ///   rejected, limits are relaxed, or a boundary that faces the other way is near.
 /// - In the end every vertex keeps one fan of triangles, the largest.

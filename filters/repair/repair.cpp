@@ -100,7 +100,10 @@ private:
     }
 
     void stitch_boundary(double distance) {
-        const Vec3 low = bounding_box(positions_).low;
+        const BoundingBox box = bounding_box(positions_);
+        // Rounding moves a vertex by less than the thousandth that cells are larger than the distance, and their
+        // numbers fit into 64 bits.
+        const double edge = std::max(distance * (1 + 0x1p-10), box.diagonal() * 0x1p-40);
         std::unordered_map<Cell, std::vector<u32>, CellHash> kept;
         std::vector<u32> becomes(joined_.size());
         std::iota(becomes.begin(), becomes.end(), 0);
@@ -108,7 +111,7 @@ private:
             Cell own;
             for (int axis = 0; axis < 3; ++axis)
                 own.at[static_cast<std::size_t>(axis)] =
-                    static_cast<std::int64_t>(std::floor((positions_[v][axis] - low[axis]) / distance));
+                    static_cast<std::int64_t>(std::floor((positions_[v][axis] - box.low[axis]) / edge));
             double nearest = distance * distance;
             u32 found = v;
             for (int i = 0; i < 27; ++i) {
@@ -169,10 +172,15 @@ private:
     void split() {
         half_edges::for_each_edge(half_edges::by_smaller_vertex(current()),
                                   [&](u32, auto its) { result_.split_edges += its.size() > 2; });
-        const std::vector<u32> originals = orient_soup(positions_.size(), triangles_);
-        result_.split_vertices = originals.size();
         source_.resize(positions_.size());
         std::iota(source_.begin(), source_.end(), 0);
+        separate_fans();
+    }
+
+    /// Gives vertices copies until each has one fan of triangles.
+    void separate_fans() {
+        const std::vector<u32> originals = orient_soup(positions_.size(), triangles_);
+        result_.split_vertices += originals.size();
         for (const u32 original : originals) {
             source_.push_back(source_[original]);
             positions_.push_back(positions_[original]);
@@ -255,6 +263,7 @@ private:
     void replace_without_area() {
         for (bool again = true; again;) {
             again = false;
+            context_.check_cancelled();
             std::vector<u32> flat;
             for (u32 t = 0; t < triangles_.size(); ++t)
                 if (is_collinear(triangles_[t])) flat.push_back(t);
@@ -278,15 +287,36 @@ private:
                 }
             }
             result_.without_area += drops;
-            again = again || drops > 0;
             for (u32 t = 0; t < triangles_.size(); ++t) triangles_[t] = mesh.triangle(t);
+            if (drops == 0) continue;
+            again = true;
             keep([&](std::size_t t) { return !dropped[t]; });
             if (triangles_.empty())
                 throw Error("the corners of every triangle are on one line").hint("such a mesh has no surface");
+            separate_parts();
         }
         if (result_.left_without_area > 0)
             context_.warn(fmt::format("{} without area: a flip of their longest edge would make an edge twice",
                                       count_text(result_.left_without_area, "triangle stays", "triangles stay")));
+    }
+
+    /// Where a triangle that is gone was all that joined two fans.
+    void separate_parts() {
+        const std::vector<Triangle> before = triangles_;
+        separate_fans();
+        std::map<Edge, Edge> moved;
+        for (std::size_t t = 0; t < before.size(); ++t)
+            for (std::size_t i = 0; i < 3 && before[t] != triangles_[t]; ++i)
+                moved[make_edge(before[t][i], before[t][(i + 1) % 3])] =
+                    make_edge(triangles_[t][i], triangles_[t][(i + 1) % 3]);
+        std::set<Edge> sharp;
+        for (const Edge& edge : sharp_) {
+            const auto found = moved.find(edge);
+            sharp.insert(found == moved.end() ? edge : found->second);
+        }
+        sharp_ = std::move(sharp);
+        for (auto& [row, edge] : edge_rows_)
+            if (const auto found = moved.find(edge); found != moved.end()) edge = found->second;
     }
 
     template <class Keeps>
@@ -346,6 +376,7 @@ private:
         mesh.triangles = Array<Triangle>(triangles_.begin(), triangles_.end());
         mesh.face_columns =
             rows_.size() == mesh_.triangles.size() ? mesh_.face_columns : mesh_.face_columns.gather(rows_);
+        turn_corner_normals(mesh.face_columns);
         if (!sharp_.empty() || !edge_rows_.empty()) set_edges(mesh);
         result_.mesh = without_unused_vertices(mesh);
         result_.unused_points = mesh.positions.size() - result_.mesh.positions.size() - result_.stitched;
@@ -355,6 +386,47 @@ private:
                             "collapses",
                             100 * removed_area_ / input_area_, count_text(result_.small, "triangle", "triangles"),
                             result_.repeated_vertex));
+    }
+
+    /// The face column `corner-normals` has three normals per triangle, in the order of its corners.
+    void turn_corner_normals(ColumnTable& columns) const {
+        ColumnTable result;
+        for (const Column& column : columns) {
+            const bool is_it = column.name() == "corner-normals" && column.components() == 9;
+            if (is_it && column.type() == ScalarType::float32)
+                result.add(turned<float>(column));
+            else if (is_it && column.type() == ScalarType::float64)
+                result.add(turned<double>(column));
+            else
+                result.add(column);
+        }
+        columns = std::move(result);
+    }
+
+    template <class Number>
+    Column turned(const Column& column) const {
+        const std::span<const Number> old = column.values<Number>();
+        Array<Number> values(old.begin(), old.end());
+        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+            const Triangle& input = mesh_.triangles[rows_[t]];
+            std::array<std::size_t, 3> corners;  // of the input
+            for (std::size_t i = 0; i < 3; ++i)
+                corners[i] = static_cast<std::size_t>(
+                    std::ranges::find(input, source_[triangles_[t][i]], [&](u32 v) { return joined_[v]; }) -
+                    input.begin());
+            if (std::ranges::count(corners, std::size_t{3}) > 0) {  // flipped
+                const auto& [a, b, c] = triangles_[t];
+                const Vec3 normal = (positions_[b] - positions_[a]).cross(positions_[c] - positions_[a]);
+                const Vec3 unit = normal.stableNormalized();
+                for (std::size_t k = 0; k < 9; ++k)
+                    values[9 * t + k] = static_cast<Number>(unit[static_cast<Eigen::Index>(k % 3)]);
+                continue;
+            }
+            const Number sign = is_reversed(t) ? Number{-1} : Number{1};
+            for (std::size_t k = 0; k < 9 && corners != std::array<std::size_t, 3>{0, 1, 2}; ++k)
+                values[9 * t + k] = sign * old[9 * t + 3 * corners[k / 3] + k % 3];
+        }
+        return {column.name(), column.components(), Buffer<Number>(std::move(values))};
     }
 
     void set_edges(TriangleMesh& mesh) {

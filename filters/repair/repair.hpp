@@ -41,8 +41,7 @@ struct RepairResult {
 ///    order of rows, if that is at most `stitch` away; of equally near ones the lower row. The vertex that stays keeps
 ///    its position and its values.
 /// 2. Triangles with a repeated vertex are removed, and of triangles with the same three vertices, in any order, all
-/// but
-///    the first.
+///    but the first.
 /// 3. Orient and split (CGAL). Triangles at an edge with two triangles are oriented equally, starting from the first
 ///    triangle. Edges with three or more triangles, and edges where that is impossible (as on a Moebius strip), are
 ///    borders: vertices get copies so that every vertex has one fan of triangles. Copies are at the same position.
@@ -50,21 +49,22 @@ struct RepairResult {
 ///    positive volume; one that is open takes the orientation that more of its area had, in a tie that of its first
 ///    triangle.
 /// 4. Triangles of three exactly collinear vertices are replaced: the longest edge is flipped. At the boundary they are
-///    removed. Those whose flip would make an edge a second time stay, with a warning.
+///    removed, and vertices at which they joined two fans are split. Those whose flip would make an edge a second time
+///    stay, with a warning.
 /// 5. Connected components with less than `min_component` of the area are removed; those at the limit stay.
 ///
 /// Columns. Vertices, triangles and edges keep their values and their order; copies of vertices follow behind, with the
-/// values of the original. A flip swaps area between two triangles; both keep their values. Sharp edges and rows of
-/// edge columns stay while their edge exists; where a split makes two of one edge, both are sharp and the first has the
-/// row.
+/// values of the original. A flip swaps area between two triangles; both keep their values. But the face column
+/// `corner-normals` follows the corners: of a triangle that is reversed its normals are reversed as well, and after a
+/// flip they are the triangle's own. Sharp edges and rows of edge columns stay while their edge exists; where a split
+/// makes two of one edge, both are sharp and the first has the row.
 ///
 /// Pre:  at least one triangle; finite vertices. Throws Error otherwise, for parameters out of range, and if no
-/// triangle
-///       is left.
+///       triangle is left.
 /// Post: at most two triangles at an edge, oriented equally; one fan at a vertex; no triangle with a repeated vertex;
 ///       no unused vertex. A second run with the same parameters and `min_component` 0 changes no triangle, except that
 ///       it joins and splits the same vertices again.
-/// Doubts its result if triangles with more than 5 % of the area are removed.
+/// Doubts its result if triangles with more than 5 % of the area are removed (repeated ones do not count).
 ///
 /// Deterministic: serial, the same bytes on every machine. Cost: O(n log n) time, about 500 bytes per triangle.
 /// Metrics: `oriented`, `stitched`, `split-vertices`, `split-edges`, `removed-triangles`, `removed-components`,

@@ -157,7 +157,9 @@ TEST(FillHoles, SurfacesThatTouchInAVertexOfTheirRims_AreClosedApart) {
     const TriangleMesh mesh = without_unused_vertices(two);
     const Filled result = filled(mesh);
     const MeshTopology after = topology(result.mesh);
-    EXPECT_EQ(result.filled + result.failed, 2u);
+    EXPECT_EQ(result.failed, 0u);
+    EXPECT_EQ(after.boundary_edges, 0u);
+    EXPECT_EQ(after.components, 2u);
     EXPECT_EQ(after.nonmanifold_edges + after.misoriented_edges, 0u);
     EXPECT_EQ(intersecting_fillings(mesh, result.mesh), 0u);
 }
@@ -213,31 +215,29 @@ TEST(FillHoles, ARimThatCrossesItself_GetsNoFillingThatIntersects) {
     positions[rim[1]] = -1.5 * positions[rim[1]];
     mesh.positions = std::move(positions);
     const Filled result = filled(mesh);
-    EXPECT_EQ(result.filled + result.failed, 1u);
-    EXPECT_EQ(result.doubts.empty(), result.failed + result.together == 0);
+    EXPECT_EQ(result.together, 1u);
+    EXPECT_TRUE(topology(result.mesh).closed);
+    EXPECT_EQ(self_intersections_of(result.mesh), 0u);
+    EXPECT_THAT(result.doubts, Contains(HasSubstr("closed as a whole")));
     FillHolesParams alone;
     alone.together = false;
     EXPECT_EQ(intersecting_fillings(mesh, filled(mesh, alone).mesh), 0u);
 }
 
+/// A tub whose rim rises and falls: a lid bends down along one diagonal, or up along the other. A speck at the height
+/// pierces one of them, so only the other is a filling.
+TriangleMesh obstructed_tub(double height) {
+    const TriangleMesh tub = soup(
+        {{0, 0, 0}, {2, 0, 1}, {2, 2, 0}, {0, 2, 1}, {0, 0, -3}, {2, 0, -3}, {2, 2, -3}, {0, 2, -3}},
+        {{4, 7, 6}, {4, 6, 5}, {4, 5, 1}, {4, 1, 0}, {5, 6, 2}, {5, 2, 1}, {6, 7, 3}, {6, 3, 2}, {7, 4, 0}, {7, 0, 3}});
+    const TriangleMesh speck =
+        soup({{1, 1, height - 0.05}, {1.02, 1, height + 0.05}, {1, 1.02, height + 0.05}}, {{0, 1, 2}});
+    return both(tub, speck);
+}
+
 TEST(FillHoles, AnObstacleInTheHole_IsAvoided) {
-    // A tub whose rim rises and falls: a lid bends down along one diagonal, or up along the other. A speck pierces one
-    // of them, so only the other is a filling.
     for (const double height : {0.0, 1.0}) {
-        const TriangleMesh tub = soup(
-            {{0, 0, 0}, {2, 0, 1}, {2, 2, 0}, {0, 2, 1}, {0, 0, -3}, {2, 0, -3}, {2, 2, -3}, {0, 2, -3}}, {{4, 7, 6},
-                                                                                                           {4, 6, 5},
-                                                                                                           {4, 5, 1},
-                                                                                                           {4, 1, 0},
-                                                                                                           {5, 6, 2},
-                                                                                                           {5, 2, 1},
-                                                                                                           {6, 7, 3},
-                                                                                                           {6, 3, 2},
-                                                                                                           {7, 4, 0},
-                                                                                                           {7, 0, 3}});
-        const TriangleMesh speck =
-            soup({{1, 1, height - 0.05}, {1.02, 1, height + 0.05}, {1, 1.02, height + 0.05}}, {{0, 1, 2}});
-        const TriangleMesh mesh = both(tub, speck);
+        const TriangleMesh mesh = obstructed_tub(height);
         FillHolesParams params;
         params.together = false;
         const Filled result = filled(mesh, params);
@@ -351,7 +351,11 @@ TEST(FillHoles, Seams_AreReported) {
     const TriangleMesh lid = with_positions(rectangle(1, 1), [](const Vec3& p) -> Vec3 { return p + Vec3(0, 0, 1); });
     const Filled result = filled(both(one, lid));
     EXPECT_THAT(result.warnings, Contains(HasSubstr("8 boundary edges are at the position of another one")));
-    EXPECT_EQ(result.together + result.failed, 2u);
+    EXPECT_EQ(result.together, 2u);
+    EXPECT_TRUE(topology(result.mesh).closed);
+    FillHolesParams alone;
+    alone.together = false;
+    EXPECT_EQ(filled(both(one, lid), alone).failed, 2u);
 }
 
 /// A surface of n × m points, closed in the first direction, that faces as the first direction, then the second;
@@ -389,20 +393,6 @@ TriangleMesh ring(double inner, double outer, double height) {
     });
 }
 
-TriangleMesh inside_out(TriangleMesh mesh) {
-    Array<Triangle> triangles(mesh.triangles.begin(), mesh.triangles.end());
-    for (Triangle& triangle : triangles) std::swap(triangle[1], triangle[2]);
-    mesh.triangles = std::move(triangles);
-    return mesh;
-}
-
-double volume_of(const TriangleMesh& mesh) {
-    double volume = 0;
-    for (const auto& [a, b, c] : mesh.triangles)
-        volume += mesh.positions[a].dot(mesh.positions[b].cross(mesh.positions[c])) / 6;
-    return volume;
-}
-
 /// A can whose lid is missing around a post that stands on it.
 TriangleMesh can_with_post() {
     const TriangleMesh can = both(wall(2, 4), ring(0.05, 1.9, 0));
@@ -419,7 +409,7 @@ TEST(FillHoles, ARingBetweenTwoLoops_IsClosedTogether) {
     EXPECT_TRUE(after.closed);
     EXPECT_EQ(after.components, 1u);
     EXPECT_EQ(after.genus, 0);
-    EXPECT_NEAR(volume_of(result.mesh), std::numbers::pi * (4 * 4 + 3), 5);
+    EXPECT_NEAR(signed_volume(result.mesh), std::numbers::pi * (4 * 4 + 3), 5);
     EXPECT_EQ(self_intersections_of(result.mesh), 0u);
     EXPECT_THAT(result.doubts, Contains(HasSubstr("closed as a whole")));
 }
@@ -435,7 +425,7 @@ TEST(FillHoles, LoopsBeyondALimit_KeepTheOthersFromBeingClosedTogether) {
 TEST(FillHoles, AMeshInsideOut_IsClosedInsideOut) {
     const Filled reversed = filled(inside_out(can_with_post()));
     EXPECT_GT(reversed.together, 0u);
-    EXPECT_NEAR(volume_of(reversed.mesh), -std::numbers::pi * (4 * 4 + 3), 5);
+    EXPECT_NEAR(signed_volume(reversed.mesh), -std::numbers::pi * (4 * 4 + 3), 5);
 }
 
 TEST(FillHoles, ClosedTogether_KeepsColumnsAndMarks) {
@@ -456,6 +446,34 @@ TEST(FillHoles, ClosedTogether_KeepsColumnsAndMarks) {
     EXPECT_GT(std::ranges::count(marks, 1), 0);
     EXPECT_TRUE(std::ranges::equal(result.mesh.positions.span().first(mesh.positions.size()), mesh.positions.span()));
     EXPECT_NO_THROW(require_consistent(result.mesh));
+}
+
+TEST(FillHoles, LooseTrianglesInAClosedObject_AreLeftOut) {
+    // Closing together only removes triangles here.
+    const TriangleMesh sphere = geodesic_sphere(1, 6);
+    TriangleMesh mesh = both(sphere, soup({{0, 0, 0}, {0.1, 0, 0.02}, {0, 0.1, 0}}, {{0, 1, 2}}));
+    Array<u32> numbers(mesh.triangles.size());
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    mesh.face_columns.add(Column("number", 1, Buffer<u32>(std::move(numbers))));
+    const Filled result = filled(mesh);
+    EXPECT_EQ(result.together, 1u);
+    EXPECT_EQ(result.replaced, 1u);
+    EXPECT_NO_THROW(require_consistent(result.mesh));
+    EXPECT_TRUE(topology(result.mesh).closed);
+    EXPECT_TRUE(std::ranges::equal(result.mesh.triangles, sphere.triangles));
+}
+
+TEST(FillHoles, ManyLoopsThatCannotBeRefined_AreAvoidedApart) {
+    // Tubs with a lid that only one diagonal allows, as in AnObstacleInTheHole_IsAvoided, far from each other.
+    TriangleMesh mesh = obstructed_tub(0);
+    for (int i = 1; i < 6; ++i) mesh = both(mesh, shifted(obstructed_tub(i % 2), {9.0 * i, 0, 0}));
+    FillHolesParams params;
+    params.together = false;
+    const Filled one = filled(mesh, params), four = filled(mesh, params, 4);
+    EXPECT_EQ(one.filled, 6u);
+    EXPECT_EQ(one.failed, 6u) << "the outlines of the specks";
+    expect_laws(mesh, one);
+    EXPECT_TRUE(std::ranges::equal(one.mesh.triangles, four.mesh.triangles));
 }
 
 TEST(FillHoles, AMeshOfSpecksAlone_StaysOpenWithADoubt) {
@@ -500,6 +518,18 @@ TEST(FillHoles, Threads_DoNotChangeTheResult) {
     EXPECT_TRUE(std::ranges::equal(one.mesh.triangles, four.mesh.triangles));
     EXPECT_TRUE(one.mesh.vertex_columns == four.mesh.vertex_columns);
     EXPECT_TRUE(one.mesh.face_columns == four.mesh.face_columns);
+}
+
+TEST(FillHoles, Progress_Ascends) {
+    const TriangleMesh lower = below(geodesic_sphere(1, 12), 0.8);
+    const TriangleMesh mesh = both(lower, shifted(turned(lower, std::numbers::pi, {1, 0, 0}), {0, 0, 1.9}));
+    std::vector<double> seen;
+    ContextOptions options;
+    options.on_progress = [&](double fraction) { seen.push_back(fraction); };
+    Context context(options);
+    EXPECT_GT(fill_holes(mesh, {}, context).plain, 0u) << "more than one round";
+    EXPECT_TRUE(std::ranges::is_sorted(seen));
+    EXPECT_EQ(seen.back(), 1);
 }
 
 TEST(FillHoles, Cancelled_Ends) {

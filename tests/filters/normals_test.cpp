@@ -151,8 +151,8 @@ TEST(Normals, ScannersPosition_IsInWorldCoordinates) {
     params.scanner = std::vector<Length>{Length(1000), Length(0.0), Length(99)};  // below the sheet
     const Estimated result = estimated(cloud, params);
     for (std::size_t row = 0; row < 36; ++row) EXPECT_EQ(result.normal(row), Vec3(0, 0, -1));
-    params.orient = Orient::tree;
-    EXPECT_EQ(estimated(cloud, params).normal(0), Vec3(0, 0, 1)) << "the tree turns the highest point upwards";
+    EXPECT_EQ(estimated(cloud, with(Orient::tree)).normal(0), Vec3(0, 0, 1))
+        << "the tree turns the highest point upwards";
 }
 
 TEST(Normals, WithoutADirectionOrSeenEdgeOn_TheNeighboursDecide) {
@@ -190,9 +190,25 @@ TEST(Normals, ComponentsApart_AreDoubtful) {
     const PointCloud cloud = joined(fibonacci_sphere(500), moved(fibonacci_sphere(400), 1, {9, 0, 0}));
     const Estimated result = estimated(cloud);
     EXPECT_EQ(result.components, 2u);
-    EXPECT_THAT(result.doubts, ElementsAre(HasSubstr("2 connected components are turned by their highest points alone: "
-                                                     "44 % of the positions may be inside out")));
+    EXPECT_THAT(result.doubts,
+                ElementsAre(HasSubstr("1 connected component beside the largest is turned by its highest "
+                                      "point alone: 44 % of the positions may be inside out")));
     EXPECT_EQ(result.doubtful, 0u);
+}
+
+TEST(Normals, ComponentsWithoutAScanner_AreCountedInTheDoubt) {
+    // The scanner of the second of four spheres is known.
+    const PointCloud sphere = fibonacci_sphere(400);
+    PointCloud cloud = fibonacci_sphere(500);
+    for (int i = 1; i < 4; ++i) cloud = joined(cloud, moved(sphere, 1, {9.0 * i, 0, 0}));
+    cloud = with_approach(cloud, [&](std::size_t row) {
+        return row >= 500 && row < 900 ? Vec3(sphere.positions[row - 500]) : Vec3(Vec3::Zero());
+    });
+    const Estimated result = estimated(cloud);
+    EXPECT_EQ(result.components, 4u);
+    EXPECT_EQ(result.by_sensor, 400u);
+    EXPECT_THAT(result.doubts, ElementsAre(HasSubstr("2 connected components beside the largest are turned by their "
+                                                     "highest points alone: 47 % of the positions")));
 }
 
 TEST(Normals, OfALine_AreDoubtful) {
@@ -226,8 +242,9 @@ TEST(Normals, OfTwoScales_PointOutwards) {
     for (std::size_t row = 0; row < 4000; ++row)
         EXPECT_GT(result.normal(row).dot(sphere.positions[row % 2000]), 0.99) << row;
     EXPECT_EQ(result.doubtful, 0u);
-    EXPECT_THAT(result.doubts,
-                ElementsAre(HasSubstr("2 connected components are turned by their highest points alone")));
+    EXPECT_THAT(
+        result.doubts,
+        ElementsAre(HasSubstr("1 connected component beside the largest is turned by its highest point alone")));
 }
 
 TEST(Normals, OfAPlane_AreItsNormal) {
@@ -304,6 +321,16 @@ TEST(NormalsRefuse, ParametersOutOfRange) {
     EXPECT_THAT(sentence_of([&] { estimated(sheet(5, 0), params); }), HasSubstr("scanner needs 3 lengths"));
     params.scanner = std::vector<Length>(3, Length(std::numeric_limits<double>::quiet_NaN()));
     EXPECT_THAT(sentence_of([&] { estimated(sheet(5, 0), params); }), HasSubstr("NaN or infinite"));
+}
+
+TEST(NormalsRefuse, AScannerThatOrientDoesNotUse) {
+    for (const Orient orient : {Orient::tree, Orient::none}) {
+        NormalsParams params = with(orient);
+        params.scanner = std::vector<Length>(3, Length(9));
+        const Error error = error_of([&] { estimated(sheet(5, 0), params); });
+        EXPECT_THAT(error.sentence(), HasSubstr("scanner is given, but orient is"));
+        EXPECT_THAT(error.hint(), HasSubstr("leave scanner out"));
+    }
 }
 
 TEST(NormalsRefuse, ASensorWithoutDirections) {

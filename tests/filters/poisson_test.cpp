@@ -240,6 +240,16 @@ TEST(Poisson, PointsWithoutNormal_AreNotUsed) {
     EXPECT_TRUE(std::ranges::equal(result.mesh.positions, made(outward(sphere)).mesh.positions));
 }
 
+TEST(Poisson, ColumnsOfThePoints_AreDroppedWithAWarning) {
+    PointCloud cloud = outward(fibonacci_sphere(3000));
+    for (const char* name : {"view", "confidence"})
+        cloud.columns.add(Column(name, 1, Buffer<float>(Array<float>(3000, 1.f))));
+    const Made result = made(cloud, with(5, 0));
+    EXPECT_THAT(result.warnings, ElementsAre("columns of the points are dropped, because the vertices are new: "
+                                             "'view', 'confidence'"));
+    EXPECT_EQ(result.mesh.vertex_columns.size(), 1u);
+}
+
 TEST(Poisson, MovesAndScalesWithThePoints) {
     const PointCloud cloud = outward(fibonacci_sphere(1000));
     const Made one = made(cloud), other = made(moved(cloud, 8, {1024, 0, -64}));
@@ -271,23 +281,31 @@ TEST(Poisson, AnyDepth_HasASurface) {
     }
 }
 
-TEST(Poisson, FewPointsOrOutliersAlone_GiveASentenceOrASurface) {
-    const auto outcome = [](const PointCloud& cloud) {
-        try {
-            const Made result = made(cloud);
-            return result.mesh.triangles.empty() ? std::string("empty") : std::string("surface");
-        } catch (const Error& error) {
-            return error.sentence();
-        }
-    };
-    EXPECT_THAT(outcome(outward(cloud_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}))),
-                testing::AnyOf("surface", HasSubstr("no surface separates")));
+TEST(Poisson, SixPoints_HaveASurfaceAroundThem) {
+    const Made result =
+        made(outward(cloud_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})), with(5, 0));
+    EXPECT_TRUE(topology(result.mesh).closed);
+    EXPECT_EQ(topology(result.mesh).components, 1u);
+    EXPECT_GT(signed_volume(result.mesh), 1);
+}
+
+TEST(Poisson, OutliersAlone_AreDoubtful) {
     Random random(8);
     const PointCloud outliers = with_normals(random_cube(2000, 3), [&](std::size_t) {
         return Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
     });
-    EXPECT_THAT(outcome(outliers), testing::AnyOf("surface", HasSubstr("no surface separates")));
-    EXPECT_THAT(made(outliers).doubts, Not(IsEmpty()));
+    EXPECT_THAT(made(outliers).doubts, Contains(HasSubstr("the surface faces away from the normals")));
+}
+
+TEST(PoissonRefuses, NormalsThatCancelOut) {
+    // At every position one normal each way.
+    const PointCloud sphere = fibonacci_sphere(200);
+    const PointCloud cloud = with_normals(joined(sphere, sphere), [&](std::size_t row) {
+        return Vec3((row < 200 ? 1 : -1) * sphere.positions[row % 200].normalized());
+    });
+    const Error error = error_of([&] { made(cloud, with(5, 0)); });
+    EXPECT_THAT(error.sentence(), HasSubstr("no surface separates the 400 points"));
+    EXPECT_THAT(error.hint(), HasSubstr("check the sides of the normals"));
 }
 
 TEST(Poisson, TwoScales_AreFineWhereThePointsAre) {

@@ -89,7 +89,8 @@ std::uint64_t of_measured(const TriangleMesh& mesh, const TriangleMesh& truth) {
     return digest.value();
 }
 
-/// Of a bumpy surface with normals of the mesh, where heights and weights are adjusted, and of its tessellation.
+/// Of a bumpy surface with normals of the mesh, where heights and weights are adjusted, alone and fitted to noisy
+/// points, and of its tessellation.
 std::uint64_t of_patches(TriangleMesh mesh) {
     Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] *= 1 + static_cast<double>(i % 5) / 64;
@@ -100,6 +101,27 @@ std::uint64_t of_patches(TriangleMesh mesh) {
     for (const PatchWeights& weights : patches.weights)
         for (const double weight : weights) digest.add(weight);
     for (const Vec3& p : tessellate(patches, {}, context).positions) digest.add(p);
+    Random random(3);
+    Array<Vec3> noisy;
+    for (int i = 0; i < 5000; ++i) {
+        const Triangle& t = mesh.triangles[static_cast<std::size_t>(i) % mesh.triangles.size()];
+        Vec3 share(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));
+        share /= share.sum();
+        Vec3 p = Vec3::Zero();
+        for (std::size_t k = 0; k < 3; ++k) p += share[static_cast<Eigen::Index>(k)] * mesh.positions[t[k]];
+        noisy.push_back(p * random.uniform(1, 1.02));
+    }
+    PointCloud points;
+    points.positions = std::move(noisy);
+    APatchParams params;
+    params.normals = APatchParams::Normals::mesh;
+    for (const bool are_normals_fitted : {false, true}) {
+        if (are_normals_fitted) params.normals = APatchParams::Normals::automatic;
+        const APatchResult fitted = a_patch(mesh, &points, params, context);
+        for (const PatchWeights& weights : fitted.patches.weights)
+            for (const double weight : weights) digest.add(weight);
+        digest.add(fitted.fit->rms);
+    }
     return digest.value();
 }
 
@@ -184,11 +206,32 @@ std::uint64_t of_registration() {
     return digest.value();
 }
 
+/// Two planes at a right angle, whose vertices are off them by up to a fifth of the edges' length.
+TriangleMesh noisy_roof() {
+    constexpr u32 size = 40;
+    Random random(3);
+    TriangleMesh mesh;
+    Array<Vec3> positions;
+    Array<Triangle> triangles;
+    for (u32 y = 0; y <= size; ++y)
+        for (u32 x = 0; x <= size; ++x) positions.emplace_back(x, y, std::min(x, size - x) + random.uniform(-0.2, 0.2));
+    for (u32 y = 0; y < size; ++y)
+        for (u32 x = 0; x < size; ++x) {
+            const u32 a = y * (size + 1) + x, b = a + 1, c = a + size + 1, d = c + 1;
+            triangles.push_back({a, b, d});
+            triangles.push_back({a, d, c});
+        }
+    mesh.positions = std::move(positions);
+    mesh.triangles = std::move(triangles);
+    return mesh;
+}
+
 /// The points have exact coordinates, which do not depend on the processor.
 std::string results() {
     std::string text =
-        fmt::format("angles {:x}\npatches {:x}\nprobes {:x}\npoisson {:x}\nregistration {:x}\n", of_angles(),
-                    of_patches(geodesic_sphere(1, 3)), of_probes(l_block(1)), of_poisson(), of_registration());
+        fmt::format("angles {:x}\npatches {:x}\nprobes {:x}\npoisson {:x}\nregistration {:x}\nnoisy features {:x}\n",
+                    of_angles(), of_patches(geodesic_sphere(1, 3)), of_probes(l_block(1)), of_poisson(),
+                    of_registration(), of_features(noisy_roof()));
     for (const TetMesh& tets : {hull_of(random_cube(2000, 1)), hull_of(lattice_cube(4)),
                                 solid_of(tets_of(l_block_surface(3, 2, 6, 2e-3))).tets})
         for (const SculptWeight weight : {SculptWeight::none, SculptWeight::length}) {

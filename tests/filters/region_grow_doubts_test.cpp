@@ -12,6 +12,7 @@ namespace scanmill {
 namespace {
 
 using namespace test;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -41,6 +42,20 @@ TEST(RegionGrowDoubts, FoldedGrid_HasLongCreasesAndIsNotRough) {
         }
     EXPECT_GT(grown(cloud_from(points)).creases, 3u);
     EXPECT_THAT(doubts_about(cloud_from(points)), IsEmpty());
+}
+
+TEST(RegionGrowDoubts, OutliersAlone_AreDoubtful) {
+    EXPECT_THAT(doubts_about(random_cube(500, 5)), Contains(HasSubstr("boundary loops lie where two sides or layers")));
+}
+
+TEST(RegionGrowDoubts, TwoScales_AreTwoClosedSurfaces) {
+    // A sphere of 1 and one of 1/50 beside it, both of 3,000 points.
+    const PointCloud sphere = fibonacci_sphere(3000), cloud = joined(sphere, moved(sphere, 0.02, {1.3, 0, 0}));
+    const RegionGrowResult result = grown(cloud);
+    EXPECT_TRUE(topology(result.mesh).closed);
+    EXPECT_EQ(topology(result.mesh).components, 2u);
+    EXPECT_EQ(result.unused_points, 0u);
+    EXPECT_THAT(doubts_about(cloud), IsEmpty());
 }
 
 class RegionGrowDoubtsOfModel : public testing::TestWithParam<Model> {};

@@ -50,21 +50,28 @@ TEST(RegionGrowRefuses, NormalsOfTwoNumbers) {
 TEST(RegionGrowRefuses, ParametersOutOfRange) {
     RegionGrowParams params;
     params.min_angle = Angle::degrees(60);
-    EXPECT_THAT(growth_refusal(grid(3, 3), params), HasSubstr("min-angle is 60"));
+    EXPECT_THAT(growth_refusal(grid(3, 3), params), AllOf(HasSubstr("min-angle is 60"), HasSubstr("hint")));
     params = with_max_normal_angle(0);
-    EXPECT_THAT(growth_refusal(grid(3, 3), params), HasSubstr("max-normal-angle is 0"));
+    EXPECT_THAT(growth_refusal(grid(3, 3), params), AllOf(HasSubstr("max-normal-angle is 0"), HasSubstr("hint")));
     params = {};
     params.search_radius = Length(0);
-    EXPECT_THAT(growth_refusal(grid(3, 3), params), HasSubstr("search-radius is 0"));
+    EXPECT_THAT(growth_refusal(grid(3, 3), params), AllOf(HasSubstr("search-radius is 0"), HasSubstr("hint")));
     params = {};
     params.close_holes = 101;
-    EXPECT_THAT(growth_refusal(grid(3, 3), params), HasSubstr("close-holes is 101"));
+    EXPECT_THAT(growth_refusal(grid(3, 3), params), AllOf(HasSubstr("close-holes is 101"), HasSubstr("hint")));
+    params = {};
+    for (const double noise : {-1.0, nan, std::numeric_limits<double>::infinity()}) {
+        params.noise = Length(noise);
+        EXPECT_THAT(growth_refusal(grid(3, 3), params),
+                    AllOf(HasSubstr("noise is"), HasSubstr("it must be at least 0"), HasSubstr("leave noise out")));
+    }
 }
 
 TEST(RegionGrowRefuses, AStartThatIsNoRowOrStartsNothing) {
     RegionGrowParams params;
     params.start = 9;
-    EXPECT_THAT(growth_refusal(grid(3, 3), params), HasSubstr("start is row 9; the cloud has 9 points"));
+    EXPECT_THAT(growth_refusal(grid(3, 3), params),
+                AllOf(HasSubstr("start is row 9; the cloud has 9 points"), HasSubstr("hint")));
     params.start = 9;
     EXPECT_THAT(growth_refusal(joined(grid(3, 3), cloud_of({{100, 100, 50}})), params), HasSubstr("at row 9"));
 }

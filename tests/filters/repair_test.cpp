@@ -193,6 +193,39 @@ TEST(Repair, TrianglesWithoutArea_AreFlippedOrDropped) {
     EXPECT_EQ(dropped.unused_points, 1u) << "vertex 3 was in the triangle that is missing";
 }
 
+TEST(Repair, SurfacesThatOnlyATriangleWithoutAreaJoined_AreSeparated) {
+    // The last triangle has vertex 2 between 0 and 1. Without it, two triangles touch in 2.
+    TriangleMesh mesh =
+        soup({{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {1.5, 1, 0}}, {{0, 2, 3}, {2, 1, 4}, {1, 2, 0}});
+    mesh.sharp_edges = {make_edge(2, 3), make_edge(2, 4)};
+    mesh.edges = {make_edge(2, 3), make_edge(2, 4)};
+    mesh.edge_columns.add(Column("mark", 1, Buffer<u32>{7, 8}));
+    const Repaired result = repaired(mesh);
+    expect_manifold(result.mesh);
+    EXPECT_EQ(result.without_area, 1u);
+    EXPECT_EQ(result.split_vertices, 1u);
+    EXPECT_EQ(topology(result.mesh).components, 2u);
+    ASSERT_EQ(result.mesh.sharp_edges.size(), 2u) << "copies of vertices keep their sharp edges";
+    ASSERT_EQ(result.mesh.edges.size(), 2u);
+    for (std::size_t row = 0; row < 2; ++row) {
+        const auto& [a, b] = result.mesh.edges[row];
+        EXPECT_EQ(result.mesh.positions[a] + result.mesh.positions[b], row == 0 ? Vec3(1.5, 1, 0) : Vec3(2.5, 1, 0));
+    }
+}
+
+TEST(Repair, TrianglesWithoutArea_AreDroppedOneAfterAnother) {
+    // The triangle of 1, 0 and 5 covers that of 1, 2 and 0. When it is gone, two fans meet in 1; then in 2.
+    const TriangleMesh mesh = soup({{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {1.5, 1, 0}, {3, 0, 0}, {2.5, 1, 0}},
+                                   {{0, 2, 3}, {2, 1, 4}, {1, 2, 0}, {1, 0, 5}, {1, 5, 6}});
+    const Repaired result = repaired(mesh);
+    expect_manifold(result.mesh);
+    EXPECT_EQ(result.without_area, 2u);
+    EXPECT_EQ(result.split_vertices, 2u);
+    EXPECT_EQ(result.mesh.triangles.size(), 3u);
+    EXPECT_EQ(topology(result.mesh).components, 3u);
+    EXPECT_EQ(area(result.mesh), 1.5);
+}
+
 TEST(Repair, SharpEdgesOfAFlippedNeedle_StaySharp) {
     TriangleMesh mesh =
         soup({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, -1, 0}, {1, 0, 0}}, {{0, 4, 2}, {4, 1, 2}, {0, 1, 4}, {1, 0, 3}});
@@ -232,12 +265,22 @@ TEST(Repair, Stitch_TakesTheNearestThenTheLowerRow) {
     EXPECT_EQ(at_lower, 2u);
 }
 
+TEST(Repair, ATinyStitch_JoinsEqualPositionsOnly) {
+    const TriangleMesh mesh = both(rectangle(1, 1), shifted(rectangle(1, 1), {1, 0, 0}));
+    RepairParams params;
+    for (const double stitch : {1e-300, 1e-30, 0x1p-52}) {
+        params.stitch = Length(stitch);
+        EXPECT_EQ(repaired(mesh, params).stitched, 2u) << stitch;
+    }
+}
+
 TEST(Repair, AStitchThatCollapses_IsDoubtful) {
     RepairParams params;
     params.stitch = Length(1.1);
-    const TriangleMesh mesh = both(rectangle(1, 1), shifted(rectangle(10, 2), {20, 0, 0}));
+    const TriangleMesh mesh = both(rectangle(1, 1), shifted(rectangle(4, 2), {20, 0, 0}));
     const Repaired result = repaired(mesh, params);
     EXPECT_GT(result.repeated_vertex, 0u);
+    EXPECT_THAT(result.doubts, ElementsAre(HasSubstr("that stitch collapses")));
     params.stitch = Length(100);
     EXPECT_THAT(error_of([&] { repaired(mesh, params); }).hint(), HasSubstr("lower stitch"));
 }
@@ -285,6 +328,41 @@ TEST(Repair, Columns_FollowTheirRows) {
     EXPECT_EQ(at(result.mesh, result.mesh.sharp_edges[0]), at(mesh, mesh.sharp_edges[0]));
 }
 
+/// With a "normal" along x at every corner, whose length is the vertex's number plus one.
+void add_corner_normals(TriangleMesh& mesh) {
+    Array<float> values;
+    for (const Triangle& triangle : mesh.triangles)
+        for (const u32 vertex : triangle) values.insert(values.end(), {static_cast<float>(vertex + 1), 0, 0});
+    mesh.face_columns.add(Column("corner-normals", 9, Buffer<float>(std::move(values))));
+}
+
+TEST(Repair, CornerNormals_FollowTheirCorners) {
+    TriangleMesh mesh = muddled(geodesic_sphere(1, 3), 5, 0.3);
+    add_corner_normals(mesh);
+    const Repaired result = repaired(mesh);
+    ASSERT_GT(result.oriented, 0u);
+    const Column& column = *result.mesh.face_columns.find("corner-normals");
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Triangle &now = result.mesh.triangles[t], &input = mesh.triangles[t];
+        const auto first = static_cast<std::size_t>(std::ranges::find(input, now[0]) - input.begin());
+        const double sign = input[(first + 1) % 3] == now[1] ? 1 : -1;
+        for (u32 i = 0; i < 3; ++i) ASSERT_EQ(column.number(t, 3 * i), sign * (now[i] + 1)) << t;
+    }
+}
+
+TEST(Repair, CornerNormalsOfFlippedTriangles_AreTheirOwn) {
+    TriangleMesh mesh =
+        soup({{0, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, -1, 0}, {1, 0, 0}}, {{0, 4, 2}, {4, 1, 2}, {0, 1, 4}, {1, 0, 3}});
+    add_corner_normals(mesh);
+    const Repaired result = repaired(mesh);
+    ASSERT_EQ(result.flipped, 1u);
+    const Column& column = *result.mesh.face_columns.find("corner-normals");
+    for (u32 k = 0; k < 9; ++k) {
+        EXPECT_EQ(column.number(0, k), mesh.face_columns.find("corner-normals")->number(0, k));
+        for (const std::size_t t : {2, 3}) EXPECT_EQ(column.number(t, k), k % 3 == 2 ? 1 : 0);
+    }
+}
+
 TEST(Repair, RandomSoups_BecomeManifolds) {
     for (const std::uint64_t seed : {1u, 2u, 3u}) {
         Random random(seed);
@@ -299,6 +377,30 @@ TEST(Repair, RandomSoups_BecomeManifolds) {
         EXPECT_EQ(result.mesh.triangles.size() + result.repeated_vertex + result.duplicates, 400u);
         EXPECT_NEAR(area(result.mesh), area(repaired(separate(result.mesh)).mesh), 1e-9);
     }
+}
+
+TEST(Repair, RandomSoupsWithManyTrianglesWithoutArea_BecomeManifolds) {
+    // Of points with three values per coordinate, one of ten triangles has its corners on one line.
+    std::size_t without_area = 0, flipped = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        Random random(seed);
+        const auto number = [&](int values) { return static_cast<u32>(random.uniform() * values); };
+        Array<Vec3> positions;
+        for (u32 i = 0; i < 18; ++i) positions.emplace_back(i % 3, i / 3 % 3, i / 9);
+        Array<Triangle> triangles;
+        for (int i = 0; i < 25; ++i) triangles.push_back({number(18), number(18), number(18)});
+        TriangleMesh mesh = soup(std::move(positions), std::move(triangles));
+        const Repaired result = repaired(mesh);
+        const MeshTopology shape = topology(result.mesh);
+        EXPECT_EQ(shape.nonmanifold_edges, 0u) << seed;
+        EXPECT_EQ(shape.nonmanifold_vertices, 0u) << seed;
+        EXPECT_EQ(shape.misoriented_edges, 0u) << seed;
+        EXPECT_EQ(shape.unused_vertices, 0u) << seed;
+        without_area += result.without_area;
+        flipped += result.flipped;
+    }
+    EXPECT_GT(without_area, 50u);
+    EXPECT_GT(flipped, 0u);
 }
 
 TEST(RepairRefuses, NoTriangles) {
@@ -316,9 +418,18 @@ TEST(RepairRefuses, NaN) {
 
 TEST(RepairRefuses, ParametersOutOfRange) {
     RepairParams params;
-    params.stitch = Length(-1.0);
-    EXPECT_THAT(error_of([&] { repaired(cube(), params); }).sentence(), HasSubstr("stitch must be 0 or more"));
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double stitch : {-1.0, nan, std::numeric_limits<double>::infinity()}) {
+        params.stitch = Length(stitch);
+        const Error error = error_of([&] { repaired(cube(), params); });
+        EXPECT_THAT(error.sentence(), HasSubstr("stitch must be 0 or more"));
+        EXPECT_FALSE(error.hint().empty());
+    }
     params = {};
+    for (const double share : {-0.01, nan}) {
+        params.min_component = Ratio::fraction(share);
+        EXPECT_THAT(error_of([&] { repaired(cube(), params); }).sentence(), HasSubstr("min-component must be from 0"));
+    }
     params.min_component = Ratio::percent(101);
     const Error error = error_of([&] { repaired(cube(), params); });
     EXPECT_THAT(error.sentence(), HasSubstr("min-component must be from 0 to 100 %; it is 101 %"));

@@ -203,7 +203,8 @@ TEST(SmoothRefuses, ParametersOutOfRange) {
     for (const u32 neighbours : {0u, 4u, 1001u})
         EXPECT_THAT(sentence_of([&] { smoothed(fibonacci_sphere(50), with(Method::jet, neighbours)); }),
                     HasSubstr("neighbours must be from 5 to 1000"));
-    for (const double radius : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+    for (const double radius :
+         {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
         EXPECT_THAT(error_of([&] { smoothed(fibonacci_sphere(50), with(Method::jet, 24, radius)); }).sentence(),
                     HasSubstr("radius must be above 0"));
 }

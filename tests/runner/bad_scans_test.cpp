@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -131,6 +133,50 @@ TEST(BadScan, RawScans_WithoutASurface_SaysOneClearSentence) {
         expect_one_clear_sentence(ran, "raw-scans", bad.parts);
         EXPECT_FALSE(std::filesystem::exists(folder / "out/raw-scans.ply")) << bad.test_name;
     }
+}
+
+ProgramResult raw_scans_of(const std::string& content, const TemporaryFolder& folder,
+                           const std::vector<std::string>& options = {}) {
+    folder.write("view.xyz", content);
+    std::vector<std::string> arguments{"run", std::string(SCANMILL_SOURCE_DIR) + "/workflows/raw-scans.yaml",
+                                       "view.xyz", "-o", "out"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return scanmill_program(arguments, {.folder = folder.path(), .environment = {}});
+}
+
+/// Fibonacci's spiral.
+std::string sphere(int count, double radius, double x) {
+    std::string text;
+    for (int i = 0; i < count; ++i) {
+        const double z = 1 - (2 * i + 1.0) / count, around = std::sqrt(1 - z * z), turn = 2.399963229728653 * i;
+        text += fmt::format("{} {} {}\n", x + radius * around * std::cos(turn), radius * around * std::sin(turn),
+                            radius * z);
+    }
+    return text;
+}
+
+TEST(BadScan, RawScans_OfAPlane_StayOpen) {
+    std::string plane;
+    for (int i = 0; i < 1600; ++i) plane += fmt::format("{} {} 0\n", 0.1 * (i / 40), 0.1 * (i % 40));
+    const TemporaryFolder folder;
+    const ProgramResult ran = raw_scans_of(plane, folder);
+    expect_one_clear_sentence(ran, "raw-scans", {"expected closed: true, found no", "1 loop stays open"});
+    EXPECT_FALSE(std::filesystem::exists(folder / "out/raw-scans.ply"));
+}
+
+TEST(BadScan, RawScans_OfNaNAlone_SaysOneClearSentence) {
+    const TemporaryFolder folder;
+    const std::string rows = repeated("nan nan nan\n", 50);
+    expect_one_clear_sentence(raw_scans_of(rows, folder), "view.xyz", {"50 of 50 points", "--invalid drop"});
+    expect_one_clear_sentence(raw_scans_of(rows, folder, {"--invalid", "drop"}), "view.xyz", {"50"});
+}
+
+TEST(BadScan, RawScans_OfTwoScales_KeepTheLargerObject) {
+    // The smaller sphere has 1/2,500 of the area: repair removes such components.
+    const TemporaryFolder folder;
+    const ProgramResult ran = raw_scans_of(sphere(3000, 1, 0) + sphere(3000, 0.02, 1.3), folder);
+    EXPECT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/raw-scans.ply"));
 }
 
 TEST(BadScan, RawScans_OfOutliersAlone_AreDoubtful) {

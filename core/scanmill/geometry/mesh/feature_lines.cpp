@@ -298,19 +298,21 @@ FeatureGraph graph_of(const TriangleMesh& mesh, std::span<const u32> opposite, s
 
 }  // namespace
 
-FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params, unsigned threads) {
+FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params, const Execution& execution) {
+    const unsigned threads = execution.threads();
     require_sound(params);
     const Array<u32> opposite = half_edges::opposites(mesh);
     require_measurable(mesh);
     FacetNormals normals = facet_normals(mesh, opposite, threads);
-    const double noise = params.noise ? params.noise->value() : vertex_noise(mesh, opposite, threads);
+    const double noise = params.noise ? params.noise->value() : vertex_noise(mesh, opposite, execution);
     NoisyNormals reliable =
-        noisy_normals(mesh, opposite, normals.unit, noise, params.sharp_angle.in_radians(), threads);
+        noisy_normals(mesh, opposite, normals.unit, noise, params.sharp_angle.in_radians(), execution);
     normals.unit = std::move(reliable.unit);
     const double corner_angle = params.corner_angle.in_radians() + angle_tie;
     std::vector<bool> sharp =
         sharp_half_edges(mesh, opposite, normals.unit, params.sharp_angle.in_radians() + angle_tie, threads);
 
+    execution.check_cancelled();
     FeatureLines result;
     result.noise = noise;
     FeatureCounts& counts = result.counts;

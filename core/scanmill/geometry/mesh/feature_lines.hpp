@@ -15,6 +15,7 @@
 
 #include <optional>
 
+#include "scanmill/base/execution.hpp"
 #include "scanmill/data/features.hpp"
 #include "scanmill/data/mesh.hpp"
 #include "scanmill/data/quantity.hpp"
@@ -64,9 +65,10 @@ struct FeatureLines {
 /// triangles, unless two vertices of feature lines have equal positions (then the mesh's order decides).
 ///
 /// After short creases are omitted, the creases that met them are chained again: no crease of the result is shorter
-/// than min_length. Cost: linear, and a sort of the lines' vertices; about 60 bytes per triangle.
+/// than min_length. Cost: linear, and a sort of the lines' vertices; about 60 bytes per triangle. If the
+/// noise is not given as 0, also that of noisy_normals.hpp. Throws Cancelled.
 /// Source: Wang 2006, chapter 4, for loops, holes and sharp edges; area test and tie rules are our own.
-FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params, unsigned threads);
+FeatureLines find_features(const TriangleMesh& mesh, const FeatureParams& params, const Execution& execution);
 
 /// One sentence for triangles without area, and one for boundary loops classified by their length.
 std::vector<std::string> doubts(const FeatureCounts& counts);

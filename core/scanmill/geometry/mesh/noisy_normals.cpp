@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <numbers>
 #include <numeric>
 #include <optional>
 #include <utility>
 
+#include "scanmill/base/elementary.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/data/bounds.hpp"
 #include "scanmill/geometry/fit/jet.hpp"
@@ -157,14 +161,14 @@ struct Limits {
     double visible;  ///< times √(n - 3): least λ where a crease of the angle is visible
 
     Limits(double noise, double angle, std::size_t triangles) {
-        const double z = std::sqrt(2 * std::log(1.5 * static_cast<double>(triangles)));
+        const double z = std::sqrt(2 * elementary::log(1.5 * static_cast<double>(triangles)));
         variance = noise * noise;
         reliable = 2 * z * z * variance / (angle * angle);
         // The squared distances from the best plane of a disc with a crease through its middle sum up to 0.28 λ
         // tan²(angle / 2); those by noise to (n - 3) σ² with a standard deviation of √(2 (n - 3)) σ². Both sums keep to
         // their side of the middle by z of these.
         constexpr double of_a_crease = 1 - 64 / (9 * std::numbers::pi * std::numbers::pi);
-        const double slope = std::tan(std::min(angle, std::numbers::pi / 2) / 2);
+        const double slope = elementary::tan(std::min(angle, std::numbers::pi / 2) / 2);
         visible = 2 * z * std::numbers::sqrt2 * variance / (of_a_crease * slope * slope);
     }
 };
@@ -254,6 +258,29 @@ private:
     std::vector<Waiting> waiting_;
 };
 
+/// One for each block of work that runs at a time: a new one clears an array of all vertices.
+class Growers {
+public:
+    explicit Growers(std::function<std::unique_ptr<Grower>()> make) : make_(std::move(make)) {}
+
+    std::unique_ptr<Grower> take() {
+        const std::scoped_lock lock(mutex_);
+        if (idle_.empty()) return make_();
+        std::unique_ptr<Grower> grower = std::move(idle_.back());
+        idle_.pop_back();
+        return grower;
+    }
+    void give_back(std::unique_ptr<Grower> grower) {
+        const std::scoped_lock lock(mutex_);
+        idle_.push_back(std::move(grower));
+    }
+
+private:
+    std::function<std::unique_ptr<Grower>()> make_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Grower>> idle_;
+};
+
 Matrix scatter_of(const TriangleMesh& mesh, const Triangle& triangle) {
     const auto& p = mesh.positions;
     const Vec3 middle = (p[triangle[0]] + p[triangle[1]] + p[triangle[2]]) / 3;
@@ -290,14 +317,15 @@ Array<Vec3> area_vectors(const TriangleMesh& mesh) {
 
 }  // namespace
 
-double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, unsigned threads) {
+double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, const Execution& execution) {
     const Lists neighbours = neighbours_of(mesh, opposite);
     const std::size_t count = mesh.positions.size();
     constexpr std::size_t enough = 5'000;
     const std::size_t k = std::max<std::size_t>(1, count / enough);
     Array<FromQuadrics> from_quadrics(count);
     constexpr std::size_t chunk = 1 << 12;
-    for_each_chunk(threads, count, chunk, [&](std::size_t begin, std::size_t end) {
+    for_each_chunk(execution.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
+        execution.check_cancelled();
         for (std::size_t v = begin; v < end; ++v)
             if (is_sample(mesh.positions[v], k))
                 from_quadrics[v] = distances_from_quadrics(mesh, neighbours, static_cast<u32>(v));
@@ -331,7 +359,7 @@ double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, uns
 }
 
 NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> own,
-                           double noise, double angle, unsigned threads) {
+                           double noise, double angle, const Execution& execution) {
     NoisyNormals result{Array<Vec3>(own.begin(), own.end())};
     if (!(noise > 0)) return result;
     const Limits limits(noise, angle, mesh.triangles.size());
@@ -373,15 +401,18 @@ NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposi
             }
         for (const u32 vertex : found.vertices) rank[vertex] = outside;
     };
-    constexpr std::size_t block = 1 << 13;  // few, because each clears an array of all vertices
+    constexpr std::size_t block = 1 << 10;
     using Block = std::vector<Neighbourhoods>;
+    Growers growers([&] { return std::make_unique<Grower>(mesh, neighbours, areas, limits); });
     for_each_in_order<Block>(
-        threads, (centres.size() + block - 1) / block,
+        execution.threads(), (centres.size() + block - 1) / block,
         [&](std::size_t i, Block& found) {
+            execution.check_cancelled();
             found.clear();
-            Grower grower(mesh, neighbours, areas, limits);
+            std::unique_ptr<Grower> grower = growers.take();
             for (std::size_t c = i * block; c < std::min(centres.size(), (i + 1) * block); ++c)
-                found.push_back(grower.around(centres[c]));
+                found.push_back(grower->around(centres[c]));
+            growers.give_back(std::move(grower));
         },
         [&](std::size_t, Block& found) { std::ranges::for_each(found, offer); });
     result.reach = 2 * std::sqrt(quantile(radii, 0.5));

@@ -4,13 +4,14 @@
 ///
 /// Noise of standard deviation σ turns the normal of a triangle by about σ / √λ, where λ is the second largest
 /// eigenvalue of the scatter matrix of its corners: their sum of squares about the centroid, across the triangle's
-/// longest direction. So an angle between triangles that are small beside the noise says nothing about the surface. The
-/// same holds for the plane that fits a larger *neighbourhood* best, with the λ of its vertices, so the error falls as
-/// the neighbourhood grows; but if the surface bends within it, the plane is wrong, and a crease would become round.
-/// Bending is visible, as the vertices are then farther from the plane than the noise explains.
+/// longest direction. So an angle between triangles that are small beside the noise gives no information about the
+/// surface. The same holds for the plane that fits a larger *neighbourhood* best, with the λ of its vertices, so the
+/// error falls as the neighbourhood grows; but if the surface curves within it, the plane is wrong, and a crease would
+/// become round. Curving is visible, as the vertices are then farther from the plane than the noise explains.
 
 #include <span>
 
+#include "scanmill/base/execution.hpp"
 #include "scanmill/data/mesh.hpp"
 
 namespace scanmill {
@@ -34,8 +35,9 @@ namespace scanmill {
 /// vertices, 5,000 to 10,000 are used, chosen by position.
 ///
 /// Pre: finite positions; `opposite` by half_edges::opposites(). The same bits for any order of vertices and triangles
-/// and any number of threads. Cost: linear; beside that of the neighbours about 10 µs for each vertex used.
-double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, unsigned threads);
+/// and any number of threads. Throws Cancelled. Cost: linear; beside that of the neighbours about 10 µs for each vertex
+/// used.
+double vertex_noise(const TriangleMesh& mesh, std::span<const u32> opposite, const Execution& execution);
 
 struct NoisyNormals {
     /// Unit length, one per triangle.
@@ -53,7 +55,7 @@ struct NoisyNormals {
 /// A normal is *reliable* if noise on a plane makes no angle above `angle`: z √2 σ / √λ <= angle, with
 /// z = √(2 ln #edges), which of as many normally distributed numbers none exceeds. Reliable normals stay as they are.
 /// Others become the normal of a neighbourhood that contains the triangle, or stay, whichever has the least mean square
-/// error: σ² / λ by noise, plus (λ₃ - (n - 3) σ²) / λ, but at least 0, by bending, for the n vertices of the
+/// error: σ² / λ by noise, plus (λ₃ - (n - 3) σ²) / λ, but at least 0, by curving, for the n vertices of the
 /// neighbourhood and their least eigenvalue λ₃. At a crease that is a neighbourhood on one side of it, so creases stay
 /// sharp, and triangles that bridge a crease join one of its sides. Ties: the lower normal by x, y, z.
 ///
@@ -62,9 +64,9 @@ struct NoisyNormals {
 /// at most 256.
 ///
 /// Pre: finite positions, noise >= 0, angle >= 0. Without noise the result is `own`. The same bits for any number of
-/// threads and any order of the triangles and vertices, unless vertices have equal positions. Cost: linear; for a noise
-/// of a tenth of the edges' length about 20 µs and 200 bytes per vertex.
+/// threads and any order of the triangles and vertices, unless vertices have equal positions. Throws Cancelled. Cost:
+/// linear; for a noise of a tenth of the edges' length about 20 µs and 200 bytes per vertex.
 NoisyNormals noisy_normals(const TriangleMesh& mesh, std::span<const u32> opposite, std::span<const Vec3> own,
-                           double noise, double angle, unsigned threads);
+                           double noise, double angle, const Execution& execution);
 
 }  // namespace scanmill

@@ -21,14 +21,20 @@ using namespace test;
 
 constexpr double degree = std::numbers::pi / 180;
 
+Execution with_threads(unsigned threads) {
+    ExecutionOptions options;
+    options.threads = threads;
+    return Execution(options);
+}
+
 double noise_of(const TriangleMesh& mesh, unsigned threads = 1) {
-    return vertex_noise(mesh, half_edges::opposites(mesh), threads);
+    return vertex_noise(mesh, half_edges::opposites(mesh), with_threads(threads));
 }
 
 NoisyNormals normals_of(const TriangleMesh& mesh, double noise, double degrees = 40, unsigned threads = 1) {
     const Array<u32> opposite = half_edges::opposites(mesh);
     const FacetNormals own = facet_normals(mesh, opposite, 1);
-    return noisy_normals(mesh, opposite, own.unit, noise, degrees * degree, threads);
+    return noisy_normals(mesh, opposite, own.unit, noise, degrees * degree, with_threads(threads));
 }
 
 /// A square of `size` edges of length 1 each way, with its lower corner at the origin, over which height(x, y) stands.
@@ -186,6 +192,17 @@ TEST(NoisyNormals, DoNotDependOnThreadsOrOrder) {
     NoisyNormals reversed = normals_of(reordered, 0.2);
     std::ranges::reverse(reversed.unit);
     EXPECT_TRUE(std::ranges::equal(one.unit, reversed.unit));
+}
+
+TEST(NoisyNormals, Cancelled_End) {
+    const TriangleMesh mesh = with_noise(plane(40), 0.2);
+    const Array<u32> opposite = half_edges::opposites(mesh);
+    const FacetNormals own = facet_normals(mesh, opposite, 1);
+    ExecutionOptions options;
+    options.is_cancelled = [] { return true; };
+    const Execution execution(options);
+    EXPECT_THROW(vertex_noise(mesh, opposite, execution), Cancelled);
+    EXPECT_THROW(noisy_normals(mesh, opposite, own.unit, 0.2, 40 * degree, execution), Cancelled);
 }
 
 TEST(NoisyNormals, OfSmallMeshesAndSmallAngles_AreOfUnitLength) {
