@@ -8,6 +8,8 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/mesh/doubtful_surface.hpp"
+#include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/mesh/noisy_normals.hpp"
 #include "sculpt/sculptor.hpp"
 
 namespace scanmill {
@@ -110,7 +112,7 @@ void warn_about(const SculptResult& result, std::size_t cells_before, Context& c
             "{} of {} cells had to be removed: the points fill the solid rather than sample its surface, or the "
             "solid is far too large for them; check the result before using it",
             result.removals.size(), cells_before));
-    for (std::string& doubt : doubts_about_surface(result.mesh)) context.doubt(std::move(doubt), "mesh");
+    for (std::string& doubt : doubts_about_surface(result.mesh, result.noise)) context.doubt(std::move(doubt), "mesh");
 }
 
 void report(const SculptResult& result, std::size_t cells_before, Context& context) {
@@ -131,6 +133,7 @@ void report(const SculptResult& result, std::size_t cells_before, Context& conte
     count("interior-deep", result.deep_points.size());
     count("outside-points", result.outside_points);
     count("triangles", result.mesh.triangles.size());
+    context.metric("noise", result.noise, Unit::length);
 }
 
 }  // namespace
@@ -175,6 +178,7 @@ SculptResult sculpt(const TetMesh& tets, const SculptParams& params, Context& co
     }
     result.mesh = boundary_mesh(tets, std::move(triangles));
     result.tets.inside = std::move(labels);
+    result.noise = vertex_noise(result.mesh, half_edges::opposites(result.mesh), context);
     warn_about(result, cells_before, context);
     report(result, cells_before, context);
     context.progress(1);

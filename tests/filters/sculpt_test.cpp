@@ -6,7 +6,9 @@
 #include <numbers>
 
 #include "filters/sculpt_cases.hpp"
+#include "scanmill/base/random.hpp"
 #include "sculpt/criteria.hpp"
+#include "support/doubts.hpp"
 
 namespace scanmill {
 namespace {
@@ -164,6 +166,27 @@ TEST(Sculpt, Columns_AreCarriedToTheBoundary) {
     ASSERT_NE(result.mesh.vertex_columns.find("number"), nullptr);
     EXPECT_EQ(result.mesh.vertex_columns.find("number")->number(8), 8);
     EXPECT_NE(result.tets.vertex_columns.find("number"), nullptr);
+}
+
+TEST(Sculpt, NoiseThatTurnsTriangles_IsMeasuredAndDoubtful) {
+    for (const double noise : {0.0, 0.003, 0.006}) {  // standard deviation; the edges are 0.06 long
+        Random random(7);
+        const double half_width = std::sqrt(3.0) * noise;
+        PointCloud cloud;
+        Array<Vec3> positions;
+        for (const Vec3& p : geodesic_sphere(1, 20).positions)
+            positions.push_back(p * (1 + random.uniform(-half_width, half_width)));
+        cloud.positions = std::move(positions);
+        Context context;
+        const SculptResult result = sculpt(solid_of(tets_of(cloud)).tets, {}, context);
+        EXPECT_LE(result.noise, 1.15 * noise);
+        if (noise < 0.006) {
+            EXPECT_THAT(doubts_of(context), testing::IsEmpty());
+            continue;
+        }
+        EXPECT_GE(result.noise, 0.85 * noise);
+        EXPECT_THAT(doubts_of(context), testing::ElementsAre(HasSubstr("raw-scans removes noise")));
+    }
 }
 
 }  // namespace

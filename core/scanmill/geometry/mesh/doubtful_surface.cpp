@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numbers>
 
 #include "scanmill/geometry/mesh/half_edges.hpp"
 #include "scanmill/geometry/spatial/spacing.hpp"
@@ -18,6 +19,7 @@ constexpr double doubtful_spanned = 0.1;
 constexpr double cosine_of_rough = 0.5;  // 60 degrees
 constexpr double doubtful_rough = 0.15;
 constexpr std::size_t few_edges = 10'000;
+constexpr double doubtful_turn = 5;  // degrees
 
 /// Twice the area as its length.
 Vec3 area_normal(const TriangleMesh& mesh, const Triangle& triangle) {
@@ -57,8 +59,18 @@ double rough_share(const TriangleMesh& mesh) {
     return edges > 0 ? static_cast<double>(rough) / static_cast<double>(edges) : 0;
 }
 
-std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh) {
+std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double noise) {
     std::vector<std::string> doubts;
+    if (noise > 0) {
+        // Of an equilateral triangle with edge a, the normal turns by noise / (a / sqrt(2)) about any axis.
+        const double edge = edge_spacing(mesh), degrees = noise * std::numbers::sqrt2 / edge * 180 / std::numbers::pi;
+        if (degrees > doubtful_turn)
+            doubts.push_back(fmt::format(
+                "the points have noise of {:.3g} u (standard deviation), which turns triangles with edges of "
+                "{:.3g} u by {:.0f} degrees; the workflow raw-scans removes noise, and so does `smooth` "
+                "before the points are thinned",
+                noise, edge, degrees));
+    }
     if (const double share = spanned_share(mesh); share > doubtful_spanned)
         doubts.push_back(fmt::format(
             "{:.0f} % of the surface's area is in triangles with an edge longer than {} median edges, where it spans "

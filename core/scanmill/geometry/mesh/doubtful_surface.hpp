@@ -23,6 +23,9 @@ double rough_share(const TriangleMesh& mesh);
 /// - rough_share() is above 0.15, on more than 10,000 edges: of few points, coarse sampling looks the same. Surfaces of
 ///   clean scans reach 0.02, of raw overlapping views 0.08; crumpled ones, through outliers or noise as large as the
 ///   spacing, have 0.18 to 0.3.
-std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh);
+/// - `noise`, the standard deviation of its vertices by vertex_noise(), turns a triangle with edges of the median
+/// length
+///   by more than 5 degrees. Scans of the usual collections have 0 to 4 degrees.
+std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double noise = 0);
 
 }  // namespace scanmill

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace scanmill {
 namespace {
 
@@ -53,6 +56,14 @@ TEST(DoubtsAboutSurface, GapsBeginAboveATenthOfTheArea) {
     EXPECT_THAT(doubts_about_surface(strip(89, 10)),
                 testing::ElementsAre(testing::StartsWith(
                     "10 % of the surface's area is in triangles with an edge longer than 7 median")));
+}
+
+TEST(DoubtsAboutSurface, NoiseBeginsAtFiveDegrees) {
+    // sin 45 degrees times the edge, 1, times 5 degrees
+    const double limit = std::sqrt(0.5) * 5 * std::numbers::pi / 180;
+    EXPECT_THAT(doubts_about_surface(strip(40, 1), 0.99 * limit), testing::IsEmpty());
+    EXPECT_THAT(doubts_about_surface(strip(40, 1), 1.01 * limit),
+                testing::ElementsAre(testing::HasSubstr("turns triangles with edges of 1 u by 5 degrees")));
 }
 
 TEST(DoubtsAboutSurface, PleatsAreRough_OnManyEdgesOnly) {
