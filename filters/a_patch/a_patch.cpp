@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "a_patch/checks.hpp"
@@ -29,11 +30,12 @@ constexpr std::size_t most_bisections = 7;  // rounds
 constexpr std::size_t most_crease_rounds = 2;
 constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
-constexpr double most_open = 0.01;  // share of the edges, without a doubt
-constexpr double most_loosened = 0.1;  // share of the vertices, likewise
+constexpr double most_loosened = 0.1;  // share of the vertices, without a doubt
+constexpr double most_worse = 1.01;  // times the points' distance from the mesh, likewise
+constexpr double rounding = 1e-12;  // of the diagonal
 constexpr double least_regularisation = 1e-6;
 
-std::string place(const TriangleMesh& mesh, u32 vertex) {
+std::string position_text(const TriangleMesh& mesh, u32 vertex) {
     const Vec3 p = mesh.frame.origin + mesh.positions[vertex];
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
 }
@@ -50,7 +52,7 @@ void require_areas(const TriangleMesh& mesh) {
     }
     if (count > 0)
         throw Error("{} of {} triangles {} no area, the first is triangle {} at {}", count, mesh.triangles.size(),
-                    by_count(count, "has", "have"), first, place(mesh, mesh.triangles[first][0]))
+                    by_count(count, "has", "have"), first, position_text(mesh, mesh.triangles[first][0]))
             .hint("'decimate' makes well-shaped triangles");
 }
 
@@ -75,17 +77,21 @@ void require_distinct_vertices(const TriangleMesh& mesh, const std::vector<bool>
         if (key(order[i]) == key(order[i - 1]) && count++ == 0) first = order[i];
     if (count > 0)
         throw Error("{} of {} vertices {} at the position of another one, the first is vertex {} at {}", count,
-                    order.size(), by_count(count, "is", "are"), first, place(mesh, static_cast<u32>(first)))
+                    order.size(), by_count(count, "is", "are"), first, position_text(mesh, static_cast<u32>(first)))
             .hint("merge equal vertices, so that triangles share them");
 }
 
 MeshTopology require_usable(const TriangleMesh& mesh, const std::vector<bool>& is_used, const APatchParams& params) {
     if (!(params.apex_factor >= least_factor && params.apex_factor <= most_factor))
-        throw Error("apex-factor must be from {} to {}; it is {}", least_factor, most_factor, params.apex_factor);
+        throw Error("apex-factor must be from {} to {}; it is {}", least_factor, most_factor, params.apex_factor)
+            .hint(fmt::format("the default is {}", APatchParams().apex_factor));
     if (!(params.fairing >= 0 && std::isfinite(params.fairing)))
-        throw Error("fairing must be at least 0; it is {}", params.fairing);
+        throw Error("fairing must be at least 0; it is {}", params.fairing)
+            .hint("0 is none; at 1 fairness weighs about as much as the points");
     if (!(params.regularisation >= least_regularisation && params.regularisation <= 1))
-        throw Error("regularisation must be from {} to 1; it is {}", least_regularisation, params.regularisation);
+        throw Error("regularisation must be from {} to 1; it is {}", least_regularisation, params.regularisation)
+            .hint(
+                fmt::format("the default is {}; larger ones are used where they suit", APatchParams().regularisation));
     require_finite(mesh.positions.span(), "vertices");
     half_edges::opposites(mesh);
     require_areas(mesh);
@@ -116,11 +122,16 @@ CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points,
                              Context& context) {
     using Normals = APatchParams::Normals;
     Normals source = params.normals;
+    const bool has_points = points && points->size() > 0;
     if (source == Normals::automatic)
-        source = mesh.face_columns.find("corner-normals") ? Normals::given : points ? Normals::points : Normals::mesh;
+        source = mesh.face_columns.find("corner-normals") ? Normals::given
+                 : has_points                             ? Normals::points
+                                                          : Normals::mesh;
     if (source == Normals::points && !points)
         throw Error("`normals: points` needs points, and the input `points` is not wired")
             .hint("wire the scan: 'in: {points: scan}', or choose 'normals: mesh'");
+    if (source == Normals::points && !has_points)
+        throw Error("`normals: points` needs points; there are none").hint("'normals: mesh' needs none");
     const Sectors sectors = sectors_of(mesh);
     std::vector<Vec3> normals = mesh_normals(mesh, sectors);
     if (source == Normals::points) {
@@ -137,8 +148,8 @@ CornerNormals corner_normals(const TriangleMesh& mesh, const PointCloud* points,
         const std::vector<Vec3> of_triangles = triangle_normals(mesh);
         for (std::size_t s = 0; s < sectors.size(); ++s) {
             if (given.normals[s] != Vec3::Zero()) continue;
-            std::vector<Vec3> around;
-            for (const u32 corner : corners[s]) around.push_back(of_triangles[corner / 3]);
+            const std::vector<Vec3> around = normals_at(corners[s], of_triangles);
+            if (!opposes(normals[s], around)) continue;
             const Vec3 direction = most_normal(around);
             if (opposes(direction, around)) given.normals[s] = direction;
         }
@@ -174,7 +185,8 @@ std::vector<u32> triangles_at(const Hull& hull, std::span<const u32> edges) {
     return triangles;
 }
 
-/// Repairs the mesh until its hull carries a surface. Edges that it cannot repair remain open.
+/// Repairs the mesh until its hull carries a surface: at last every tetrahedron that does not fit is beside a straight
+/// edge, which needs none.
 class Construction {
 public:
     Construction(PatchMesh& mesh, const APatchParams& params, Context& context)
@@ -268,20 +280,14 @@ private:
     /// The same: where nothing else helps the surface follows the mesh.
     bool loosen_rest() {
         is_loosening_ = true;
-        std::vector<u32> vertices;
-        for (const auto& edges : {doubtful_, hull.faults.inverted})
-            for (const u32 e : edges)
-                if (!hull.edges[e].is_straight) vertices.insert(vertices.end(), {hull.edges[e].a, hull.edges[e].b});
-        const auto add = [&](std::span<const u32> triangles) {
-            for (const u32 f : triangles)
-                vertices.insert(vertices.end(), mesh_.mesh.triangles[f].begin(), mesh_.mesh.triangles[f].end());
-        };
-        add(hull.faults.thin);
-        if (loosen(mesh_, vertices, repairs)) return true;
+        std::vector<Edge> edges;
+        for (const auto& numbers : {doubtful_, hull.faults.inverted})
+            for (const u32 e : numbers)
+                if (!hull.edges[e].is_straight) edges.push_back(make_edge(hull.edges[e].a, hull.edges[e].b));
+        if (loosen(mesh_, edges, hull.faults.thin, repairs)) return true;
         open_doubtful();
-        if (repairs.pointed + repairs.faceted == 0) return false;
-        add(crossing_triangles(weights.patches, context_));
-        return loosen(mesh_, vertices, repairs);
+        if (repairs.pointed == 0) return false;
+        return loosen(mesh_, {}, crossing_triangles(weights.patches, context_), repairs);
     }
 
     void open_doubtful() {
@@ -370,8 +376,7 @@ Weights fit_and_measure(Hull& hull, Weights weights, const PointCloud* points, c
     result.unfairness_before = unfairness(hull, params.curvature);
     const auto violating_edges = [&](const PatchComplex& patches) { return doubtful_edges(patches, context); };
     std::optional<Uncrossing> uncrossing;
-    if (result.repairs.pointed + result.repairs.faceted > 0)
-        uncrossing.emplace(hull, weights, params.curvature, context);
+    if (result.repairs.pointed > 0) uncrossing.emplace(hull, weights, params.curvature, context);
     FitResult fitted = fit(hull, std::move(weights), located, params.curvature,
                            {params.fit, params.fairing, params.regularisation}, violating_edges, context);
     weights = std::move(fitted.weights);
@@ -380,18 +385,22 @@ Weights fit_and_measure(Hull& hull, Weights weights, const PointCloud* points, c
     result.unfairness_after = unfairness(hull, params.curvature);
     context.progress(0.8);
     if (located.points.empty()) return weights;
-    std::vector<double> found = distances(hull, weights.patches, positions, located, context);
-    double squares = 0;
-    for (const double d : found) squares += d * d;
-    std::ranges::sort(found);
-    const auto count = static_cast<double>(found.size());
-    result.fit = {std::sqrt(squares / count), found[static_cast<std::size_t>(std::ceil(0.95 * count)) - 1],
-                  found.back()};
+    PointDistances found = distances(hull, weights.patches, positions, located, context);
+    const auto count = static_cast<double>(located.points.size());
+    const auto rms = [&](const std::vector<double>& each) {
+        double squares = 0;
+        for (const double d : each) squares += d * d;
+        return std::sqrt(squares / count);
+    };
+    const double to_surface = rms(found.to_surface);
+    std::ranges::sort(found.to_surface);
+    result.fit = {to_surface, found.to_surface[static_cast<std::size_t>(std::ceil(0.95 * count)) - 1],
+                  found.to_surface.back(), rms(found.to_mesh)};
     return weights;
 }
 
 void warn_about(const APatchResult& result, const TriangleMesh& mesh, const PointCloud* points,
-                const MeshTopology& counts, Context& context) {
+                const MeshTopology& counts, const APatchParams& params, Context& context) {
     if (counts.boundary_edges > 0)
         context.warn(fmt::format("the mesh is open: the surface ends at {}",
                                  count_text(counts.boundary_edges, "boundary edge", "boundary edges")));
@@ -402,40 +411,36 @@ void warn_about(const APatchResult& result, const TriangleMesh& mesh, const Poin
                         "crease leaves its edge",
                         count_text(repairs.replaced, "normal is", "normals are")));
     if (repairs.bisected > 0)
-        context.warn(fmt::format("{} bisected, because tetrahedra were inside out or too large there",
-                                 count_text(repairs.bisected, "edge is", "edges are")));
+        context.warn(
+            fmt::format("{} bisected, because tetrahedra were inside out or too large there, or a crease left its edge",
+                        count_text(repairs.bisected, "edge is", "edges are")));
     if (repairs.creased > 0)
         context.warn(fmt::format("{} sharp, because the mesh is folded there",
                                  count_text(repairs.creased, "edge becomes", "edges become")));
     if (repairs.smoothed > 0)
         context.warn(fmt::format("{} smooth, because no crease follows them",
                                  count_text(repairs.smoothed, "blunt sharp edge becomes", "blunt sharp edges become")));
-    if (const std::size_t loosened = repairs.pointed + repairs.faceted; loosened > 0) {
+    if (repairs.pointed > 0) {
         const std::string text = fmt::format(
-            "at {} of {} vertices no smooth surface fits: it has a tip at {}, and the mesh's triangles at {}", loosened,
-            counts.vertices + repairs.bisected, repairs.pointed, repairs.faceted);
-        if (static_cast<double>(loosened) > most_loosened * static_cast<double>(counts.vertices + repairs.bisected))
+            "at {} of {} vertices no smooth surface fits: it has a tip there, and follows the mesh at {}",
+            repairs.pointed, counts.vertices + repairs.bisected, count_text(repairs.straightened, "edge", "edges"));
+        if (static_cast<double>(repairs.pointed) >
+            most_loosened * static_cast<double>(counts.vertices + repairs.bisected))
             context.doubt(text);
         else
             context.warn(text);
     }
-    if (result.thin > 0)
-        context.warn(fmt::format("{} too near to the next sheet: tetrahedra of both overlap",
-                                 count_text(result.thin, "triangle is", "triangles are")));
-    if (result.open > 0) {
-        const std::string text =
-            fmt::format("no tetrahedra fit beside {} of {} edges: a straight strip closes the surface there",
-                        result.open, result.edges);
-        if (static_cast<double>(result.open) > most_open * static_cast<double>(result.edges))
-            context.doubt(text);
-        else
-            context.warn(text);
+    if (points && result.left_out == points->size()) {
+        const char* missing = params.fit ? "the surface is not fitted" : "no distance is measured";
+        context.warn(points->size() == 0 ? fmt::format("the input `points` is empty: {}", missing)
+                                         : fmt::format("none of the {} is in a tetrahedron near the surface: {}",
+                                                       count_text(points->size(), "point", "points"),
+                                                       params.fit ? "it is not fitted" : missing));
     }
-    if (points && result.left_out == points->size())
-        context.warn(points->size() == 0
-                         ? "the input `points` is empty: the surface is not fitted"
-                         : fmt::format("none of the {} is in a tetrahedron near the surface: it is not fitted",
-                                       count_text(points->size(), "point", "points")));
+    if (result.fit && result.fit->rms > most_worse * result.fit->rms_to_mesh + rounding * surface_box(mesh).diagonal())
+        context.doubt(fmt::format(
+            "the points are farther from the surface (rms {0:.3g} {2}) than from the mesh (rms {1:.3g} {2})",
+            result.fit->rms, result.fit->rms_to_mesh, symbol(mesh.frame.unit)));
     if (result.sign_violations > 0)
         context.doubt(fmt::format("{} the wrong sign: the surface may have several sheets there",
                                   count_text(result.sign_violations, "weight has", "weights have")));
@@ -462,16 +467,15 @@ void report(const APatchResult& result, Context& context) {
     count("creased-edges", result.repairs.creased);
     count("smoothed-edges", result.repairs.smoothed);
     count("pointed-vertices", result.repairs.pointed);
-    count("faceted-vertices", result.repairs.faceted);
-    count("open-edges", result.open);
-    count("thin-triangles", result.thin);
+    count("straight-edges", result.repairs.straightened);
     if (result.fit) {
         context.metric("fit-rms", result.fit->rms, Unit::length);
         context.metric("fit-p95", result.fit->p95, Unit::length);
         context.metric("fit-max", result.fit->max, Unit::length);
     }
     count("left-out", result.left_out);
-    if (result.fit) context.metric("regularisation", result.regularisation, Unit::number);
+    context.metric("crease-max", result.crease_max, Unit::length);
+    if (result.regularisation) context.metric("regularisation", *result.regularisation, Unit::number);
     context.metric("fairness-before", result.unfairness_before, Unit::number);
     context.metric("fairness-after", result.unfairness_after, Unit::number);
 }
@@ -495,7 +499,7 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     context.progress(0.2);
 
     Construction construction(work, params, context);
-    if (points && params.fit && params.normals == APatchParams::Normals::automatic) {
+    if (points && points->size() > 0 && params.fit && params.normals == APatchParams::Normals::automatic) {
         replace_opposing(work, construction.repairs);
         fit_normals(work, points->positions.span(), context);
     }
@@ -503,9 +507,7 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     construction.run();
     Hull& hull = construction.hull;
     result.repairs = construction.repairs;
-    result.thin = hull.faults.thin.size();
-    result.open = static_cast<std::size_t>(std::ranges::count(hull.edges, true, &HullEdge::is_open));
-    result.edges = hull.edges.size();
+    assert(hull.faults.thin.empty() && std::ranges::none_of(hull.edges, &HullEdge::is_open));
     context.progress(0.5);
     Weights weights = fit_and_measure(hull, std::move(construction.weights), points, params, result, context);
     result.raised = weights.raised;
@@ -516,13 +518,14 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     result.inverted = inverted_tets(result.patches);
     result.sign_violations = sign_violations(result.patches, context);
     result.c1_jump = c1_jump(result.patches, context);
-    result.kinds = std::move(work.kinds);
+    result.pointed = std::move(work.pointed);
     result.mesh = std::move(work.mesh);
     Array<double> components;
     for (const auto& of_triangle : work.normals)
         for (const Vec3& n : of_triangle) components.insert(components.end(), n.data(), n.data() + 3);
     result.mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(components))));
-    warn_about(result, mesh, points, counts, context);
+    result.crease_max = largest_bulge(result.patches, result.mesh, context);
+    warn_about(result, mesh, points, counts, params, context);
     report(result, context);
     return result;
 }

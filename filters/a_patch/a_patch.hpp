@@ -25,11 +25,11 @@ struct APatchParams {
     };
     Normals normals = Normals::automatic;
     a_patches::Split split = a_patches::Split::always;
-    /// Whether the free weights are fitted to the points; without points nothing is.
+    /// Whether normals (`automatic`) and the slopes of edges are fitted to the points, if there are any.
     bool fit = true;
     /// Weight of the fairness against that of the fit, at least 0: see fit.hpp.
     double fairing = 0;
-    /// Least weight of the changes of the free weights, 1e-6 to 1.
+    /// Least weight of the changes of the slopes, 1e-6 to 1.
     double regularisation = 1e-3;
     a_patches::Curvature curvature = a_patches::Curvature::distance;
     /// An apex is so many times as high above its triangle as it must be, and 0.15 inradii. 1.05 to 3.
@@ -44,23 +44,22 @@ struct APatchResult {
     TriangleMesh mesh;
     a_patches::Repairs repairs;
     std::size_t divided = 0;  ///< triangles with three tetrahedra per side
-    std::vector<a_patches::VertexKind> kinds;  ///< by vertex of `mesh`; of those beyond its end: regular
+    std::vector<bool> pointed;  ///< by vertex of `mesh`, of those beyond its end false: whether it has a tip
     std::size_t raised = 0;  ///< see Weights::raised
-    std::size_t edges = 0;
-    std::size_t open = 0;  ///< edges that no tetrahedra fill on a side
-    std::size_t thin = 0;  ///< triangles whose tetrahedra overlap those of the next sheet
     std::size_t inverted = 0;  ///< tetrahedra inside out; always 0
     /// The largest difference between the gradients on the two sides of a shared triangle, as a share of the larger
     /// one, at three points each.
     double c1_jump = 0;
-    /// Weights of the wrong sign beside or above a base triangle; 0: every line to an apex meets the surface once.
+    /// Edges, and weights over triangles, that allow a second sheet; 0: every line to an apex meets the surface once.
     std::size_t sign_violations = 0;
     std::size_t left_out = 0;  ///< points in no tetrahedron
     struct Distances {
         double rms = 0, p95 = 0, max = 0;
+        double rms_to_mesh = 0;  ///< of the same points from `mesh`
     };
     std::optional<Distances> fit;  ///< of the points in tetrahedra, if there are any
-    double regularisation = 0;  ///< the median of the weights used
+    std::optional<double> regularisation;  ///< the median of the weights used, if the surface is fitted or made fair
+    double crease_max = 0;  ///< the largest distance of a crease from its sharp edge
     double unfairness_before = 0, unfairness_after = 0;  ///< of the default, and of the result; see fit.hpp
 };
 
@@ -75,20 +74,22 @@ struct APatchResult {
 /// are inside out, or apexes do not fit below 0.45 of the distance to the next sheet, normals get that direction, too;
 /// then the longest edges of the triangles are bisected, by a cubic through their ends and tangent planes, up to 7
 /// times, unless less than half of the places are repaired so. Where a crease leaves the tetrahedra beside its edge,
-/// the normals at its ends are turned along the edges; then sharp edges become smooth that are below 30 degrees or
-/// between normals that differ by less. Vertices where that does not help get a gradient of 0: the surface has a tip
-/// there. Where that does not help either, the surface follows the mesh: all edges at a vertex become sharp and
-/// straight, and those around it get tips. The same where a tessellation of a surface with tips intersects itself; a
-/// fit is taken back where it makes it do so.
+/// the edge is bisected, in two rounds, unless less than half of these edges are repaired so; then the normals at its
+/// ends are turned along the edges; then sharp edges become smooth that are below 30 degrees or between normals that
+/// differ by less. Vertices where that does not help get a gradient of 0: the surface has a tip there. Where that does
+/// not help either, the surface follows the mesh: edges between such vertices become sharp and straight. The same is
+/// done where a tessellation with tips intersects itself. Where a fit causes an intersection, it is undone.
 ///
 /// Pre:  a manifold, closed or open, of any number of components, consistently oriented, finite, with area in every
 ///       triangle, without two vertices at one position. The surface ends at a boundary, with a warning. `points`, if
 ///       not null, lie near the surface, in the mesh's frame. Throws Error with numbers and a hint otherwise.
-/// Post: `inverted` is 0. Every vertex of `mesh` is on the surface. A doubt if `sign_violations` is not 0.
-/// Ties: of equally long edges the one whose triangle comes first is bisected; of equally acute edges the one with the
-/// lower vertices becomes sharp. Bytes depend neither on the number of threads nor on the processor.
-/// Cost: linear; about 30 us and 3 kB per triangle.
-/// Metrics and warnings: see plugin.cpp.
+/// Post: `inverted` is 0. Every vertex of `mesh` is on the surface. A doubt if `sign_violations` is not 0, or if the
+///       points are farther from the surface than from the mesh (rms).
+/// Ties: of equally long edges the one with the lower vertices is bisected first; of equally acute edges it becomes
+/// sharp. Bytes depend neither on the number of threads nor on the processor.
+/// Cost: linear. One thread: 15 to 35 us and 4 kB per triangle; with points 5 us per point to locate and measure them,
+/// and a fit's 3 us per point and 120 us and 6 kB per triangle. Where vertices get tips, tessellations to find
+/// intersections add up to 1 ms per triangle. Metrics and warnings: see plugin.cpp.
 APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params, Context& context);
 
 }  // namespace scanmill

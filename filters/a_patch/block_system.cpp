@@ -13,8 +13,22 @@ namespace {
 constexpr double accuracy = 1e-8;  // of the solution, in the norm of the matrix
 constexpr int most_steps = 2000;
 constexpr double worthwhile = 1e-3;  // of the squared change that the data ask for, that a larger weight must gain
-constexpr double most_times = 10;  // the geometric mean, that a row counts
+constexpr double most_times = 10;  // the geometric mean, roughly, that a row counts
 constexpr double enough_points = 2000;  // to choose a weight
+
+// A logarithm to base 2 that is linear between powers of 2, and its inverse: the results of std::log and std::exp
+// depend on the processor.
+
+double rough_logarithm(double number) {
+    int exponent;
+    const double mantissa = std::frexp(number, &exponent);
+    return exponent + 2 * mantissa - 2;
+}
+
+double rough_power(double exponent) {
+    const double whole = std::floor(exponent);
+    return std::ldexp(1 + (exponent - whole), static_cast<int>(whole));
+}
 
 }  // namespace
 
@@ -159,13 +173,13 @@ std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::
     for (std::size_t row = 0; row < size; ++row) {
         for (const auto& error : errors) largest[row] = std::max(largest[row], std::abs(error[row]));
         used[row] = largest[row] > 0 ? 1 : 0;
-        exponents[row] = largest[row] > 0 ? std::log(largest[row]) : 0;
+        exponents[row] = largest[row] > 0 ? rough_logarithm(largest[row]) : 0;
     }
     exponents = near(std::move(exponents));
     used = near(std::move(used));
     for (std::size_t row = 0; row < size; ++row) {
         if (!(largest[row] > 0)) continue;
-        const double share = std::min(1.0, most_times * std::exp(exponents[row] / used[row]) / largest[row]);
+        const double share = std::min(1.0, most_times * rough_power(exponents[row] / used[row]) / largest[row]);
         for (auto& error : errors) error[row] *= share;
         size_of_least[row] *= share;
     }

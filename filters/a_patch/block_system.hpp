@@ -56,8 +56,9 @@ private:
 };
 
 /// Of `weights`, for every row the one with which each half of the data predicts the other half best near that row:
-/// noise is not the same everywhere. Near are at least two rings of rows, and so many that they have several hundred
-/// points. `add_prior` adds to a half what the weight stands for, `restrict` moves a solution to where it may be.
+/// noise is not the same everywhere. Near are two rings of neighbouring rows, or as many more, up to 20, as have about
+/// 2000 points. Ties: the first of `weights`. `add_prior` adds the prior of a weight to a half, `restrict` moves a
+/// solution to an admissible one.
 std::vector<double> best_weights(const std::array<BlockSystem, 2>& halves, std::size_t points,
                                  std::span<const double> weights,
                                  const std::function<void(BlockSystem&, double)>& add_prior,

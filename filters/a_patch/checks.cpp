@@ -4,10 +4,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/a_patch.hpp"
 #include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/spatial/triangle_distance.hpp"
 #include "tessellate/tessellate.hpp"
 
 namespace scanmill::a_patches {
@@ -38,16 +40,37 @@ private:
 
     using Cubic = std::array<double, 4>;
 
+    /// The apexes of a tetrahedron beside an edge.
+    inline static const Barycentric first = Barycentric::Unit(3), second = Barycentric::Unit(0);
+
     static double value_of(const Cubic& c, double t) {
         const double s = 1 - t;
         return s * s * (s * c[0] + 3 * t * c[1]) + t * t * (3 * s * c[2] + t * c[3]);
     }
 
-    Cubic along(u32 row, const Barycentric& from, const Barycentric& to) const {
-        const PatchWeights& w = patches_.weights[row];
-        return {patch_blossom(w, from, from, from), patch_blossom(w, from, from, to), patch_blossom(w, from, to, to),
-                patch_blossom(w, to, to, to)};
-    }
+    /// The function along lines from a point to the segment between the apexes.
+    class Fan {
+    public:
+        Fan(const PatchWeights& w, const Barycentric& from, const Cubic& between)
+            : at_point_(patch_blossom(w, from, from, from)),
+              towards_{patch_blossom(w, from, from, first), patch_blossom(w, from, from, second)},
+              beyond_{patch_blossom(w, from, first, first), patch_blossom(w, from, first, second),
+                      patch_blossom(w, from, second, second)},
+              between_(between) {}
+
+        Cubic line_to(double share) const {
+            const double s = 1 - share;
+            return {at_point_, s * towards_[0] + share * towards_[1],
+                    s * s * beyond_[0] + 2 * s * share * beyond_[1] + share * share * beyond_[2],
+                    value_of(between_, share)};
+        }
+
+    private:
+        double at_point_;
+        std::array<double, 2> towards_;
+        std::array<double, 3> beyond_;
+        const Cubic& between_;  ///< along the segment
+    };
 
     double largest_weight(u32 row) const {
         double largest = 0;
@@ -56,17 +79,26 @@ private:
         return largest;
     }
 
+    /// Whether a function with these weights turns from negative to positive at most once.
+    static bool rises(const Cubic& c, double sign) {
+        bool is_above = false;
+        for (const double weight : c) {
+            if (is_above && sign * weight < 0) return false;
+            is_above = is_above || sign * weight > 0;
+        }
+        return true;
+    }
+
     /// Whether the combined function, seen outwards, is above 0 in the end, and never below 0 after it was above.
-    bool is_single(u32 row, const Barycentric& from, const Barycentric& to, double least) const {
-        const u32 partner = patches_.partners[row];
-        const bool is_mirrored = patches_.tets[partner] != patches_.tets[row];
-        const auto there = [&](const Barycentric& at) { return is_mirrored ? Barycentric(at.reverse()) : at; };
-        const Cubic one = along(row, from, to), other = along(partner, there(from), there(to));
+    bool is_single(u32 row, const Cubic& one, const Cubic& other, double least) const {
         const double sign = patches_.sides[row] == 1 ? 1 : -1;
+        const auto combined = [&](double a, double b) {
+            return sign * (patches_.combine[row] == Combine::max ? std::max(a, b) : std::min(a, b));
+        };
+        if (combined(one[3], other[3]) > least && rises(one, sign) && rises(other, sign)) return true;
         bool is_above = false;
         for (int step = 0; step <= steps; ++step) {
-            const double t = static_cast<double>(step) / steps, a = value_of(one, t), b = value_of(other, t);
-            const double found = sign * (patches_.combine[row] == Combine::max ? std::max(a, b) : std::min(a, b));
+            const double t = static_cast<double>(step) / steps, found = combined(value_of(one, t), value_of(other, t));
             if (is_above && found < -least) return false;
             is_above = is_above || found > least;
         }
@@ -76,13 +108,15 @@ private:
     bool is_sound_gap(u32 row) const {
         const double least = rounding * largest_weight(row);
         if (!is_sound_end(row, 1) || !is_sound_end(row, 2)) return false;
+        const PatchWeights &own = patches_.weights[row], &partner = patches_.weights[patches_.partners[row]];
+        const Cubic between = patch_along(own, first, second), of_partner = patch_along(partner, first, second);
         for (const double share : shares)
-            for (int part = 0; part <= parts; ++part) {
-                const double across = static_cast<double>(part) / parts;
-                const Barycentric to(across, 0, 0, 1 - across);
-                if (!is_single(row, {0, 1 - share, share, 0}, to, least) ||
-                    !is_single(row, {0, share, 1 - share, 0}, to, least))
-                    return false;
+            for (const double from : {share, 1 - share}) {
+                const Fan one(own, {0, 1 - from, from, 0}, between), other(partner, {0, from, 1 - from, 0}, of_partner);
+                for (int part = 0; part <= parts; ++part) {
+                    const double to = static_cast<double>(part) / parts;
+                    if (!is_single(row, one.line_to(to), other.line_to(1 - to), least)) return false;
+                }
             }
         return true;
     }
@@ -110,10 +144,14 @@ private:
         constexpr int grid = 12;
         const double least = rounding * largest_weight(row);
         const Barycentric apex(0, 0, 0, 1);
-        for (int i = 0; i < grid; ++i)
-            for (int j = 0; i + j <= grid && j < grid; ++j)
-                if (!is_single(row, Barycentric(grid - i - j, i, j, 0) / grid, apex, least)) return false;
         const u32 own = patches_.partners[row];
+        for (int i = 0; i < grid; ++i)
+            for (int j = 0; i + j <= grid && j < grid; ++j) {
+                const Barycentric from = Barycentric(grid - i - j, i, j, 0) / grid;
+                if (!is_single(row, patch_along(patches_.weights[row], from, apex),
+                               patch_along(patches_.weights[own], from, apex), least))
+                    return false;
+            }
         const double side = patches_.sides[row] == 1 ? 1 : -1, sign = patches_.combine[row] == Combine::max ? 1 : -1;
         for (const int corner : {1, 2})
             for (const double share : {0.0, 0.25, 0.5, 0.75, 0.95}) {
@@ -237,6 +275,31 @@ std::vector<u32> crossing_triangles(const PatchComplex& patches, Execution& exec
     std::ranges::sort(triangles);
     triangles.erase(std::ranges::unique(triangles).begin(), triangles.end());
     return triangles;
+}
+
+double largest_bulge(const PatchComplex& patches, const TriangleMesh& mesh, Execution& execution) {
+    const std::span sharp = mesh.sharp_edges.span();
+    if (sharp.empty()) return 0;
+    TessellateParams params;
+    params.segments = [&](Edge edge) { return std::ranges::binary_search(sharp, edge) ? 8u : 1u; };
+    const TriangleMesh surface = tessellate(patches, params, execution);
+    const Column& patch = *surface.face_columns.find("patch");
+    double largest = 0;
+    for (std::size_t f = 0; f < surface.triangles.size(); ++f)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const u32 v = surface.triangles[f][i], next = surface.triangles[f][(i + 1) % 3];
+            if (!std::ranges::binary_search(surface.sharp_edges, make_edge(v, next))) continue;
+            const Triangle& t = mesh.triangles[static_cast<std::size_t>(patch.number(f, 0))];
+            double nearest = std::numeric_limits<double>::infinity();
+            for (std::size_t k = 0; k < 3; ++k) {
+                const u32 a = t[k], b = t[(k + 1) % 3];
+                if (!std::ranges::binary_search(sharp, make_edge(a, b))) continue;
+                const Vec3& at = surface.positions[v];
+                nearest = std::min(nearest, (nearest_on_segment(at, mesh.positions[a], mesh.positions[b]) - at).norm());
+            }
+            if (std::isfinite(nearest)) largest = std::max(largest, nearest);
+        }
+    return largest;
 }
 
 }  // namespace scanmill::a_patches

@@ -25,4 +25,8 @@ double c1_jump(const PatchComplex& patches, Execution& execution);
 /// 4 segments per edge shows; ascending. Cost: about 0.2 ms per triangle.
 std::vector<u32> crossing_triangles(const PatchComplex& patches, Execution& execution);
 
+/// The largest distance of a crease from the sharp edge of the mesh that it follows, of 7 points per edge. `mesh`: see
+/// APatchResult.
+double largest_bulge(const PatchComplex& patches, const TriangleMesh& mesh, Execution& execution);
+
 }  // namespace scanmill::a_patches

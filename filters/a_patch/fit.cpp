@@ -33,9 +33,6 @@ constexpr double enough = 1e-6;  // of the largest change in a sweep, as a share
 constexpr double smaller = 0.6;
 constexpr int most_reductions = 20;
 
-constexpr std::size_t next(std::size_t i) { return (i + 1) % 3; }
-constexpr std::size_t previous(std::size_t i) { return (i + 2) % 3; }
-
 // Signs.
 
 /// along · x >= least.
@@ -99,8 +96,6 @@ std::vector<Vec3> fair_slopes(const Hull& hull, Curvature curvature) {
     return slopes;
 }
 
-bool is_smooth(const HullEdge& edge) { return edge.second != HullEdge::none && !edge.is_sharp; }
-
 /// The edges that a tetrahedron may depend on together.
 std::vector<std::pair<u32, u32>> pairs_of(const Hull& hull) {
     std::vector<std::pair<u32, u32>> pairs;
@@ -110,7 +105,7 @@ std::vector<std::pair<u32, u32>> pairs_of(const Hull& hull) {
     };
     for (const HullFace& face : hull.faces) add(face.edges);
     for (const HullEdge& edge : hull.edges) {
-        if (!is_smooth(edge)) continue;
+        if (!edge.is_smooth()) continue;
         std::array<u32, 6> both;
         std::ranges::copy(hull.faces[edge.first].edges, both.begin());
         std::ranges::copy(hull.faces[edge.second].edges, both.begin() + 3);
@@ -142,7 +137,7 @@ public:
         changes_.assign(hull_.edges.size(), Vector2::Zero());
         regularisation_.assign(hull_.edges.size(), params_.regularisation);
         const bool has_points = params_.to_points && !points_.empty();
-        if (!has_points && params_.fairing == 0) return {std::move(weights_), params_.regularisation};
+        if (!has_points && params_.fairing == 0) return {std::move(weights_), std::nullopt};
         for (int round = 0; round < (has_points ? rounds : 1); ++round) {
             system_.clear();
             if (has_points) {
@@ -310,7 +305,7 @@ private:
         for (u32 e = 0; e < system_.size(); ++e) {
             Matrix2& diagonal = system_.block(e, e);
             diagonal.diagonal().array() += scale_ * regularisation_[e];
-            if (params_.fairing == 0 || !is_smooth(hull_.edges[e])) continue;
+            if (params_.fairing == 0 || !hull_.edges[e].is_smooth()) continue;
             diagonal.diagonal().array() += scale_ * params_.fairing;
             system_.right(e) += scale_ * params_.fairing * (free_[e].transpose() * (fair[e] - defaults_[e]));
         }
@@ -457,31 +452,33 @@ double unfairness(const Hull& hull, Curvature curvature) {
     double sum = 0;
     for (std::size_t e = 0; e < hull.edges.size(); ++e) {
         const HullEdge& edge = hull.edges[e];
-        if (!is_smooth(edge)) continue;
+        if (!edge.is_smooth()) continue;
         const Vec3 d = (hull.positions[edge.b] - hull.positions[edge.a]).normalized(), to = fair[e] - edge.slopes[0];
         sum += (to - d * d.dot(to)).squaredNorm();
     }
     return sum;
 }
 
-std::vector<double> distances(const Hull& hull, const PatchComplex& patches, std::span<const Vec3> points,
-                              const LocatedPoints& located, Execution& execution) {
+PointDistances distances(const Hull& hull, const PatchComplex& patches, std::span<const Vec3> points,
+                         const LocatedPoints& located, Execution& execution) {
     const PatchSurface surface(patches, execution.threads());
     const TriangleTree mesh(hull.positions, hull.triangles, execution.threads());
-    std::vector<double> result(located.points.size());
-    for_each_chunk(execution.threads(), result.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    PointDistances result{std::vector<double>(located.points.size()), std::vector<double>(located.points.size())};
+    for_each_chunk(execution.threads(), located.points.size(), chunk, [&](std::size_t begin, std::size_t end) {
         execution.check_cancelled();
         u32 hint = NearestTriangle::none;
         for (std::size_t i = begin; i < end; ++i) {
             const auto& point = located.points[i];
             const Vec3& p = points[point.row];
-            hint = mesh.nearest(p, hint).slot;
+            const NearestTriangle nearest = mesh.nearest(p, hint);
+            hint = nearest.slot;
+            result.to_mesh[i] = std::sqrt(nearest.squared_distance);
             if (const auto foot = surface.foot(p, mesh.nearest_point(p, hint))) {
-                result[i] = std::abs(foot->distance);
+                result.to_surface[i] = std::abs(foot->distance);
             } else {
                 // Near the boundary of an open surface.
                 const PatchCell cell = surface.cell(point.tet);
-                result[i] = std::abs(cell.value(p)) / std::max(least_gradient, cell.gradient(p).norm());
+                result.to_surface[i] = std::abs(cell.value(p)) / std::max(least_gradient, cell.gradient(p).norm());
             }
         }
     });

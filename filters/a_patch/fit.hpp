@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// Fits the slopes of a hull's edges to data points, and makes them fair. The vertices and their gradients stay, and so
-/// do the equal gradients where tetrahedra meet, since these hold for any slopes.
+/// Fits the slopes of a hull's edges to data points, and makes them fair. This step keeps the vertices and their
+/// gradients (normal_fit.hpp turns those before), and the equal gradients where tetrahedra meet, since these hold for
+/// any slopes.
 ///
 /// Source: Bernardini, Bajaj, Chen, Schikore 1997, section 5; the distance is that of Taubin 1991, "Estimation of
 /// planar curves, surfaces, and nonplanar space curves defined by implicit equations".
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "a_patch/weights.hpp"
@@ -25,7 +27,7 @@ struct LocatedPoints {
     std::size_t left_out = 0;  ///< in no tetrahedron
 };
 
-/// Cost: O(log n) per point, about 7 us.
+/// Cost: O(log n) per point, 2 to 4 us.
 LocatedPoints locate(const PatchComplex& patches, std::span<const Vec3> points, Execution& execution);
 
 struct FitParams {
@@ -37,7 +39,7 @@ struct FitParams {
 
 struct FitResult {
     Weights weights;
-    double regularisation;  ///< the median of the weights used
+    std::optional<double> regularisation;  ///< the median of the weights used, if one was
 };
 
 /// Minimises, over the components of the slopes that the vertices leave free,
@@ -64,9 +66,15 @@ FitResult fit(Hull& hull, Weights weights, const LocatedPoints& points, Curvatur
 /// length 1.
 double unfairness(const Hull& hull, Curvature curvature);
 
-/// The distances of the located points from the surface, without sign, in their order: to the foot point that is
-/// found from the nearest point of the mesh, or |F| / |grad F| where the way leads over the boundary of an open one.
-std::vector<double> distances(const Hull& hull, const PatchComplex& patches, std::span<const Vec3> points,
-                              const LocatedPoints& located, Execution& execution);
+/// Distances without sign.
+struct PointDistances {
+    /// To the foot point that is found from the nearest point of the mesh, or |F| / |grad F| where the way leads over
+    /// the boundary of an open surface.
+    std::vector<double> to_surface;
+    std::vector<double> to_mesh;
+};
+/// Of the located points, in their order.
+PointDistances distances(const Hull& hull, const PatchComplex& patches, std::span<const Vec3> points,
+                         const LocatedPoints& located, Execution& execution);
 
 }  // namespace scanmill::a_patches

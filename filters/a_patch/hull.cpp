@@ -25,7 +25,7 @@ constexpr double cosine_of_acute = -0.5;  // between the triangles' normals
 constexpr double least_sine_of_opening = 0.0175;  // 1 degree; tetrahedra that are flatter count as inside out
 constexpr double least_turn = 1e-9;  // sines of angles between normals
 constexpr std::size_t chunk = 256;  // triangles
-// Cosine and sine of the limits 4 and 172 degrees of the angle between two apexes, seen along their edge.
+// Cosines of the limits of the angle between two apexes, seen along their edge: 4 and 172 degrees.
 constexpr double cosine_of_4 = 0.9975640502598242, cosine_of_172 = -0.9902680687415704;
 
 HullFace face_of(const std::array<Vec3, 3>& p) {
@@ -162,9 +162,7 @@ private:
         if (edge.slopes[1] == Vec3::Zero()) edge.slopes[1] = second / 3;
     }
 
-    bool is_regular(u32 vertex) const {
-        return vertex >= mesh_.kinds.size() || mesh_.kinds[vertex] == VertexKind::regular;
-    }
+    bool is_regular(u32 vertex) const { return vertex >= mesh_.pointed.size() || !mesh_.pointed[vertex]; }
 
     void describe_sharp(HullEdge& edge, const std::array<Vec3, 2>& of_first, u32 other) {
         const std::array<Vec3, 2> of_second{hull_.normals[other / 3][(other + 1) % 3],

@@ -16,6 +16,10 @@ enum Side : std::size_t { inside = 0, outside = 1 };
 inline constexpr std::array<Side, 2> both_sides{inside, outside};
 inline double sign_of(Side side) { return side == outside ? 1 : -1; }
 
+// Corners and edges of a triangle, around it.
+constexpr std::size_t next(std::size_t i) { return (i + 1) % 3; }
+constexpr std::size_t previous(std::size_t i) { return (i + 2) % 3; }
+
 /// A triangle with its base point and the heights of its apexes, which lie on the line through the base point along
 /// the normal.
 struct HullFace {
@@ -66,29 +70,20 @@ enum class Split {
 
 /// Where a hull is not as it should be; numbers ascend.
 struct HullFaults {
-    std::vector<u32> opposed;  ///< triangles with a normal at a corner that is more than 84 degrees from their own
     std::vector<u32> thin;  ///< triangles too near to the next sheet
     std::vector<u32> inverted;  ///< edges beside which a tetrahedron is inside out
-
-    bool empty() const { return opposed.empty() && thin.empty() && inverted.empty(); }
 };
 
 /// The gradients at the corners of every triangle: unit length, or zero where the surface has a singular point.
 using CornerNormals = std::vector<std::array<Vec3, 3>>;
-
-/// What the surface does at a vertex.
-enum class VertexKind : u8 {
-    regular,
-    pointed,  ///< the gradient is 0: the surface has a tip
-    faceted  ///< all edges are sharp, and the normals are those of the triangles
-};
 
 /// A mesh whose surface is sought.
 struct PatchMesh {
     TriangleMesh mesh;  ///< with its sharp edges; no columns
     /// Equal at a vertex in triangles that are connected there without crossing a sharp edge.
     CornerNormals normals;
-    std::vector<VertexKind> kinds{};  ///< by vertex; of those beyond its end: regular
+    /// By vertex, of those beyond its end false: whether the gradient is 0 there, so that the surface has a tip.
+    std::vector<bool> pointed{};
 };
 
 struct Hull {

@@ -164,9 +164,7 @@ private:
         for (const Vec3& n : normals_) {
             Axes axes = Axes::Zero();
             if (n != Vec3::Zero()) {
-                Eigen::Index least;
-                n.cwiseAbs().minCoeff(&least);
-                axes.col(0) = n.cross(Vec3::Unit(least)).normalized();
+                axes.col(0) = perpendicular(n);
                 axes.col(1) = n.cross(axes.col(0));
             }
             axes_.push_back(axes);
@@ -246,8 +244,7 @@ private:
         const std::vector<Vec3> of_triangles = triangle_normals(mesh_.mesh);
         for (std::size_t s = 0; s < corners_.size(); ++s) {
             if (changes_[s] == Vector2::Zero()) continue;
-            std::vector<Vec3> around;
-            for (const u32 corner : corners_[s]) around.push_back(of_triangles[corner / 3]);
+            const std::vector<Vec3> around = normals_at(corners_[s], of_triangles);
             for (int halvings = 0; halvings < most_halvings; ++halvings, changes_[s] /= 2) {
                 const Vec3 turned = (normals_[s] + axes_[s] * changes_[s]).normalized();
                 if (opposes(turned, around)) continue;

@@ -21,13 +21,7 @@ namespace {
 constexpr std::size_t neighbours = 25, chunk = 256;
 constexpr std::size_t most_candidates = 100, least_neighbours = 6;  // at sharp edges
 constexpr double same_cosine = 0.99999;  // 0.26 degrees
-
-/// Any unit vector perpendicular to a unit vector.
-Vec3 perpendicular(const Vec3& n) {
-    Eigen::Index least;
-    n.cwiseAbs().minCoeff(&least);
-    return n.cross(Vec3::Unit(least)).normalized();
-}
+constexpr double rounding = 1e-14;  // of cosines
 
 /// The normal at `point` of the quadric through it that fits the others; that of their plane if there is none.
 Vec3 normal_at(const Vec3& point, std::span<const Vec3> others) {
@@ -46,7 +40,44 @@ Vec3 normal_at(const Vec3& point, std::span<const Vec3> others) {
     return quadric ? Vec3((n - quadric->d * x - quadric->e * y).normalized()) : n;
 }
 
+/// See most_normal(). The smallest cap around the normals has one, two or three of them on its border: all are tried.
+Vec3 most_normal_of_few(std::span<const Vec3> normals) {
+    Vec3 best = normals[0];
+    double greatest = -2;
+    const auto offer = [&](const Vec3& direction) {
+        const double length = direction.norm();
+        if (!(length > 0)) return;
+        const Vec3 unit = direction / length;
+        double least = 1;
+        for (const Vec3& n : normals) {
+            least = std::min(least, n.dot(unit));
+            if (least <= greatest) return;
+        }
+        greatest = least;
+        best = unit;
+    };
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        offer(normals[i]);
+        for (std::size_t j = 0; j < i; ++j) {
+            const Vec3 sum = normals[i] + normals[j];
+            offer(sum.norm() > rounding ? sum : perpendicular(normals[i]));
+            for (std::size_t k = 0; k < j; ++k) {
+                const Vec3 centre = (normals[i] - normals[j]).cross(normals[j] - normals[k]);
+                offer(centre);
+                offer(-centre);
+            }
+        }
+    }
+    return best;
+}
+
 }  // namespace
+
+Vec3 perpendicular(const Vec3& n) {
+    Eigen::Index least;
+    n.cwiseAbs().minCoeff(&least);
+    return n.cross(Vec3::Unit(least)).normalized();
+}
 
 Sectors sectors_of(const TriangleMesh& mesh) {
     const Array<u32> opposites = half_edges::opposites(mesh);
@@ -158,7 +189,8 @@ GivenNormals given_normals(const TriangleMesh& mesh, const Sectors& sectors) {
             .hint("'decimate' computes it; 'normals: mesh' needs none");
     constexpr u32 components = 9;
     if (column->components() != components)
-        throw Error("the face column 'corner-normals' has {} numbers per triangle; 9 are needed", column->components());
+        throw Error("the face column 'corner-normals' has {} numbers per triangle; 9 are needed", column->components())
+            .hint("'decimate' computes them: three per corner; 'normals: mesh' needs none");
     GivenNormals result{std::vector<Vec3>(sectors.size(), Vec3::Zero()), 0};
     std::vector<Vec3> first(sectors.size(), Vec3::Zero());
     std::vector<bool> differs(sectors.size(), false);
@@ -187,32 +219,19 @@ GivenNormals given_normals(const TriangleMesh& mesh, const Sectors& sectors) {
 }
 
 Vec3 most_normal(std::span<const Vec3> normals) {
-    Vec3 best = normals[0];
-    double greatest = -2;
-    const auto offer = [&](const Vec3& direction) {
-        const double length = direction.norm();
-        if (!(length > 0)) return;
-        const Vec3 unit = direction / length;
-        double least = 1;
-        for (const Vec3& n : normals) least = std::min(least, n.dot(unit));
-        if (least > greatest) {
-            greatest = least;
-            best = unit;
-        }
-    };
-    // The smallest cap around the normals has one, two or three of them on its border.
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        offer(normals[i]);
-        for (std::size_t j = 0; j < i; ++j) {
-            offer(normals[i] + normals[j]);
-            for (std::size_t k = 0; k < j; ++k) {
-                const Vec3 centre = (normals[i] - normals[j]).cross(normals[j] - normals[k]);
-                offer(centre);
-                offer(-centre);
-            }
-        }
+    // That of a few normals, until no other one is farther from it.
+    std::vector<std::size_t> few{0};
+    for (;;) {
+        std::vector<Vec3> chosen;
+        for (const std::size_t i : few) chosen.push_back(normals[i]);
+        const Vec3 direction = most_normal_of_few(chosen);
+        const auto cosine = [&](const Vec3& n) { return n.dot(direction); };
+        const double least = cosine(*std::ranges::min_element(chosen, {}, cosine));
+        const auto farthest = std::ranges::min_element(normals, {}, cosine);
+        if (cosine(*farthest) >= least - rounding) return direction;
+        const auto number = static_cast<std::size_t>(farthest - normals.begin());
+        few.insert(std::ranges::lower_bound(few, number), number);
     }
-    return best;
 }
 
 }  // namespace scanmill::a_patches

@@ -8,7 +8,7 @@ SCANMILL_FILTER() {
     using P = APatchParams;
     using a_patches::Curvature;
     using a_patches::Split;
-    return Declare<P>("a-patch", 3)
+    return Declare<P>("a-patch", 4)
         .summary("Spans an implicit surface over a mesh: cubic patches, smooth except at the mesh's sharp edges.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 5")
         .ties(
@@ -28,8 +28,7 @@ SCANMILL_FILTER() {
         .choice("normals", &P::normals,
                 {{"auto", P::Normals::automatic,
                   "given if the mesh has the column, else points if there are any, else mesh; with points and `fit` "
-                  "turned so "
-                  "that the surface passes near the points."},
+                  "turned so that the surface passes near the points."},
                  {"given", P::Normals::given, "The mesh's face column `corner-normals`."},
                  {"points", P::Normals::points, "Of quadrics fitted to the points near each vertex."},
                  {"mesh", P::Normals::mesh, "Of the triangles around each vertex."}},
@@ -39,13 +38,14 @@ SCANMILL_FILTER() {
                  {"where-needed", Split::where_needed,
                   "One, unless it cannot join its neighbours with equal gradients: up to a third fewer tetrahedra."}},
                 "Which triangles' tetrahedra are divided at a base point.")
-        .param("fit", &P::fit, "Whether free weights are fitted to the points, if there are any.")
+        .param("fit", &P::fit, "Fits normals (with `normals: auto`) and edge gradients to the points.")
         .param("fairing", &P::fairing,
                "Weight of a fair surface against a near one: at 1 it weighs about as much as the points.", at_least(0))
-        .param("regularisation", &P::regularisation,
-               "Least weight of the changes of the free weights, likewise; where each half of the points predicts the "
-               "other half better with a larger one, that is used there.",
-               at_least(1e-6), at_most(1))
+        .param(
+            "regularisation", &P::regularisation,
+            "Smallest penalty on changes of the edge gradients, relative to the points. A larger one is used where it "
+            "predicts one half of the points better from the other half.",
+            at_least(1e-6), at_most(1))
         .choice("curvature", &P::curvature,
                 {{"distance", Curvature::distance, "None: F grows like a distance."},
                  {"mean", Curvature::mean, "The mean curvature of the triangle's quadric: exact for spheres."}},
@@ -61,29 +61,29 @@ SCANMILL_FILTER() {
                 "Largest difference of the gradients where tetrahedra meet, except at sharp edges, as a share of the "
                 "gradient.",
                 headline, smaller_is_better)
-        .metric("sign-violations", Unit::count, "Weights whose sign allows a second sheet.", smaller_is_better)
-        .metric("refined", Unit::count, "Edges bisected because tetrahedra were inside out or too large.")
+        .metric("sign-violations", Unit::count, "Edges, and weights over triangles, that allow a second sheet.",
+                smaller_is_better)
+        .metric("refined", Unit::count,
+                "Edges bisected because tetrahedra were inside out or too large, or a crease left its edge.")
         .metric("split-faces", Unit::count, "Triangles with three tetrahedra per side.")
         .metric("creased-edges", Unit::count, "Edges made sharp, because the mesh is folded there.", smaller_is_better)
         .metric("smoothed-edges", Unit::count, "Blunt sharp edges made smooth, because no crease follows them.",
                 smaller_is_better)
         .metric("pointed-vertices", Unit::count,
                 "Vertices where the surface has a tip, because no smooth surface fits there.", smaller_is_better)
-        .metric("faceted-vertices", Unit::count,
-                "Vertices where the surface follows the mesh's triangles, because nothing else fits.",
-                smaller_is_better)
-        .metric("open-edges", Unit::count, "Edges beside which no tetrahedra fit: a straight strip closes the surface.",
-                smaller_is_better)
-        .metric("thin-triangles", Unit::count, "Triangles whose tetrahedra overlap those of the next sheet.",
-                smaller_is_better)
-        .metric("raised", Unit::count, "Weights changed so that every line to an apex meets the surface once.")
+        .metric("straight-edges", Unit::count,
+                "Edges made sharp and straight between such vertices, because nothing else fits.", smaller_is_better)
+        .metric("raised", Unit::count,
+                "Control coefficients changed so that every line to an apex meets the surface once.")
         .metric("fit-rms", Unit::length, "Root of the mean squared distance of the points from the surface.", headline,
                 smaller_is_better)
         .metric("fit-p95", Unit::length, "95 % quantile of these distances.", smaller_is_better)
         .metric("fit-max", Unit::length, "Largest of these distances.", smaller_is_better)
         .metric("left-out", Unit::count, "Points in no tetrahedron near the surface: not fitted, not measured.",
                 smaller_is_better)
-        .metric("regularisation", Unit::number, "Median of the weights used.")
+        .metric("crease-max", Unit::length,
+                "Largest distance of a crease from the mesh's sharp edge; creases of round rims bulge.")
+        .metric("regularisation", Unit::number, "Median penalty used.")
         .metric(
             "fairness-before", Unit::number,
             "Sum over the edges of the squared difference between the gradient and that of the triangles' quadrics, "

@@ -17,12 +17,6 @@ constexpr double level_sine = 1e-3, level_share = 0.1;  // between a normal and 
 constexpr double cosine_of_level = 0.9993908270190958;  // of 2 degrees
 constexpr double least_length = 0.1;  // of a sum or product of unit vectors that gives a direction
 
-std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3> of_triangles) {
-    std::vector<Vec3> around;
-    for (const u32 corner : corners) around.push_back(of_triangles[corner / 3]);
-    return around;
-}
-
 void set_normal(PatchMesh& mesh, std::span<const u32> corners, const Vec3& normal) {
     for (const u32 corner : corners) mesh.normals[corner / 3][corner % 3] = normal;
 }
@@ -84,6 +78,12 @@ std::vector<Vec3> triangle_normals(const TriangleMesh& mesh) {
                               .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
                               .normalized());
     return normals;
+}
+
+std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3> of_triangles) {
+    std::vector<Vec3> around;
+    for (const u32 corner : corners) around.push_back(of_triangles[corner / 3]);
+    return around;
 }
 
 bool opposes(const Vec3& normal, std::span<const Vec3> around) {
@@ -202,13 +202,15 @@ void align_normals(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repair
 }
 
 std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs) {
+    std::vector<Edge> sought(edges.begin(), edges.end());
+    std::ranges::sort(sought);
     const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
     const Array<u32> opposites = half_edges::opposites(mesh.mesh);
     std::vector<Edge> blunt;
     for (u32 half = 0; half < opposites.size(); ++half) {
         if (opposites[half] == half_edges::boundary || opposites[half] < half) continue;
         const Edge edge = make_edge(half_edges::start(mesh.mesh, half), half_edges::end(mesh.mesh, half));
-        if (std::ranges::find(edges, edge) == edges.end()) continue;
+        if (!std::ranges::binary_search(sought, edge)) continue;
         const u32 other = opposites[half];
         const auto normal = [&](u32 corner) -> const Vec3& { return mesh.normals[corner / 3][corner % 3]; };
         // Within a chain of creases the normals differ at both ends.
@@ -236,32 +238,30 @@ std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& 
     return blunt.size();
 }
 
-bool loosen(PatchMesh& mesh, std::span<const u32> vertices, Repairs& repairs) {
-    std::vector<VertexKind>& kinds = mesh.kinds;
-    kinds.resize(mesh.mesh.positions.size(), VertexKind::regular);
-    std::vector<VertexKind> before = kinds;
-    for (const u32 v : vertices)
-        kinds[v] = before[v] == VertexKind::regular ? VertexKind::pointed : VertexKind::faceted;
-    const std::vector<Vec3> of_triangles = triangle_normals(mesh.mesh);
-    std::vector<Edge> sharp;
-    for (const Triangle& t : mesh.mesh.triangles)
+bool loosen(PatchMesh& mesh, std::span<const Edge> edges, std::span<const u32> triangles, Repairs& repairs) {
+    std::vector<bool>& pointed = mesh.pointed;
+    pointed.resize(mesh.mesh.positions.size(), false);
+    const std::vector<bool> before = pointed;
+    std::vector<Edge> straight;
+    for (const Edge& edge : edges) {
+        if (before[edge[0]] && before[edge[1]]) straight.push_back(edge);
+        for (const u32 v : edge) pointed[v] = true;
+    }
+    for (const u32 f : triangles) {
+        const Triangle& t = mesh.mesh.triangles[f];
+        const bool is_pointed = std::ranges::all_of(t, [&](u32 v) { return before[v]; });
         for (std::size_t i = 0; i < 3; ++i) {
-            if (kinds[t[i]] != VertexKind::faceted) continue;
-            for (const u32 other : {t[(i + 1) % 3], t[(i + 2) % 3]}) {
-                sharp.push_back(make_edge(t[i], other));
-                if (kinds[other] == VertexKind::regular) kinds[other] = VertexKind::pointed;
-            }
+            if (is_pointed) straight.push_back(make_edge(t[i], t[(i + 1) % 3]));
+            pointed[t[i]] = true;
         }
+    }
     for (std::size_t f = 0; f < mesh.mesh.triangles.size(); ++f)
-        for (std::size_t i = 0; i < 3; ++i) {
-            const VertexKind kind = kinds[mesh.mesh.triangles[f][i]];
-            if (kind == VertexKind::pointed) mesh.normals[f][i] = Vec3::Zero();
-            if (kind == VertexKind::faceted) mesh.normals[f][i] = of_triangles[f];
-        }
-    add_sharp(mesh.mesh, std::move(sharp));
-    repairs.pointed = static_cast<std::size_t>(std::ranges::count(kinds, VertexKind::pointed));
-    repairs.faceted = static_cast<std::size_t>(std::ranges::count(kinds, VertexKind::faceted));
-    return kinds != before;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (pointed[mesh.mesh.triangles[f][i]]) mesh.normals[f][i] = Vec3::Zero();
+    const std::size_t added = add_sharp(mesh.mesh, std::move(straight));
+    repairs.straightened += added;
+    repairs.pointed = static_cast<std::size_t>(std::ranges::count(pointed, true));
+    return added > 0 || pointed != before;
 }
 
 }  // namespace scanmill::a_patches

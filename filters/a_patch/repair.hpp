@@ -11,10 +11,14 @@ struct Repairs {
     std::size_t bisected = 0;  ///< edges
     std::size_t creased = 0;   ///< edges made sharp
     std::size_t smoothed = 0;  ///< sharp edges made smooth
-    std::size_t pointed = 0, faceted = 0;  ///< vertices
+    std::size_t pointed = 0;  ///< vertices
+    std::size_t straightened = 0;  ///< edges made sharp and straight
 };
 
 std::vector<Vec3> triangle_normals(const TriangleMesh& mesh);
+
+/// Of the triangles of these corners.
+std::vector<Vec3> normals_at(std::span<const u32> corners, std::span<const Vec3> of_triangles);
 
 /// Whether the direction is more than 84 degrees from one of the normals.
 bool opposes(const Vec3& direction, std::span<const Vec3> normals);
@@ -41,8 +45,9 @@ void align_normals(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repair
 /// both sides at both ends; their ends get the mean of the normals. Returns how many.
 std::size_t smooth_edges(PatchMesh& mesh, std::span<const Edge> edges, Repairs& repairs);
 
-/// Makes the vertices pointed, and those that are so faceted, with pointed ones around them. Edges between two such
-/// vertices follow the mesh, if they are sharp. Returns whether one has changed.
-bool loosen(PatchMesh& mesh, std::span<const u32> vertices, Repairs& repairs);
+/// Makes the ends of the edges and the corners of the triangles pointed. Edges and sides of triangles where all
+/// vertices are so already become sharp: the surface follows the mesh there, because sharp edges between pointed
+/// vertices are straight, and a triangle with three of them is flat. Returns whether something has changed.
+bool loosen(PatchMesh& mesh, std::span<const Edge> edges, std::span<const u32> triangles, Repairs& repairs);
 
 }  // namespace scanmill::a_patches

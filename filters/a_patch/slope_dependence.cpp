@@ -9,9 +9,6 @@ namespace scanmill::a_patches {
 
 namespace {
 
-constexpr std::size_t next(std::size_t i) { return (i + 1) % 3; }
-constexpr std::size_t previous(std::size_t i) { return (i + 2) % 3; }
-
 std::size_t index_in(const auto& list, u32 element) {
     return static_cast<std::size_t>(std::ranges::find(list, element) - list.begin());
 }

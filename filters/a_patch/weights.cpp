@@ -19,9 +19,6 @@ constexpr double least_share = 0.1;  // of a value at an apex, that is kept at t
 constexpr double least_share_of_edge = 0.2;
 constexpr double rounding = 1e-15;  // of the largest weight: at singular points weights are 0
 
-constexpr std::size_t next(std::size_t i) { return (i + 1) % 3; }
-constexpr std::size_t previous(std::size_t i) { return (i + 2) % 3; }
-
 /// One side of a face. An affine function on its tetrahedron is given by its values at the three corners and the apex.
 struct FaceSide {
     Vec3 apex;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patch_distance/patch_distance.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -33,6 +34,8 @@ public:
                 has_vertex_[half_edges::start(mesh, half)] = has_vertex_[half_edges::end(mesh, half)] = true;
     }
 
+    bool is_empty() const { return std::ranges::find(has_vertex_, true) == has_vertex_.end(); }
+
     /// Whether it contains a point of a triangle.
     bool contains(u32 triangle, const Vec3& point, double rounded) const {
         for (u32 half = 3 * triangle; half < 3 * triangle + 3; ++half) {
@@ -55,14 +58,22 @@ private:
 }  // namespace
 
 PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud& points, Context& context) {
-    if (patches.tets.empty()) throw Error("the patches have no tetrahedra");
-    if (points.size() == 0) throw Error("needs points; there are none");
+    if (patches.tets.empty()) throw Error("the patches have no tetrahedra").hint("'a-patch' makes patches of a mesh");
+    if (points.size() == 0) throw Error("needs points; there are none").hint("wire the scan: 'in: {points: scan}'");
     require_finite(points.positions.span());
     const PatchSurface surface(patches, context.threads());
     const TriangleMesh mesh = tessellate(patches, {subdivision, {}}, context);
     const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
     const Boundary boundary(mesh);
+    const bool is_closed = boundary.is_empty();
     const double limit = farthest * surface_box(mesh).diagonal();
+    // A ray decides nothing about an open surface.
+    const auto is_inside = [&](const Vec3& point, const Vec3& nearest, u32 triangle) {
+        if (is_closed) return surface.is_inside(point);
+        const Triangle& t = mesh.triangles[triangle];
+        const Vec3& a = mesh.positions[t[0]];
+        return (point - nearest).dot((mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a)) < 0;
+    };
     Array<double> distances(points.size());
     for_each_chunk(context.threads(), points.size(), chunk, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
@@ -77,7 +88,7 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
             if (const auto foot = surface.foot(p, start)) distances[i] = foot->distance;
             // At corners of creases, and between faces without tetrahedra between them.
             else if (!boundary.contains(nearest.triangle, start, rounding * limit))
-                distances[i] = (surface.is_inside(p) ? -1 : 1) * (p - start).norm();
+                distances[i] = (is_inside(p, start, nearest.triangle) ? -1 : 1) * (p - start).norm();
         }
     });
     PatchDistanceResult result;

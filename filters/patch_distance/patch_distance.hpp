@@ -21,11 +21,11 @@ struct PatchDistanceResult {
 /// The distance to the nearest point of the surface: of a tessellation with 2 segments per edge the nearest point is
 /// where Newton's method begins (PatchSurface::foot()). Exact to rounding. Where two parts of the surface are equally
 /// near within the error of that tessellation, it may be that of the other one. Near ends of creases, and between faces
-/// without tetrahedra between them, it is the distance to the tessellation.
+/// without tetrahedra between them, it is the distance to the tessellation; its sign is then that of the side of the
+/// nearest triangle if the surface is open.
 ///
 /// Pre:  finite points in the patches' frame. Throws Error if `points` or `patches` is empty, if tetrahedra of a
-/// triangle
-///       are missing, or if every point is far from the surface.
+///       triangle are missing, or if every point is far from the surface.
 /// p95 is the smallest distance that at least 95 % of the located points do not exceed. Bytes do not depend on the
 /// number of threads. Cost: about 7 us per point near the surface, and 20 us per triangle of the mesh.
 /// Metrics: `rms`, `p95`, `max`, `unlocated`. Warns of unlocated points.

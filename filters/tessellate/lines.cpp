@@ -60,7 +60,9 @@ TetFunctions::Hit TetFunctions::hit(u8 side, const Barycentric& base, const Bary
         if (is_other) t = there;
     }
     const bool is_missed = t == never;
-    if (is_missed && !other_) throw Error("the patches have no surface on a line from the mesh to an apex");
+    if (is_missed && !other_)
+        throw Error("the patches have no surface on a line from the mesh to an apex")
+            .hint("the weights are not those that 'a-patch' makes");
     if (is_missed) t = 1;
     const Barycentric at = (1 - t) * base + t * to;
     const Vec3 gradient = is_other ? other_->gradient(in_other(at)) : own_.gradient(at);

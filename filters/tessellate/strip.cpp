@@ -349,10 +349,11 @@ Errors errors_of(const Strip& strip, const PatchComplex& patches, const EdgeTets
 bool refine(unsigned& along, unsigned& across, const Errors& errors, double max_error, unsigned most,
             unsigned most_across) {
     // More columns make the triangles lie along the lines along the rows, so these get a smaller share of the error.
-    const bool is_long = errors.along > share_along * max_error;
+    const bool is_long = errors.along > share_along * max_error, can_lengthen = 2 * along <= most;
+    const bool are_rows_enough = !is_long || (!can_lengthen && errors.inside > errors.along);
     const bool widen =
-        2 * across <= most_across && (errors.across > max_error || (errors.inside > max_error && !is_long));
-    const bool lengthen = 2 * along <= most && (is_long || (errors.inside > max_error && !widen));
+        2 * across <= most_across && (errors.across > max_error || (errors.inside > max_error && are_rows_enough));
+    const bool lengthen = can_lengthen && (is_long || (errors.inside > max_error && !widen));
     if (lengthen) along *= 2;
     if (widen) across *= 2;
     return lengthen || widen;

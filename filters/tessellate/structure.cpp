@@ -93,7 +93,7 @@ bool gradients_differ(const PatchComplex& patches, const PatchStructure& structu
 }  // namespace
 
 PatchStructure structure_of(const PatchComplex& patches) {
-    if (patches.tets.empty()) throw Error("the patches have no tetrahedra");
+    if (patches.tets.empty()) throw Error("the patches have no tetrahedra").hint("'a-patch' makes patches of a mesh");
     PatchStructure structure;
     structure.triangles = triangles_of(patches);
     structure.edges = edges_of(structure.triangles);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-/// The mesh under a complex of patches: which tetrahedra stand on its triangles and beside its edges.
+/// The mesh under a complex of patches: which tetrahedra are over its triangles and beside its edges.
 
 #include <array>
 #include <vector>

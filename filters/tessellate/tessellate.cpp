@@ -37,8 +37,11 @@ public:
           segments_(params.segments),
           execution_(execution) {
         if (subdivision_ < 1 || subdivision_ > most_subdivision)
-            throw Error("subdivision must be from 1 to {}; it is {}", most_subdivision, subdivision_);
-        if (max_error_ && !(*max_error_ > 0)) throw Error("max-error must be above 0; it is {:g}", *max_error_);
+            throw Error("subdivision must be from 1 to {}; it is {}", most_subdivision, subdivision_)
+                .hint(fmt::format("the default is {}", TessellateParams().subdivision));
+        if (max_error_ && !(*max_error_ > 0))
+            throw Error("max-error must be above 0; it is {:g}", *max_error_)
+                .hint("without it all edges get `subdivision` segments");
     }
 
     TriangleMesh mesh(double* left) {
@@ -136,27 +139,28 @@ private:
         if (distance_left) *distance_left = 0;
         if (worst <= *max_error_ || segments_) return;
         // The error falls with the square of the segments, but not where the surface leaps.
-        unsigned enough = 2 * most;
-        for (double before = worst; enough <= most_subdivision; enough *= 2) {
-            const double left = enough * enough * *max_error_ < most * most * worst / 4 ? before : build(enough);
-            if (left <= *max_error_) break;
-            if (left > least_decrease * before && left != before) enough = most_subdivision;
-            before = left;
-        }
-        if (distance_left && enough > most_subdivision) {
+        const bool can_double = 2 * most <= most_subdivision;
+        const double coarse = can_double ? worst : build(most / 2), fine = can_double ? build(2 * most) : worst;
+        const bool leaps = fine > least_decrease * coarse;
+        if (distance_left && leaps) {
             *distance_left = build(most);
             return;
         }
         Error error("with {} segments per edge the triangles are up to {:.3g} from the surface; max-error is {:.3g}",
                     most, worst, *max_error_);
-        error.set_hint(enough <= most_subdivision ? fmt::format("subdivision {} suffices", enough)
-                                                  : "a larger max-error needs fewer segments");
+        unsigned enough = can_double ? 2 * most : most;
+        for (double estimate = fine; estimate > *max_error_ && enough <= most_subdivision; enough *= 2)
+            estimate *= fine / coarse;
+        error.set_hint(leaps                        ? "the surface leaps there; a larger max-error needs fewer segments"
+                       : enough <= most_subdivision ? fmt::format("subdivision {} suffices", enough)
+                                                    : "a larger max-error, or `decimate` with a smaller one");
         throw error;
     }
 
     static void require_countable(std::size_t vertices) {
         if (vertices >= none)
-            throw Error("the mesh would have {} vertices; at most {} are possible", vertices, none - 1);
+            throw Error("the mesh would have {} vertices; at most {} are possible", vertices, none - 1)
+                .hint("a smaller subdivision, or a larger max-error, makes fewer");
     }
 
     // The mesh: vertices of the mesh below, then strip by strip, then grid by grid.

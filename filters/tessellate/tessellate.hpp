@@ -16,7 +16,7 @@ namespace scanmill {
 struct TessellateParams {
     /// Segments per edge of the mesh; with max_error the most.
     u32 subdivision = 8;
-    /// Largest distance between the triangles and the surface, above 0; nothing: uniform.
+    /// Largest distance between the triangles and the surface, above 0; if absent, uniform.
     std::optional<Length> max_error;
     /// Segments of an edge of the mesh, given its two vertices; empty: from the other two. Any mixture fits together.
     std::function<unsigned(Edge)> segments = nullptr;
@@ -41,11 +41,11 @@ struct TessellateParams {
 /// max_error. A quarter of max_error doubles the segments. Spheres got 7 to 15 times, tori 10 to 40 times as many
 /// triangles as equilateral ones of the best size: the segments are powers of two, and lines to an apex make a small
 /// angle with the surface near a vertex where the mesh is coarse.
-/// Where the surface leaps, as beside a crease that leaves its tetrahedra, no number of segments suffices. With `left`
-/// the result then has `subdivision` segments there, and `left` is the distance left; otherwise 0.
-/// Throws Error if `subdivision` does not suffice, with the distance left and what would do; for patches without
-/// tetrahedra or with some missing, and for parameters out of range. Cost: linear in the triangles made, about 1 us
-/// each.
+/// Where the surface leaps, as beside a crease that leaves its tetrahedra, no number of segments suffices: twice as
+/// many do not bring the triangles nearer. With `left` the result then has `subdivision` segments there, and `left` is
+/// the distance left; otherwise 0. Throws Error if `subdivision` does not suffice, with the distance left and an
+/// estimate of what suffices; for patches without tetrahedra or with some missing, and for parameters out of range.
+/// Cost: linear in the triangles made, about 1 us each.
 TriangleMesh tessellate(const PatchComplex& patches, const TessellateParams& params, Execution& execution,
                         double* left = nullptr);
 

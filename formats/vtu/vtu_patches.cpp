@@ -63,7 +63,9 @@ void write_vtu_patches(const Value& value, OutputBuffer& out, const WriteOptions
     data->GetCellData()->AddArray(array_of(patches.triangles.span(), 1, "patch"));
     const std::span combine(reinterpret_cast<const u8*>(patches.combine.data()), tets);
     data->GetCellData()->AddArray(array_of(combine, 1, "combine"));
-    // As signed numbers, no_partner is -1.
+    // As signed numbers, no_edge and no_partner are -1.
+    const std::span edges(reinterpret_cast<const std::int32_t*>(patches.edges.data()), tets);
+    data->GetCellData()->AddArray(array_of(edges, 1, "edge"));
     const std::span partners(reinterpret_cast<const std::int32_t*>(patches.partners.data()), tets);
     data->GetCellData()->AddArray(array_of(partners, 1, "partner"));
     add_frame(patches.frame, Text::as_numbers, *data->GetFieldData());

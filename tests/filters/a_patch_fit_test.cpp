@@ -5,6 +5,9 @@
 #include <limits>
 #include <memory>
 
+#include "a_patch/block_system.hpp"
+#include "a_patch/normals.hpp"
+#include "a_patch/outliers.hpp"
 #include "a_patch/slope_dependence.hpp"
 #include "filters/a_patch_sharp_cases.hpp"
 #include "support/point_sets.hpp"
@@ -211,7 +214,7 @@ TEST(APatchFit, ASurfaceOfOtherSlopes_IsFoundAgainFromItsPoints) {
         }
     EXPECT_GT(before, 1e-3);
     EXPECT_LT(after, 1e-2 * before);
-    EXPECT_LT(rms(distances(found, weights.patches, points, located, execution)), 1e-7);
+    EXPECT_LT(rms(distances(found, weights.patches, points, located, execution).to_surface), 1e-7);
 }
 
 TEST(APatchFit, OfASphere_TheErrorFallsToATenth) {
@@ -325,6 +328,83 @@ TEST(APatchFit, NoisyPointsOnOneSide_KeepTheSignsOfAllWeights) {
     }
 }
 
+// Parts.
+
+TEST(BestWeights, OfSignalAndNoise_AreTheLeastAndTheGreatest) {
+    // Unconnected rows. Both halves agree on the first 10, contradict each other on the next 10, and the rest is empty.
+    constexpr u32 size = 30;
+    std::vector<std::pair<u32, u32>> pairs;
+    for (u32 row = 0; row < size; ++row) pairs.emplace_back(row, row);
+    std::array halves{a_patches::BlockSystem(size, pairs), a_patches::BlockSystem(size, pairs)};
+    for (u32 half = 0; half < 2; ++half)
+        for (u32 row = 0; row < 20; ++row) {
+            halves[half].block(row, row) = Eigen::Matrix2d::Identity();
+            halves[half].right(row) = (row >= 10 && half == 1 ? -1 : 1) * Eigen::Vector2d(1, 2);
+        }
+    const std::vector<double> weights{0.01, 0.1, 1, 10};
+    Execution execution;
+    const std::vector<double> found = best_weights(
+        halves, 100'000, weights, [](a_patches::BlockSystem& half, double weight) { half.add_to_diagonal(weight); },
+        [](std::vector<Eigen::Vector2d>&) {}, execution);
+    for (u32 row = 0; row < size; ++row) EXPECT_EQ(found[row], row >= 10 && row < 20 ? 10 : 0.01) << row;
+}
+
+TEST(OutlierDistances, ByHand) {
+    // Triangles 0 and 1 are neighbours, 2 has none, 3 has no points. Of an even number the lower one in the middle.
+    constexpr u32 none = ~u32(0);
+    const std::vector<double> distances{5, 1, 2, a_patches::no_distance, 4, 7};
+    const std::vector<u32> triangles{0, 0, 1, 1, 1, 2};
+    const std::vector<std::array<u32, 3>> neighbours{
+        {1, none, none}, {0, none, none}, {none, none, none}, {none, none, none}};
+    EXPECT_THAT(a_patches::outlier_distances(distances, triangles, neighbours), ElementsAre(6, 6, 21, 0));
+}
+
+TEST(MostNormal, ByHand) {
+    using a_patches::most_normal;
+    const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+    const auto of = [](std::vector<Vec3> normals) { return most_normal(normals); };
+    EXPECT_EQ(of({z}), z);
+    EXPECT_LT((of({x, y}) - Vec3(1, 1, 0).normalized()).norm(), 1e-15);
+    EXPECT_LT((of({x, y, z}) - Vec3(1, 1, 1).normalized()).norm(), 1e-15);
+    EXPECT_LT((of({x, y, Vec3(1, 1, 0.1).normalized()}) - Vec3(1, 1, 0).normalized()).norm(), 0.1);
+    EXPECT_LT((of({x, -x, y, -y, z}) - z).norm(), 1e-15) << "all but one are perpendicular to it";
+}
+
+TEST(MostNormal, OfManyNormals_HasTheGreatestLeastCosine) {
+    Random random(8);
+    for (int round = 0; round < 20; ++round) {
+        std::vector<Vec3> normals;
+        for (int i = 0; i < 40; ++i)
+            normals.push_back(
+                Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.2 * round / 5, 1)).normalized());
+        const auto least = [&](const Vec3& direction) {
+            double smallest = 1;
+            for (const Vec3& n : normals) smallest = std::min(smallest, n.dot(direction));
+            return smallest;
+        };
+        const double found = least(a_patches::most_normal(normals));
+        // One, two or three of the normals decide.
+        double greatest = -1;
+        for (std::size_t i = 0; i < normals.size(); ++i)
+            for (std::size_t j = 0; j <= i; ++j) {
+                const Vec3 sum = normals[i] + normals[j];
+                if (sum.norm() > 0) greatest = std::max(greatest, least(sum.normalized()));
+                for (std::size_t k = 0; k < j; ++k) {
+                    const Vec3 across = (normals[i] - normals[j]).cross(normals[j] - normals[k]).normalized();
+                    if (across == Vec3::Zero()) continue;
+                    greatest = std::max({greatest, least(across), least(-across)});
+                }
+            }
+        EXPECT_NEAR(found, greatest, 1e-13);
+    }
+    // The apex of a cone: all are equally far from the axis.
+    std::vector<Vec3> cone;
+    for (int i = 0; i < 5000; ++i)
+        cone.push_back(
+            Vec3(std::cos(2 * std::numbers::pi * i / 5000), std::sin(2 * std::numbers::pi * i / 5000), 1).normalized());
+    EXPECT_LT((a_patches::most_normal(cone) - Vec3::UnitZ()).norm(), 1e-10);
+}
+
 // What fitting must not change.
 
 TEST(APatchFit, WithoutPoints_NothingChanges) {
@@ -335,6 +415,50 @@ TEST(APatchFit, WithoutPoints_NothingChanges) {
     EXPECT_FALSE(run.result.fit);
     EXPECT_EQ(metric_of(run, "left-out"), 0);
     EXPECT_EQ(metric_of(run, "fairness-before"), metric_of(run, "fairness-after"));
+    EXPECT_TRUE(std::isnan(metric_of(run, "regularisation")));
+}
+
+TEST(APatchFit, AnEmptyCloud_IsAsNone) {
+    // Of a mesh without corner-normals points would give the normals.
+    TriangleMesh mesh = exact_torus(12, 6);
+    mesh.face_columns = {};
+    const PointCloud none;
+    const PatchRun run = patched(mesh, {}, &none);
+    expect_same_bits(run.result.patches, patched(mesh).result.patches);
+    EXPECT_THAT(run.warnings, ElementsAre("the input `points` is empty: the surface is not fitted"));
+}
+
+TEST(APatchFit, Off_ReportsNoRegularisation_AndThatNothingIsMeasured) {
+    const TriangleMesh mesh = exact_torus(12, 6);
+    const PointCloud points = torus_points(500), far = cloud({{9, 0, 0}});
+    const PatchRun measured = by_default(mesh, &points);
+    EXPECT_GT(metric_of(measured, "fit-rms"), 0);
+    EXPECT_TRUE(std::isnan(metric_of(measured, "regularisation")));
+    EXPECT_EQ(metric_of(by_default(mesh, nullptr, 0.1), "regularisation"), 1e-3);
+    EXPECT_THAT(by_default(mesh, &far).warnings,
+                ElementsAre("none of the 1 point is in a tetrahedron near the surface: no distance is measured"));
+}
+
+TEST(APatchFit, ASurfaceFartherFromThePointsThanItsMesh_IsDoubtful) {
+    // Normals that are 45 degrees off bend the surface away from the sphere that its vertices are on.
+    TriangleMesh mesh = geodesic_sphere(1, 4);
+    Random random(4);
+    std::vector<Vec3> normals;
+    for (const Vec3& p : mesh.positions) {
+        const Vec3 side = p.cross(Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)));
+        normals.push_back((p + side.normalized()).normalized());
+    }
+    mesh = with_normals(mesh, normals);
+    const PointCloud points = sphere_points(5000);
+    const PatchRun run = by_default(mesh, &points);
+    EXPECT_GT(run.result.fit->rms, run.result.fit->rms_to_mesh);
+    EXPECT_THAT(run.warnings,
+                testing::Contains(fmt::format(
+                    "the points are farther from the surface (rms {:.3g} u) than from the mesh (rms {:.3g} u)",
+                    run.result.fit->rms, run.result.fit->rms_to_mesh)));
+    const PatchRun fitted = patched(mesh, {}, &points);
+    EXPECT_LT(fitted.result.fit->rms, 0.2 * fitted.result.fit->rms_to_mesh);
+    EXPECT_THAT(fitted.warnings, testing::Not(testing::Contains(HasSubstr("farther from the surface"))));
 }
 
 TEST(APatchFit, WithoutPointsInReach_TheBitsAreTheDefaults) {
@@ -565,7 +689,6 @@ TEST(APatchFitNormals, OfACurvedSurfaceBesidePlanes_AreFitted) {
     }
     const PointCloud points = cloud(std::move(positions));
     const PatchRun run = patched(mesh, {}, &points);
-    EXPECT_EQ(run.result.open, 0u);
     EXPECT_LT(worst_distance(run.result.patches, cylinder_distance), 3e-3);
 }
 
@@ -617,12 +740,14 @@ TEST(APatchFitRefuses, NegativeFairing) {
     APatchParams params;
     params.fairing = -1;
     EXPECT_THAT(refusal(params).sentence(), HasSubstr("fairing must be at least 0; it is -1"));
+    EXPECT_FALSE(refusal(params).hint().empty());
 }
 
 TEST(APatchFitRefuses, RegularisationOutOfRange) {
     APatchParams params;
     params.regularisation = 0;
     EXPECT_THAT(refusal(params).sentence(), HasSubstr("regularisation must be from 1e-06 to 1; it is 0"));
+    EXPECT_FALSE(refusal(params).hint().empty());
 }
 
 }  // namespace

@@ -86,6 +86,7 @@ TEST(APatchRefuses, CornerNormalsOfAnotherShape) {
     TriangleMesh mesh = icosahedron();
     mesh.face_columns.add(Column("corner-normals", 3, Buffer<double>(Array<double>(60, 1.0))));
     EXPECT_THAT(refusal(mesh).sentence(), HasSubstr("has 3 numbers per triangle; 9 are needed"));
+    EXPECT_FALSE(refusal(mesh).hint().empty());
 }
 
 TEST(APatchRefuses, NormalsOfPointsWithoutPoints) {
@@ -96,10 +97,21 @@ TEST(APatchRefuses, NormalsOfPointsWithoutPoints) {
     EXPECT_FALSE(error.hint().empty());
 }
 
+TEST(APatchRefuses, NormalsOfAnEmptyCloud) {
+    APatchParams params;
+    params.normals = PatchNormals::points;
+    const PointCloud none;
+    const Error error = error_of([&] { patched(icosahedron(), params, &none); });
+    EXPECT_EQ(error.sentence(), "`normals: points` needs points; there are none");
+    EXPECT_FALSE(error.hint().empty());
+}
+
 TEST(APatchRefuses, AFactorOutOfRange) {
     APatchParams params;
     params.apex_factor = 1;
-    EXPECT_THAT(refusal(icosahedron(), params).sentence(), HasSubstr("apex-factor must be from 1.05 to 3; it is 1"));
+    const Error error = refusal(icosahedron(), params);
+    EXPECT_THAT(error.sentence(), HasSubstr("apex-factor must be from 1.05 to 3; it is 1"));
+    EXPECT_EQ(error.hint(), "the default is 1.5");
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sharp edges: straight ones exactly, curved creases, cone apexes, and creases where the mesh has folds.
+#include "a_patch/refinement.hpp"
 #include "filters/a_patch_sharp_cases.hpp"
+#include "tessellate/tessellate.hpp"
 
 namespace scanmill {
 namespace {
@@ -52,7 +54,7 @@ TEST(APatchSharp, ACube_IsExact) {
         const PatchRun run = patched(mesh);
         expect_sound(run);
         EXPECT_THAT(run.warnings, IsEmpty());
-        EXPECT_EQ(run.result.repairs.bisected + run.result.repairs.creased + run.result.open, 0u);
+        EXPECT_EQ(run.result.repairs.bisected + run.result.repairs.creased, 0u);
         const TriangleMesh back = turned(mesh, -angle, Vec3(1, 2, 3));
         const auto distance = [&](const Vec3& p) {
             const Vec3 q = Eigen::AngleAxisd(-angle, Vec3(1, 2, 3).normalized()) * p;
@@ -61,6 +63,7 @@ TEST(APatchSharp, ACube_IsExact) {
         };
         EXPECT_LT(worst_distance(run.result.patches, distance), angle == 0 ? 3e-16 : 2e-15);
         EXPECT_LT(value_jump(run.result.patches), 1e-15);
+        EXPECT_LT(run.result.crease_max, 2e-15);
     }
 }
 
@@ -81,9 +84,10 @@ TEST(APatchSharp, CylindersWithSharpRims_ConvergeWithTheFourthPower) {
     for (int i = 0; i < 3; ++i) {
         const PatchRun run = patched(cylinder(8u << i));
         expect_sound(run);
-        EXPECT_EQ(run.result.repairs.bisected + run.result.repairs.creased + run.result.open, 0u);
+        EXPECT_EQ(run.result.repairs.bisected + run.result.repairs.creased, 0u);
         const double worst = worst_distance(run.result.patches, cylinder_distance);
         EXPECT_LT(worst, most[i]);
+        EXPECT_NEAR(run.result.crease_max, 1 - std::cos(std::numbers::pi / (8u << i)), most[i]);  // sagitta
     }
 }
 
@@ -99,7 +103,7 @@ TEST(APatchSharp, HolesAndBossesInPlates_HaveRoundRims) {
         EXPECT_LT(of_hole, 3 * most[i]);  // the outer radius is 3
         EXPECT_LT(of_boss, 3 * most[i]);
         for (const PatchRun* run : {&hole, &boss}) {
-            EXPECT_EQ(run->result.repairs.bisected + run->result.repairs.creased + run->result.open, 0u);
+            EXPECT_EQ(run->result.repairs.bisected + run->result.repairs.creased, 0u);
             EXPECT_LT(value_jump(run->result.patches), 1.3e-14);
         }
     }
@@ -168,6 +172,18 @@ TEST(APatchSharp, AFoldWithoutADirection_BecomesSharp) {
     EXPECT_EQ(patched(lens(0.5)).result.repairs.creased, 0u) << "the axis suits no vertex of the rim, the outside does";
 }
 
+TEST(APatchSharp, OfEquallyLongEdges_TheOneWithTheLowerVerticesIsBisected) {
+    for (const Triangle& t : {Triangle{0, 1, 2}, Triangle{1, 2, 0}, Triangle{2, 0, 1}}) {
+        a_patches::PatchMesh mesh;
+        mesh.mesh = soup({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {t});
+        const Vec3 normal = Vec3::Ones().normalized();
+        mesh.normals = {{normal, normal, normal}};
+        EXPECT_EQ(a_patches::bisect(mesh, std::vector<u32>{0}), 1u);
+        ASSERT_EQ(mesh.mesh.positions.size(), 4u);
+        EXPECT_LT((mesh.mesh.positions[3] - Vec3(0.5, 0.5, 0)).norm(), 1e-15);
+    }
+}
+
 TEST(APatchSharp, TrianglesFoldedOntoEachOther_ShareASharpEdge) {
     const PatchRun run = patched(soup({{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 1.1, 1e-3}}, {{0, 1, 2}, {1, 0, 3}}));
     ASSERT_EQ(run.result.mesh.sharp_edges.size(), 1u);
@@ -175,8 +191,35 @@ TEST(APatchSharp, TrianglesFoldedOntoEachOther_ShareASharpEdge) {
     EXPECT_EQ(run.result.inverted, 0u);
 }
 
-TEST(APatchSharp, ABluntEdgeWhoseCreaseLeavesIt_BecomesSmooth) {
-    // One edge of a sphere, with normals that tear it open across, not along, the edge.
+TEST(APatchSharp, BluntEdges_BecomeSmooth_OthersStay) {
+    // A diagonal of one of the cube's faces, and an edge of the cube.
+    a_patches::PatchMesh mesh;
+    mesh.mesh = sharp_cube();
+    const std::vector<Vec3> of_triangles = a_patches::triangle_normals(mesh.mesh);
+    for (const Vec3& n : of_triangles) mesh.normals.push_back({n, n, n});
+    const Array<u32> opposites = half_edges::opposites(mesh.mesh);
+    std::vector<Edge> diagonals;
+    for (u32 half = 0; half < opposites.size(); ++half)
+        if (half < opposites[half] && of_triangles[half / 3].dot(of_triangles[opposites[half] / 3]) > 0.5)
+            diagonals.push_back(make_edge(half_edges::start(mesh.mesh, half), half_edges::end(mesh.mesh, half)));
+    ASSERT_EQ(diagonals.size(), 6u);
+    std::vector<Edge> edges(mesh.mesh.sharp_edges.begin(), mesh.mesh.sharp_edges.end());
+    const Edge right = edges[3];
+    edges.push_back(diagonals[0]);
+    std::ranges::sort(edges);
+    mesh.mesh.sharp_edges = Array<Edge>(edges.begin(), edges.end());
+    a_patches::Repairs repairs;
+    EXPECT_EQ(a_patches::smooth_edges(mesh, std::vector<Edge>{right}, repairs), 0u);
+    EXPECT_EQ(a_patches::smooth_edges(mesh, {}, repairs), 0u);
+    EXPECT_EQ(mesh.mesh.sharp_edges.size(), 13u);
+    EXPECT_EQ(a_patches::smooth_edges(mesh, std::vector<Edge>{diagonals[0], right}, repairs), 1u);
+    EXPECT_EQ(repairs.smoothed, 1u);
+    EXPECT_FALSE(std::ranges::binary_search(mesh.mesh.sharp_edges, diagonals[0]));
+    EXPECT_EQ(mesh.mesh.sharp_edges.size(), 12u);
+}
+
+TEST(APatchSharp, AnEdgeWhoseCreaseLeavesIt_GetsNormalsPerpendicularToIt) {
+    // One edge of a sphere, with normals turned along the edge.
     TriangleMesh mesh = geodesic_sphere(1, 2);
     const Triangle first = mesh.triangles[0];
     mesh.sharp_edges = {make_edge(first[0], first[1])};
@@ -192,7 +235,10 @@ TEST(APatchSharp, ABluntEdgeWhoseCreaseLeavesIt_BecomesSmooth) {
     const PatchRun run = patched(mesh);
     EXPECT_EQ(run.result.inverted, 0u);
     EXPECT_EQ(run.result.sign_violations, 0u);
-    EXPECT_EQ(run.result.repairs.smoothed + run.result.mesh.sharp_edges.size(), 1u);
+    EXPECT_EQ(run.result.repairs.replaced, 2u);
+    EXPECT_EQ(run.result.repairs.smoothed, 0u);
+    ASSERT_EQ(run.result.mesh.sharp_edges.size(), 1u);
+    for (const u32 v : mesh.sharp_edges[0]) EXPECT_NEAR(vertex_normal(run.result, v).dot(along), 0, 1e-12);
 }
 
 /// Vertices moved along the torus by almost the spacing fold it.
@@ -209,45 +255,51 @@ TEST(APatchSharp, WhereNoSmoothSurfaceFits_ItHasTipsOrFollowsTheMesh) {
     EXPECT_EQ(run.result.inverted, 0u);
     EXPECT_EQ(run.result.sign_violations, 0u);
     EXPECT_LT(run.result.c1_jump, 1e-9);
-    EXPECT_EQ(run.result.open, 0u);
-    EXPECT_EQ(run.result.thin, 0u);
-    EXPECT_EQ(metric_of(run, "open-edges"), 0);
     EXPECT_EQ(metric_of(run, "creased-edges"), static_cast<double>(repairs.creased));
     EXPECT_EQ(metric_of(run, "pointed-vertices"), static_cast<double>(repairs.pointed));
-    EXPECT_EQ(metric_of(run, "faceted-vertices"), static_cast<double>(repairs.faceted));
+    EXPECT_EQ(metric_of(run, "straight-edges"), static_cast<double>(repairs.straightened));
     EXPECT_GT(repairs.creased, 0u);
     EXPECT_GT(repairs.pointed, 0u);
-    EXPECT_GT(repairs.faceted, 0u);
-    EXPECT_THAT(run.warnings, testing::Contains(HasSubstr("vertices no smooth surface fits: it has a tip at")));
+    EXPECT_GT(repairs.straightened, 0u);
+    EXPECT_THAT(run.warnings, testing::Contains(HasSubstr("vertices no smooth surface fits: it has a tip there")));
 }
 
-TEST(APatchSharp, AtFacetedVertices_TheSurfaceIsTheMesh) {
+TEST(APatchSharp, BetweenPointedVertices_SharpEdgesAreStraight) {
     const PatchRun run = folded_torus();
     const TriangleMesh& mesh = run.result.mesh;
-    using a_patches::VertexKind;
-    const auto kind = [&](u32 v) { return v < run.result.kinds.size() ? run.result.kinds[v] : VertexKind::regular; };
-    std::vector<bool> is_flat;
+    const auto is_pointed = [&](u32 v) { return v < run.result.pointed.size() && run.result.pointed[v]; };
+    const auto is_sharp = [&](u32 a, u32 b) { return std::ranges::binary_search(mesh.sharp_edges, make_edge(a, b)); };
+    std::size_t flat = 0;
+    std::vector<bool> is_flat;  // with three pointed vertices and three sharp edges
     for (u32 f = 0; f < mesh.triangles.size(); ++f) {
         const Triangle& t = mesh.triangles[f];
-        const Vec3 normal = (mesh.positions[t[1]] - mesh.positions[t[0]])
-                                .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
-                                .normalized();
-        for (const u32 v : t) {
-            const Vec3 found = corner_normal(run.result, f, v);
-            EXPECT_TRUE(kind(v) != VertexKind::pointed || found == Vec3::Zero());
-            EXPECT_TRUE(kind(v) != VertexKind::faceted || (found - normal).norm() < 1e-12);
+        bool is_loose = true;
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_TRUE(!is_pointed(t[i]) || corner_normal(run.result, f, t[i]) == Vec3::Zero());
+            is_loose = is_loose && is_pointed(t[i]) && is_sharp(t[i], t[(i + 1) % 3]);
         }
-        is_flat.push_back(std::ranges::all_of(t, [&](u32 v) { return kind(v) == VertexKind::faceted; }));
+        is_flat.push_back(is_loose);
+        flat += is_loose;
     }
-    EXPECT_GT(std::ranges::count(is_flat, true), 0);
+    EXPECT_GT(flat, 0u);
     const PatchComplex& patches = run.result.patches;
     for (u32 row = 0; row < patches.tets.size(); ++row) {
         if (patches.kinds[row] != PatchKind::face || !is_flat[patches.triangles[row]]) continue;
         EXPECT_LT(std::abs(patch_value(patches.weights[row], Barycentric(1, 1, 1, 0) / 3)), 1e-12);
     }
-    for (const Edge& edge : mesh.sharp_edges)
-        for (const auto& [one, other] : {std::pair(edge[0], edge[1]), std::pair(edge[1], edge[0])})
-            EXPECT_TRUE(kind(one) != VertexKind::faceted || kind(other) != VertexKind::regular);
+    Execution execution;
+    const TriangleMesh fine = tessellate(patches, {4, {}}, execution);
+    // The surface meets straight edges where the mesh does.
+    std::vector<double> off;
+    for (const Edge& edge : mesh.sharp_edges) {
+        if (!is_pointed(edge[0]) || !is_pointed(edge[1])) continue;
+        const Vec3 middle = (mesh.positions[edge[0]] + mesh.positions[edge[1]]) / 2;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Vec3& p : fine.positions) nearest = std::min(nearest, (p - middle).norm());
+        off.push_back(nearest);
+    }
+    ASSERT_FALSE(off.empty());
+    EXPECT_LT(std::ranges::max(off), 1e-12);
 }
 
 }  // namespace

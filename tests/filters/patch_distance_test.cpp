@@ -36,22 +36,21 @@ TEST(PatchDistance, OfASphere_IsTheSignedDistanceToIt) {
     const Column* column = result.points.columns.find("distance-to-patches");
     ASSERT_TRUE(column);
     EXPECT_EQ(column->length_exponent(), 1);
-    double squares = 0, largest = 0;
-    std::size_t located = 0;
+    double squares = 0;
+    std::vector<double> sorted;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double wanted = points.positions[i].norm() - 1, found = column->number(i);
         ASSERT_FALSE(std::isnan(found)) << points.positions[i].norm();
         EXPECT_NEAR(found, wanted, 1e-14);
         squares += wanted * wanted;
-        largest = std::max(largest, std::abs(wanted));
-        ++located;
+        sorted.push_back(std::abs(wanted));
     }
+    std::ranges::sort(sorted);
     EXPECT_EQ(result.unlocated, 0u);
     EXPECT_THAT(context.warnings(), testing::IsEmpty());
-    EXPECT_NEAR(result.rms, std::sqrt(squares / static_cast<double>(located)), 1e-14);
-    EXPECT_NEAR(result.max, largest, 1e-14);
-    EXPECT_LE(result.p95, result.max);
-    EXPECT_GE(result.p95, result.rms);
+    EXPECT_NEAR(result.rms, std::sqrt(squares / 2000), 1e-14);
+    EXPECT_NEAR(result.max, sorted[1999], 1e-14);
+    EXPECT_NEAR(result.p95, sorted[1899], 1e-14);
 }
 
 TEST(PatchDistance, ByHand) {
@@ -64,7 +63,18 @@ TEST(PatchDistance, ByHand) {
     const PatchDistanceResult result = measured(unit_sphere(), points, context);
     const Column* column = result.points.columns.find("distance-to-patches");
     EXPECT_NEAR(column->number(0), 0, 1e-15);
+    EXPECT_NEAR(column->number(1), 0.01, 1e-14);
+    EXPECT_NEAR(column->number(2), -0.01, 1e-14);
+    EXPECT_NEAR(column->number(3), 0.005, 1e-14);
     EXPECT_TRUE(std::isnan(column->number(4)));
+    // Of four distances: 0, 0.005, 0.01 and 0.01.
+    EXPECT_NEAR(result.rms, 0.0075, 1e-14);
+    EXPECT_NEAR(result.p95, 0.01, 1e-14);
+    EXPECT_NEAR(result.max, 0.01, 1e-14);
+    std::map<std::string, double> metrics;
+    for (const Metric& metric : context.metrics().values) metrics[metric.name] = metric.value;
+    EXPECT_EQ(metrics, (std::map<std::string, double>{
+                           {"rms", result.rms}, {"p95", result.p95}, {"max", result.max}, {"unlocated", 1}}));
     EXPECT_EQ(result.points.columns.find("weight")->number(4), 5);
     EXPECT_EQ(result.unlocated, 1u);
     EXPECT_THAT(context.warnings(), ElementsAre(HasSubstr("of 5 points")));
@@ -121,6 +131,44 @@ TEST(PatchDistance, OfACube_IsExactBesideItsEdgesAndCorners) {
         ++located;
     }
     EXPECT_GT(located, 1000u);
+}
+
+TEST(PatchDistance, OfPointsEquallyNearToTwoSides_IsThatToEither) {
+    const TriangleMesh flat =
+        with_positions(sharp_cube(), [](const Vec3& p) { return Vec3(p.x(), p.y(), 0.125 * p.z()); });
+    PointCloud points;
+    points.positions = {Vec3(0.5, 0.5, 0.0625), Vec3(0.3, 0.6, 0.0625)};
+    Context context;
+    const PatchDistanceResult result = measured(patched(flat).result.patches, points, context);
+    for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_NEAR(result.points.columns.find("distance-to-patches")->number(i), -0.0625, 1e-14);
+}
+
+TEST(PatchDistance, BeyondACornerOfAnOpenSurface_IsPositive) {
+    // Two cubes. The second one is open towards the first, so that a ray meets it from inside.
+    const TriangleMesh one = sharp_cube();
+    std::vector<Vec3> positions(one.positions.begin(), one.positions.end());
+    std::vector<Triangle> triangles(one.triangles.begin(), one.triangles.end());
+    std::vector<Edge> sharp(one.sharp_edges.begin(), one.sharp_edges.end());
+    for (const Vec3& p : one.positions) positions.emplace_back(p + Vec3(2, 0.5, 0.5));
+    for (Triangle t : one.triangles) {
+        if (std::ranges::all_of(t, [&](u32 v) { return one.positions[v].x() == 0; })) continue;
+        for (u32& v : t) v += 8;
+        triangles.push_back(t);
+    }
+    for (const Edge& edge : one.sharp_edges) sharp.push_back(make_edge(edge[0] + 8, edge[1] + 8));
+    std::ranges::sort(sharp);
+    TriangleMesh mesh = soup({positions.begin(), positions.end()}, {triangles.begin(), triangles.end()});
+    mesh.sharp_edges = Array<Edge>(sharp.begin(), sharp.end());
+    ASSERT_EQ(mesh.triangles.size(), 22u);
+    const PatchComplex patches = patched(mesh).result.patches;
+    PointCloud points;
+    points.positions = {Vec3(1.05, 1.05, 1.05), Vec3(1.1, 1.1, 1.2), Vec3(1.1, 0.9, 0.9), Vec3(0.9, 0.8, 0.7)};
+    Context context;
+    const PatchDistanceResult result = measured(patches, points, context);
+    const Column* column = result.points.columns.find("distance-to-patches");
+    const double expected[] = {0.05 * std::sqrt(3.0), 0.1 * std::sqrt(6.0), 0.1, -0.1};
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(column->number(i), expected[i], 1e-12) << i;
 }
 
 TEST(PatchDistance, OfARoundRim_IsTheDistanceToTheCircle) {
@@ -192,8 +240,12 @@ TEST(PatchDistance, AnyNumberOfThreads_GivesTheSameBits) {
 
 TEST(PatchDistanceRefuses, NothingToMeasure) {
     Context context;
-    EXPECT_THAT(error_of([&] { measured({}, around_sphere(3, 1, 1.01), context); }).sentence(), HasSubstr("no tetra"));
-    EXPECT_THAT(error_of([&] { measured(unit_sphere(), {}, context); }).sentence(), HasSubstr("needs points"));
+    const Error empty = error_of([&] { measured({}, around_sphere(3, 1, 1.01), context); });
+    EXPECT_THAT(empty.sentence(), HasSubstr("no tetra"));
+    EXPECT_FALSE(empty.hint().empty());
+    const Error pointless = error_of([&] { measured(unit_sphere(), {}, context); });
+    EXPECT_THAT(pointless.sentence(), HasSubstr("needs points"));
+    EXPECT_FALSE(pointless.hint().empty());
     const Error far = error_of([&] { measured(unit_sphere(), around_sphere(3, 5, 6), context); });
     EXPECT_THAT(far.sentence(), HasSubstr("none of the 3 points"));
     EXPECT_FALSE(far.hint().empty());

@@ -218,6 +218,16 @@ TEST(Tessellate, ATooSmallSubdivision_IsRefusedWithTheDistanceLeftAndWhatWouldDo
     EXPECT_NO_THROW(tessellated(patches, enough, Length(1e-4)));
 }
 
+TEST(Tessellate, AMaxErrorThatNoSubdivisionMeets_IsRefused_AndIsNotALeap) {
+    const PatchComplex patches = patched(exact_sphere(1), Curvature::mean).result.patches;
+    Execution execution;
+    double left = 0;
+    const Error error = error_of([&] { tessellate(patches, {16, Length(1e-9)}, execution, &left); });
+    EXPECT_THAT(error.sentence(), HasSubstr("with 16 segments per edge"));
+    EXPECT_EQ(error.hint(), "a larger max-error, or `decimate` with a smaller one");
+    EXPECT_EQ(left, 0);
+}
+
 TEST(Tessellate, WhereTheSurfaceLeaps_ADistanceIsLeftAndTheRestIsWithinMaxError) {
     PatchComplex patches = patched(exact_sphere(1), Curvature::mean).result.patches;
     double left = 1;
@@ -296,7 +306,9 @@ TEST(Tessellate, PatchesReadFromJson_GiveTheSameBits) {
 }
 
 TEST(TessellateRefuses, PatchesThatAreNotComplete) {
-    EXPECT_THAT(error_of([&] { tessellated(PatchComplex{}, 1); }).sentence(), HasSubstr("no tetrahedra"));
+    const Error empty = error_of([&] { tessellated(PatchComplex{}, 1); });
+    EXPECT_THAT(empty.sentence(), HasSubstr("no tetrahedra"));
+    EXPECT_FALSE(empty.hint().empty());
     const PatchComplex whole = patched(exact_sphere(1)).result.patches;
     for (std::size_t missing = 0; missing < whole.tets.size(); missing += 17) {
         Array<u32> rows;
@@ -317,9 +329,12 @@ TEST(TessellateRefuses, PatchesThatAreNotComplete) {
 
 TEST(TessellateRefuses, ParametersOutOfRange) {
     const PatchComplex patches = patched(exact_sphere(1)).result.patches;
-    EXPECT_THAT(error_of([&] { tessellated(patches, 0); }).sentence(), HasSubstr("subdivision must be from 1"));
-    EXPECT_THAT(error_of([&] { tessellated(patches, 4, Length(0)); }).sentence(),
-                HasSubstr("max-error must be above 0"));
+    const Error segments = error_of([&] { tessellated(patches, 0); });
+    EXPECT_THAT(segments.sentence(), HasSubstr("subdivision must be from 1"));
+    EXPECT_FALSE(segments.hint().empty());
+    const Error exact = error_of([&] { tessellated(patches, 4, Length(0)); });
+    EXPECT_THAT(exact.sentence(), HasSubstr("max-error must be above 0"));
+    EXPECT_FALSE(exact.hint().empty());
 }
 
 }  // namespace

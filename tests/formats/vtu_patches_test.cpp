@@ -51,6 +51,8 @@ TEST(VtuPatches, TheFieldThatVtkInterpolates_IsThePatchesFunction) {
     EXPECT_EQ(data->GetCellData()->GetArray("patch")->GetComponent(1, 0), 4);
     EXPECT_EQ(data->GetCellData()->GetArray("side")->GetComponent(0, 0), 1);
     EXPECT_EQ(data->GetCellData()->GetArray("kind")->GetComponent(1, 0), 1);
+    EXPECT_EQ(data->GetCellData()->GetArray("edge")->GetComponent(0, 0), -1);
+    EXPECT_EQ(data->GetCellData()->GetArray("edge")->GetComponent(1, 0), 7);
     EXPECT_EQ(data->GetCellData()->GetArray("combine")->GetComponent(0, 0), 2);
     EXPECT_EQ(data->GetCellData()->GetArray("partner")->GetComponent(0, 0), 2);
     EXPECT_EQ(data->GetCellData()->GetArray("partner")->GetComponent(1, 0), -1);

@@ -2,7 +2,7 @@
 #pragma once
 /// `patches`: a surface as the zero set of one cubic polynomial per tetrahedron, after Bernardini et al. 1997.
 ///
-/// The tetrahedra stand on both sides of a triangle mesh. In barycentric coordinates a of its tetrahedron the function
+/// The tetrahedra are on both sides of a triangle mesh. In barycentric coordinates a of its tetrahedron the function
 /// is F = sum of 6 / (i! j! k! l!) c_ijkl a0^i a1^j a2^k a3^l over i + j + k + l = 3, with the 20 weights c; it is
 /// negative inside the object and positive outside. Neighbours join with equal gradients, except across sharp edges:
 /// beside those, two functions hold in a tetrahedron, and F is the larger or the smaller of them. geometry/a_patch.hpp
@@ -19,7 +19,7 @@ namespace scanmill {
 using PatchWeights = std::array<double, 20>;
 
 enum class PatchKind : u8 {
-    face,  ///< stands on a triangle, or on a third of it: base point w of the triangle, corners i and j, apex
+    face,  ///< is over a triangle, or a third of it: base point w of the triangle, corners i and j, apex
     edge,  ///< fills the gap beside an edge: point x between the apexes of its two triangles, corners i and j, apex
     /// Fills the gap beside a sharp edge: apex of the other triangle, corners i and j, apex of its own triangle. Two
     /// rows, partners of each other: the functions of both triangles.
@@ -37,7 +37,7 @@ enum class Combine : u8 {
 };
 
 struct PatchComplex {
-    /// In `edge`: the tetrahedron stands on a triangle.
+    /// In `edges`: the tetrahedron is over a triangle.
     static constexpr u32 no_edge = ~u32(0);
     /// In `partners`: the tetrahedron has one function.
     static constexpr u32 no_partner = ~u32(0);
@@ -52,7 +52,7 @@ struct PatchComplex {
     Buffer<PatchKind> kinds;  ///< #tetrahedra
     Buffer<u8> sides;  ///< #tetrahedra: 1 outside the mesh, 0 inside it
     Buffer<u32> triangles;  ///< #tetrahedra: the row of the mesh's triangle whose apex is their last corner
-    Buffer<u32> edges;  ///< #tetrahedra: the number of the mesh's edge, by its vertices; or no_edge
+    Buffer<u32> edges;  ///< #tetrahedra: the number of the mesh's edge, in the order of its first half-edge; or no_edge
     Buffer<Combine> combine;  ///< #tetrahedra; equal for partners
     /// #tetrahedra: the other row with the same four points, whose partner is this one; or no_partner.
     Buffer<u32> partners;

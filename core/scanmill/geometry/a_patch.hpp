@@ -32,9 +32,12 @@ Eigen::Vector4d patch_derivatives(const PatchWeights& weights, const Barycentric
 /// A tetrahedron with its function.
 class PatchCell {
 public:
-    /// Pre: a tetrahedron with a volume.
+    /// Keeps a reference to `weights`. Pre: a tetrahedron with a volume.
     PatchCell(const std::array<Vec3, 4>& corners, const PatchWeights& weights);
+    PatchCell(const std::array<Vec3, 4>& corners, const PatchWeights&& weights) = delete;
+    /// Keeps a reference to the weights of `patches`.
     PatchCell(const PatchComplex& patches, std::size_t tet);
+    PatchCell(const PatchComplex&& patches, std::size_t tet) = delete;
 
     Barycentric coordinates(const Vec3& point) const;
     Vec3 point(const Barycentric& at) const;

@@ -57,6 +57,14 @@ void require_partner(const PatchComplex& patches, std::size_t row) {
         throw Error("tetrahedron {} and its partner {} differ in their points, 'side' or 'combine'", row, partner);
 }
 
+/// Throws Error if a point occurs twice in a tetrahedron.
+void require_four_points(const std::array<u32, 4>& tet, std::size_t row) {
+    for (std::size_t i = 1; i < tet.size(); ++i)
+        if (std::find(tet.begin(), tet.begin() + static_cast<std::ptrdiff_t>(i), tet[i]) !=
+            tet.begin() + static_cast<std::ptrdiff_t>(i))
+            throw Error("tetrahedron {} names point {} twice; its four points must differ", row, tet[i]);
+}
+
 /// Throws Error if arrays have different lengths, an index is out of range, or partners do not match.
 void require_consistent(const PatchComplex& patches) {
     const std::size_t tets = patches.tets.size();
@@ -68,6 +76,7 @@ void require_consistent(const PatchComplex& patches) {
         for (const u32 vertex : patches.tets[row])
             if (vertex >= patches.positions.size())
                 throw Error("tetrahedron {} names point {}; there are {}", row, vertex, patches.positions.size());
+        require_four_points(patches.tets[row], row);
         require_partner(patches, row);
     }
 }
@@ -127,6 +136,7 @@ private:
         std::array<u32, 4> tet;
         if (vertices.size() != tet.size()) throw Error("{} has {} vertices; 4 are needed", place, vertices.size());
         for (std::size_t i = 0; i < tet.size(); ++i) tet[i] = index_of(vertices[i], points_, place + ": a vertex");
+        require_four_points(tet, tets_.size());
         const std::vector<double> numbers =
             numbers_of(member(json, "weights"), PatchWeights().size(), place + ": 'weights'");
         PatchWeights weights;

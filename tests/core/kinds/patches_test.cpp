@@ -112,6 +112,8 @@ TEST(PatchesRefuse, WhatIsNotUsable) {
     patches = two_tets();
     patches.tets = {std::array<u32, 4>{0, 1, 2, 3}, std::array<u32, 4>{0, 1, 2, 5}};
     EXPECT_THAT(refusal(patches), HasSubstr("tetrahedron 1 names point 5; there are 5"));
+    patches.tets = {std::array<u32, 4>{0, 1, 2, 1}, std::array<u32, 4>{0, 1, 2, 4}};
+    EXPECT_THAT(refusal(patches), HasSubstr("tetrahedron 0 names point 1 twice"));
     patches = two_functions();
     EXPECT_NO_THROW(kind_of<PatchComplex>().info().require_usable(&patches));
     patches.partners = {1, 1};
@@ -131,6 +133,8 @@ TEST(PatchesRefuse, BrokenJson) {
     };
     EXPECT_THAT(refusal([](Json& j) { j["tets"][0]["vertices"][2] = 9; }), HasSubstr("tetrahedron 0: a vertex"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][0]["vertices"] = {1, 2}; }), HasSubstr("2 vertices; 4 are needed"));
+    EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["vertices"][3] = 0u; }),
+                HasSubstr("tetrahedron 1 names point 0 twice"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["weights"] = {1}; }), HasSubstr("not a list of 20 numbers"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["kind"] = "corner"; }), HasSubstr("unknown kind 'corner'"));
     EXPECT_THAT(refusal([](Json& j) { j["tets"][1]["combine"] = "sum"; }), HasSubstr("expected none, max, min"));
