@@ -78,6 +78,7 @@ bench-quality: deps ## compare our results with trimesh, Open3D, three papers an
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/smooth_surface.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/creases.py build/bench/bin/scanmill
 	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_scans.py build/bench/bin/scanmill
+	$$(bench/peers/environment.sh build/peers/python) bench/quality/raw_views.py build/bench/bin/scanmill
 
 bench-robustness: deps ## measure how much noise and how few points the reconstruction tolerates
 	tools/deps.sh bench

@@ -33,7 +33,7 @@ MODELS = ["armadillo", "bunny00", "camel", "elephant", "hand", "homer", "knot1",
 QUICK = ["camel", "knot1", "anchor_dense", "lion-head"]
 #: Standard deviations, in percent of the diagonal.
 NOISES = [0, 0.05]
-#: Edge of the voxels, in percent of the diagonal: the default of both workflows.
+#: Edge of the voxels of ball pivoting, in percent of the diagonal.
 VOXEL = 0.5
 DEPTH = 8
 #: Of ball pivoting, in mean distances of nearest neighbours.
@@ -48,7 +48,10 @@ def scanned(program, model, noise, resolution, folder, limit):
 
     settings = {"noise": f"{noise} %diag", "resolution": f"{resolution} %diag"}
     report = scanmill.run(program, BENCH / "quality" / "raw-views.yaml", [model], folder, limit, settings=settings)
-    file = report["cells"][0]["outputs"][0]["file"]
+    outputs = report["cells"][0]["outputs"]
+    if not outputs:
+        raise scanmill.Broken(f"virtual-scan made no points of {model}")
+    file = outputs[0]["file"]
     return numpy.asarray(trimesh.load(file, process=False).vertices)
 
 
