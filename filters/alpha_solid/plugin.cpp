@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = AlphaSolidParams;
-    return Declare<P>("alpha-solid", 3)
+    return Declare<P>("alpha-solid", 4)
         .summary(
             "Finds the solid that the points enclose: every cell that a ball of radius alpha cannot enter from "
             "outside.")

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = SculptParams;
-    return Declare<P>("sculpt", 4)
+    return Declare<P>("sculpt", 5)
         .summary("Removes single cells of a solid until every point is on its boundary and the boundary is smoother.")
         .source("Bernardini, Bajaj, Chen, Schikore 1997, section 3; Boissonnat 1984 for the admissible steps")
         .ties(

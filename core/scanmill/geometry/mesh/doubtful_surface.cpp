@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "scanmill/geometry/mesh/half_edges.hpp"
+#include "scanmill/geometry/mesh/topology.hpp"
 #include "scanmill/geometry/spatial/spacing.hpp"
 
 namespace scanmill {
@@ -16,6 +17,8 @@ namespace {
 
 constexpr double long_edge = 7;  // median edges
 constexpr double doubtful_spanned = 0.1;
+constexpr double long_edge_of_handle = 4;  // median edges
+constexpr double doubtful_spanned_of_handle = 0.001;
 constexpr double cosine_of_rough = 0.5;  // 60 degrees
 constexpr double doubtful_rough = 0.15;
 constexpr std::size_t few_edges = 10'000;
@@ -29,8 +32,8 @@ Vec3 area_normal(const TriangleMesh& mesh, const Triangle& triangle) {
 
 }  // namespace
 
-double spanned_share(const TriangleMesh& mesh) {
-    const double limit = long_edge * edge_spacing(mesh);
+double spanned_share(const TriangleMesh& mesh, double edges) {
+    const double limit = edges * edge_spacing(mesh);
     double spanned = 0, whole = 0;
     for (const Triangle& triangle : mesh.triangles) {
         const double area = area_normal(mesh, triangle).norm();
@@ -71,11 +74,18 @@ std::vector<std::string> doubts_about_surface(const TriangleMesh& mesh, double n
                 "before the points are thinned",
                 noise, edge, degrees));
     }
-    if (const double share = spanned_share(mesh); share > doubtful_spanned)
+    if (const double share = spanned_share(mesh, long_edge); share > doubtful_spanned)
         doubts.push_back(fmt::format(
             "{:.0f} % of the surface's area is in triangles with an edge longer than {} median edges, where it spans "
             "gaps between the points: scan the missing part, or remove outliers first",
             100 * share, long_edge));
+    else if (const double beside = spanned_share(mesh, long_edge_of_handle); beside > doubtful_spanned_of_handle)
+        if (const long genus = topology(mesh).genus.value_or(0); genus > 0)
+            doubts.push_back(fmt::format(
+                "the surface has genus {} and spans gaps between the points: {:.2g} % of its area is in triangles with "
+                "an edge longer than {} median edges; parts may be joined, or tunnels filled, that the object does "
+                "not have: scan the missing part, or compare the surface with the object",
+                genus, 100 * beside, long_edge_of_handle));
     if (3 * mesh.triangles.size() / 2 <= few_edges) return doubts;
     if (const double share = rough_share(mesh); share > doubtful_rough)
         doubts.push_back(fmt::format(

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/shapes.hpp"
+
 namespace scanmill {
 namespace {
 
@@ -25,19 +27,20 @@ TriangleMesh strip(u32 cells, double length) {
     return mesh;
 }
 
-TEST(SpannedShare, CountsTheAreaOfTrianglesLongerThanSevenMedianEdges) {
+TEST(SpannedShare, CountsTheAreaOfTrianglesLongerThanSoManyMedianEdges) {
     // Of the 3 x 82 edges with repeats, most are 1 long.
-    EXPECT_DOUBLE_EQ(spanned_share(strip(40, 10)), 10.0 / 50);
-    EXPECT_DOUBLE_EQ(spanned_share(strip(40, 6.9)), 0) << "its diagonal is 6.97";
-    EXPECT_DOUBLE_EQ(spanned_share(strip(40, 7)), 7.0 / 47) << "its diagonal is 7.07";
+    EXPECT_DOUBLE_EQ(spanned_share(strip(40, 10), 7), 10.0 / 50);
+    EXPECT_DOUBLE_EQ(spanned_share(strip(40, 6.9), 7), 0) << "its diagonal is 6.97";
+    EXPECT_DOUBLE_EQ(spanned_share(strip(40, 7), 7), 7.0 / 47) << "its diagonal is 7.07";
+    EXPECT_DOUBLE_EQ(spanned_share(strip(40, 4), 4), 4.0 / 44) << "its diagonal is 4.12";
 }
 
 TEST(SpannedShare, NothingOrFlatTriangles_HaveNone) {
-    EXPECT_EQ(spanned_share({}), 0);
+    EXPECT_EQ(spanned_share({}, 7), 0);
     TriangleMesh flat;
     flat.positions = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)};
     flat.triangles = {Triangle{0, 1, 2}};
-    EXPECT_EQ(spanned_share(flat), 0);
+    EXPECT_EQ(spanned_share(flat, 7), 0);
 }
 
 TEST(RoughShare, CountsEdgesAboveSixtyDegrees) {
@@ -56,6 +59,26 @@ TEST(DoubtsAboutSurface, GapsBeginAboveATenthOfTheArea) {
     EXPECT_THAT(doubts_about_surface(strip(89, 10)),
                 testing::ElementsAre(testing::StartsWith(
                     "10 % of the surface's area is in triangles with an edge longer than 7 median")));
+}
+
+TEST(DoubtsAboutSurface, AHandleBesideAGapIsDoubtful_AndOnlyThere) {
+    EXPECT_THAT(doubts_about_surface(test::torus(1, 0.4, 60, 30)), testing::IsEmpty());
+    // Of 40 sections, one is five times as long as the others.
+    const auto with_gap = [](TriangleMesh mesh) {
+        Array<Vec3> positions(mesh.positions.begin(), mesh.positions.end());
+        for (Vec3& p : positions) {
+            const double turn = std::atan2(p.y(), p.x()), radius = std::hypot(p.x(), p.y());
+            const double squeezed = turn * 40 / 44;
+            p.x() = radius * std::cos(squeezed), p.y() = radius * std::sin(squeezed);
+        }
+        mesh.positions = std::move(positions);
+        return mesh;
+    };
+    const TriangleMesh ring = with_gap(test::torus(10, 1, 40, 6));
+    ASSERT_GT(spanned_share(ring, 4), 0.001);
+    ASSERT_LT(spanned_share(ring, 7), 0.1);
+    EXPECT_THAT(doubts_about_surface(ring), testing::ElementsAre(testing::StartsWith("the surface has genus 1 and")));
+    EXPECT_THAT(doubts_about_surface(with_gap(test::geodesic_sphere(1, 8))), testing::IsEmpty());
 }
 
 TEST(DoubtsAboutSurface, NoiseBeginsAtFiveDegrees) {
