@@ -179,6 +179,7 @@ private:
 
     /// Gives vertices copies until each has one fan of triangles.
     void separate_fans() {
+        if (topology(current()).genus) return;  // an oriented manifold has one fan at each vertex
         const std::vector<u32> originals = orient_soup(positions_.size(), triangles_);
         result_.split_vertices += originals.size();
         for (const u32 original : originals) {
