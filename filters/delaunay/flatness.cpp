@@ -15,7 +15,7 @@ namespace scanmill {
 namespace {
 
 constexpr std::size_t chunk = 1 << 15;
-constexpr std::string_view way_out = "voxel-thin accepts flat scans";
+constexpr std::string_view way_out = "region-grow makes a surface of flat scans, but not of points on a line";
 constexpr std::string_view few_points =
     "`scanmill info` gives the number of points in a file; an earlier step may keep too few, such as voxel-thin with a "
     "large bin-size or min-points";

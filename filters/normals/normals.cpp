@@ -26,6 +26,7 @@ using Orient = NormalsParams::Orient;
 constexpr double least_flatness = 1e-6;  // of neighbours that determine a plane
 constexpr double grazing_cosine = 0.08715574274765817;  // of 85 degrees
 constexpr double doubtful_share = 0.05;
+constexpr double doubtful_variation = 0.1;  // a hemisphere has 1/9, a ball 1/3
 constexpr std::size_t chunk = 1 << 12;
 
 /// The normals of the positions of a tree, and which of them are neighbours.
@@ -35,6 +36,7 @@ struct Field {
     Array<u32> nearest;
     Array<Vec3> directions;
     std::vector<u8> undetermined;
+    Array<double> variation;  ///< Scatter::surface_variation
 
     std::span<const u32> of(std::size_t i) const { return std::span(nearest).subspan(i * each, each); }
 };
@@ -46,6 +48,7 @@ Field estimated(const PointTree& tree, const NormalsParams& params, Context& con
     field.nearest.resize(positions.size() * field.each);
     field.directions.resize(positions.size());
     field.undetermined.resize(positions.size());
+    field.variation.resize(positions.size());
     std::atomic<std::size_t> done = 0;
     tree.for_each_nearest(field.each, context.threads(), [&](const NeighbourBatch& batch) {
         context.check_cancelled();
@@ -60,6 +63,7 @@ Field estimated(const PointTree& tree, const NormalsParams& params, Context& con
             }
             const Scatter scatter = scatter_of(offsets);
             field.undetermined[index] = scatter.flatness < least_flatness;
+            field.variation[index] = scatter.surface_variation;
             field.directions[index] = params.method == Method::jet ? fit_jet(offsets).normal : scatter.normal;
         }
         context.progress(0.5 * static_cast<double>(done += batch.indices.size()) /
@@ -303,6 +307,17 @@ void report_doubts(const NormalsResult& result, const Guessed& guessed, std::siz
             by_count(guessed.components, "its highest point", "their highest points"), 100 * share));
 }
 
+/// Doubts neighbours that surround the scan, or fill a volume.
+void doubt_variation(Array<double> variation, std::size_t neighbours, Context& context) {
+    const auto middle = variation.begin() + static_cast<std::ptrdiff_t>(variation.size() / 2);
+    std::nth_element(variation.begin(), middle, variation.end());
+    if (*middle > doubtful_variation)
+        context.doubt(fmt::format(
+            "the {} neighbours of a point form no surface: {:.0f} % of their spread is across the plane that fits "
+            "them (median; a hemisphere has 11 %, a ball 33 %); take fewer neighbours, or scan more points",
+            neighbours, 100 * *middle));
+}
+
 void report(const NormalsResult& result, Context& context) {
     context.metric("oriented", static_cast<double>(result.oriented));
     context.metric("by-sensor", static_cast<double>(result.by_sensor));
@@ -357,6 +372,7 @@ NormalsResult normals(const PointCloud& cloud, const NormalsParams& params, Cont
         result.doubtful += doubtful[index];
     }
     result.points = with_normals(cloud, tree.index_of_row(), field, sides, context);
+    doubt_variation(std::move(field.variation), field.each, context);
     report_doubts(result, guessed, positions.size(), context);
     report(result, context);
     return result;

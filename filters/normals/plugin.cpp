@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = NormalsParams;
-    return Declare<P>("normals", 2)
+    return Declare<P>("normals", 3)
         .summary("Estimates the normal at every point, and turns it to the outside.")
         .source("Hoppe, DeRose, Duchamp, McDonald, Stuetzle 1992; Cazals, Pouget 2005 for `jet`")
         .ties(

@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = PoissonParams;
-    return Declare<P>("poisson", 2)
+    return Declare<P>("poisson", 3)
         .summary("Makes a surface of points with normals, also where points are missing.")
         .source("Kazhdan, Hoppe 2013, Screened Poisson surface reconstruction; by PCL")
         .ties("Of vertices of equal density the lower row is removed first. A vertex at exactly `max-distance` stays.")
@@ -38,6 +38,10 @@ SCANMILL_FILTER() {
         .metric("invented", Unit::ratio,
                 "Share of the area that is farther from the nearest point than twice the distance from that point to "
                 "its 8th neighbour.",
+                headline, smaller_is_better)
+        .metric("missed", Unit::ratio,
+                "Share of the points that are farther from the surface than two cells and than twice the distance to "
+                "their 8th neighbour.",
                 headline, smaller_is_better)
         .metric("against", Unit::ratio,
                 "Share of the vertices where the surface faces away from the normals of the nearest points.", headline,

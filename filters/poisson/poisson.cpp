@@ -20,6 +20,7 @@
 #include "scanmill/geometry/mesh/boundary_loops.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
 #include "scanmill/geometry/spatial/point_tree.hpp"
+#include "scanmill/geometry/spatial/triangle_tree.hpp"
 
 namespace scanmill {
 
@@ -164,6 +165,7 @@ Array<Vec3> vertex_normals(const TriangleMesh& mesh) {
 struct Support {
     Array<double> nearest, last;  ///< distances to the nearest and to the 8th nearest position
     std::vector<u8> far, against;
+    Array<double> spread;  ///< by position: the distance to the 8th nearest other one
     double usual = 0;  ///< median distance from a position to the 8th nearest other one
 };
 
@@ -181,7 +183,7 @@ Support support_of(const TriangleMesh& mesh, const Oriented& points, const Point
 
     const std::size_t count = mesh.positions.size();
     const Array<Vec3> outward = vertex_normals(mesh);
-    Support support{Array<double>(count), Array<double>(count), std::vector<u8>(count), std::vector<u8>(count), 0};
+    Support support{Array<double>(count), Array<double>(count), std::vector<u8>(count), std::vector<u8>(count), {}, 0};
     std::atomic<std::size_t> done = 0;
     for_each_chunk(context.threads(), count, chunk, [&](std::size_t begin, std::size_t end) {
         context.check_cancelled();
@@ -197,10 +199,27 @@ Support support_of(const TriangleMesh& mesh, const Oriented& points, const Point
         }
         context.progress(0.85 + 0.1 * static_cast<double>(done += end - begin) / static_cast<double>(count));
     });
+    support.spread = spread;
     const auto middle = spread.begin() + static_cast<std::ptrdiff_t>(spread.size() / 2);
     std::nth_element(spread.begin(), middle, spread.end());
     support.usual = *middle;
     return support;
+}
+
+/// The share of the positions, of about 10,000 spread evenly, that are far from the surface.
+double missed_share(const TriangleMesh& mesh, std::span<const Vec3> positions, const Support& support, double cell,
+                    Context& context) {
+    constexpr std::size_t most = 10'000;
+    const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
+    const std::size_t step = positions.size() / most + 1;
+    std::size_t missed = 0, all = 0;
+    u32 hint = NearestTriangle::none;
+    for (std::size_t i = 0; i < positions.size(); i += step) {
+        const double limit = far_factor * std::max(support.spread[i], cell);
+        missed += !tree.is_within(positions[i], limit * limit, hint);
+        ++all;
+    }
+    return static_cast<double>(missed) / static_cast<double>(all);
 }
 
 /// By vertex: 1 for those that trimming removes.
@@ -266,8 +285,9 @@ void warn_of_columns(const PointCloud& cloud, Context& context) {
 void report_doubts(const PoissonResult& result, std::size_t ends, std::size_t open_cracks, bool inside_out,
                    Context& context) {
     if (result.without_normal > 0)
-        context.warn(fmt::format("{} not used: their normals are 0, NaN or infinite",
-                                 count_text(result.without_normal, "point is", "points are")));
+        context.warn(fmt::format("{} not used: {} 0, NaN or infinite",
+                                 count_text(result.without_normal, "point is", "points are"),
+                                 by_count(result.without_normal, "its normal is", "their normals are")));
     if (ends > 0)
         context.warn(
             fmt::format("the surface leaves the octree's cube and ends there, in {}; a larger scale may close it",
@@ -284,6 +304,11 @@ void report_doubts(const PoissonResult& result, std::size_t ends, std::size_t op
             fmt::format("{:.1f} % of the area is far from all points, and so invented; a higher trim, or "
                         "max-distance, removes it",
                         100 * result.invented));
+    if (result.missed > doubtful_share)
+        context.doubt(
+            fmt::format("{:.1f} % of the points are far from the surface (more than {:g} cells, or twice the distance "
+                        "to their 8th neighbours): parts are too small for cells of {:.3g} u; raise depth",
+                        100 * result.missed, far_factor, result.cell));
     if (result.against > doubtful_share)
         context.doubt(
             fmt::format("at {:.1f} % of the vertices the surface faces away from the normals of the nearest "
@@ -316,6 +341,8 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
                               [](const auto& loop) { return loop.size() > most_crack_edges; }));
     const bool inside_out = ends == 0 && volume_of(whole) < 0;
 
+    result.missed = missed_share(whole, tree.positions(), support, result.cell, context);
+
     const std::vector<u8> removed = removed_vertices(support, params);
     double area = 0, invented = 0;
     for (const Triangle& t : whole.triangles) {
@@ -334,6 +361,7 @@ PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Cont
     context.metric("triangles", static_cast<double>(result.mesh.triangles.size()));
     context.metric("trimmed", static_cast<double>(result.trimmed));
     context.metric("invented", result.invented, Unit::ratio);
+    context.metric("missed", result.missed, Unit::ratio);
     context.metric("against", result.against, Unit::ratio);
     context.metric("without-normal", static_cast<double>(result.without_normal));
     context.metric("cracks", static_cast<double>(result.cracks));

@@ -37,6 +37,8 @@ struct PoissonResult {
     std::size_t loops = 0;
     /// Share of the mesh's area that is far from all points.
     double invented = 0;
+    /// Share of the points that are far from the surface, before trimming.
+    double missed = 0;
     /// Share of the vertices whose nearest points have normals on the other side.
     double against = 0;
     /// Edge of the octree's smallest possible cell.
@@ -54,6 +56,9 @@ struct PoissonResult {
 /// Invented. A vertex is far from all points if its distance to the nearest one is more than twice the distance from
 /// there to the 8th nearest other one. Every triangle counts as invented in the share of its vertices that are far.
 ///
+/// Missed. A position of the points, of about 10,000 spread evenly over them, that is farther from the surface before
+/// trimming than twice the smallest cell and twice the distance to its 8th nearest other one.
+///
 /// Against. A vertex of the surface before trimming, the sum of whose 8 nearest positions' normals has a negative
 /// product with the vertex's normal.
 ///
@@ -63,14 +68,15 @@ struct PoissonResult {
 /// Post: triangles are counter-clockwise seen from the outside of the normals. With a trim of 0 and no `max_distance`
 ///       the surface is closed, unless it leaves the octree's cube, which is centred on the points' box: that of an
 ///       open sheet does, and one with a gap near a face of the cube.
-/// Doubts its result if more than 5 % of its area is invented, and if more than 5 % of the vertices are against their
-/// points. Warns of points without a normal, of a surface that leaves the cube, of cracks that stay open, of a closed
-/// surface that is inside out, and of columns of the points other than `normal`, which are dropped.
+/// Doubts its result if more than 5 % of its area is invented or of the points missed, and if more than 5 % of the
+/// vertices are against their points. Warns of points without a normal, of a surface that leaves the cube, of cracks
+/// that stay open, of a closed surface that is inside out, and of columns of the points other than `normal`, which are
+/// dropped.
 ///
 /// Deterministic: the same bytes for any number of threads and any processor. They depend on the order of the points.
 /// Cost: time and memory grow with the surface's area in cells, fourfold with every `depth` until cells are as small as
-/// the distance between points. Metrics: `triangles`, `trimmed`, `invented`, `against`, `without-normal`, `cracks`,
-/// `loops`, `cell`.
+/// the distance between points. Metrics: `triangles`, `trimmed`, `invented`, `missed`, `against`, `without-normal`,
+/// `cracks`, `loops`, `cell`.
 PoissonResult poisson(const PointCloud& cloud, const PoissonParams& params, Context& context);
 
 }  // namespace scanmill

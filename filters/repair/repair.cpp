@@ -80,6 +80,7 @@ private:
     void stitch() {
         joined_ = lowest_at_position(positions_);
         if (params_.stitch.value() > 0) stitch_boundary(params_.stitch.value());
+        result_.was_closed = boundary_vertices().empty();
         for (u32 v = 0; v < joined_.size(); ++v) result_.stitched += joined_[v] != v;
     }
 
@@ -220,12 +221,18 @@ private:
             votes[component].volume +=
                 (positions_[a] - origin).dot((positions_[b] - origin).cross(positions_[c] - origin));
         }
+        std::vector<bool> turns(count, false);
+        double volume = 0;
         for (u32 t = 0; t < count; ++t) {
-            const u32 component = components.find(t);
-            const Votes& its = votes[component];
+            if (components.find(t) != t) continue;
+            const Votes& its = votes[t];
             const bool agree = its.kept == 0 || its.reversed == 0;
-            const bool turn = agree || is_open[component] ? its.reversed > its.kept : its.volume < 0;
-            if (turn) std::swap(triangles_[t][1], triangles_[t][2]);
+            turns[t] = agree || is_open[t] ? its.reversed > its.kept : its.volume < 0;
+            volume += turns[t] ? -its.volume : its.volume;
+        }
+        const bool is_closed = std::ranges::find(is_open, true) == is_open.end(), inside_out = is_closed && volume < 0;
+        for (u32 t = 0; t < count; ++t) {
+            if (turns[components.find(t)] != inside_out) std::swap(triangles_[t][1], triangles_[t][2]);
             result_.oriented += is_reversed(t);
         }
     }
@@ -487,6 +494,13 @@ RepairResult repair(const TriangleMesh& mesh, const RepairParams& params, Contex
     context.check_cancelled();
     RepairResult result = Repair(mesh, params, context).run();
     const MeshTopology after = topology(result.mesh);
+    if (after.boundary_loops > 0 && result.was_closed)
+        context.doubt(fmt::format(
+            "the mesh had no boundary, and has {} now: {} three or more triangles, where parts touch or share a wall, "
+            "and the parts were separated there; write them to separate files, or compare the volume after "
+            "`fill-holes`",
+            count_text(after.boundary_loops, "boundary loop", "boundary loops"),
+            count_text(result.split_edges, "edge had", "edges had")));
     context.metric("oriented", static_cast<double>(result.oriented));
     context.metric("stitched", static_cast<double>(result.stitched));
     context.metric("split-vertices", static_cast<double>(result.split_vertices));

@@ -33,6 +33,7 @@ struct RepairResult {
     std::size_t split_vertices = 0;  ///< copies that vertices received where several surfaces met
     std::size_t removed_components = 0;  ///< below min_component
     std::size_t unused_points = 0;  ///< vertices that are in no triangle of the result
+    bool was_closed = false;  ///< every edge had two triangles or more, after stitching
     std::size_t left_without_area = 0;  ///< triangles of three collinear vertices that stay
 };
 
@@ -47,7 +48,7 @@ struct RepairResult {
 ///    borders: vertices get copies so that every vertex has one fan of triangles. Copies are at the same position.
 ///    Then each component whose input triangles agree keeps their orientation. Another one that is closed encloses a
 ///    positive volume; one that is open takes the orientation that more of its area had, in a tie that of its first
-///    triangle.
+///    triangle. A mesh without boundary whose components together enclose a negative volume is turned as a whole.
 /// 4. Triangles of three exactly collinear vertices are replaced: the longest edge is flipped. At the boundary they are
 ///    removed, and vertices at which they joined two fans are split. Those whose flip would make an edge a second time
 ///    stay, with a warning.
@@ -64,7 +65,8 @@ struct RepairResult {
 /// Post: at most two triangles at an edge, oriented equally; one fan at a vertex; no triangle with a repeated vertex;
 ///       no unused vertex. A second run with the same parameters and `min_component` 0 changes no triangle, except that
 ///       it joins and splits the same vertices again.
-/// Doubts its result if triangles with more than 5 % of the area are removed (repeated ones do not count).
+/// Doubts its result if triangles with more than 5 % of the area are removed (repeated ones do not count), and if a
+/// mesh without boundary has one afterwards.
 ///
 /// Deterministic: serial, the same bytes on every machine. Cost: O(n log n) time, about 500 bytes per triangle.
 /// Metrics: `oriented`, `stitched`, `split-vertices`, `split-edges`, `removed-triangles`, `removed-components`,

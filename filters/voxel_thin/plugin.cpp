@@ -6,7 +6,7 @@ using namespace scanmill;
 
 SCANMILL_FILTER() {
     using P = VoxelThinParams;
-    return Declare<P>("voxel-thin", 4)
+    return Declare<P>("voxel-thin", 5)
         .summary("Keeps, in every voxel, the point nearest the voxel's centre.")
         .source("Wang 2006, chapter 3")
         .ties("Of points equally near a centre the first is kept; a duplicate counts as a point.")

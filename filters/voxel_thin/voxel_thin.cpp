@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -159,6 +160,63 @@ void doubt_few(const VoxelThinResult& result, std::size_t points, Context& conte
             result.kept.size(), points, result.bin_size, symbol(result.points.frame.unit)));
 }
 
+/// Every so many-th point, taken while the points are read.
+class SpreadSample {
+public:
+    explicit SpreadSample(const PointChunks& points)
+        : points_(points),
+          step_(points.size() / most + 1),
+          taken_((points.size() + step_ - 1) / step_) {}
+
+    /// The same points. Valid as long as this sample.
+    PointChunks chunks() {
+        return {points_.begin, [this](std::size_t chunk, Array<Vec3>& buffer) {
+                    const std::span<const Vec3> positions = points_.read(chunk, buffer);
+                    const std::size_t begin = points_.begin[chunk];
+                    for (std::size_t row = (begin + step_ - 1) / step_ * step_; row < begin + positions.size();
+                         row += step_)
+                        taken_[row / step_] = positions[row - begin];
+                    return positions;
+                }};
+    }
+    std::span<const Vec3> points() const { return taken_; }
+
+private:
+    static constexpr std::size_t most = 10'000;
+    const PointChunks& points_;
+    std::size_t step_;
+    Array<Vec3> taken_;
+};
+
+/// Doubts voxels that hold far more points than the others: parts that are small beside the scan.
+void doubt_crowded(const VoxelGrid& grid, std::span<const Vec3> sample, std::size_t kept, LengthUnit unit,
+                   Context& context) {
+    constexpr double crowded = 100, least = 0.01, doubtful = 0.1;
+    using Voxel = std::array<double, 3>;
+    std::vector<Voxel> voxels;
+    for (const Vec3& p : sample) {
+        const Vec3 voxel = ((p - grid.origin) / grid.size).array().floor();
+        voxels.push_back({voxel.x(), voxel.y(), voxel.z()});
+    }
+    std::ranges::sort(voxels);
+    const double all = static_cast<double>(voxels.size());
+    const double limit = all * std::max(least, crowded / static_cast<double>(kept));
+    std::size_t points = 0, count = 0;
+    for (auto begin = voxels.begin(); begin != voxels.end();) {
+        const auto end = std::upper_bound(begin, voxels.end(), *begin);
+        if (static_cast<double>(end - begin) > limit) {
+            points += static_cast<std::size_t>(end - begin);
+            ++count;
+        }
+        begin = end;
+    }
+    if (const double share = static_cast<double>(points) / all; share > doubtful)
+        context.doubt(fmt::format(
+            "{:.0f} % of the points are in {} of {:.4g} {}, and one of each stays: a part of the scan is tiny beside "
+            "the rest; use smaller voxels, and if one view is in metres and another in millimetres, convert it first",
+            100 * share, count_text(count, "voxel", "voxels"), grid.size, symbol(unit)));
+}
+
 /// Moves the rows into the result, adds the column `bin-size` and reports the metrics of every thinning.
 void finish(VoxelThinResult& result, KeptRows rows, std::size_t points, Context& context) {
     add_bin_sizes(result.points, rows.edges, result.bin_size, context);
@@ -177,7 +235,8 @@ void finish(VoxelThinResult& result, KeptRows rows, std::size_t points, Context&
 VoxelThinResult thin_by_grid(const PointChunks& points, const RobustBox& box, const VoxelThinParams& params,
                              const std::function<PointCloud(std::span<const u32>)>& gather, Context& context) {
     const VoxelGrid grid = grid_over(box, grid_origin(box, params), params.bin_size->value());
-    KeptRows rows = nearest_to_centres(points, grid, params.min_points, context);
+    SpreadSample sample(points);
+    KeptRows rows = nearest_to_centres(sample.chunks(), grid, params.min_points, context);
     require_kept(rows, points.size(), params.min_points);
 
     VoxelThinResult result;
@@ -185,6 +244,7 @@ VoxelThinResult thin_by_grid(const PointChunks& points, const RobustBox& box, co
     result.grid_origin = grid.origin;
     result.points = gather(rows.kept);
     finish(result, std::move(rows), points.size(), context);
+    doubt_crowded(grid, sample.points(), result.kept.size(), result.points.frame.unit, context);
     return result;
 }
 

@@ -113,7 +113,9 @@ struct VoxelThinResult {
 /// When the size is derived, also for a tolerance not above 0 or not below the robust box's diagonal, a quantile
 /// outside of [0, 1], fewer than 6 or more than 1000 neighbours, no more distinct points than neighbours, and when all
 /// neighbourhoods lie near lines. With the adaptive rule also for a given bin size or grid origin. Doubts its result if
-/// fewer than 100 of at least 10,000 points stay. Warns when more than 1 % of the points have no determined curvature,
+/// fewer than 100 of at least 10,000 points stay, and, with a given bin size, if more than a tenth of the points are in
+/// voxels that each hold more than 1 % of the points and a hundred times as many as the average voxel (of 10,000
+/// points spread evenly over the rows). Warns when more than 1 % of the points have no determined curvature,
 /// and about replaced columns.
 ///
 /// Deterministic: the same bytes for any number of threads; without ties the same set for any order of the points.

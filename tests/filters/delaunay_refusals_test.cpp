@@ -83,7 +83,7 @@ TEST(Delaunay, CoplanarPoints_AreRefusedWithAHint) {
     const std::string text = refusal(cloud);
     EXPECT_THAT(text, HasSubstr("the cloud has 64, all within"));
     EXPECT_THAT(text, HasSubstr("u of one plane"));
-    EXPECT_THAT(text, HasSubstr("hint: voxel-thin accepts flat scans"));
+    EXPECT_THAT(text, HasSubstr("hint: region-grow makes a surface of flat scans"));
 }
 
 TEST(Delaunay, PlaneThatWasRotated_IsRefused_BecauseItsThicknessIsRounding) {

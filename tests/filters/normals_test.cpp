@@ -235,6 +235,15 @@ TEST(Normals, OfOutliersAlone_AreDoubtful) {
     EXPECT_THAT(estimated(cloud).doubts, Contains(HasSubstr("have a doubtful normal")));
 }
 
+TEST(Normals, OfNeighboursAllRound_AreDoubtful) {
+    NormalsParams params;
+    params.neighbours = 400;
+    EXPECT_THAT(estimated(fibonacci_sphere(500), params).doubts,
+                Contains(HasSubstr("400 neighbours of a point form no")));
+    params.neighbours = 100;
+    EXPECT_THAT(estimated(fibonacci_sphere(500), params).doubts, IsEmpty());
+}
+
 TEST(Normals, OfTwoScales_PointOutwards) {
     // A sphere of 1 and one of 1/100 inside the larger one's box, both of 2,000 points.
     const PointCloud sphere = fibonacci_sphere(2000);

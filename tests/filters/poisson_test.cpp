@@ -320,6 +320,19 @@ TEST(Poisson, TwoScales_AreFineWhereThePointsAre) {
     EXPECT_NEAR(signed_volume(result.mesh), 4 * std::numbers::pi / 3 * (1 + 8e-6), 0.03);
 }
 
+TEST(Poisson, APartSmallerThanACell_IsMissedAndDoubtful) {
+    const PointCloud sphere = fibonacci_sphere(4000);
+    const PointCloud both = with_normals(joined(sphere, moved(sphere, 1e-4, {0, 0, 0.5})),
+                                         [&](std::size_t row) { return Vec3(sphere.positions[row % 4000]); });
+    const Made result = made(both, with(6, 0));
+    EXPECT_DOUBLE_EQ(result.missed, 0.5);
+    EXPECT_THAT(result.doubts, Contains(HasSubstr("50.0 % of the points are far from the surface")));
+    const Made alone = made(outward(sphere), with(6, 0));
+    EXPECT_EQ(alone.missed, 0);
+    EXPECT_EQ(alone.metrics.find("missed")->value, 0);
+    EXPECT_THAT(alone.doubts, IsEmpty());
+}
+
 TEST(PoissonRefuses, CloudsWithoutNormals) {
     const Error error = error_of([] { made(fibonacci_sphere(100)); });
     EXPECT_EQ(error.sentence(), "the scan has no column 'normal'; poisson needs a normal at every point");

@@ -97,6 +97,18 @@ TEST(VoxelThinFlaws, VoxelsAsLargeAsTheScan_AreDoubtful) {
     EXPECT_THAT(doubts_of(without), testing::IsEmpty());
 }
 
+TEST(VoxelThinFlaws, APartTinyBesideTheRest_IsDoubtful) {
+    const auto doubts_with = [](double radius) {
+        VoxelThinParams params;
+        params.bin_size = Length(0.02);
+        Context context;
+        voxel_thin(joined(fibonacci_sphere(8000), moved(fibonacci_sphere(8000), radius, {1.2, 0, 0})), params, context);
+        return doubts_of(context);
+    };
+    EXPECT_THAT(doubts_with(0.01), testing::ElementsAre(testing::ContainsRegex("^50 % of the points are in [48] vox")));
+    EXPECT_THAT(doubts_with(0.2), testing::IsEmpty());
+}
+
 TEST(VoxelThinFlaws, RealScan_IsThinnedByEveryRule) {
     SCANMILL_REAL_SCAN(path, fetched_data, "meshes/bunny00.off");
     const auto cloud = read_points(path);

@@ -298,11 +298,15 @@ ColumnTable text_columns(std::vector<std::string> names, std::vector<Array<doubl
 
 bool are_unit_normals(std::span<const double> x, std::span<const double> y, std::span<const double> z) {
     constexpr double tolerance = 0.1;
+    std::size_t unknown = 0;
     for (std::size_t row = 0; row < x.size(); ++row) {
         const double length = std::hypot(x[row], y[row], z[row]);
-        if (!(std::abs(length - 1) <= tolerance) && length != 0) return false;
+        if (std::isnan(length))
+            ++unknown;
+        else if (std::abs(length - 1) > tolerance && length != 0)
+            return false;
     }
-    return true;
+    return unknown == 0 || unknown < x.size();
 }
 
 }  // namespace scanmill

@@ -40,6 +40,11 @@ TEST(XyzReader_SixColumns, AreNormalsWhenUnit_ElseTheyAreKeptAndReported) {
     const auto with = points_in("0 0 0 0.6 0.8 0\n1 1 1 0 0 0\n", "a.xyz", &warnings);
     EXPECT_THAT(numbers_of<double>(with->columns.find("normal")), ElementsAre(0.6, 0.8, 0, 0, 0, 0));
     EXPECT_THAT(warnings.sentences, IsEmpty());
+    const auto nan = points_in("0 0 0 0.6 0.8 0\n1 1 1 nan nan nan\n", "a.xyz", &warnings);
+    EXPECT_NE(nan->columns.find("normal"), nullptr) << "a row without a normal";
+    EXPECT_THAT(warnings.sentences, IsEmpty());
+    const auto all_nan = points_in("0 0 0 nan nan nan\n", "a.xyz");
+    EXPECT_EQ(all_nan->columns.find("normal"), nullptr);
     const auto without = points_in("0 0 0 0.6 0.8 0\n1 1 1 117 73 49\n", "a.xyz", &warnings);
     EXPECT_EQ(without->columns.find("normal"), nullptr);
     EXPECT_THAT(numbers_of<double>(without->columns.find("c5")), ElementsAre(0.8, 73));
