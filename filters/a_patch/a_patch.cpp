@@ -16,6 +16,7 @@
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/a_patch.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/half_edges.hpp"
 #include "scanmill/geometry/mesh/topology.hpp"
 
@@ -32,6 +33,7 @@ constexpr std::size_t chunk = 1024;
 constexpr double least_factor = 1.05, most_factor = 3;
 constexpr double most_loosened = 0.1;  // share of the vertices, without a doubt
 constexpr double most_worse = 1.01;  // times the points' distance from the mesh, likewise
+constexpr double most_left_out = 0.5;  // share of the points, likewise
 constexpr double rounding = 1e-12;  // of the diagonal
 constexpr double least_regularisation = 1e-6;
 
@@ -53,35 +55,23 @@ void require_areas(const TriangleMesh& mesh) {
     if (count > 0)
         throw Error("{} of {} triangles {} no area, the first is triangle {} at {}", count, mesh.triangles.size(),
                     by_count(count, "has", "have"), first, position_text(mesh, mesh.triangles[first][0]))
-            .hint("'decimate' makes well-shaped triangles");
+            .hint("`repair` replaces them; `decimate` makes well-shaped triangles");
 }
 
-std::vector<bool> used_vertices(const TriangleMesh& mesh) {
-    std::vector<bool> is_used(mesh.positions.size(), false);
-    for (const Triangle& t : mesh.triangles)
-        for (const u32 v : t) is_used[v] = true;
-    return is_used;
+/// Throws Error if the surface is cut along edges at one position, as that of an STL file.
+void require_joined(const TriangleMesh& mesh, const Array<u32>& opposites) {
+    std::vector<u32> boundary;
+    for (u32 half = 0; half < opposites.size(); ++half)
+        if (opposites[half] == half_edges::boundary) boundary.push_back(half);
+    const std::vector<u32> cut = coincident_edges(mesh, boundary);
+    if (cut.empty()) return;
+    const u32 first = half_edges::start(mesh, cut[0]);
+    throw Error("{} of {} boundary edges are at the position of another one, the first begins at vertex {} at {}",
+                cut.size(), boundary.size(), first, position_text(mesh, first))
+        .hint("`repair` joins them");
 }
 
-void require_distinct_vertices(const TriangleMesh& mesh, const std::vector<bool>& is_used) {
-    std::vector<u32> order;
-    for (u32 v = 0; v < is_used.size(); ++v)
-        if (is_used[v]) order.push_back(v);
-    const auto key = [&](u32 v) {
-        const Vec3& p = mesh.positions[v];
-        return std::tuple(p.x(), p.y(), p.z());
-    };
-    std::ranges::stable_sort(order, [&](u32 one, u32 other) { return key(one) < key(other); });
-    std::size_t count = 0, first = 0;
-    for (std::size_t i = 1; i < order.size(); ++i)
-        if (key(order[i]) == key(order[i - 1]) && count++ == 0) first = order[i];
-    if (count > 0)
-        throw Error("{} of {} vertices {} at the position of another one, the first is vertex {} at {}", count,
-                    order.size(), by_count(count, "is", "are"), first, position_text(mesh, static_cast<u32>(first)))
-            .hint("merge equal vertices, so that triangles share them");
-}
-
-MeshTopology require_usable(const TriangleMesh& mesh, const std::vector<bool>& is_used, const APatchParams& params) {
+MeshTopology require_usable(const TriangleMesh& mesh, const APatchParams& params) {
     if (!(params.apex_factor >= least_factor && params.apex_factor <= most_factor))
         throw Error("apex-factor must be from {} to {}; it is {}", least_factor, most_factor, params.apex_factor)
             .hint(fmt::format("the default is {}", APatchParams().apex_factor));
@@ -93,14 +83,14 @@ MeshTopology require_usable(const TriangleMesh& mesh, const std::vector<bool>& i
             .hint(
                 fmt::format("the default is {}; larger ones are used where they suit", APatchParams().regularisation));
     require_finite(mesh.positions.span(), "vertices");
-    half_edges::opposites(mesh);
+    const Array<u32> opposites = half_edges::opposites(mesh);
     require_areas(mesh);
-    require_distinct_vertices(mesh, is_used);
+    require_joined(mesh, opposites);
     const MeshTopology counts = topology(mesh);
     if (counts.nonmanifold_vertices > 0)
         throw Error("at {} of {} vertices the triangles do not form one fan", counts.nonmanifold_vertices,
                     counts.vertices)
-            .hint("'alpha-solid: {alpha: auto}' and 'sculpt' give manifolds");
+            .hint("`repair` separates the fans");
     return counts;
 }
 
@@ -197,6 +187,7 @@ public:
     Hull hull;  ///< refers to the mesh
     Weights weights;
     Repairs repairs;
+    std::vector<u32> crossing;  ///< triangles where parts of the surface meet others, as the mesh does; ascending
 
     void run() {
         do {
@@ -287,7 +278,8 @@ private:
         if (loosen(mesh_, edges, hull.faults.thin, repairs)) return true;
         open_doubtful();
         if (repairs.pointed == 0) return false;
-        return loosen(mesh_, {}, crossing_triangles(weights.patches, context_), repairs);
+        crossing = crossing_triangles(weights.patches, context_);
+        return loosen(mesh_, {}, crossing, repairs);
     }
 
     void open_doubtful() {
@@ -313,10 +305,12 @@ private:
 };
 
 /// Takes the changes of a fit back where parts of the surface meet others since, or weights got a wrong sign by that.
+/// `crossing` are the triangles where parts met before.
 class Uncrossing {
 public:
-    Uncrossing(Hull& hull, const Weights& before, Curvature curvature, Context& context)
+    Uncrossing(Hull& hull, const Weights& before, std::span<const u32> crossing, Curvature curvature, Context& context)
         : hull_(hull),
+          crossing_before_(crossing),
           curvature_(curvature),
           context_(context),
           edges_before_(hull.edges),
@@ -348,7 +342,10 @@ private:
             if (wrong_signs(patches, row) > wrong_before_[row]) faulty.push_back(patches.triangles[row]);
         for (const u32 e : doubtful_edges(patches, context_))
             faulty.insert(faulty.end(), {hull_.edges[e].first, hull_.edges[e].second});
-        return faulty.empty() ? crossing_triangles(patches, context_) : faulty;
+        if (faulty.empty())
+            std::ranges::set_difference(crossing_triangles(patches, context_), crossing_before_,
+                                        std::back_inserter(faulty));
+        return faulty;
     }
 
     /// By the neighbours.
@@ -360,6 +357,7 @@ private:
     }
 
     Hull& hull_;
+    std::span<const u32> crossing_before_;
     Curvature curvature_;
     Context& context_;
     std::vector<HullEdge> edges_before_;
@@ -367,16 +365,18 @@ private:
     std::vector<std::size_t> wrong_before_;
 };
 
-/// Fits the slopes, and measures. `weights` are those of the hull as it is, without violations at creases.
-Weights fit_and_measure(Hull& hull, Weights weights, const PointCloud* points, const APatchParams& params,
+/// Fits the slopes, and measures. The weights are those of the hull as it is, without violations at creases.
+Weights fit_and_measure(Construction& construction, const PointCloud* points, const APatchParams& params,
                         APatchResult& result, Context& context) {
+    Hull& hull = construction.hull;
+    Weights weights = std::move(construction.weights);
     const std::span<const Vec3> positions = points ? points->positions.span() : std::span<const Vec3>();
     const LocatedPoints located = locate(weights.patches, positions, context);
     result.left_out = located.left_out;
     result.unfairness_before = unfairness(hull, params.curvature);
     const auto violating_edges = [&](const PatchComplex& patches) { return doubtful_edges(patches, context); };
     std::optional<Uncrossing> uncrossing;
-    if (result.repairs.pointed > 0) uncrossing.emplace(hull, weights, params.curvature, context);
+    if (result.repairs.pointed > 0) uncrossing.emplace(hull, weights, construction.crossing, params.curvature, context);
     FitResult fitted = fit(hull, std::move(weights), located, params.curvature,
                            {params.fit, params.fairing, params.regularisation}, violating_edges, context);
     weights = std::move(fitted.weights);
@@ -399,8 +399,8 @@ Weights fit_and_measure(Hull& hull, Weights weights, const PointCloud* points, c
     return weights;
 }
 
-void warn_about(const APatchResult& result, const TriangleMesh& mesh, const PointCloud* points,
-                const MeshTopology& counts, const APatchParams& params, Context& context) {
+void warn_about(const APatchResult& result, std::span<const u32> crossing, const TriangleMesh& mesh,
+                const PointCloud* points, const MeshTopology& counts, const APatchParams& params, Context& context) {
     if (counts.boundary_edges > 0)
         context.warn(fmt::format("the mesh is open: the surface ends at {}",
                                  count_text(counts.boundary_edges, "boundary edge", "boundary edges")));
@@ -430,13 +430,18 @@ void warn_about(const APatchResult& result, const TriangleMesh& mesh, const Poin
         else
             context.warn(text);
     }
-    if (points && result.left_out == points->size()) {
-        const char* missing = params.fit ? "the surface is not fitted" : "no distance is measured";
-        context.warn(points->size() == 0 ? fmt::format("the input `points` is empty: {}", missing)
-                                         : fmt::format("none of the {} is in a tetrahedron near the surface: {}",
-                                                       count_text(points->size(), "point", "points"),
-                                                       params.fit ? "it is not fitted" : missing));
-    }
+    if (points && points->size() == 0)
+        context.warn(fmt::format("the input `points` is empty: {}",
+                                 params.fit ? "the surface is not fitted" : "no distance is measured"));
+    else if (points && static_cast<double>(result.left_out) > most_left_out * static_cast<double>(points->size()))
+        context.doubt(fmt::format(
+            "{} of {} in no tetrahedron near the surface and {} not {}: are mesh and points of one object, in one "
+            "position?",
+            result.left_out, count_text(points->size(), "point is", "points are"),
+            by_count(result.left_out, "does", "do"), params.fit ? "count in the fit" : "count"));
+    if (!crossing.empty())
+        context.doubt(fmt::format("parts of the surface intersect at {}, where the mesh leaves no room for another one",
+                                  count_text(crossing.size(), "triangle", "triangles")));
     if (result.fit && result.fit->rms > most_worse * result.fit->rms_to_mesh + rounding * surface_box(mesh).diagonal())
         context.doubt(fmt::format(
             "the points are farther from the surface (rms {0:.3g} {2}) than from the mesh (rms {1:.3g} {2})",
@@ -485,8 +490,11 @@ void report(const APatchResult& result, Context& context) {
 APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const APatchParams& params, Context& context) {
     if (mesh.triangles.empty())
         throw Error("needs a mesh with triangles; it has {} vertices and none", mesh.positions.size());
-    const MeshTopology counts = require_usable(mesh, used_vertices(mesh), params);
-    if (points) require_finite(points->positions.span());
+    const MeshTopology counts = require_usable(mesh, params);
+    if (points) {
+        require_finite(points->positions.span());
+        require_same_frame(points->frame, "the points are", mesh.frame, "the mesh");
+    }
     APatchResult result;
     PatchMesh work;
     work.mesh.frame = mesh.frame;
@@ -505,11 +513,11 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
     }
     level_normals(work);
     construction.run();
-    Hull& hull = construction.hull;
+    const Hull& hull = construction.hull;
     result.repairs = construction.repairs;
     assert(hull.faults.thin.empty() && std::ranges::none_of(hull.edges, &HullEdge::is_open));
     context.progress(0.5);
-    Weights weights = fit_and_measure(hull, std::move(construction.weights), points, params, result, context);
+    Weights weights = fit_and_measure(construction, points, params, result, context);
     result.raised = weights.raised;
     result.divided = static_cast<std::size_t>(std::ranges::count(hull.faces, true, &HullFace::is_divided));
     result.patches = std::move(weights.patches);
@@ -525,7 +533,7 @@ APatchResult a_patch(const TriangleMesh& mesh, const PointCloud* points, const A
         for (const Vec3& n : of_triangle) components.insert(components.end(), n.data(), n.data() + 3);
     result.mesh.face_columns.add(Column("corner-normals", 9, Buffer<double>(std::move(components))));
     result.crease_max = largest_bulge(result.patches, result.mesh, context);
-    warn_about(result, mesh, points, counts, params, context);
+    warn_about(result, construction.crossing, mesh, points, counts, params, context);
     report(result, context);
     return result;
 }

@@ -81,10 +81,11 @@ struct APatchResult {
 /// done where a tessellation with tips intersects itself. Where a fit causes an intersection, it is undone.
 ///
 /// Pre:  a manifold, closed or open, of any number of components, consistently oriented, finite, with area in every
-///       triangle, without two vertices at one position. The surface ends at a boundary, with a warning. `points`, if
-///       not null, lie near the surface, in the mesh's frame. Throws Error with numbers and a hint otherwise.
-/// Post: `inverted` is 0. Every vertex of `mesh` is on the surface. A doubt if `sign_violations` is not 0, or if the
-///       points are farther from the surface than from the mesh (rms).
+///       triangle, not cut along edges at one position. The surface ends at a boundary, with a warning. `points`, if
+///       not null, are in the mesh's frame. Throws Error with numbers and a hint otherwise.
+/// Post: `inverted` is 0. Every vertex of `mesh` is on the surface. A doubt if `sign_violations` is not 0, if the
+///       points are farther from the surface than from the mesh (rms), if more than half of them are left out, if
+///       parts of the surface intersect, as the mesh does, and if more than a tenth of the vertices are pointed.
 /// Ties: of equally long edges the one with the lower vertices is bisected first; of equally acute edges it becomes
 /// sharp. Bytes depend neither on the number of threads nor on the processor.
 /// Cost: linear. One thread: 15 to 35 us and 4 kB per triangle; with points 5 us per point to locate and measure them,

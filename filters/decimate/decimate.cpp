@@ -11,7 +11,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/text.hpp"
 #include "scanmill/geometry/distance/nearest_distances.hpp"
-#include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 
 namespace scanmill {
@@ -116,11 +116,7 @@ void warn_about(const TriangleMesh& mesh, std::span<const u32> lowest, Context& 
 /// Data points in the mesh's coordinates.
 Array<Vec3> data_positions(const PointCloud& points, const Frame& frame) {
     require_finite(points.positions.span());
-    if (points.frame.unit != frame.unit && points.frame.unit != LengthUnit::unknown &&
-        frame.unit != LengthUnit::unknown)
-        throw Error("the points are in {} and the mesh is in {}; both must have one unit", symbol(points.frame.unit),
-                    symbol(frame.unit))
-            .hint("convert one of the files with `scanmill convert`");
+    require_same_frame(points.frame, "the points are", frame, "the mesh");
     Array<Vec3> positions(points.positions.begin(), points.positions.end());
     const Vec3 shift = points.frame.origin - frame.origin;
     if (!shift.isZero(0))

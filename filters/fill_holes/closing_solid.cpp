@@ -16,7 +16,7 @@
 #include "delaunay/flatness.hpp"
 #include "delaunay/triangulate.hpp"
 #include "scanmill/base/disjoint_sets.hpp"
-#include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/tets/solid_boundary.hpp"
 
 namespace scanmill {

@@ -14,7 +14,7 @@
 #include "scanmill/base/error.hpp"
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/base/text.hpp"
-#include "scanmill/geometry/distance/self_intersections.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
 
 namespace scanmill {
 
@@ -43,20 +43,6 @@ void require_usable(const TriangleMesh& mesh, const FillHolesParams& params) {
                     count_text(repeats, "triangle has", "triangles have"), first, mesh.triangles[first][0],
                     mesh.triangles[first][1], mesh.triangles[first][2])
             .hint("repair drops such triangles");
-}
-
-/// Boundary half-edges whose two positions are those of another one.
-std::size_t coincident_edges(const TriangleMesh& mesh, std::span<const u32> boundary) {
-    if (boundary.empty()) return 0;
-    const Array<u32> lowest = lowest_at_position(mesh.positions.span());
-    std::vector<Edge> edges;
-    for (const u32 h : boundary)
-        edges.push_back(make_edge(lowest[half_edges::start(mesh, h)], lowest[half_edges::end(mesh, h)]));
-    std::ranges::sort(edges);
-    std::size_t coincident = 0;
-    for (std::size_t i = 0; i < edges.size(); ++i)
-        coincident += (i > 0 && edges[i] == edges[i - 1]) || (i + 1 < edges.size() && edges[i] == edges[i + 1]);
-    return coincident;
 }
 
 /// The loops' fillings, none of which intersects anything; holes without one are open.
@@ -124,7 +110,7 @@ FillHolesResult fill_holes(const TriangleMesh& mesh, const FillHolesParams& para
     require_usable(mesh, params);
     context.check_cancelled();
     const MeshLoops boundary(mesh);
-    if (const std::size_t seams = coincident_edges(mesh, boundary.half_edges()); seams > 0)
+    if (const std::size_t seams = coincident_edges(mesh, boundary.half_edges()).size(); seams > 0)
         context.warn(
             fmt::format("{} at the position of another one: the surface is cut there, not missing; repair "
                         "joins such edges",

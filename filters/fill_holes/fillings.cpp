@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "scanmill/base/parallel.hpp"
-#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
 
 namespace scanmill {
 

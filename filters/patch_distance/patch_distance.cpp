@@ -61,6 +61,7 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
     if (patches.tets.empty()) throw Error("the patches have no tetrahedra").hint("'a-patch' makes patches of a mesh");
     if (points.size() == 0) throw Error("needs points; there are none").hint("wire the scan: 'in: {points: scan}'");
     require_finite(points.positions.span());
+    require_same_frame(points.frame, "the points are", patches.frame, "the patches");
     const PatchSurface surface(patches, context.threads());
     const TriangleMesh mesh = tessellate(patches, {subdivision, {}}, context);
     const TriangleTree tree(mesh.positions.span(), mesh.triangles.span(), context.threads());
@@ -100,8 +101,8 @@ PatchDistanceResult patch_distance(const PatchComplex& patches, const PointCloud
         squares += d * d;
     }
     if (found.empty())
-        throw Error("none of the {} points is within {:.3g}, a tenth of the surface's diagonal, of the surface",
-                    points.size(), limit)
+        throw Error("none of {} is within {:.3g} {}, a tenth of the surface's diagonal, of the surface",
+                    count_text(points.size(), "point", "points"), limit, symbol(points.frame.unit))
             .hint("are points and patches in the same frame and unit?");
     std::ranges::sort(found);
     const auto count = static_cast<double>(found.size());

@@ -24,7 +24,8 @@ struct PatchDistanceResult {
 /// without tetrahedra between them, it is the distance to the tessellation; its sign is then that of the side of the
 /// nearest triangle if the surface is open.
 ///
-/// Pre:  finite points in the patches' frame. Throws Error if `points` or `patches` is empty, if tetrahedra of a
+/// Pre:  finite points in the patches' frame; another one is refused. Throws Error if `points` or `patches` is empty,
+/// if tetrahedra of a
 ///       triangle are missing, or if every point is far from the surface.
 /// p95 is the smallest distance that at least 95 % of the located points do not exceed. Bytes do not depend on the
 /// number of threads. Cost: about 7 us per point near the surface, and 20 us per triangle of the mesh.

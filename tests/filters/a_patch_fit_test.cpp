@@ -435,8 +435,10 @@ TEST(APatchFit, Off_ReportsNoRegularisation_AndThatNothingIsMeasured) {
     EXPECT_GT(metric_of(measured, "fit-rms"), 0);
     EXPECT_TRUE(std::isnan(metric_of(measured, "regularisation")));
     EXPECT_EQ(metric_of(by_default(mesh, nullptr, 0.1), "regularisation"), 1e-3);
-    EXPECT_THAT(by_default(mesh, &far).warnings,
-                ElementsAre("none of the 1 point is in a tetrahedron near the surface: no distance is measured"));
+    EXPECT_THAT(
+        by_default(mesh, &far).warnings,
+        ElementsAre("1 of 1 point is in no tetrahedron near the surface and does not count: are mesh and points of "
+                    "one object, in one position?"));
 }
 
 TEST(APatchFit, ASurfaceFartherFromThePointsThanItsMesh_IsDoubtful) {
@@ -466,8 +468,10 @@ TEST(APatchFit, WithoutPointsInReach_TheBitsAreTheDefaults) {
     const PatchRun far = fitted(mesh, cloud({{9, 0, 0}, {0, 9, 0}, {0, 0, 0}}));
     expect_same_bits(far.result.patches, by_default(mesh).result.patches);
     EXPECT_EQ(metric_of(far, "left-out"), 3);
-    EXPECT_THAT(far.warnings,
-                ElementsAre("none of the 3 points is in a tetrahedron near the surface: it is not fitted"));
+    EXPECT_THAT(
+        far.warnings,
+        ElementsAre("3 of 3 points are in no tetrahedron near the surface and do not count in the fit: are mesh "
+                    "and points of one object, in one position?"));
     const PatchRun empty = fitted(mesh, PointCloud{});
     expect_same_bits(empty.result.patches, by_default(mesh).result.patches);
     EXPECT_THAT(empty.warnings, ElementsAre("the input `points` is empty: the surface is not fitted"));
@@ -518,6 +522,27 @@ TEST(APatchFit, AllPointsOnOneTriangle_ChangeItsSurroundingsOnly) {
             ++far;
         }
     EXPECT_GT(far, 500u);
+}
+
+TEST(APatchFit, WhereTheMeshIntersectsItself_TheRestIsFittedAllTheSame) {
+    Random random(1);
+    const TriangleMesh mesh = with_positions(torus(1, 0.4, 24, 12), [&](const Vec3& p) -> Vec3 {
+        const Vec3 noise(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        return p.x() > 0.3 ? p + 0.2 * noise : p;
+    });
+    PointCloud points;
+    Array<Vec3> of_left;
+    for (const Vec3& p : torus_points(20'000).positions)
+        if (p.x() < -0.3) of_left.push_back(p);
+    points.positions = std::move(of_left);
+    APatchParams params;
+    params.normals = APatchParams::Normals::mesh;
+    params.fit = false;
+    const PatchRun before = patched(mesh, params, &points);
+    params.fit = true;
+    const PatchRun run = patched(mesh, params, &points);
+    EXPECT_THAT(run.warnings, Contains(HasSubstr("parts of the surface intersect at ")));
+    EXPECT_LT(run.result.fit->rms, 0.5 * before.result.fit->rms);
 }
 
 TEST(APatchFit, OnlyOutliers_KeepTheSurfaceSound) {

@@ -239,6 +239,25 @@ CreaseFigures figures_of(const TriangleMesh& object, std::span<const Edge> edges
     return figures;
 }
 
+struct Reduced {
+    PointCloud points;  ///< the vertices before
+    TriangleMesh light;
+    double max_error;
+};
+
+/// Decimated with a max-error of 0.3 %.
+Reduced reduced(const TriangleMesh& mesh) {
+    PointCloud points;
+    points.frame = mesh.frame;
+    points.positions = mesh.positions;
+    DecimateParams reduction;
+    const double max_error = 0.003 * surface_box(mesh).diagonal();
+    reduction.max_error = max_error;
+    Context context;
+    TriangleMesh light = decimate(mesh, &points, reduction, context).mesh;
+    return {std::move(points), std::move(light), max_error};
+}
+
 struct CreaseCase {
     const char* name;
     const char* tags;  ///< a file with the sharp edges; empty: those of 40 degrees
@@ -272,15 +291,9 @@ TEST_P(APatchRealObject, Decimated_HasItsCreases) {
         if (opposites[half] != half_edges::boundary && opposites[half] > half &&
             degrees_between(normal_of(mesh, half / 3), normal_of(mesh, opposites[half] / 3)) > 40)
             edges.push_back(make_edge(half_edges::start(mesh, half), half_edges::end(mesh, half)));
-    PointCloud points;
-    points.frame = mesh.frame;
-    points.positions = mesh.positions;
-    DecimateParams reduction;
-    const double max_error = 0.003 * surface_box(mesh).diagonal();
-    reduction.max_error = max_error;
-    Context context;
-    const TriangleMesh light = decimate(mesh, &points, reduction, context).mesh;
+    const auto [points, light, max_error] = reduced(mesh);
     const PatchRun run = patched(light, {}, &points, 2);
+    Context context;
     EXPECT_EQ(run.result.inverted, 0u);
     EXPECT_EQ(run.result.sign_violations, 0u);
     const TriangleMesh fine = tessellate(run.result.patches, {8, {}}, context);
@@ -314,15 +327,9 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(APatchRealCreases, OfAnAnchor_AreNearTheOriginalEdges_AndAsSharp) {
     SCANMILL_REAL_SCAN(path, shared_data, "3-mechanical/anchor_dense.off");
     const TriangleMesh mesh = *read_mesh(path);
-    PointCloud points;
-    points.frame = mesh.frame;
-    points.positions = mesh.positions;
-    DecimateParams reduction;
-    const double max_error = 0.003 * surface_box(mesh).diagonal();
-    reduction.max_error = max_error;
-    Context context;
-    const TriangleMesh light = decimate(mesh, &points, reduction, context).mesh;
+    const auto [points, light, max_error] = reduced(mesh);
     const PatchRun run = patched(light, {}, &points, 2);
+    Context context;
     EXPECT_LT(run.result.repairs.pointed, 5u);
     const TriangleMesh fine = tessellate(run.result.patches, {8, {}}, context);
     const auto normal = [](const TriangleMesh& of, u32 f) -> Vec3 {

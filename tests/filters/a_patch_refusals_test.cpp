@@ -45,11 +45,29 @@ TEST(APatchRefuses, ATriangleWithoutArea) {
     EXPECT_FALSE(error.hint().empty());
 }
 
-TEST(APatchRefuses, VerticesAtOnePosition) {
+TEST(APatchRefuses, ASurfaceThatIsCutAtAnEdge) {
     const Error error =
-        refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 1, 1}, {1, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}));
-    EXPECT_THAT(error.sentence(), HasSubstr("1 of 6 vertices is at the position of another one"));
-    EXPECT_FALSE(error.hint().empty());
+        refusal(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}));
+    EXPECT_EQ(error.sentence(),
+              "2 of 6 boundary edges are at the position of another one, the first begins at vertex 2 at (0, 1, 0)");
+    EXPECT_EQ(error.hint(), "`repair` joins them");
+    EXPECT_NO_THROW(
+        patched(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {-1, 0, 1}, {0, -1, 1}}, {{0, 1, 2}, {3, 4, 5}})))
+        << "two fans at one position";
+}
+
+TEST(APatchRefuses, PointsOfAnotherFrame) {
+    TriangleMesh mesh = geodesic_sphere(1, 2);
+    PointCloud points;
+    points.positions = mesh.positions;
+    points.frame.unit = LengthUnit::metre;
+    EXPECT_EQ(error_of([&] { patched(mesh, {}, &points); }).sentence(),
+              "the points are in m, the mesh in u; both need one unit");
+    mesh.frame = {LengthUnit::metre, Vec3::Zero(), "scanner"};
+    EXPECT_NO_THROW(patched(mesh, {}, &points));
+    points.frame.name = "machine";
+    EXPECT_EQ(error_of([&] { patched(mesh, {}, &points); }).sentence(),
+              "the points are in the frame 'machine', the mesh in 'scanner'; both need one frame");
 }
 
 TEST(APatchRefuses, NotFiniteVertices) {

@@ -13,8 +13,8 @@
 
 #include "decimate/decimator.hpp"
 #include "filters/decimate_cases.hpp"
-#include "scanmill/geometry/distance/self_intersections.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
 #include "scanmill/geometry/mesh/facet_normals.hpp"
 
 namespace scanmill::test {

@@ -116,15 +116,18 @@ TEST(DecimateRefuses, UnresolvedLength) {
     EXPECT_THAT(sentence_of([] { decimated(cube(), DecimateParams{}); }), HasSubstr("not resolved"));
 }
 
-TEST(DecimateRefuses, PointsOfAnotherUnit) {
+TEST(DecimateRefuses, PointsOfAnotherFrame) {
     TriangleMesh mesh = cube();
     mesh.frame.unit = LengthUnit::millimetre;
     PointCloud points = cloud_of({{0, 0, 0}});
     points.frame.unit = LengthUnit::metre;
-    EXPECT_EQ(refusal(mesh, within(0.1), &points),
-              "the points are in m and the mesh is in mm; both must have one unit");
-    points.frame.unit = LengthUnit::unknown;
+    EXPECT_EQ(refusal(mesh, within(0.1), &points), "the points are in m, the mesh in mm; both need one unit");
+    points.frame = mesh.frame;
+    points.frame.name = "machine";
     EXPECT_EQ(decimated(mesh, within(0.1), &points).points_beyond, 0u);
+    mesh.frame.name = "scanner";
+    EXPECT_EQ(refusal(mesh, within(0.1), &points),
+              "the points are in the frame 'machine', the mesh in 'scanner'; both need one frame");
 }
 
 TEST(DecimateRefuses, PointsThatAreNotFinite) {

@@ -246,8 +246,12 @@ TEST(PatchDistanceRefuses, NothingToMeasure) {
     const Error pointless = error_of([&] { measured(unit_sphere(), {}, context); });
     EXPECT_THAT(pointless.sentence(), HasSubstr("needs points"));
     EXPECT_FALSE(pointless.hint().empty());
+    PointCloud elsewhere = around_sphere(3, 1, 1.01);
+    elsewhere.frame.unit = LengthUnit::metre;
+    EXPECT_EQ(error_of([&] { measured(unit_sphere(), elsewhere, context); }).sentence(),
+              "the points are in m, the patches in u; both need one unit");
     const Error far = error_of([&] { measured(unit_sphere(), around_sphere(3, 5, 6), context); });
-    EXPECT_THAT(far.sentence(), HasSubstr("none of the 3 points"));
+    EXPECT_THAT(far.sentence(), HasSubstr("none of 3 points"));
     EXPECT_FALSE(far.hint().empty());
     PointCloud invalid;
     invalid.positions = {Vec3(0, std::nan(""), 1)};

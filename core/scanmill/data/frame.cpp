@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numeric>
 
+#include "scanmill/base/error.hpp"
+
 namespace scanmill {
 
 namespace {
@@ -36,6 +38,15 @@ double in_unit(double length, LengthUnit from, LengthUnit to) {
     const std::int64_t numerator = row_of(from).micrometres, denominator = row_of(to).micrometres;
     const std::int64_t common = std::gcd(numerator, denominator);
     return length * static_cast<double>(numerator / common) / static_cast<double>(denominator / common);
+}
+
+void require_same_frame(const Frame& first, std::string_view one, const Frame& second, std::string_view other) {
+    if (first.unit != second.unit)
+        throw Error("{} in {}, {} in {}; both need one unit", one, symbol(first.unit), other, symbol(second.unit))
+            .hint("convert one of them with `scanmill convert` (u: a unit that is not declared)");
+    if (!first.name.empty() && !second.name.empty() && first.name != second.name)
+        throw Error("{} in the frame '{}', {} in '{}'; both need one frame", one, first.name, other, second.name)
+            .hint("move one of them with `apply-transform`, or give both files one frame name");
 }
 
 }  // namespace scanmill

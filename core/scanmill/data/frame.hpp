@@ -34,4 +34,8 @@ struct Frame {
     bool operator==(const Frame&) const = default;
 };
 
+/// Throws Error if the units differ, or the names if both have one. `one` and `other` are what the user calls the
+/// values, in the singular or plural: "the plan is", "the mesh". Origins may differ.
+void require_same_frame(const Frame& first, std::string_view one, const Frame& second, std::string_view other);
+
 }  // namespace scanmill

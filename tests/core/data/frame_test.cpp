@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/thrown.hpp"
+
 namespace scanmill::test {
 namespace {
 
@@ -31,6 +33,20 @@ TEST(LengthUnit, Conversions_AreTheDefinitionsToTheLastBit) {
     EXPECT_EQ(in_unit(1, foot, inch), 12);
     EXPECT_EQ(in_unit(6, inch, foot), 0.5);
     EXPECT_EQ(in_unit(1.25, foot, foot), 1.25);
+}
+
+TEST(Frame, OtherUnitsAndNames_AreRefused) {
+    const auto refusal = [](const Frame& plan, const Frame& mesh) {
+        return error_of([&] { require_same_frame(plan, "the plan is", mesh, "the mesh"); });
+    };
+    const Frame unnamed{LengthUnit::millimetre, Vec3::Zero(), ""},
+        machine{LengthUnit::millimetre, Vec3::Ones(), "machine"},
+        scanner{LengthUnit::millimetre, Vec3::Zero(), "scanner"};
+    EXPECT_NO_THROW(require_same_frame(machine, "a is", unnamed, "b"));
+    EXPECT_NO_THROW(require_same_frame(machine, "a is", {LengthUnit::millimetre, Vec3::Zero(), "machine"}, "b"));
+    EXPECT_EQ(refusal(machine, scanner).sentence(),
+              "the plan is in the frame 'machine', the mesh in 'scanner'; both need one frame");
+    EXPECT_EQ(refusal(unnamed, Frame()).sentence(), "the plan is in mm, the mesh in u; both need one unit");
 }
 
 TEST(LengthUnit, WhatIsNoUnitOfTheWorld_NamesNone) {

@@ -2,35 +2,13 @@
 #include "scanmill/geometry/distance/self_intersections.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <vector>
 
 #include "scanmill/base/parallel.hpp"
 #include "scanmill/geometry/distance/triangles_intersect.hpp"
+#include "scanmill/geometry/mesh/coincident.hpp"
 
 namespace scanmill {
-
-Array<u32> lowest_at_position(std::span<const Vec3> positions) {
-    constexpr u32 nobody = ~u32(0);
-    const std::size_t mask = std::bit_ceil(2 * positions.size() + 1) - 1;
-    std::vector<u32> slots(mask + 1, nobody);  // a hash table with linear probing
-    const auto hash = [](const Vec3& position) {
-        u64 mixed = 0;
-        for (const double coordinate : position) {
-            mixed = (mixed ^ std::bit_cast<u64>(coordinate + 0.0)) * 0x9e3779b97f4a7c15u;  // -0 + 0 is 0
-            mixed ^= mixed >> 32;
-        }
-        return static_cast<std::size_t>(mixed);
-    };
-    Array<u32> lowest(positions.size());
-    for (u32 row = 0; row < positions.size(); ++row) {
-        std::size_t slot = hash(positions[row]) & mask;
-        while (slots[slot] != nobody && positions[slots[slot]] != positions[row]) slot = (slot + 1) & mask;
-        if (slots[slot] == nobody) slots[slot] = row;
-        lowest[row] = slots[slot];
-    }
-    return lowest;
-}
 
 namespace {
 

@@ -11,10 +11,6 @@
 
 namespace scanmill {
 
-/// By vertex: the lowest one at the same position. triangles_intersect() of triangles with these numbers takes corners
-/// at one position for one corner. Pre: no NaN. Cost: O(n).
-Array<u32> lowest_at_position(std::span<const Vec3> positions);
-
 struct SelfIntersections {
     /// Of all pairs.
     u64 count = 0;

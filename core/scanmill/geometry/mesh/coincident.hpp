@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+/// Vertices and edges at one position.
+
+#include <span>
+#include <vector>
+
+#include "scanmill/data/mesh.hpp"
+
+namespace scanmill {
+
+/// By vertex: the lowest one at the same position, exactly. Pre: no NaN. Cost: O(n).
+Array<u32> lowest_at_position(std::span<const Vec3> positions);
+
+/// Of a mesh's half-edges `boundary` those whose two positions are also those of another one: the surface is cut there.
+/// In their order. Cost: O(n log n).
+std::vector<u32> coincident_edges(const TriangleMesh& mesh, std::span<const u32> boundary);
+
+}  // namespace scanmill
